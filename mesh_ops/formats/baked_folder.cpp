@@ -1,0 +1,164 @@
+#include "mesh_ops/formats/baked_folder.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+
+#include "mesh_ops/error.h"
+#include "mesh_ops/formats/feature_png.h"
+#include "mesh_ops/formats/files.h"
+#include "mesh_ops/formats/mlp_json.h"
+#include "mesh_ops/formats/obj.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+SourceFile source_of(const std::string& name, std::string_view bytes) {
+  return {name, bytes.size(), content_hash(bytes)};
+}
+
+struct SetParts {
+  std::vector<ObjMesh> chunks;
+  std::vector<SourceFile> geometry;
+  std::shared_ptr<const FeatureTexture> texels;
+  SourceFile feat0;
+  SourceFile feat1;
+};
+
+std::vector<std::string> geometry_files(const fs::path& folder, bool unsplit, std::size_t set, int set_count) {
+  const std::string whole = geometry_name(unsplit ? Layout::unsplit : Layout::split, set, 0);
+  if (fs::exists(folder / whole)) return {whole};
+  std::vector<std::string> names;
+  for (std::size_t j = 0; !unsplit && fs::exists(folder / geometry_name(Layout::chunked, set, j)); ++j)
+    names.push_back(geometry_name(Layout::chunked, set, j));
+  if (!names.empty()) {
+    // A gap would silently drop what lies behind it.
+    for (std::size_t j = names.size() + 1; j < names.size() + 64; ++j)
+      if (fs::exists(folder / geometry_name(Layout::chunked, set, j)))
+        throw FileError(folder / geometry_name(Layout::chunked, set, names.size()),
+                        fmt::format("does not exist, but {} does", geometry_name(Layout::chunked, set, j)));
+    return names;
+  }
+  if (unsplit) throw FileError(folder / whole, "does not exist");
+  throw FileError(folder / whole, fmt::format("does not exist (nor {}), but mlp.json says obj_num = {}",
+                                              geometry_name(Layout::chunked, set, 0), set_count));
+}
+
+TextureSet joined(SetParts& parts) {
+  std::size_t vertex_count = 0, face_count = 0;
+  for (const ObjMesh& chunk : parts.chunks) {
+    vertex_count += chunk.positions.size();
+    face_count += chunk.faces.size();
+  }
+  ObjMesh all = std::move(parts.chunks.front());
+  all.positions.reserve(vertex_count);
+  all.uvs.reserve(vertex_count);
+  all.faces.reserve(face_count);
+  for (std::size_t j = 1; j < parts.chunks.size(); ++j) {
+    const ObjMesh& chunk = parts.chunks[j];
+    const auto base = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), chunk.positions.begin(), chunk.positions.end());
+    all.uvs.insert(all.uvs.end(), chunk.uvs.begin(), chunk.uvs.end());
+    for (const Face& face : chunk.faces) all.faces.push_back({face[0] + base, face[1] + base, face[2] + base});
+  }
+  return {Soup(std::move(all.positions), std::move(all.uvs), std::move(all.faces)), parts.texels};
+}
+
+}  // namespace
+
+std::string geometry_name(Layout layout, std::size_t set, std::size_t chunk) {
+  if (layout == Layout::unsplit) return "shape.obj";
+  if (layout == Layout::split) return fmt::format("shape{}.obj", set);
+  return fmt::format("shape{}_{}.obj", set, chunk);
+}
+
+std::string feature_name(Layout layout, std::size_t set, int image) {
+  if (layout == Layout::unsplit) return fmt::format("shape.pngfeat{}.png", image);
+  return fmt::format("shape{}.pngfeat{}.png", set, image);
+}
+
+std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axes axes, const Progress& progress) {
+  const fs::file_status status = fs::status(folder);
+  if (!fs::exists(status)) throw FileError(folder, "does not exist");
+  if (!fs::is_directory(status)) throw FileError(folder, "is not a folder");
+  const std::string mlp_text = read_file(folder / "mlp.json");
+  MlpFile mlp = read_mlp_json(mlp_text, folder / "mlp.json");
+  const bool unsplit = !mlp.obj_num.has_value();
+  if (unsplit && !fs::exists(folder / "shape.obj"))
+    throw FileError(folder / "mlp.json", "\"obj_num\" is missing, and there is no shape.obj as in an unsplit folder");
+  const int set_count = mlp.obj_num.value_or(1);
+  const AlphaCode code = unsplit ? AlphaCode::plain : AlphaCode::halved;
+  const Layout naming = unsplit ? Layout::unsplit : Layout::split;
+
+  std::vector<SetParts> sets(static_cast<std::size_t>(set_count));
+  struct Job {
+    std::size_t set;
+    std::size_t chunk;
+    bool texels;
+    std::string name;
+  };
+  std::vector<Job> jobs;
+  bool chunked = false;
+  // Images first: they take longest, and the rest then fills the gaps.
+  for (std::size_t i = 0; i < sets.size(); ++i) jobs.push_back({i, 0, true, {}});
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    const auto names = geometry_files(folder, unsplit, i, set_count);
+    for (const int image : {0, 1})
+      if (!fs::exists(folder / feature_name(naming, i, image)))
+        throw FileError(folder / feature_name(naming, i, image), "does not exist");
+    chunked = chunked || names.front() != geometry_name(naming, i, 0);
+    sets[i].chunks.resize(names.size());
+    sets[i].geometry.resize(names.size());
+    for (std::size_t j = 0; j < names.size(); ++j) jobs.push_back({i, j, false, names[j]});
+  }
+
+  std::atomic<std::size_t> done = 0;
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, jobs.size(), 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t k = range.begin(); k != range.end(); ++k) {
+          const Job& job = jobs[k];
+          SetParts& parts = sets[job.set];
+          if (job.texels) {
+            const std::string name0 = feature_name(naming, job.set, 0), name1 = feature_name(naming, job.set, 1);
+            const std::string bytes0 = read_file(folder / name0), bytes1 = read_file(folder / name1);
+            parts.texels = std::make_shared<const FeatureTexture>(
+                read_feature_pngs(bytes0, folder / name0, bytes1, folder / name1, code));
+            parts.feat0 = source_of(name0, bytes0);
+            parts.feat1 = source_of(name1, bytes1);
+          } else {
+            const std::string bytes = read_file(folder / job.name);
+            parts.chunks[job.chunk] = read_obj(bytes, folder / job.name);
+            parts.geometry[job.chunk] = source_of(job.name, bytes);
+          }
+          progress.at("reading " + folder.filename().string(), static_cast<double>(++done) / static_cast<double>(jobs.size()));
+        }
+      },
+      tbb::simple_partitioner());
+
+  auto object = std::make_shared<BakedObject>();
+  auto origin = std::make_shared<Origin>();
+  object->decoder = std::make_shared<const Decoder>(std::move(mlp.decoder));
+  object->axes = axes;
+  object->layout = unsplit ? Layout::unsplit : chunked ? Layout::chunked : Layout::split;
+  origin->folder = fs::absolute(folder).lexically_normal();
+  origin->layout = object->layout;
+  origin->mlp = source_of("mlp.json", mlp_text);
+  origin->decoder = object->decoder;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    SetParts& parts = sets[i];
+    TextureSet set = joined(parts);
+    if (set.soup.triangle_count() == 0) throw FileError(folder / parts.geometry.front().name, "has no triangles");
+    origin->sets.push_back({parts.geometry, parts.feat0, parts.feat1, set.soup.shared_positions(), set.soup.shared_uvs(),
+                            set.soup.shared_faces(), set.texels});
+    object->sets.push_back(std::move(set));
+  }
+  object->origin = origin;
+  return object;
+}
+
+}  // namespace rebake

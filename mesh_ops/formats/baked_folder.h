@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "mesh_ops/progress.h"
+#include "mesh_ops/scene/object.h"
+
+namespace rebake {
+
+/// Reads a MobileNeRF folder of any layout. Throws FileError.
+std::shared_ptr<const BakedObject> read_baked_folder(const std::filesystem::path& folder, Axes axes,
+                                                     const Progress& progress = {});
+
+/// The names of a layout's files.
+std::string geometry_name(Layout layout, std::size_t set, std::size_t chunk);
+std::string feature_name(Layout layout, std::size_t set, int image);
+
+/// Chunk viewers load exactly this many chunks a set.
+inline constexpr std::size_t chunks_a_set = 8;
+
+}  // namespace rebake

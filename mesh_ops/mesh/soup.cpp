@@ -1,0 +1,125 @@
+#include "mesh_ops/mesh/soup.h"
+
+#include <Eigen/SVD>
+#include <limits>
+#include <stdexcept>
+
+namespace rebake {
+
+namespace {
+
+constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+Soup::Soup() : Soup(std::vector<Vec3>{}, std::vector<Vec2>{}, std::vector<Face>{}) {}
+
+Soup::Soup(Positions positions, Uvs uvs, Faces faces, Turns turns)
+    : positions_(std::move(positions)), uvs_(std::move(uvs)), faces_(std::move(faces)), turns_(std::move(turns)) {
+  const std::size_t count = positions_->size();
+  if (uvs_->size() != count || (turns_ && turns_->size() != count))
+    throw std::invalid_argument("a soup needs as many UVs (and turns) as positions");
+  for (const Face& face : *faces_) {
+    for (const std::uint32_t vertex : face) {
+      if (vertex >= count) throw std::invalid_argument("a face names a vertex that is not there");
+      bounds_.extend((*positions_)[vertex]);
+    }
+  }
+}
+
+Soup::Soup(std::vector<Vec3> positions, std::vector<Vec2> uvs, std::vector<Face> faces)
+    : Soup(std::make_shared<const std::vector<Vec3>>(std::move(positions)),
+           std::make_shared<const std::vector<Vec2>>(std::move(uvs)),
+           std::make_shared<const std::vector<Face>>(std::move(faces))) {}
+
+std::uint64_t Soup::memory() const {
+  return positions_->size() * sizeof(Vec3) + uvs_->size() * sizeof(Vec2) + faces_->size() * sizeof(Face) +
+         (turns_ ? turns_->size() * sizeof(Mat3) : 0);
+}
+
+Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted) {
+  std::vector<std::uint8_t> used(soup.positions().size(), 0);
+  std::vector<Face> faces;
+  for (std::size_t f = 0; f < soup.faces().size(); ++f) {
+    if ((keep[first_flag + f] != 0) != wanted) continue;
+    faces.push_back(soup.faces()[f]);
+    for (const std::uint32_t vertex : soup.faces()[f]) used[vertex] = 1;
+  }
+  std::vector<std::uint32_t> renumbered(soup.positions().size(), unused);
+  auto positions = std::make_shared<std::vector<Vec3>>();
+  auto uvs = std::make_shared<std::vector<Vec2>>();
+  auto turns = soup.turns() != nullptr ? std::make_shared<std::vector<Mat3>>() : nullptr;
+  bool any_turn = false;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v] == 0) continue;
+    renumbered[v] = static_cast<std::uint32_t>(positions->size());
+    positions->push_back(soup.positions()[v]);
+    uvs->push_back(soup.uvs()[v]);
+    if (turns) {
+      turns->push_back((*soup.turns())[v]);
+      any_turn = any_turn || !turns->back().isIdentity(0);
+    }
+  }
+  for (Face& face : faces)
+    for (std::uint32_t& vertex : face) vertex = renumbered[vertex];
+  return Soup(positions, uvs, std::make_shared<const std::vector<Face>>(std::move(faces)),
+              any_turn ? Soup::Turns(turns) : nullptr);
+}
+
+Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion) {
+  const Mat3 turn = orthogonal_factor(motion.linear());
+  std::vector<std::uint8_t> by_moved(soup.positions().size(), 0);
+  std::vector<std::uint8_t> by_unmoved(soup.positions().size(), 0);
+  for (std::size_t f = 0; f < soup.faces().size(); ++f)
+    for (const std::uint32_t vertex : soup.faces()[f]) (flags[first_flag + f] != 0 ? by_moved : by_unmoved)[vertex] = 1;
+
+  auto positions = std::make_shared<std::vector<Vec3>>(soup.positions());
+  auto uvs = std::make_shared<std::vector<Vec2>>(soup.uvs());
+  auto turns = std::make_shared<std::vector<Mat3>>();
+  if (soup.turns() != nullptr)
+    *turns = *soup.turns();
+  else
+    turns->assign(positions->size(), Mat3::Identity());
+
+  std::vector<std::uint32_t> moved_vertex(soup.positions().size(), unused);
+  for (std::uint32_t v = 0; v < by_moved.size(); ++v) {
+    if (by_moved[v] == 0) continue;
+    moved_vertex[v] = v;
+    if (by_unmoved[v] != 0) {
+      moved_vertex[v] = static_cast<std::uint32_t>(positions->size());
+      positions->push_back(soup.positions()[v]);
+      uvs->push_back(soup.uvs()[v]);
+      turns->push_back(Mat3((*turns)[v]));
+    }
+    (*positions)[moved_vertex[v]] = motion * soup.positions()[v];
+    (*turns)[moved_vertex[v]] = orthogonal_factor(turn * (*turns)[moved_vertex[v]]);
+  }
+  auto faces = std::make_shared<std::vector<Face>>(soup.faces());
+  for (std::size_t f = 0; f < faces->size(); ++f)
+    if (flags[first_flag + f] != 0)
+      for (std::uint32_t& vertex : (*faces)[f]) vertex = moved_vertex[vertex];
+
+  bool any_turn = false;
+  for (const Mat3& t : *turns) any_turn = any_turn || !t.isIdentity(0);
+  const bool split = positions->size() != soup.positions().size();
+  return Soup(positions, split ? Soup::Uvs(uvs) : soup.shared_uvs(), split ? Soup::Faces(faces) : soup.shared_faces(),
+              any_turn ? Soup::Turns(turns) : nullptr);
+}
+
+Mat3 orthogonal_factor(const Mat3& linear) {
+  const double scale = linear.cwiseAbs().maxCoeff();
+  if (!linear.allFinite() || scale == 0) throw std::invalid_argument("the transform is singular or not finite");
+  // Matrices that are already orthogonal come back bit for bit, so exact quarter turns and identities stay exact.
+  if (linear.isUnitary(1e-15)) return linear;
+  const Mat3 scaled = linear / scale;
+  const Eigen::JacobiSVD<Mat3> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (svd.singularValues()[2] < 1e-14 * svd.singularValues()[0])
+    throw std::invalid_argument("the transform is singular: it flattens the object");
+  Mat3 factor = svd.matrixU() * svd.matrixV().transpose();
+  // A pure axis-aligned scale has an exact factor; rounding noise in it would needlessly turn every direction.
+  const Mat3 rounded = factor.array().round();
+  if ((factor - rounded).cwiseAbs().maxCoeff() < 4e-16) factor = rounded;
+  return factor;
+}
+
+}  // namespace rebake

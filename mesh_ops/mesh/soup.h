@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mesh_ops/scene/types.h"
+
+namespace rebake {
+
+/// The triangles of one texture set: an unwelded, non-manifold soup. Immutable; each array is shared on its own, so an
+/// edit that moves vertices keeps the UVs and faces of the scene before.
+class Soup {
+ public:
+  using Positions = std::shared_ptr<const std::vector<Vec3>>;
+  using Uvs = std::shared_ptr<const std::vector<Vec2>>;
+  using Faces = std::shared_ptr<const std::vector<Face>>;
+  using Turns = std::shared_ptr<const std::vector<Mat3>>;
+
+  Soup();
+  /// Positions in object space, UVs with v up, one of each a vertex. `turns` is null, or holds for each vertex the
+  /// orthogonal matrix by which an edit turned it against its object. Faces must be in range (std::invalid_argument).
+  Soup(Positions positions, Uvs uvs, Faces faces, Turns turns = nullptr);
+  Soup(std::vector<Vec3> positions, std::vector<Vec2> uvs, std::vector<Face> faces);
+
+  const std::vector<Vec3>& positions() const { return *positions_; }
+  const std::vector<Vec2>& uvs() const { return *uvs_; }
+  const std::vector<Face>& faces() const { return *faces_; }
+  const std::vector<Mat3>* turns() const { return turns_.get(); }
+
+  const Positions& shared_positions() const { return positions_; }
+  const Uvs& shared_uvs() const { return uvs_; }
+  const Faces& shared_faces() const { return faces_; }
+  const Turns& shared_turns() const { return turns_; }
+
+  std::size_t triangle_count() const { return faces_->size(); }
+  /// Box of the vertices that faces use; empty when there are no faces.
+  const Box& bounds() const { return bounds_; }
+  std::uint64_t memory() const;
+
+ private:
+  Positions positions_;
+  Uvs uvs_;
+  Faces faces_;
+  Turns turns_;
+  Box bounds_;
+};
+
+/// The faces whose `keep` flag (one a face) is `wanted`, with the vertices they use, in the old order.
+Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted);
+
+/// Moves the flagged faces by `motion`, recording its orthogonal factor in their vertices' turns. Vertices shared by moved
+Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion);
+
+/// The orthogonal polar factor of `linear`: its rotation, or rotation and reflection. Throws std::invalid_argument when
+/// `linear` is singular or not finite. Scale does not matter.
+Mat3 orthogonal_factor(const Mat3& linear);
+
+}  // namespace rebake

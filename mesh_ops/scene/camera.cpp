@@ -1,0 +1,57 @@
+#include "mesh_ops/scene/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mesh_ops/error.h"
+
+namespace rebake {
+
+Mat3 world_to_camera(const Camera& camera) {
+  const Vec3 back = (camera.eye - camera.target).stableNormalized();
+  if (back.squaredNorm() == 0) throw FieldError("target", "is the same point as the eye");
+  Vec3 right = camera.up.stableNormalized().cross(back);
+  if (right.norm() < 1e-9) {
+    Vec3 other = Vec3::Zero();
+    int smallest = 0;
+    back.cwiseAbs().minCoeff(&smallest);
+    other[smallest] = 1;
+    right = other.cross(back);
+  }
+  right.normalize();
+  Mat3 rows;
+  rows.row(0) = right;
+  rows.row(1) = back.cross(right);
+  rows.row(2) = back;
+  return rows;
+}
+
+void check(const Camera& camera) {
+  if (!camera.eye.allFinite()) throw FieldError("eye", "is not finite");
+  if (!camera.target.allFinite()) throw FieldError("target", "is not finite");
+  if (!camera.up.allFinite() || camera.up.isZero(0)) throw FieldError("up", "must be a finite, non-zero vector");
+  if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180)) throw FieldError("fov", "must lie between 0 and 180 degrees");
+  if (!(camera.near_plane > 0) || !std::isfinite(camera.near_plane)) throw FieldError("near", "must be greater than 0");
+  if (!(camera.far_plane > camera.near_plane) || !std::isfinite(camera.far_plane))
+    throw FieldError("far", "must be greater than near");
+  world_to_camera(camera);
+}
+
+Camera framing(const Box& bounds, double aspect, bool forward) {
+  Camera camera;
+  if (bounds.isEmpty()) return camera;
+  const Vec3 center = bounds.center();
+  const double radius = std::max(bounds.diagonal().norm() / 2, 1e-30);
+  const Vec3 direction = forward ? Vec3(0, 0, 1) : Vec3(0.35, 0.45, 1).normalized();
+  const double half_fov = camera.fov_degrees / 2 * std::numbers::pi / 180;
+  const double narrow = std::min(half_fov, std::atan(std::tan(half_fov) * aspect));
+  const double distance = radius / std::sin(narrow);
+  camera.target = center;
+  camera.eye = center + direction * distance;
+  camera.near_plane = std::max((distance - radius) / 2, distance * 1e-4);
+  camera.far_plane = distance + 2 * radius;
+  return camera;
+}
+
+}  // namespace rebake

@@ -1,0 +1,52 @@
+#include "mesh_ops/scene/object.h"
+
+#include <algorithm>
+#include <set>
+
+namespace rebake {
+
+std::size_t BakedObject::triangle_count() const {
+  std::size_t total = 0;
+  for (const TextureSet& set : sets) total += set.soup.triangle_count();
+  return total;
+}
+
+std::size_t BakedObject::vertex_count() const {
+  std::size_t total = 0;
+  for (const TextureSet& set : sets) total += set.soup.positions().size();
+  return total;
+}
+
+std::uint64_t BakedObject::opaque_texel_count() const {
+  std::set<const FeatureTexture*> seen;
+  std::uint64_t total = 0;
+  for (const TextureSet& set : sets)
+    if (seen.insert(set.texels.get()).second) total += set.texels->opaque_count();
+  return total;
+}
+
+Box BakedObject::bounds() const {
+  Box box;
+  for (const TextureSet& set : sets) box.extend(set.soup.bounds());
+  return box;
+}
+
+bool BakedObject::any_turns() const {
+  return std::any_of(sets.begin(), sets.end(), [](const TextureSet& set) { return set.soup.turns() != nullptr; });
+}
+
+std::uint64_t BakedObject::memory() const {
+  std::set<const FeatureTexture*> seen;
+  std::uint64_t total = 0;
+  for (const TextureSet& set : sets) {
+    total += set.soup.memory();
+    if (seen.insert(set.texels.get()).second) total += set.texels->memory();
+  }
+  return total;
+}
+
+std::size_t count(const TriangleSet& triangles) {
+  return static_cast<std::size_t>(std::count_if(triangles.begin(), triangles.end(), [](auto f) { return f != 0; }));
+}
+
+}  // namespace rebake

@@ -1,0 +1,139 @@
+#include "mesh_ops/scene/scene.h"
+
+#include <algorithm>
+
+namespace rebake {
+
+namespace {
+
+void collect(const std::vector<NodePtr>& nodes, const Affine& to_world, bool visible, bool locked,
+             std::vector<PlacedNode>& out) {
+  for (const NodePtr& node : nodes) {
+    const Affine placed = to_world * node->to_parent;
+    out.push_back({node, placed, visible && node->visible, locked || node->locked});
+    collect(node->children, placed, visible && node->visible, locked || node->locked, out);
+  }
+}
+
+// Rebuilds the path to `id`; `change` edits the list that holds the node, at the node's place.
+bool edit_list(std::vector<NodePtr>& nodes, NodeId id,
+               const std::function<void(std::vector<NodePtr>&, std::size_t)>& change) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i]->id == id) {
+      change(nodes, i);
+      return true;
+    }
+    std::vector<NodePtr> children = nodes[i]->children;
+    if (!edit_list(children, id, change)) continue;
+    Node copy = *nodes[i];
+    copy.children = std::move(children);
+    nodes[i] = std::make_shared<const Node>(std::move(copy));
+    return true;
+  }
+  return false;
+}
+
+// `reserved` holds names given within the subtree being added, which the scene does not know yet.
+void adopt(const Scene& scene, Node& node, std::uint64_t& next_id, std::vector<std::string>& reserved) {
+  if (node.id == NodeId::none) node.id = NodeId{next_id++};
+  std::string name = unique_name(scene, node.name);
+  for (int n = 2; std::find(reserved.begin(), reserved.end(), name) != reserved.end(); ++n)
+    name = unique_name(scene, node.name + "." + std::to_string(n));
+  node.name = name;
+  reserved.push_back(name);
+  for (NodePtr& child : node.children) {
+    Node copy = *child;
+    adopt(scene, copy, next_id, reserved);
+    child = std::make_shared<const Node>(std::move(copy));
+  }
+}
+
+}  // namespace
+
+std::vector<PlacedNode> placed_nodes(const Scene& scene) {
+  std::vector<PlacedNode> out;
+  collect(scene.roots, Affine::Identity(), true, false, out);
+  return out;
+}
+
+NodePtr find(const Scene& scene, NodeId id) {
+  const auto placed = find_placed(scene, id);
+  return placed ? placed->node : nullptr;
+}
+
+NodePtr find(const Scene& scene, const std::string& name) {
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->name == name) return placed.node;
+  return nullptr;
+}
+
+std::optional<PlacedNode> find_placed(const Scene& scene, NodeId id) {
+  for (PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->id == id) return std::move(placed);
+  return std::nullopt;
+}
+
+NodeId parent_of(const Scene& scene, NodeId id) {
+  for (const PlacedNode& placed : placed_nodes(scene))
+    for (const NodePtr& child : placed.node->children)
+      if (child->id == id) return placed.node->id;
+  return NodeId::none;
+}
+
+Scene with_changed(const Scene& scene, NodeId id, const std::function<void(Node&)>& change) {
+  Scene result = scene;
+  edit_list(result.roots, id, [&](std::vector<NodePtr>& list, std::size_t at) {
+    Node copy = *list[at];
+    change(copy);
+    list[at] = std::make_shared<const Node>(std::move(copy));
+  });
+  return result;
+}
+
+Scene without(const Scene& scene, NodeId id) {
+  Scene result = scene;
+  edit_list(result.roots, id, [](std::vector<NodePtr>& list, std::size_t at) {
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(at));
+  });
+  return result;
+}
+
+Scene with_added(const Scene& scene, Node node, NodeId parent, std::size_t index, NodeId* added) {
+  Scene result = scene;
+  std::vector<std::string> reserved;
+  adopt(scene, node, result.next_id, reserved);
+  if (added != nullptr) *added = node.id;
+  const auto pointer = std::make_shared<const Node>(std::move(node));
+  const auto insert = [&](std::vector<NodePtr>& list) {
+    list.insert(list.begin() + static_cast<std::ptrdiff_t>(std::min(index, list.size())), pointer);
+  };
+  if (parent == NodeId::none)
+    insert(result.roots);
+  else
+    result = with_changed(result, parent, [&](Node& group) { insert(group.children); });
+  return result;
+}
+
+std::string unique_name(const Scene& scene, const std::string& wanted) {
+  const std::string base = wanted.empty() ? "object" : wanted;
+  std::string name = base;
+  for (int n = 2; find(scene, name) != nullptr; ++n) name = base + "." + std::to_string(n);
+  return name;
+}
+
+Box transformed(const Box& box, const Affine& transform) {
+  Box result;
+  if (box.isEmpty()) return result;
+  for (int corner = 0; corner < 8; ++corner)
+    result.extend(transform * box.corner(static_cast<Box::CornerType>(corner)));
+  return result;
+}
+
+Box world_bounds(const Scene& scene) {
+  Box result;
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.visible && placed.node->object) result.extend(transformed(placed.node->object->bounds(), placed.to_world));
+  return result;
+}
+
+}  // namespace rebake

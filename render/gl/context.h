@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace rebake::gl {
+
+/// An OpenGL 3.3 core context (or newer). Not tied to a window: passes work the same on any kind.
+class Context {
+ public:
+  virtual ~Context() = default;
+  virtual void make_current() = 0;
+};
+
+/// A context without any display or window system, through EGL: Mesa's surfaceless platform first, then the first EGL
+/// device. Throws DeviceError that says what is missing.
+std::unique_ptr<Context> make_headless_context();
+
+/// What the current context runs on, e.g. "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5".
+std::string device_name();
+
+}  // namespace rebake::gl

@@ -1,0 +1,93 @@
+#include "render/gpu_scene/gpu_scene.h"
+
+#include <epoxy/gl.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace rebake {
+
+namespace {
+
+constexpr std::size_t faces_a_cluster = 2048;
+
+struct Vertex {
+  float position[3];
+  float texel[2];
+};
+
+GpuMesh upload(const TextureSet& set) {
+  const Soup& soup = set.soup;
+  GpuMesh mesh;
+  mesh.source = soup;
+  if (!soup.bounds().isEmpty()) mesh.center = soup.bounds().center();
+
+  std::vector<Vertex> vertices(soup.positions().size());
+  const double width = set.texels->width(), height = set.texels->height();
+  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t v) {
+    const Eigen::Vector3f position = (soup.positions()[v] - mesh.center).cast<float>();
+    const Vec2& uv = soup.uvs()[v];
+    vertices[v] = {{position.x(), position.y(), position.z()},
+                   {static_cast<float>(uv.x() * width), static_cast<float>((1 - uv.y()) * height)}};
+  });
+
+  mesh.array = gl::make_vertex_array();
+  glBindVertexArray(mesh.array.name());
+  mesh.vertices = gl::make_buffer(GL_ARRAY_BUFFER, vertices.data(), vertices.size() * sizeof(Vertex));
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
+  glEnableVertexAttribArray(1);
+  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offsetof(Vertex, texel)));
+  if (soup.turns() != nullptr) {
+    std::vector<float> turns;
+    turns.reserve(soup.turns()->size() * 9);
+    for (const Mat3& turn : *soup.turns())
+      for (Eigen::Index k = 0; k < 9; ++k) turns.push_back(static_cast<float>(turn.data()[k]));
+    mesh.turns = gl::make_buffer(GL_ARRAY_BUFFER, turns.data(), turns.size() * sizeof(float));
+    for (GLuint column = 0; column < 3; ++column) {
+      glEnableVertexAttribArray(2 + column);
+      glVertexAttribPointer(2 + column, 3, GL_FLOAT, GL_FALSE, 9 * sizeof(float), reinterpret_cast<const void*>(column * 3 * sizeof(float)));
+    }
+  }
+  mesh.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, soup.faces().data(), soup.faces().size() * sizeof(Face));
+  glBindVertexArray(0);
+
+  for (std::size_t first = 0; first < soup.faces().size(); first += faces_a_cluster) {
+    GpuMesh::Cluster cluster{first, std::min(faces_a_cluster, soup.faces().size() - first), {}};
+    for (std::size_t f = first; f < first + cluster.face_count; ++f)
+      for (const std::uint32_t vertex : soup.faces()[f]) cluster.bounds.extend(soup.positions()[vertex]);
+    mesh.clusters.push_back(cluster);
+  }
+  return mesh;
+}
+
+GpuTexture upload(const std::shared_ptr<const FeatureTexture>& source) {
+  GpuTexture result{source, gl::make_texture(GL_RG32UI, source->width(), source->height(), sizeof(Texel))};
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, TexelTile::size);
+  for (int row = 0; row < source->tile_rows(); ++row) {
+    for (int column = 0; column < source->tile_columns(); ++column) {
+      const int x = column * TexelTile::size, y = row * TexelTile::size;
+      glTexSubImage2D(GL_TEXTURE_2D, 0, x, y, std::min(TexelTile::size, source->width() - x),
+                      std::min(TexelTile::size, source->height() - y), GL_RG_INTEGER, GL_UNSIGNED_INT,
+                      source->tile(column, row)->texels.data());
+    }
+  }
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  return result;
+}
+
+}  // namespace
+
+void GpuScene::update(const Scene& scene) {
+  std::set<MeshKey> held_meshes;
+  for (const auto& [key, mesh] : meshes_) held_meshes.insert(key);
+  std::set<TextureKey> held_textures;
+  for (const auto& [key, texture] : textures_) held_textures.insert(key);
+  const ResourceDiff change = diff(held_meshes, held_textures, scene);
+  for (const MeshKey& key : change.released_meshes) meshes_.erase(key);
+  for (const TextureKey key : change.released_textures) textures_.erase(key);
+  for (const TextureSet& set : change.meshes) meshes_.emplace(mesh_key(set), upload(set));
+  for (const auto& texture : change.textures) textures_.emplace(texture.get(), upload(texture));
+}
+
+}  // namespace rebake

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace rebake {
+
+/// An 8-bit RGB picture in display colours, row 0 at the top.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;  ///< width × height × 3
+  bool operator==(const Image&) const = default;
+};
+
+/// Throws FileError. Alpha, where there is one, is dropped; grey becomes RGB.
+Image read_image(const std::filesystem::path& path);
+/// Writes a PNG, whole or not at all. Throws FileError.
+void write_png(const Image& image, const std::filesystem::path& path);
+
+}  // namespace rebake

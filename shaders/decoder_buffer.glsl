@@ -1,0 +1,31 @@
+// decoder_layout of decoder k: where its weights start, in floats, and its hidden widths.
+uniform samplerBuffer decoder_weights;
+uniform samplerBuffer decoder_layout;
+
+float weight(int at) { return texelFetch(decoder_weights, at >> 2)[at & 3]; }
+
+vec3 decode(int k, vec4 low, vec4 high, vec3 ray) {
+  ivec3 layout_of = ivec3(texelFetch(decoder_layout, k).xyz);
+  int at = layout_of.x;
+  float x[11] = float[11](low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w, ray.x, ray.y, ray.z);
+  float first[WIDEST_LAYER];
+  float second[WIDEST_LAYER];
+  // A neuron's bias comes before its weights.
+  for (int j = 0; j < layout_of.y; ++j) {
+    float sum = weight(at++);
+    for (int i = 0; i < 11; ++i) sum += weight(at++) * x[i];
+    first[j] = max(sum, 0.0);
+  }
+  for (int j = 0; j < layout_of.z; ++j) {
+    float sum = weight(at++);
+    for (int i = 0; i < layout_of.y; ++i) sum += weight(at++) * first[i];
+    second[j] = max(sum, 0.0);
+  }
+  vec3 color;
+  for (int c = 0; c < 3; ++c) {
+    float sum = weight(at++);
+    for (int i = 0; i < layout_of.z; ++i) sum += weight(at++) * second[i];
+    color[c] = 1.0 / (1.0 + exp(-sum));
+  }
+  return color;
+}

@@ -1,0 +1,31 @@
+#include "unpack.glsl"
+#if DECODER_BUFFER
+#include "decoder_buffer.glsl"
+#endif
+uniform usampler2D features;
+uniform ivec2 last_texel;
+uniform mat3 camera_to_fed;
+uniform vec2 alpha_code;
+uniform vec2 ray_scale;
+uniform vec2 ray_offset;
+uniform int decoder;
+in vec2 at_texel;
+#if TURNED_MESH
+in vec3 turned_ray;
+#endif
+layout(location = 0) out vec4 picture;
+
+void main() {
+  uvec2 texel = texelFetch(features, clamp(ivec2(floor(at_texel)), ivec2(0), last_texel), 0).rg;
+  if ((texel.r & 255u) == 0u) discard;
+  Sums sums = Sums(uvec4(0u), 0u);
+  add(sums, texel);
+  vec4 low, high;
+  average(sums, 1.0, alpha_code, low, high);
+#if TURNED_MESH
+  vec3 ray = normalize(turned_ray);
+#else
+  vec3 ray = camera_to_fed * normalize(vec3(gl_FragCoord.xy * ray_scale + ray_offset, -1.0));
+#endif
+  picture = vec4(decode(decoder, low, high, ray), 1.0);
+}

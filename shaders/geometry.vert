@@ -1,0 +1,21 @@
+layout(location = 0) in vec3 position;  // object space, relative to the mesh's centre
+layout(location = 1) in vec2 texel;     // in texels, v down
+#if TURNED_MESH
+layout(location = 2) in mat3 turn;  // by which an edit turned the vertex against its object
+uniform mat4 object_to_camera;
+uniform mat3 camera_to_object;  // directions, orthogonal
+uniform mat3 object_to_fed;     // the axes of the decoder
+out vec3 turned_ray;
+#endif
+uniform mat4 object_to_clip;
+out vec2 at_texel;
+
+void main() {
+  gl_Position = object_to_clip * vec4(position, 1.0);
+  at_texel = texel;
+#if TURNED_MESH
+  // Unnormalised, so that interpolation over the triangle is exact where all three turns agree.
+  vec3 ray = camera_to_object * (object_to_camera * vec4(position, 1.0)).xyz;
+  turned_ray = object_to_fed * (ray * turn);
+#endif
+}

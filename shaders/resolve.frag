@@ -1,0 +1,96 @@
+#include "unpack.glsl"
+#if DECODER_BUFFER
+#include "decoder_buffer.glsl"
+#endif
+uniform usampler2D features;
+#if WRITES_FRAME
+uniform usampler2D frames;
+uniform samplerBuffer frame_table;  // a frame: three columns of camera-to-fed, then decoder, alpha factor, alpha offset
+uniform float decoder_count;
+#else
+uniform mat3 camera_to_fed;
+uniform vec2 alpha_code;
+#endif
+#if WRITES_RAY
+uniform sampler2D rays;
+#endif
+uniform vec2 ray_scale;   // camera-space ray of a sample = (sample + 0.5) * ray_scale + ray_offset, z = -1
+uniform vec2 ray_offset;
+uniform vec3 background;
+out vec4 picture;
+
+const float samples = float(SIDE * SIDE);
+
+vec3 fed_ray(ivec2 at, mat3 to_fed) {
+#if WRITES_RAY
+  vec3 turned = texelFetch(rays, at, 0).xyz;
+  if (turned != vec3(0.0)) return turned;
+#endif
+  return to_fed * normalize(vec3((vec2(at) + 0.5) * ray_scale + ray_offset, -1.0));
+}
+
+#if !WRITES_FRAME
+void main() {
+  ivec2 base = ivec2(gl_FragCoord.xy) * SIDE;
+  Sums sums = Sums(uvec4(0u), 0u);
+  vec3 ray = vec3(0.0);
+  for (int y = 0; y < SIDE; ++y) {
+    for (int x = 0; x < SIDE; ++x) {
+      ivec2 at = base + ivec2(x, y);
+      uvec2 texel = texelFetch(features, at, 0).rg;
+      if (texel.r != 0u) {
+        add(sums, texel);
+#if WRITES_RAY
+        ray += fed_ray(at, camera_to_fed);
+#else
+        ray += normalize(vec3((vec2(at) + 0.5) * ray_scale + ray_offset, -1.0));
+#endif
+      }
+    }
+  }
+  if (sums.count == 0u) discard;
+  vec4 low, high;
+  average(sums, samples, alpha_code, low, high);
+#if !WRITES_RAY
+  ray = camera_to_fed * ray;
+#endif
+  float coverage = float(sums.count) / samples;
+  picture = vec4(decode(0, low, high, ray / samples) * coverage + (1.0 - coverage) * background, 1.0);
+}
+#else
+// Each decoder averages its own samples, all others counting as uncovered, and is evaluated once.
+void main() {
+  ivec2 base = ivec2(gl_FragCoord.xy) * SIDE;
+  vec3 color = vec3(0.0);
+  float coverage = 0.0;
+  for (int k = 0; k < int(decoder_count); ++k) {
+    // Halved and plain alpha differ in how they add up, so they are summed apart.
+    Sums halved = Sums(uvec4(0u), 0u);
+    Sums plain = Sums(uvec4(0u), 0u);
+    vec3 ray = vec3(0.0);
+    for (int y = 0; y < SIDE; ++y) {
+      for (int x = 0; x < SIDE; ++x) {
+        ivec2 at = base + ivec2(x, y);
+        uvec2 texel = texelFetch(features, at, 0).rg;
+        if (texel.r == 0u) continue;
+        int frame = int(texelFetch(frames, at, 0).r) * 4;
+        vec4 info = texelFetch(frame_table, frame + 3);
+        if (int(info.x) != k) continue;
+        if (info.y == 2.0) add(halved, texel); else add(plain, texel);
+        ray += fed_ray(at, mat3(texelFetch(frame_table, frame).xyz, texelFetch(frame_table, frame + 1).xyz,
+                                texelFetch(frame_table, frame + 2).xyz));
+      }
+    }
+    uint count = halved.count + plain.count;
+    if (count == 0u) continue;
+    vec4 low, high, plain_low, plain_high;
+    average(halved, samples, vec2(2.0, -1.0), low, high);
+    average(plain, samples, vec2(1.0, 0.0), plain_low, plain_high);
+    float share = float(count) / samples;
+    color += share * decode(k, low + plain_low, high + plain_high, ray / samples);
+    coverage += share;
+  }
+  if (coverage == 0.0) discard;
+  picture = vec4(color + (1.0 - coverage) * background, 1.0);
+}
+#endif
