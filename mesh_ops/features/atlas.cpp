@@ -1,0 +1,265 @@
+#include "mesh_ops/features/atlas.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+
+#include "mesh_ops/error.h"
+
+namespace rebake {
+
+namespace {
+
+struct Rect {
+  int left = 0, top = 0, right = 0, bottom = 0;  // right and bottom included
+  auto operator<=>(const Rect&) const = default;
+  bool overlaps(const Rect& o) const { return left <= o.right && o.left <= right && top <= o.bottom && o.top <= bottom; }
+  void join(const Rect& o) {
+    left = std::min(left, o.left);
+    top = std::min(top, o.top);
+    right = std::max(right, o.right);
+    bottom = std::max(bottom, o.bottom);
+  }
+  int width() const { return right - left + 1; }
+  int height() const { return bottom - top + 1; }
+};
+
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+  std::size_t root(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::size_t a, std::size_t b) {
+    a = root(a);
+    b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+Rect rect_of(const TextureSet& set, const Face& face) {
+  const int width = set.texels->width(), height = set.texels->height();
+  double low_u = 2, high_u = -1, low_v = 2, high_v = -1;
+  for (const std::uint32_t vertex : face) {
+    const Vec2& uv = set.soup.uvs()[vertex];
+    low_u = std::min(low_u, uv.x());
+    high_u = std::max(high_u, uv.x());
+    low_v = std::min(low_v, uv.y());
+    high_v = std::max(high_v, uv.y());
+  }
+  const auto texel = [](double share, int size) { return std::clamp(static_cast<int>(std::floor(share * size)), 0, size - 1); };
+  return {texel(low_u, width), texel(1 - high_v, height), texel(high_u, width), texel(1 - low_v, height)};
+}
+
+// Patches of one set: groups of faces whose texel rectangles overlap.
+struct Patches {
+  std::vector<Rect> rects;
+  std::vector<std::size_t> of_face;
+};
+
+Patches find_patches(const TextureSet& set) {
+  const auto& faces = set.soup.faces();
+  std::map<Rect, std::size_t> known;
+  std::vector<Rect> rects;
+  std::vector<std::size_t> rect_of_face;
+  for (const Face& face : faces) {
+    const Rect rect = rect_of(set, face);
+    const auto [it, fresh] = known.try_emplace(rect, rects.size());
+    if (fresh) rects.push_back(rect);
+    rect_of_face.push_back(it->second);
+  }
+  // Only rectangles in the same block of texels can overlap.
+  constexpr int block = 32;
+  UnionFind groups(rects.size());
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> in_block;
+  for (std::size_t r = 0; r < rects.size(); ++r) {
+    for (int y = rects[r].top / block; y <= rects[r].bottom / block; ++y) {
+      for (int x = rects[r].left / block; x <= rects[r].right / block; ++x) {
+        auto& others = in_block[static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x)];
+        for (const std::size_t other : others)
+          if (rects[other].overlaps(rects[r])) groups.join(other, r);
+        others.push_back(r);
+      }
+    }
+  }
+  Patches result;
+  std::unordered_map<std::size_t, std::size_t> patch_of_root;
+  std::vector<std::size_t> patch_of_rect(rects.size());
+  for (std::size_t r = 0; r < rects.size(); ++r) {
+    const auto [it, fresh] = patch_of_root.try_emplace(groups.root(r), result.rects.size());
+    if (fresh)
+      result.rects.push_back(rects[r]);
+    else
+      result.rects[it->second].join(rects[r]);
+    patch_of_rect[r] = it->second;
+  }
+  for (const std::size_t r : rect_of_face) result.of_face.push_back(patch_of_rect[r]);
+  return result;
+}
+
+Texel converted(Texel texel, AlphaCode from, AlphaCode to) {
+  if (from == to) return texel;
+  for (std::uint8_t* alpha : {&texel.feat0[3], &texel.feat1[3]}) {
+    if (to == AlphaCode::halved)
+      *alpha = static_cast<std::uint8_t>(*alpha / 2 + 128);
+    else if (!texel.opaque())
+      *alpha = 0;
+    else
+      *alpha = static_cast<std::uint8_t>(std::max(0, 2 * *alpha - 255));  // exactly the decoded value
+  }
+  return texel;
+}
+
+struct Place {
+  std::size_t set, patch;
+  std::size_t page = 0;
+  int x = 0, y = 0;
+};
+
+struct Page {
+  int width = 0, height = 0;
+};
+
+}  // namespace
+
+bool can_pack(const TextureSet& set) {
+  for (const Face& face : set.soup.faces())
+    for (const std::uint32_t vertex : face) {
+      const Vec2& uv = set.soup.uvs()[vertex];
+      if (!(uv.x() >= 0 && uv.x() <= 1 && uv.y() >= 0 && uv.y() <= 1)) return false;
+    }
+  return true;
+}
+
+std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture, AlphaCode code) {
+  if (texture->alpha_code() == code) return texture;
+  return std::make_shared<const FeatureTexture>(
+      FeatureTexture::from_rows(texture->width(), texture->height(), code, [&](int y, Texel* row) {
+        for (int x = 0; x < texture->width(); ++x) row[x] = converted(texture->at(x, y), texture->alpha_code(), code);
+      }));
+}
+
+PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code) {
+  std::vector<Patches> patches;
+  std::vector<Place> places;
+  std::uint64_t area = 0;
+  int widest = 1;
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    if (!can_pack(sets[s])) throw Error("texels cannot be moved: some UVs lie outside 0 … 1");
+    patches.push_back(find_patches(sets[s]));
+    for (std::size_t p = 0; p < patches[s].rects.size(); ++p) {
+      const Rect& rect = patches[s].rects[p];
+      if (rect.width() > largest_side || rect.height() > largest_side)
+        throw Error(fmt::format("a patch of {}×{} texels does not fit into textures of {}²", rect.width(), rect.height(), largest_side));
+      places.push_back({s, p});
+      area += static_cast<std::uint64_t>(rect.width()) * static_cast<std::uint64_t>(rect.height());
+      widest = std::max(widest, rect.width());
+    }
+  }
+  const auto rect_at = [&](const Place& place) -> const Rect& { return patches[place.set].rects[place.patch]; };
+  std::stable_sort(places.begin(), places.end(), [&](const Place& a, const Place& b) {
+    return std::pair(rect_at(a).height(), rect_at(a).width()) > std::pair(rect_at(b).height(), rect_at(b).width());
+  });
+  // Nearly square pages, a whole number of the widest patch across.
+  const auto side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(area))));
+  const int width = std::min(largest_side / widest * widest, std::max(1, (side + widest - 1) / widest) * widest);
+  std::vector<Page> pages(1);
+  int x = 0, y = 0, shelf = 0;
+  for (Place& place : places) {
+    const Rect& rect = rect_at(place);
+    if (x + rect.width() > width) {
+      x = 0;
+      y += shelf;
+      shelf = 0;
+    }
+    if (y + rect.height() > largest_side) {
+      pages.emplace_back();
+      x = y = shelf = 0;
+    }
+    place.page = pages.size() - 1;
+    place.x = x;
+    place.y = y;
+    x += rect.width();
+    shelf = std::max(shelf, rect.height());
+    pages.back().width = std::max(pages.back().width, x);
+    pages.back().height = std::max(pages.back().height, y + shelf);
+  }
+
+  std::vector<std::vector<Place>> place_of(sets.size());
+  for (std::size_t s = 0; s < sets.size(); ++s) place_of[s].resize(patches[s].rects.size());
+  std::vector<std::vector<Texel>> pixels;
+  for (const Page& page : pages)
+    pixels.emplace_back(static_cast<std::size_t>(page.width) * static_cast<std::size_t>(page.height), empty_texel(code));
+  for (const Place& place : places) {
+    place_of[place.set][place.patch] = place;
+    const FeatureTexture& source = *sets[place.set].texels;
+    const Rect& rect = rect_at(place);
+    for (int row = 0; row < rect.height(); ++row)
+      for (int column = 0; column < rect.width(); ++column)
+        pixels[place.page][static_cast<std::size_t>(place.y + row) * static_cast<std::size_t>(pages[place.page].width) + static_cast<std::size_t>(place.x + column)] =
+            converted(source.at(rect.left + column, rect.top + row), source.alpha_code(), code);
+  }
+
+  struct Building {
+    std::vector<Vec3> positions;
+    std::vector<Vec2> uvs;
+    std::vector<Face> faces;
+    std::vector<Mat3> turns;
+    bool turned = false;
+  };
+  constexpr auto absent = std::numeric_limits<std::uint32_t>::max();
+  std::vector<Building> building(pages.size());
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    const Soup& soup = sets[s].soup;
+    const double old_width = sets[s].texels->width(), old_height = sets[s].texels->height();
+    // A vertex lies in one patch: faces that share it share its texel. So one pass over the vertices keeps their order.
+    std::vector<std::size_t> patch_of_vertex(soup.positions().size(), absent);
+    for (std::size_t f = 0; f < soup.faces().size(); ++f)
+      for (const std::uint32_t vertex : soup.faces()[f]) patch_of_vertex[vertex] = patches[s].of_face[f];
+    std::vector<std::uint32_t> renumbered(soup.positions().size(), absent);
+    for (std::size_t v = 0; v < soup.positions().size(); ++v) {
+      if (patch_of_vertex[v] == absent) continue;
+      const Place& place = place_of[s][patch_of_vertex[v]];
+      const Rect& rect = rect_at(place);
+      const Page& page = pages[place.page];
+      Building& out = building[place.page];
+      renumbered[v] = static_cast<std::uint32_t>(out.positions.size());
+      out.positions.push_back(soup.positions()[v]);
+      const Vec2& uv = soup.uvs()[v];
+      out.uvs.emplace_back((uv.x() * old_width + (place.x - rect.left)) / page.width,
+                           1 - ((1 - uv.y()) * old_height + (place.y - rect.top)) / page.height);
+      out.turns.push_back(soup.turns() != nullptr ? (*soup.turns())[v] : Mat3(Mat3::Identity()));
+      out.turned = out.turned || soup.turns() != nullptr;
+    }
+    for (std::size_t f = 0; f < soup.faces().size(); ++f) {
+      Face face = soup.faces()[f];
+      for (std::uint32_t& vertex : face) vertex = renumbered[vertex];
+      building[place_of[s][patches[s].of_face[f]].page].faces.push_back(face);
+    }
+  }
+  PackedSets result;
+  for (std::size_t k = 0; k < pages.size(); ++k) {
+    Building& b = building[k];
+    auto texels = std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(pages[k].width, pages[k].height, code, [&](int row, Texel* out) {
+      std::copy_n(pixels[k].begin() + static_cast<std::ptrdiff_t>(row) * pages[k].width, pages[k].width, out);
+    }));
+    result.sets.push_back({Soup(std::make_shared<const std::vector<Vec3>>(std::move(b.positions)), std::make_shared<const std::vector<Vec2>>(std::move(b.uvs)),
+                                std::make_shared<const std::vector<Face>>(std::move(b.faces)),
+                                b.turned ? std::make_shared<const std::vector<Mat3>>(std::move(b.turns)) : nullptr),
+                           std::move(texels)});
+    result.texel_area += static_cast<std::uint64_t>(pages[k].width) * static_cast<std::uint64_t>(pages[k].height);
+  }
+  return result;
+}
+
+}  // namespace rebake

@@ -1,0 +1,155 @@
+#include "mesh_ops/formats/export.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mesh_ops/error.h"
+#include "mesh_ops/formats/scene_folder.h"
+#include "mesh_ops/formats/write_baked_folder.h"
+
+namespace rebake {
+
+namespace {
+
+bool same_turn(const Soup& soup, std::size_t face, const Mat3& turn) {
+  return soup.turns() == nullptr ? turn.isIdentity(0) : (*soup.turns())[soup.faces()[face][0]] == turn;
+}
+
+std::vector<Mat3> distinct_turns(const BakedObject& object) {
+  std::vector<Mat3> turns;
+  for (const TextureSet& set : object.sets)
+    for (const Face& face : set.soup.faces()) {
+      const Mat3 turn = set.soup.turns() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.turns())[face[0]];
+      if (set.soup.turns() != nullptr && ((*set.soup.turns())[face[1]] != turn || (*set.soup.turns())[face[2]] != turn))
+        throw EditError("a bent part has no exact form in the published format; save it as a scene instead");
+      if (turns.empty() || turns.back() != turn)
+        if (std::find(turns.begin(), turns.end(), turn) == turns.end()) turns.push_back(turn);
+      if (set.soup.turns() == nullptr) break;
+    }
+  return turns;
+}
+
+// Triangles of one turn, in world space and without turns. The arrays are shared where nothing changes.
+std::vector<TextureSet> world_sets(const BakedObject& object, const Mat3& turn, bool all, const Affine& to_world) {
+  std::vector<TextureSet> sets;
+  for (const TextureSet& set : object.sets) {
+    Soup soup = set.soup;
+    if (!all) {
+      TriangleSet flags(soup.triangle_count());
+      for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = same_turn(soup, f, turn) ? 1 : 0;
+      soup = subset(soup, flags, 0, true);
+      if (soup.triangle_count() == 0) continue;
+    }
+    Soup::Positions positions = soup.shared_positions();
+    if (!to_world.matrix().isIdentity(0)) {
+      std::vector<Vec3> moved(positions->size());
+      std::transform(positions->begin(), positions->end(), moved.begin(), [&](const Vec3& p) { return to_world * p; });
+      positions = std::make_shared<const std::vector<Vec3>>(std::move(moved));
+    }
+    sets.push_back({Soup(positions, soup.shared_uvs(), soup.shared_faces()), set.texels});
+  }
+  return sets;
+}
+
+Soup appended(const Soup& a, const Soup& b) {
+  std::vector<Vec3> positions = a.positions();
+  std::vector<Vec2> uvs = a.uvs();
+  std::vector<Face> faces = a.faces();
+  const auto base = static_cast<std::uint32_t>(positions.size());
+  positions.insert(positions.end(), b.positions().begin(), b.positions().end());
+  uvs.insert(uvs.end(), b.uvs().begin(), b.uvs().end());
+  for (const Face& face : b.faces()) faces.push_back({face[0] + base, face[1] + base, face[2] + base});
+  return Soup(std::move(positions), std::move(uvs), std::move(faces));
+}
+
+}  // namespace
+
+std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout) {
+  struct Group {
+    std::string name;
+    bool visible;
+    BakedObject object;
+  };
+  std::vector<Group> groups;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object || placed.node->object->triangle_count() == 0) continue;
+    const BakedObject& object = *placed.node->object;
+    const Mat3 node_turn = orthogonal_factor(placed.to_world.linear());
+    const std::vector<Mat3> turns = distinct_turns(object);
+    for (const Mat3& turn : turns) {
+      std::vector<TextureSet> sets = world_sets(object, turn, turns.size() == 1, placed.to_world);
+      const Mat3 whole = node_turn * turn;
+      // Fold into the axes of a group that is there already, where the weights then agree.
+      const auto folded_into = [&](Axes axes) {
+        if (whole.isIdentity(0) && axes == object.axes) return object.decoder;
+        return std::make_shared<const Decoder>(fold_turn(*object.decoder, whole, object.axes, axes));
+      };
+      Group* found = nullptr;
+      for (Group& group : groups)
+        if (group.visible == placed.visible && (layout || group.object.layout == object.layout) && *folded_into(group.object.axes) == *group.object.decoder) found = &group;
+      if (found == nullptr) {
+        Group group{placed.node->name, placed.visible, {}};
+        group.object.axes = object.axes;
+        group.object.layout = layout.value_or(object.layout);
+        group.object.decoder = folded_into(object.axes);
+        group.object.origin = object.origin;
+        groups.push_back(std::move(group));
+        found = &groups.back();
+      } else if (found->object.origin != object.origin) {
+        found->object.origin = nullptr;
+      }
+      for (TextureSet& set : sets) {
+        const auto same = std::find_if(found->object.sets.begin(), found->object.sets.end(), [&](const TextureSet& s) { return s.texels == set.texels; });
+        if (same == found->object.sets.end())
+          found->object.sets.push_back(std::move(set));
+        else
+          same->soup = appended(same->soup, set.soup);
+      }
+    }
+  }
+  std::vector<Node> nodes;
+  for (Group& group : groups) {
+    Node node;
+    node.name = group.name;
+    node.visible = group.visible;
+    node.object = std::make_shared<const BakedObject>(std::move(group.object));
+    nodes.push_back(std::move(node));
+  }
+  return nodes;
+}
+
+ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options, const Progress& progress) {
+  const std::vector<Node> nodes = merged_for_export(scene, options.layout);
+  if (nodes.empty()) throw EditError("there is nothing to export: the scene has no triangles");
+  ExportReport report;
+  report.folders = nodes.size();
+  report.one_folder = nodes.size() == 1 && nodes.front().visible;
+  AtomicFolder out(folder);
+  if (report.one_folder) {
+    const BakedObject& object = *nodes.front().object;
+    if (!scene.background.isOnes(0)) report.notes.emplace_back("the format has no background: viewers show white");
+    if (!scene.views.empty()) report.notes.emplace_back("the format has no named views: they are left out");
+    if (object.axes == Axes::forward) report.notes.emplace_back("the format does not say that this is a forward-facing scene: open it with --axes forward");
+    write_baked_folder(out, {}, object, object.layout, report.notes, progress);
+  } else {
+    report.notes.push_back(nodes.size() == 1 ? "a hidden object cannot be said in one folder: wrote scene.json"
+                                             : fmt::format("one folder holds one decoder in one orientation: wrote scene.json with {} folders", nodes.size()));
+    Scene merged;
+    merged.background = scene.background;
+    merged.views = scene.views;
+    std::vector<std::string> taken;
+    std::map<const BakedObject*, std::string> folder_of;
+    for (const Node& node : nodes) {
+      taken.push_back(folder_name(node.name, taken));
+      folder_of[node.object.get()] = taken.back();
+      write_baked_folder(out, taken.back(), *node.object, node.object->layout, report.notes, progress);
+      merged = with_added(merged, node, NodeId::none, merged.roots.size());
+    }
+    out.write("scene.json", write_scene_json(merged, folder_of));
+  }
+  out.commit();
+  return report;
+}
+
+}  // namespace rebake

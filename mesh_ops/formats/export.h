@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/progress.h"
+#include "mesh_ops/scene/scene.h"
+
+namespace rebake {
+
+struct ExportOptions {
+  std::optional<Layout> layout;  ///< nothing: as the objects were read
+};
+
+struct ExportReport {
+  bool one_folder = true;            ///< a plain MobileNeRF folder; else scene.json with `folders` folders
+  std::size_t folders = 1;
+  std::vector<std::string> notes;    ///< what the result cannot hold, was converted or dropped
+};
+
+/// The objects of a scene merged as far as the format stays exact: positions in world space, rotations folded into decoder weights. Nodes whose
+/// folded decoders are equal share an object; triangles turned apart from their object go with those of the same turn.
+std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout);
+
+/// Writes the scene in the published format: one folder where that is exact, else scene.json with as few folders as stay exact. Replaces the
+/// target whole or not at all. Throws FileError, and EditError for an empty scene.
+ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options, const Progress& progress = {});
+
+}  // namespace rebake

@@ -1,0 +1,41 @@
+#include "mesh_ops/formats/formats.h"
+
+#include "mesh_ops/error.h"
+#include "mesh_ops/formats/baked_folder.h"
+#include "mesh_ops/formats/scene_folder.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Scene read_mobilenerf(const fs::path& folder, Axes axes, const Progress& progress) {
+  Node node;
+  const fs::path normal = fs::absolute(folder).lexically_normal();
+  node.name = (normal.has_filename() ? normal.filename() : normal.parent_path().filename()).string();
+  node.object = read_baked_folder(folder, axes, progress);
+  return with_added({}, node, NodeId::none, 0);
+}
+
+constexpr Format table[] = {
+    {"Rebake scene", [](const fs::path& folder) { return fs::exists(folder / "scene.json"); },
+     [](const fs::path& folder, Axes, const Progress& progress) { return read_scene_folder(folder, progress); }},
+    {"MobileNeRF", [](const fs::path& folder) { return fs::exists(folder / "mlp.json"); }, read_mobilenerf},
+};
+
+}  // namespace
+
+std::span<const Format> formats() { return table; }
+
+Scene read_any(const fs::path& path, Axes axes, const Progress& progress) {
+  // scene.json itself may be named in place of its folder.
+  const fs::path folder = path.filename() == "scene.json" ? (path.has_parent_path() ? path.parent_path() : fs::path(".")) : path;
+  if (!fs::exists(folder)) throw FileError(folder, "does not exist");
+  if (!fs::is_directory(folder)) throw FileError(folder, "is not a folder");
+  for (const Format& format : formats())
+    if (format.recognises(folder)) return format.read(folder, axes, progress);
+  throw FileError(folder, "holds neither mlp.json (a MobileNeRF folder) nor scene.json (a Rebake scene)");
+}
+
+}  // namespace rebake

@@ -1,0 +1,160 @@
+#include "mesh_ops/formats/scene_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "mesh_ops/error.h"
+#include "mesh_ops/formats/baked_folder.h"
+#include "mesh_ops/formats/camera_json.h"
+#include "mesh_ops/formats/files.h"
+#include "mesh_ops/formats/turns_json.h"
+#include "mesh_ops/formats/write_baked_folder.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+constexpr int scene_version = 1;
+constexpr int deepest_group = 64;
+
+json node_json(const Node& node, const std::map<const BakedObject*, std::string>& folder_of) {
+  json rows = json::array();
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) rows.push_back(node.to_parent.matrix()(r, c));
+  json out = {{"name", node.name}, {"transform", rows}};
+  if (!node.visible) out["visible"] = false;
+  if (node.locked) out["locked"] = true;
+  if (node.object) {
+    out["folder"] = folder_of.at(node.object.get());
+    out["axes"] = node.object->axes == Axes::forward ? "forward" : "360";
+  }
+  if (!node.children.empty()) {
+    out["children"] = json::array();
+    for (const NodePtr& child : node.children) out["children"].push_back(node_json(*child, folder_of));
+  }
+  return out;
+}
+
+class SceneReader {
+ public:
+  SceneReader(fs::path folder, const Progress& progress) : folder_(std::move(folder)), name_(folder_ / "scene.json"), progress_(progress) {}
+
+  Scene run() {
+    const json root = [&] {
+      try {
+        return json::parse(read_file(name_));
+      } catch (const json::exception& error) {
+        throw FileError(name_, std::string("is not valid JSON: ") + error.what());
+      }
+    }();
+    try {
+      if (!root.is_object() || !root.contains("rebake_scene")) throw FileError(name_, "is not a Rebake scene (\"rebake_scene\" is missing)");
+      if (root.at("rebake_scene") != scene_version) throw FileError(name_, "was written by a newer version of Rebake");
+      Scene scene;
+      if (root.contains("background"))
+        for (std::size_t c = 0; c < 3; ++c) scene.background[static_cast<Eigen::Index>(c)] = std::clamp(root.at("background").at(c).get<double>(), 0.0, 1.0);
+      if (root.contains("views"))
+        for (const auto& [view, camera] : root.at("views").items()) scene.views[view] = read_camera_json(camera);
+      for (const json& node : root.at("nodes")) scene = with_added(scene, read_node(node, 0), NodeId::none, scene.roots.size());
+      return scene;
+    } catch (const json::exception& error) {
+      throw FileError(name_, std::string("does not hold what a scene needs: ") + error.what());
+    } catch (const FieldError& error) {
+      throw FileError(name_, error.what());
+    }
+  }
+
+ private:
+  Node read_node(const json& value, int depth) {
+    if (depth > deepest_group) throw FileError(name_, fmt::format("nests groups deeper than {}", deepest_group));
+    Node node;
+    node.name = value.at("name").get<std::string>();
+    node.visible = value.value("visible", true);
+    node.locked = value.value("locked", false);
+    if (value.contains("transform")) {
+      const json& rows = value.at("transform");
+      if (!rows.is_array() || rows.size() != 12) throw FileError(name_, fmt::format("node \"{}\": \"transform\" must have 12 numbers (3 rows of 4)", node.name));
+      for (int i = 0; i < 12; ++i) node.to_parent.matrix()(i / 4, i % 4) = rows.at(static_cast<std::size_t>(i)).get<double>();
+      if (!node.to_parent.matrix().allFinite()) throw FileError(name_, fmt::format("node \"{}\": \"transform\" is not finite", node.name));
+      try {
+        orthogonal_factor(node.to_parent.linear());
+      } catch (const std::invalid_argument& error) {
+        throw FileError(name_, fmt::format("node \"{}\": {}", node.name, error.what()));
+      }
+    }
+    if (value.contains("folder")) node.object = read_object(value.at("folder").get<std::string>(), value.value("axes", "360"));
+    if (value.contains("children"))
+      for (const json& child : value.at("children")) node.children.push_back(std::make_shared<const Node>(read_node(child, depth + 1)));
+    return node;
+  }
+
+  std::shared_ptr<const BakedObject> read_object(const std::string& relative, const std::string& axes) {
+    if (axes != "360" && axes != "forward") throw FileError(name_, fmt::format("axes \"{}\" is neither 360 nor forward", axes));
+    const fs::path path = fs::path(relative).lexically_normal();
+    if (path.is_absolute() || path.empty() || *path.begin() == "..") throw FileError(name_, fmt::format("folder \"{}\" must lie below the scene", relative));
+    auto& known = objects_[relative + '\n' + axes];
+    if (known) return known;
+    known = read_baked_folder(folder_ / path, axes == "forward" ? Axes::forward : Axes::y_up, progress_);
+    const fs::path turns = folder_ / path / "turns.json";
+    if (fs::exists(turns)) {
+      auto turned = std::make_shared<BakedObject>(*known);
+      read_turns_json(read_file(turns), turns, turned->sets);
+      known = turned;
+    }
+    return known;
+  }
+
+  fs::path folder_;
+  fs::path name_;
+  const Progress& progress_;
+  std::map<std::string, std::shared_ptr<const BakedObject>> objects_;
+};
+
+}  // namespace
+
+std::string folder_name(const std::string& name, const std::vector<std::string>& taken) {
+  std::string base;
+  for (const char c : name) base += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' ? c : '_';
+  while (!base.empty() && base.front() == '.') base.erase(0, 1);
+  if (base.empty() || is_format_file_name(base)) base = "object_" + base;
+  std::string result = base;
+  for (int n = 2; std::find(taken.begin(), taken.end(), result) != taken.end(); ++n) result = fmt::format("{}_{}", base, n);
+  return result;
+}
+
+std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of) {
+  json root = {{"rebake_scene", scene_version},
+               {"background", {scene.background.x(), scene.background.y(), scene.background.z()}},
+               {"views", json::object()},
+               {"nodes", json::array()}};
+  for (const auto& [name, camera] : scene.views) root["views"][name] = camera_json(camera);
+  for (const NodePtr& node : scene.roots) root["nodes"].push_back(node_json(*node, folder_of));
+  return root.dump(1) + '\n';
+}
+
+Scene read_scene_folder(const fs::path& folder, const Progress& progress) { return SceneReader(folder, progress).run(); }
+
+std::vector<std::string> save_scene_folder(const Scene& scene, const fs::path& folder, const Progress& progress) {
+  std::vector<std::string> notes, taken;
+  std::map<const BakedObject*, std::string> folder_of;
+  AtomicFolder out(folder);
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    const auto& object = placed.node->object;
+    if (!object || folder_of.contains(object.get())) continue;
+    taken.push_back(folder_name(placed.node->name, taken));
+    folder_of[object.get()] = taken.back();
+    write_baked_folder(out, taken.back(), *object, object->layout, notes, progress);
+  }
+  out.write("scene.json", write_scene_json(scene, folder_of));
+  out.commit();
+  return notes;
+}
+
+}  // namespace rebake

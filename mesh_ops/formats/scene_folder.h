@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+
+#include "mesh_ops/progress.h"
+#include "mesh_ops/scene/scene.h"
+
+namespace rebake {
+
+/// Reads scene.json and the object folders it names. Throws FileError.
+Scene read_scene_folder(const std::filesystem::path& folder, const Progress& progress = {});
+
+/// Writes every node as it is: scene.json, and one MobileNeRF folder for each distinct object. Replaces the folder whole or not at all. Returns
+/// sentences for people. Throws FileError.
+std::vector<std::string> save_scene_folder(const Scene& scene, const std::filesystem::path& folder, const Progress& progress = {});
+
+/// The text of scene.json; `folder_of` names each object's folder.
+std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of);
+
+/// `name` as a folder name: letters, digits, dot, dash and underscore, different from all in `taken`.
+std::string folder_name(const std::string& name, const std::vector<std::string>& taken);
+
+}  // namespace rebake

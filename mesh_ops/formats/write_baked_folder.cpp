@@ -1,0 +1,162 @@
+#include "mesh_ops/formats/write_baked_folder.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "mesh_ops/error.h"
+#include "mesh_ops/features/atlas.h"
+#include "mesh_ops/formats/baked_folder.h"
+#include "mesh_ops/formats/feature_png.h"
+#include "mesh_ops/formats/mlp_json.h"
+#include "mesh_ops/formats/obj.h"
+#include "mesh_ops/formats/turns_json.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// The source set whose texels (and, with `geometry`, triangles) a set still has.
+const Origin::Set* source_set(const BakedObject& object, const TextureSet& set, bool geometry) {
+  if (!object.origin) return nullptr;
+  for (const Origin::Set& source : object.origin->sets) {
+    if (source.texels.lock() != set.texels) continue;
+    if (geometry && (source.positions.lock() != set.soup.shared_positions() || source.uvs.lock() != set.soup.shared_uvs() ||
+                     source.faces.lock() != set.soup.shared_faces()))
+      continue;
+    return &source;
+  }
+  return nullptr;
+}
+
+// The bytes of a file that was read before, when they are still the same.
+std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFile& file) {
+  try {
+    std::string bytes = read_file(origin.folder / file.name);
+    if (bytes.size() == file.size && content_hash(bytes) == file.hash) return bytes;
+  } catch (const FileError&) {
+    // Moved or removed since: what is in memory is written instead.
+  }
+  return std::nullopt;
+}
+
+std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, std::vector<std::string>& notes) {
+  const AlphaCode code = layout == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved;
+  const int largest = largest_texture_side(layout);
+  const bool converts = std::any_of(object.sets.begin(), object.sets.end(), [&](const TextureSet& s) { return s.texels->alpha_code() != code; });
+  const bool too_large = std::any_of(object.sets.begin(), object.sets.end(), [&](const TextureSet& s) {
+    return s.texels->width() > largest || s.texels->height() > largest;
+  });
+  if (converts && code == AlphaCode::halved)
+    notes.emplace_back("features 3 and 7 lose their lowest bit: split folders store them halved");
+  if (too_large || (layout == Layout::unsplit && object.sets.size() > 1)) {
+    PackedSets packed = pack(object.sets, largest, code);
+    if (layout == Layout::unsplit && packed.sets.size() > 1)
+      throw Error(fmt::format("the texels do not fit into one texture of {}²: use --layout split", largest));
+    return std::move(packed.sets);
+  }
+  // Sets that lost triangles give up the texels that nobody uses; sets as they were read are left alone.
+  std::vector<TextureSet> kept, edited;
+  std::uint64_t edited_area = 0;
+  for (TextureSet set : object.sets) {
+    set.texels = with_alpha_code(set.texels, code);
+    const Origin::Set* source = source_set(object, set, false);
+    const bool same_faces = source != nullptr && source->faces.lock() == set.soup.shared_faces();
+    if (same_faces || converts || !can_pack(set)) {
+      kept.push_back(std::move(set));
+    } else {
+      edited_area += static_cast<std::uint64_t>(set.texels->width()) * static_cast<std::uint64_t>(set.texels->height());
+      edited.push_back(std::move(set));
+    }
+  }
+  if (edited.empty()) return kept;
+  PackedSets packed = pack(edited, largest, code);
+  if (packed.texel_area < edited_area) {
+    notes.push_back(fmt::format("texels nobody uses were dropped: {:.2f} instead of {:.2f} million texels in the edited sets",
+                                static_cast<double>(packed.texel_area) / 1e6, static_cast<double>(edited_area) / 1e6));
+    edited = std::move(packed.sets);
+  }
+  kept.insert(kept.end(), edited.begin(), edited.end());
+  return kept;
+}
+
+std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
+  const std::size_t faces = soup.triangle_count();
+  if (layout != Layout::chunked) return {write_obj(soup.positions(), soup.uvs(), soup.faces(), 0, faces)};
+  std::vector<std::string> texts(chunks_a_set);
+  tbb::parallel_for(std::size_t{0}, chunks_a_set, [&](std::size_t j) {
+    std::size_t first = faces * j / chunks_a_set, last = faces * (j + 1) / chunks_a_set;
+    // Chunk viewers fail on an empty chunk: with fewer than 8 triangles some are drawn twice, which changes no pixel.
+    if (first == last) {
+      first = std::min(first, faces - 1);
+      last = first + 1;
+    }
+    texts[j] = write_obj(soup.positions(), soup.uvs(), soup.faces(), first, last);
+  });
+  return texts;
+}
+
+}  // namespace
+
+int largest_texture_side(Layout layout) { return layout == Layout::unsplit ? 16384 : 4096; }
+
+void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedObject& object, Layout layout, std::vector<std::string>& notes,
+                        const Progress& progress) {
+  if (object.triangle_count() == 0) throw Error("an object without triangles cannot be written");
+  BakedObject filled = object;
+  std::erase_if(filled.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
+  const std::vector<TextureSet> sets = fitted(filled, layout, notes);
+  const bool same_layout = object.origin && object.origin->layout == layout;
+
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    const TextureSet& set = sets[i];
+    progress.at("writing", static_cast<double>(i) / static_cast<double>(sets.size()));
+    const Origin::Set* same_geometry = same_layout ? source_set(object, set, true) : nullptr;
+    bool copied = false;
+    if (same_geometry != nullptr) {
+      std::vector<std::string> texts;
+      for (const SourceFile& file : same_geometry->geometry)
+        if (auto bytes = unchanged_bytes(*object.origin, file)) texts.push_back(std::move(*bytes));
+      copied = texts.size() == same_geometry->geometry.size();
+      const bool in_chunks = same_geometry->geometry.front().name.find('_') != std::string::npos;
+      if (copied)
+        for (std::size_t j = 0; j < texts.size(); ++j)
+          out.write(folder / geometry_name(in_chunks ? Layout::chunked : layout == Layout::chunked ? Layout::split : layout, i, j), texts[j]);
+    }
+    if (!copied) {
+      const std::vector<std::string> texts = geometry_texts(set.soup, layout);
+      for (std::size_t j = 0; j < texts.size(); ++j) out.write(folder / geometry_name(layout, i, j), texts[j]);
+    }
+    const bool same_names = object.origin && (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit);
+    const Origin::Set* same_texels = same_names ? source_set(object, set, false) : nullptr;
+    std::string encoded[2];
+    tbb::parallel_for(0, 2, [&](int image) {
+      if (same_texels != nullptr)
+        if (auto bytes = unchanged_bytes(*object.origin, image == 0 ? same_texels->feat0 : same_texels->feat1)) {
+          encoded[image] = std::move(*bytes);
+          return;
+        }
+      encoded[image] = write_feature_png(*set.texels, image);
+    });
+    for (const int image : {0, 1}) out.write(folder / feature_name(layout, i, image), encoded[image]);
+  }
+
+  std::optional<std::string> mlp;
+  if (object.origin && object.decoder == object.origin->decoder && object.origin->sets.size() == sets.size() &&
+      (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit))
+    mlp = unchanged_bytes(*object.origin, object.origin->mlp);
+  if (!mlp) {
+    MlpFile file{*object.decoder, std::nullopt};
+    if (layout != Layout::unsplit) file.obj_num = static_cast<int>(sets.size());
+    mlp = write_mlp_json(file);
+  }
+  out.write(folder / "mlp.json", *mlp);
+  if (object.any_turns()) out.write(folder / "turns.json", write_turns_json(sets));
+  progress.at("writing", 1);
+}
+
+}  // namespace rebake
