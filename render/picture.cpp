@@ -22,7 +22,7 @@ double milliseconds_since(Clock::time_point start) { return std::chrono::duratio
 void fit(FrameTargets& targets, const FramePlan& plan) {
   const bool features = plan.runs("geometry"), frames = features && plan.runs("node frames"), rays = features && plan.runs("turned rays");
   const bool forward = plan.runs("forward");
-  const int side = plan.view.samples == 1 ? 1 : plan.view.samples == 4 ? 2 : 4;
+  const int side = plan.view.side();
   const int width = plan.view.width, height = plan.view.height;
   if (targets.picture && targets.width == width && targets.height == height && targets.side == side && targets.has_features == features &&
       targets.has_frames == frames && targets.has_rays == rays && bool(targets.depth) == (features || forward))

@@ -1,4 +1,4 @@
-// Sums of texel bytes, two channels in each component: 16 samples of 255 fit in 16 bits.
+// Sums of texel bytes, two channels in each component: 64 samples of 255 fit in 16 bits.
 struct Sums {
   uvec4 bytes;  // feat0 R and B, feat0 G and A, feat1 R and B, feat1 G and A
   uint count;

@@ -1,22 +1,35 @@
-#include <cstdio>
-#include <chrono>
-#include <random>
-#include "mesh_ops/formats/baked_folder.h"
-#include "render/picture.h"
-using namespace rebake;
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <new>
+
+#include "editor/cli/commands.h"
+#include "editor/cli/terminal.h"
+#include "mesh_ops/error.h"
+
 int main(int argc, char** argv) {
-  auto t0 = std::chrono::steady_clock::now();
-  auto object = read_baked_folder(argv[1], Axes::y_up);
-  auto t1 = std::chrono::steady_clock::now();
-  std::printf("load %.3f s, %zu triangles\n", std::chrono::duration<double>(t1 - t0).count(), object->triangle_count());
-  Node node; node.name = "a"; node.object = object;
-  Scene scene = with_added({}, node, NodeId::none, 99);
-  View view; view.camera.near_plane=.2; view.camera.far_plane=6;
-  const int samples = argc > 2 ? atoi(argv[2]) : 4; view.samples = samples;
-  RenderOptions o; if (argc>3) o.weights = RenderOptions::Weights::buffer;
-  Renderer r;
-  std::printf("%s\n", r.device().c_str());
-  std::fputs(describe(plan(scene, view,o)).c_str(), stdout);
-  write_png(r.render(scene, view,o), "/tmp/out.png");
-  for (int i = 0; i < 12; ++i) { auto t = r.time_frame(scene, view, o, i % 2); std::printf("%.2f ms", t.frame_ms); for (auto& [k, v] : t.pass_ms) std::printf("  %s %.2f", k.c_str(), v); std::puts(""); }
+  CLI::App program{"Rebake: loads, composes, edits, renders and exports baked NeRF scenes (MobileNeRF format).", "rebake"};
+  program.set_version_flag("--version", "rebake " REBAKE_VERSION);
+  program.require_subcommand(1);
+  program.footer("Exit codes: 0 done, 1 it could not be done (the message says why), 2 wrong use of the command line, 3 compared pictures differ more than allowed.");
+  for (const rebake::Subcommand& command : rebake::subcommand_table) command.add(program);
+  const auto fail = [](const std::string& what) {
+    rebake::clear_progress_bar();
+    fmt::print(stderr, "{} {}\n", rebake::coloured("error:", "1;31"), what);
+    return 1;
+  };
+  try {
+    program.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : 2;
+  } catch (const rebake::ExitWith& exit) {
+    return exit.code;
+  } catch (const rebake::Error& error) {
+    return fail(error.what());
+  } catch (const std::bad_alloc&) {
+    return fail("memory is out");
+  } catch (const std::exception& error) {
+    return fail(std::string("unexpected: ") + error.what());
+  }
 }

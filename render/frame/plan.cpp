@@ -81,7 +81,7 @@ void plan_passes(FramePlan& plan, std::size_t turned_draws, std::size_t culled, 
   const auto say = [&](const char* name, bool runs, std::string why) { plan.passes.push_back({name, runs, std::move(why)}); };
   const bool any = !plan.draws.empty();
   const bool forward = plan.options.shading == RenderOptions::Shading::forward;
-  const int side = plan.view.samples == 1 ? 1 : plan.view.samples == 4 ? 2 : 4;
+  const int side = plan.view.side();
   const std::string drawn = fmt::format("{}, {}", plural(plan.draws.size(), "draw", "draws"), plural(plan.triangles, "triangle", "triangles"));
   const std::string nothing = "nothing is in view";
 

@@ -9,10 +9,13 @@ struct View {
   Camera camera;
   int width = 800;
   int height = 800;
-  int samples = 4;  ///< a pixel: 1, 4 or 16, on a regular grid
+  int samples = 4;  ///< a pixel, on a regular grid: 1, 4 or 16; 64 for references
+
+  /// Samples along a pixel's side.
+  int side() const { return samples == 1 ? 1 : samples == 4 ? 2 : samples == 16 ? 4 : 8; }
 };
 
-/// Throws FieldError unless the size is 1 … 16384 a side, samples is 1, 4 or 16 and the camera is sound.
+/// Throws FieldError unless the size is 1 … 16384 a side, samples is 1, 4, 16 or 64 and the camera is sound.
 void check(const View& view);
 
 }  // namespace rebake

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "mesh_ops/progress.h"
+#include "mesh_ops/scene/scene.h"
+
+namespace rebake {
+
+class Renderer;
+
+/// What a script or command works on: the scene now, and a renderer that is made when it is first needed.
+class Session {
+ public:
+  Session();
+  ~Session();
+
+  Scene scene;
+  Progress progress;
+  std::function<void(const std::string&)> say = [](const std::string&) {};  ///< one line for people
+
+  /// Throws DeviceError where there is no OpenGL.
+  Renderer& renderer();
+
+ private:
+  std::unique_ptr<Renderer> renderer_;
+};
+
+/// The camera that frames everything visible; forward-facing when all objects are.
+Camera framing_of(const Scene& scene, double aspect);
+
+}  // namespace rebake

@@ -1,0 +1,143 @@
+#include "editor/cli/options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "mesh_ops/error.h"
+#include "mesh_ops/formats/camera_json.h"
+#include "mesh_ops/formats/files.h"
+#include "mesh_ops/formats/formats.h"
+
+namespace rebake {
+
+namespace {
+
+template <class T>
+std::vector<T> split_numbers(const std::string& text, char separator) {
+  std::vector<T> values;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at <= end) {
+    T value{};
+    const auto [stop, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || (stop != end && *stop != separator)) return {};
+    values.push_back(value);
+    if (stop == end) break;
+    at = stop + 1;
+  }
+  return values;
+}
+
+}  // namespace
+
+Vec3 parse_vec3(const std::string& text, const char* option) {
+  const auto values = split_numbers<double>(text, ',');
+  if (values.size() != 3 || !std::isfinite(values[0] + values[1] + values[2]))
+    throw FieldError(option, fmt::format("\"{}\" must be three numbers such as 0,1,2.5", text));
+  return {values[0], values[1], values[2]};
+}
+
+void add_axes_option(CLI::App& command, Axes& axes) {
+  command.add_option("--axes", axes, "which way MobileNeRF folders are oriented: 360 or forward")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Axes>{{"360", Axes::y_up}, {"forward", Axes::forward}}).description(""))
+      ->option_text("360|forward [360]");
+}
+
+Scene read_all(const std::vector<std::string>& folders, Axes axes, const Progress& progress) {
+  Scene scene;
+  for (const std::string& folder : folders) {
+    const Scene read = read_any(folder, axes, progress);
+    if (folders.size() == 1) return read;
+    for (const NodePtr& root : read.roots) {
+      Node node = *root;
+      node.id = NodeId::none;
+      for (NodePtr& child : node.children) {
+        Node copy = *child;
+        copy.id = NodeId::none;
+        child = std::make_shared<const Node>(std::move(copy));
+      }
+      scene = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
+    }
+    for (const auto& [name, camera] : read.views) scene.views.try_emplace(name, camera);
+  }
+  return scene;
+}
+
+void ViewOptions::add_to(CLI::App& command) {
+  command.add_option("--size", size, "picture size in pixels")->option_text("WxH [800x800]");
+  command.add_option("--eye", eye, "camera position")->option_text("x,y,z");
+  command.add_option("--target", target, "point that the camera looks at")->option_text("x,y,z");
+  command.add_option("--up", up, "up direction")->option_text("x,y,z [0,1,0]");
+  command.add_option("--fov", fov, "vertical field of view")->option_text("degrees [39]");
+  command.add_option("--near", near_plane, "near plane")->option_text("n");
+  command.add_option("--far", far_plane, "far plane")->option_text("f");
+  command.add_option("--camera", camera_file, "JSON file with eye, target, up, fov, near, far; or the name of a view of the scene")->option_text("FILE|VIEW");
+  command.add_option("--samples", samples, "samples a pixel")->check(CLI::IsMember({1, 4, 16}))->option_text("1|4|16 [4]");
+  command.add_option("--background", background, "display colour, 0 to 1")->option_text("r,g,b [1,1,1]");
+  command.add_option("--weights", weights, "decoder weights in the shader")->check(CLI::IsMember({"automatic", "constants", "buffer"}))->option_text("automatic|constants|buffer");
+  command.add_option("--shading", shading, "forward decodes while drawing, at 1 sample only")->check(CLI::IsMember({"deferred", "forward"}))->option_text("deferred|forward");
+  command.add_option("--precision", precision, "decoder weights as 32- or 16-bit floats")->check(CLI::IsMember({"full", "half"}))->option_text("full|half");
+}
+
+View ViewOptions::view(const Scene& scene) const {
+  View view;
+  const auto pixels = split_numbers<int>(size, 'x');
+  if (pixels.size() != 2) throw FieldError("--size", fmt::format("\"{}\" must be width and height such as 800x600", size));
+  view.width = pixels[0];
+  view.height = pixels[1];
+  view.samples = samples;
+  if (view.width < 1 || view.height < 1) throw FieldError("--size", "must be at least 1x1");
+  view.camera = framing_of(scene, static_cast<double>(view.width) / view.height);
+  if (!camera_file.empty()) {
+    if (const auto found = scene.views.find(camera_file); found != scene.views.end()) {
+      view.camera = found->second;
+    } else {
+      try {
+        view.camera = read_camera_json(nlohmann::json::parse(read_file(camera_file)));
+      } catch (const nlohmann::json::exception& error) {
+        throw FileError(camera_file, std::string("is not valid JSON: ") + error.what());
+      } catch (const FieldError& error) {
+        throw FileError(camera_file, error.what());
+      }
+    }
+  }
+  if (!target.empty()) view.camera.target = parse_vec3(target, "--target");
+  if (!up.empty()) view.camera.up = parse_vec3(up, "--up");
+  if (fov != 0) view.camera.fov_degrees = fov;
+  if (!eye.empty()) {
+    view.camera.eye = parse_vec3(eye, "--eye");
+    // The framing's planes belong to the framing's eye.
+    if (camera_file.empty()) {
+      const Box box = world_bounds(scene);
+      if (!box.isEmpty()) {
+        const double farthest = (box.center() - view.camera.eye).norm() + box.diagonal().norm();
+        const double nearest = box.exteriorDistance(view.camera.eye);
+        view.camera.far_plane = farthest;
+        view.camera.near_plane = std::max(nearest * 0.5, farthest * 1e-4);
+      }
+    }
+  }
+  if (near_plane != 0) view.camera.near_plane = near_plane;
+  if (far_plane != 0) view.camera.far_plane = far_plane;
+  check(view);
+  return view;
+}
+
+RenderOptions ViewOptions::render_options() const {
+  RenderOptions options;
+  options.weights = weights == "constants" ? RenderOptions::Weights::constants : weights == "buffer" ? RenderOptions::Weights::buffer : RenderOptions::Weights::automatic;
+  options.shading = shading == "forward" ? RenderOptions::Shading::forward : RenderOptions::Shading::deferred;
+  options.precision = precision == "half" ? RenderOptions::Precision::half : RenderOptions::Precision::full;
+  return options;
+}
+
+void ViewOptions::set_background(Scene& scene) const {
+  if (background.empty()) return;
+  const Vec3 color = parse_vec3(background, "--background");
+  if ((color.array() < 0).any() || (color.array() > 1).any()) throw FieldError("--background", "must lie between 0 and 1");
+  scene.background = color;
+}
+
+}  // namespace rebake

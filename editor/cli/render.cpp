@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "editor/cli/commands.h"
+#include "editor/cli/options.h"
+#include "editor/cli/terminal.h"
+#include "mesh_ops/error.h"
+#include "render/picture.h"
+
+namespace rebake {
+
+namespace {
+
+using nlohmann::json;
+
+struct Options {
+  std::vector<std::string> folders;
+  std::string out;
+  Axes axes = Axes::y_up;
+  ViewOptions view;
+  bool plan = false, json = false;
+  int time = 0;
+};
+
+json spread(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  const double median = n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+  return {{"min", values.front()}, {"median", median}, {"max", values.back()}};
+}
+
+json measure(Renderer& renderer, const Scene& scene, const View& view, const RenderOptions& options, int frames) {
+  std::vector<double> frame_ms;
+  std::map<std::string, std::vector<double>> pass_ms;
+  // The first frames compile shaders; whole frames and passes are timed apart, since waiting after each pass costs time.
+  for (const bool each_pass : {false, true}) renderer.time_frame(scene, view, options, each_pass);
+  for (int i = 0; i < frames; ++i) {
+    frame_ms.push_back(renderer.time_frame(scene, view, options, false).frame_ms);
+    for (const auto& [name, ms] : renderer.time_frame(scene, view, options, true).pass_ms) pass_ms[name].push_back(ms);
+  }
+  json passes = json::object();
+  for (const auto& [name, values] : pass_ms) passes[name] = spread(values);
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  return {{"frame_ms", spread(frame_ms)}, {"passes", passes}, {"frames", frames}, {"device", renderer.device()},
+          {"peak_cpu_bytes", static_cast<std::uint64_t>(use.ru_maxrss) * 1024}, {"peak_gpu_bytes", renderer.peak_gpu_bytes()}};
+}
+
+void print_times(const json& times) {
+  const auto line = [](const std::string& name, const json& s) {
+    fmt::print("{:<12} min {:8.2f}   median {:8.2f}   max {:8.2f} ms\n", name, s.at("min").get<double>(), s.at("median").get<double>(), s.at("max").get<double>());
+  };
+  fmt::print("{} frames on {}\n", times.at("frames").get<int>(), times.at("device").get<std::string>());
+  line("frame", times.at("frame_ms"));
+  for (const auto& [name, s] : times.at("passes").items()) line("  " + name, s);
+  fmt::print("peak memory  {:.1f} MB CPU, {:.1f} MB GPU\n", times.at("peak_cpu_bytes").get<double>() / 1e6, times.at("peak_gpu_bytes").get<double>() / 1e6);
+}
+
+void execute(const Options& options) {
+  if (options.out.empty() && !options.plan && options.time == 0)
+    throw FieldError("-o", "is missing: name a PNG to write (or give --plan or --time)");
+  Scene scene = read_all(options.folders, options.axes, progress_bar());
+  options.view.set_background(scene);
+  const View view = options.view.view(scene);
+  const RenderOptions how = options.view.render_options();
+  json report = json::object();
+  if (options.plan) {
+    const FramePlan frame = plan(scene, view, how);
+    if (!options.json) fmt::print("{}", describe(frame));
+    report["plan"] = json::array();
+    for (const PlannedPass& pass : frame.passes) report["plan"].push_back({{"pass", pass.name}, {"runs", pass.runs}, {"why", pass.why}});
+  }
+  if (!options.out.empty() || options.time > 0) {
+    Renderer renderer;
+    if (!options.out.empty()) write_png(renderer.render(scene, view, how), options.out);
+    if (options.time > 0) {
+      const json times = measure(renderer, scene, view, how, options.time);
+      if (!options.json) print_times(times);
+      report.update(times);
+    }
+  }
+  if (options.json) fmt::print("{}\n", report.dump(1));
+}
+
+}  // namespace
+
+void add_render(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("render", "draws one or several folders or scenes into a PNG");
+  command->add_option("folders", options->folders, "what to draw, together in one scene")->required()->option_text("FOLDER|SCENE...");
+  command->add_option("-o,--out", options->out, "PNG to write")->option_text("OUT.png");
+  options->view.add_to(*command);
+  add_axes_option(*command, options->axes);
+  command->add_flag("--plan", options->plan, "print which passes run, which do not, and why");
+  command->add_option("--time", options->time, "time this many frames")->check(CLI::Range(1, 100000))->option_text("N");
+  command->add_flag("--json", options->json, "plan and times as JSON");
+  command->callback([options] { execute(*options); });
+}
+
+}  // namespace rebake

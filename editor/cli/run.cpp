@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "editor/cli/commands.h"
+#include "editor/cli/terminal.h"
+#include "editor/script/script.h"
+#include "mesh_ops/formats/files.h"
+
+namespace rebake {
+
+void add_run(CLI::App& program) {
+  struct Options {
+    std::string script;
+    std::vector<std::string> variables;
+    bool fields = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("run", "runs a script of edits and actions, one JSON object a line");
+  command->add_option("script", options->script, "script; relative paths in it start at the current folder")->option_text("SCRIPT.jsonl");
+  command->add_option("--var", options->variables, "gives {name} in the script's texts a value")->option_text("name=value...");
+  command->add_flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
+  command->callback([options] {
+    if (options->fields) {
+      fmt::print("{}", command_reference());
+      return;
+    }
+    if (options->script.empty()) throw CLI::RequiredError("script");
+    std::map<std::string, std::string> variables;
+    for (const std::string& pair : options->variables) {
+      const std::size_t equals = pair.find('=');
+      if (equals == std::string::npos || equals == 0) throw CLI::ValidationError("--var", "\"" + pair + "\" must be name=value");
+      variables[pair.substr(0, equals)] = pair.substr(equals + 1);
+    }
+    Session session;
+    session.progress = progress_bar();
+    session.say = [](const std::string& line) {
+      clear_progress_bar();
+      fmt::print(stderr, "{}\n", line);
+    };
+    run_script(session, read_file(options->script), options->script, variables);
+  });
+}
+
+}  // namespace rebake

@@ -1,0 +1,42 @@
+#include "editor/cli/terminal.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+
+namespace rebake {
+
+bool is_interactive() {
+  static const bool yes = isatty(STDERR_FILENO) == 1;
+  return yes;
+}
+
+std::string coloured(const std::string& text, const char* sgr) {
+  static const bool colour = is_interactive() && std::getenv("NO_COLOR") == nullptr;
+  return colour ? fmt::format("\033[{}m{}\033[0m", sgr, text) : text;
+}
+
+Progress progress_bar() {
+  if (!is_interactive()) return {};
+  auto state = std::make_shared<std::pair<std::mutex, std::chrono::steady_clock::time_point>>();
+  return Progress([state](std::string_view what, double share) {
+    const std::scoped_lock lock(state->first);
+    const auto now = std::chrono::steady_clock::now();
+    if (share < 1 && now - state->second < std::chrono::milliseconds(100)) return;
+    state->second = now;
+    if (share >= 1) return clear_progress_bar();
+    const auto filled = static_cast<std::size_t>(share * 30);
+    fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'), std::string(30 - filled, ' '), share * 100);
+    std::fflush(stderr);
+  });
+}
+
+void clear_progress_bar() {
+  if (is_interactive()) fmt::print(stderr, "\r\033[K");
+}
+
+}  // namespace rebake

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "mesh_ops/progress.h"
+
+namespace rebake {
+
+/// Colour and progress on standard error, only where a person watches: both are off when it is piped, colour also under NO_COLOR.
+bool is_interactive();
+std::string coloured(const std::string& text, const char* sgr);
+
+/// A one-line bar that is redrawn at most ten times a second and removed when done.
+Progress progress_bar();
+void clear_progress_bar();
+
+}  // namespace rebake

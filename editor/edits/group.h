@@ -1,0 +1,37 @@
+#pragma once
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+struct Group {
+  static constexpr const char* op = "group";
+  static constexpr const char* help = "Puts nodes into a new group; they stay where they are in the world.";
+  std::vector<NodeRef> nodes;
+  std::string as;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("nodes", self.nodes, Need::required, "nodes to put together");
+    visit("as", self.as, Need::optional, "name of the group; empty: group");
+  }
+};
+
+inline Scene apply(const Scene& scene, const Group& edit) {
+  if (!edit.as.empty() && find(scene, edit.as) != nullptr) throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+  Node group;
+  group.name = edit.as.empty() ? "group" : edit.as;
+  Scene result = scene;
+  for (const NodeRef& ref : edit.nodes) {
+    if (!find_placed(result, ref.id)) throw FieldError("nodes", "names a node twice, or one inside another");
+    const PlacedNode placed = editable(result, ref.id);
+    Node moved = *placed.node;
+    moved.to_parent = placed.to_world;
+    group.children.push_back(std::make_shared<const Node>(std::move(moved)));
+    result = without(result, ref.id);
+  }
+  // Names of the children are free again in `result`, so they keep them.
+  return with_added(result, std::move(group), NodeId::none, result.roots.size());
+}
+
+}  // namespace rebake

@@ -1,0 +1,104 @@
+#include "editor/edits/support.h"
+
+#include <fmt/format.h>
+
+namespace rebake {
+
+PlacedNode present(const Scene& scene, NodeId id) {
+  auto placed = find_placed(scene, id);
+  if (!placed) throw EditError("the node is not there any more");
+  return std::move(*placed);
+}
+
+PlacedNode editable(const Scene& scene, NodeId id) {
+  PlacedNode placed = present(scene, id);
+  if (placed.locked) throw EditError(fmt::format("node \"{}\" is locked; unlock it first", placed.node->name));
+  return placed;
+}
+
+std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<NodeRef>& node) {
+  std::vector<PlacedNode> result;
+  for (PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object || !placed.node->selection || (node && placed.node->id != node->id)) continue;
+    if (count(*placed.node->selection) == 0) continue;
+    editable(scene, placed.node->id);
+    result.push_back(std::move(placed));
+  }
+  if (result.empty())
+    throw EditError(node ? fmt::format("no triangle of \"{}\" is selected; select some first", present(scene, node->id).node->name)
+                         : "no triangle is selected; select some first");
+  return result;
+}
+
+std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vector<TextureSet> sets) {
+  std::erase_if(sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
+  if (sets.empty()) return nullptr;
+  auto result = std::make_shared<BakedObject>(object);
+  result->sets = std::move(sets);
+  return result;
+}
+
+std::shared_ptr<const BakedObject> triangles_of(const BakedObject& object, const TriangleSet& flags, bool wanted) {
+  std::vector<TextureSet> sets;
+  std::size_t first = 0;
+  for (const TextureSet& set : object.sets) {
+    const std::size_t total = set.soup.triangle_count();
+    std::size_t chosen = 0;
+    for (std::size_t f = first; f < first + total; ++f) chosen += (flags[f] != 0) == wanted ? 1 : 0;
+    // Sets that keep all their triangles stay shared, so that they are exported as they were read.
+    if (chosen == total)
+      sets.push_back(set);
+    else if (chosen > 0)
+      sets.push_back({subset(set.soup, flags, first, wanted), set.texels});
+    first += total;
+  }
+  return with_sets(object, std::move(sets));
+}
+
+Node without_ids(const Node& node) {
+  Node copy = node;
+  copy.id = NodeId::none;
+  copy.selection = nullptr;
+  for (NodePtr& child : copy.children) child = std::make_shared<const Node>(without_ids(*child));
+  return copy;
+}
+
+OutlinePlace place_of(const Scene& scene, NodeId id) {
+  const NodeId parent = parent_of(scene, id);
+  const std::vector<NodePtr> siblings = parent == NodeId::none ? scene.roots : find(scene, parent)->children;
+  std::size_t index = 0;
+  while (index < siblings.size() && siblings[index]->id != id) ++index;
+  return {parent, index};
+}
+
+Box subtree_bounds(const Scene& scene, NodeId id) {
+  Scene part;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (placed.node->id != id) continue;
+    Node root = *placed.node;
+    root.visible = true;
+    root.to_parent = placed.to_world;
+    part.roots.push_back(std::make_shared<const Node>(std::move(root)));
+  }
+  return world_bounds(part);
+}
+
+Box selection_bounds(const PlacedNode& placed) {
+  Box box;
+  std::size_t f = 0;
+  for (const TextureSet& set : placed.node->object->sets)
+    for (const Face& face : set.soup.faces())
+      if ((*placed.node->selection)[f++] != 0)
+        for (const std::uint32_t vertex : face) box.extend(placed.to_world * set.soup.positions()[vertex]);
+  return box;
+}
+
+void checked_turn(const Affine& transform) {
+  try {
+    orthogonal_factor(transform.linear());
+  } catch (const std::invalid_argument& error) {
+    throw EditError(error.what());
+  }
+}
+
+}  // namespace rebake

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "editor/fields/fields.h"
+
+namespace rebake {
+
+/// The node, where it may be edited. Throws EditError when it is absent, or locked (itself or a group above it).
+PlacedNode editable(const Scene& scene, NodeId id);
+
+/// The node, locked or not. Throws EditError when it is absent.
+PlacedNode present(const Scene& scene, NodeId id);
+
+/// Editable objects with selected triangles: of one node, or of all nodes. Throws EditError when nothing is selected.
+std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<NodeRef>& node);
+
+/// A copy of the object with other sets; turns into null when no triangle is left.
+std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vector<TextureSet> sets);
+
+/// The object's selected (or, with `wanted` false, unselected) triangles; null when there are none.
+std::shared_ptr<const BakedObject> triangles_of(const BakedObject& object, const TriangleSet& flags, bool wanted);
+
+/// The node and its children without ids and selections, to be added as new ones.
+Node without_ids(const Node& node);
+
+/// Where a node hangs: its parent (none at the top) and its index there.
+struct OutlinePlace {
+  NodeId parent;
+  std::size_t index;
+};
+OutlinePlace place_of(const Scene& scene, NodeId id);
+
+/// World box of a node's and its children's triangles.
+Box subtree_bounds(const Scene& scene, NodeId id);
+/// World box of a node's selected triangles.
+Box selection_bounds(const PlacedNode& placed);
+
+/// Throws EditError when the transform flattens what it moves.
+void checked_turn(const Affine& transform);
+
+}  // namespace rebake

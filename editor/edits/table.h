@@ -1,0 +1,34 @@
+#pragma once
+
+#include <variant>
+
+#include "editor/edits/background.h"
+#include "editor/edits/delete_selected.h"
+#include "editor/edits/duplicate.h"
+#include "editor/edits/group.h"
+#include "editor/edits/hide.h"
+#include "editor/edits/import.h"
+#include "editor/edits/lock.h"
+#include "editor/edits/remove.h"
+#include "editor/edits/rename.h"
+#include "editor/edits/reorder.h"
+#include "editor/edits/select.h"
+#include "editor/edits/separate.h"
+#include "editor/edits/show.h"
+#include "editor/edits/transform.h"
+#include "editor/edits/unlock.h"
+#include "editor/edits/view.h"
+
+namespace rebake {
+
+/// The one table of edits: everything that changes a scene.
+using Edit = std::variant<Import, Remove, Rename, Duplicate, Group, Reorder, Show, Hide, Lock, Unlock, StoreView, Background, Transform, Select,
+                          DeleteSelected, Separate>;
+
+/// Pure and deterministic: the scene after the edit. Throws Error and leaves nothing changed.
+Scene apply(const Scene& scene, const Edit& edit);
+
+/// One JSON object, node numbers in place of names.
+nlohmann::json to_json(const Edit& edit);
+
+}  // namespace rebake

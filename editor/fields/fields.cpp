@@ -1,0 +1,230 @@
+#include "editor/fields/fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "mesh_ops/formats/camera_json.h"
+
+namespace rebake {
+
+using nlohmann::json;
+
+namespace {
+
+double number(const json& value) {
+  if (!value.is_number()) throw Error("must be a number");
+  const double result = value.get<double>();
+  if (!std::isfinite(result)) throw Error("must be finite");
+  return result;
+}
+
+Vec3 vector(const json& value) {
+  if (!value.is_array() || value.size() != 3) throw Error("must be a list of three numbers");
+  return {number(value[0]), number(value[1]), number(value[2])};
+}
+
+json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+const json& part(const json& value, const char* key, std::initializer_list<const char*> all) {
+  const std::string shape = fmt::format("must be an object with {}", fmt::join(all, " and "));
+  if (!value.is_object() || value.size() != all.size()) throw Error(shape);
+  const auto found = value.find(key);
+  if (found == value.end()) throw Error(shape);
+  return *found;
+}
+
+template <class E>
+E word(const json& value, std::initializer_list<std::pair<const char*, E>> words) {
+  std::vector<std::string> known;
+  for (const auto& [text, meaning] : words) {
+    if (value.is_string() && value.get_ref<const std::string&>() == text) return meaning;
+    known.emplace_back(text);
+  }
+  throw Error(fmt::format("must be one of {}", fmt::join(known, ", ")));
+}
+
+}  // namespace
+
+const char* Codec<bool>::type() { return "true or false"; }
+bool Codec<bool>::read(const json& value, const Scene&) {
+  if (!value.is_boolean()) throw Error("must be true or false");
+  return value.get<bool>();
+}
+json Codec<bool>::write(const bool& value) { return value; }
+
+const char* Codec<int>::type() { return "whole number"; }
+int Codec<int>::read(const json& value, const Scene&) {
+  if (!value.is_number_integer() || value.get<std::int64_t>() < -2147483647 || value.get<std::int64_t>() > 2147483647) throw Error("must be a whole number");
+  return value.get<int>();
+}
+json Codec<int>::write(const int& value) { return value; }
+
+const char* Codec<double>::type() { return "number"; }
+double Codec<double>::read(const json& value, const Scene&) { return number(value); }
+json Codec<double>::write(const double& value) { return value; }
+
+const char* Codec<std::string>::type() { return "text"; }
+std::string Codec<std::string>::read(const json& value, const Scene&) {
+  if (!value.is_string()) throw Error("must be text");
+  return value.get<std::string>();
+}
+json Codec<std::string>::write(const std::string& value) { return value; }
+
+const char* Codec<Vec3>::type() { return "[x, y, z]"; }
+Vec3 Codec<Vec3>::read(const json& value, const Scene&) { return vector(value); }
+json Codec<Vec3>::write(const Vec3& value) { return list(value); }
+
+const char* Codec<NodeRef>::type() { return "node"; }
+NodeRef Codec<NodeRef>::read(const json& value, const Scene& scene) {
+  if (value.is_string()) {
+    const auto& name = value.get_ref<const std::string&>();
+    if (const NodePtr node = find(scene, name)) return {node->id};
+    std::vector<std::string> names;
+    for (const PlacedNode& placed : placed_nodes(scene)) names.push_back(placed.node->name);
+    const std::string near = nearest_word(name, names);
+    throw Error(fmt::format("there is no node \"{}\"{}", name,
+                            names.empty()    ? " (the scene is empty)"
+                            : !near.empty()  ? fmt::format("; did you mean \"{}\"?", near)
+                                             : fmt::format("; there are {}", fmt::join(names, ", "))));
+  }
+  if (value.is_number_unsigned()) {
+    const NodeId id{value.get<std::uint64_t>()};
+    if (find(scene, id) == nullptr) throw Error(fmt::format("there is no node number {}", value.get<std::uint64_t>()));
+    return {id};
+  }
+  throw Error("must be the name of a node");
+}
+json Codec<NodeRef>::write(const NodeRef& value) { return value.id == NodeId::none ? json() : json(static_cast<std::uint64_t>(value.id)); }
+
+const char* Codec<std::vector<NodeRef>>::type() { return "list of nodes"; }
+std::vector<NodeRef> Codec<std::vector<NodeRef>>::read(const json& value, const Scene& scene) {
+  if (!value.is_array() || value.empty()) throw Error("must be a list of node names");
+  std::vector<NodeRef> nodes;
+  for (const json& entry : value) nodes.push_back(Codec<NodeRef>::read(entry, scene));
+  return nodes;
+}
+json Codec<std::vector<NodeRef>>::write(const std::vector<NodeRef>& value) {
+  json out;
+  for (const NodeRef& node : value) out.push_back(Codec<NodeRef>::write(node));
+  return out;
+}
+
+const char* Codec<Rotation>::type() { return "{\"axis\": [x, y, z], \"degrees\": d} or quaternion [w, x, y, z]"; }
+Rotation Codec<Rotation>::read(const json& value, const Scene&) {
+  if (value.is_array()) {
+    if (value.size() != 4) throw Error("a quaternion has four numbers: w, x, y, z");
+    const Eigen::Quaterniond q(number(value[0]), number(value[1]), number(value[2]), number(value[3]));
+    if (!(q.norm() > 0)) throw Error("a quaternion of length 0 is no rotation");
+    return {q.normalized()};
+  }
+  const Vec3 axis = vector(part(value, "axis", {"axis", "degrees"}));
+  const double degrees = number(part(value, "degrees", {"axis", "degrees"}));
+  if (axis.isZero(0)) throw Error("the axis has no direction");
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(std::remainder(degrees, 360.0) * std::numbers::pi / 180, axis.stableNormalized()))};
+}
+json Codec<Rotation>::write(const Rotation& value) { return {value.value.w(), value.value.x(), value.value.y(), value.value.z()}; }
+
+const char* Codec<Scale>::type() { return "number or [x, y, z]"; }
+Scale Codec<Scale>::read(const json& value, const Scene&) {
+  const Vec3 scale = value.is_number() ? Vec3::Constant(number(value)) : vector(value);
+  if ((scale.array() == 0).any()) throw Error("a scale of 0 would flatten the object");
+  return {scale};
+}
+json Codec<Scale>::write(const Scale& value) { return list(value.value); }
+
+const char* Codec<BoxRegion>::type() { return "{\"min\": [x, y, z], \"max\": [x, y, z]}"; }
+BoxRegion Codec<BoxRegion>::read(const json& value, const Scene&) {
+  return {vector(part(value, "min", {"min", "max"})), vector(part(value, "max", {"min", "max"}))};
+}
+json Codec<BoxRegion>::write(const BoxRegion& value) { return {{"min", list(value.min)}, {"max", list(value.max)}}; }
+
+const char* Codec<SphereRegion>::type() { return "{\"center\": [x, y, z], \"radius\": r}"; }
+SphereRegion Codec<SphereRegion>::read(const json& value, const Scene&) {
+  const SphereRegion sphere{vector(part(value, "center", {"center", "radius"})), number(part(value, "radius", {"center", "radius"}))};
+  if (sphere.radius < 0) throw Error("the radius is negative");
+  return sphere;
+}
+json Codec<SphereRegion>::write(const SphereRegion& value) { return {{"center", list(value.center)}, {"radius", value.radius}}; }
+
+const char* Codec<HalfSpaceRegion>::type() { return "{\"point\": [x, y, z], \"normal\": [x, y, z]}"; }
+HalfSpaceRegion Codec<HalfSpaceRegion>::read(const json& value, const Scene&) {
+  const HalfSpaceRegion half{vector(part(value, "point", {"point", "normal"})), vector(part(value, "normal", {"point", "normal"}))};
+  if (half.normal.isZero(0)) throw Error("the normal has no direction");
+  return half;
+}
+json Codec<HalfSpaceRegion>::write(const HalfSpaceRegion& value) { return {{"point", list(value.point)}, {"normal", list(value.normal)}}; }
+
+const char* Codec<SelectMode>::type() { return "set, add, remove or intersect"; }
+SelectMode Codec<SelectMode>::read(const json& value, const Scene&) {
+  return word<SelectMode>(value, {{"set", SelectMode::set}, {"add", SelectMode::add}, {"remove", SelectMode::remove}, {"intersect", SelectMode::intersect}});
+}
+json Codec<SelectMode>::write(const SelectMode& value) {
+  static const char* const names[] = {"set", "add", "remove", "intersect"};
+  return names[static_cast<int>(value)];
+}
+
+const char* Codec<CoordinateFrame>::type() { return "world, node or bounds"; }
+CoordinateFrame Codec<CoordinateFrame>::read(const json& value, const Scene&) {
+  return word<CoordinateFrame>(value, {{"world", CoordinateFrame::world}, {"node", CoordinateFrame::node}, {"bounds", CoordinateFrame::bounds}});
+}
+json Codec<CoordinateFrame>::write(const CoordinateFrame& value) {
+  static const char* const names[] = {"world", "node", "bounds"};
+  return names[static_cast<int>(value)];
+}
+
+const char* Codec<Axes>::type() { return "360 or forward"; }
+Axes Codec<Axes>::read(const json& value, const Scene&) {
+  if (value == 360) return Axes::y_up;
+  return word<Axes>(value, {{"360", Axes::y_up}, {"forward", Axes::forward}});
+}
+json Codec<Axes>::write(const Axes& value) { return value == Axes::forward ? "forward" : "360"; }
+
+const char* Codec<Layout>::type() { return "split, chunked or unsplit"; }
+Layout Codec<Layout>::read(const json& value, const Scene&) {
+  return word<Layout>(value, {{"split", Layout::split}, {"chunked", Layout::chunked}, {"unsplit", Layout::unsplit}});
+}
+json Codec<Layout>::write(const Layout& value) {
+  static const char* const names[] = {"split", "chunked", "unsplit"};
+  return names[static_cast<int>(value)];
+}
+
+const char* Codec<Camera>::type() { return "{\"eye\", \"target\", \"up\": [x, y, z], \"fov\": degrees, \"near\", \"far\"}"; }
+Camera Codec<Camera>::read(const json& value, const Scene&) { return read_camera_json(value); }
+json Codec<Camera>::write(const Camera& value) { return camera_json(value); }
+
+void FieldReader::finish() const {
+  for (const auto& [name, value] : object_.items()) {
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    const std::string near = nearest_word(name, known_);
+    throw FieldError(name, near.empty() ? fmt::format("is not known here (known: {})", fmt::join(known_, ", ")) : fmt::format("is not known here; did you mean \"{}\"?", near));
+  }
+}
+
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t best_distance = word.size() / 3 + 2;
+  for (const std::string& candidate : known) {
+    std::vector<std::size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j <= candidate.size(); ++j) {
+        const std::size_t above = row[j];
+        row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (word[i - 1] == candidate[j - 1] ? 0U : 1U)});
+        diagonal = above;
+      }
+    }
+    if (row.back() < best_distance) {
+      best_distance = row.back();
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace rebake

@@ -1,0 +1,120 @@
+#include "editor/script/script.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <sstream>
+
+namespace rebake {
+
+using nlohmann::json;
+
+namespace {
+
+// Calls `visit` with a default-constructed command of each type in a variant.
+template <class Variant, class Visit, std::size_t... I>
+void for_each_type(Visit visit, std::index_sequence<I...>) {
+  (visit(std::variant_alternative_t<I, Variant>{}), ...);
+}
+template <class Variant, class Visit>
+void for_each_type(Visit visit) {
+  for_each_type<Variant>(visit, std::make_index_sequence<std::variant_size_v<Variant>>{});
+}
+
+template <class Variant>
+std::optional<Variant> read_as(const std::string& op, const json& line, const Scene& scene, std::vector<std::string>& known) {
+  std::optional<Variant> result;
+  for_each_type<Variant>([&](auto command) {
+    known.emplace_back(command.op);
+    if (op != command.op) return;
+    FieldReader reader(line, scene);
+    decltype(command)::fields(command, reader);
+    reader.finish();
+    result = std::move(command);
+  });
+  return result;
+}
+
+std::string filled_in(const std::string& text, const std::map<std::string, std::string>& variables) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t open = text.find('{', at), close = text.find('}', at);
+    if (open == std::string::npos || close == std::string::npos || close < open) return out + text.substr(at);
+    const std::string name = text.substr(open + 1, close - open - 1);
+    const auto found = variables.find(name);
+    if (found == variables.end()) throw Error(fmt::format("the variable {{{0}}} has no value; give --var {0}=…", name));
+    out += text.substr(at, open - at) + found->second;
+    at = close + 1;
+  }
+  return out;
+}
+
+template <class Command>
+std::string reference_of(const Command& command) {
+  std::string out = fmt::format("### `{}`\n{}\n\n| field | value | default | meaning |\n|---|---|---|---|\n", command.op, command.help);
+  std::vector<FieldLine> lines;
+  FieldLister lister(lines);
+  Command::fields(command, lister);
+  for (const FieldLine& line : lines)
+    out += fmt::format("| `{}` | {} | {} | {} |\n", line.name, line.type,
+                       line.required ? "required" : line.initial.empty() || line.initial == "\"\"" ? "–" : "`" + line.initial + "`", line.help);
+  return out + '\n';
+}
+
+}  // namespace
+
+Command read_command(const json& line, const Scene& scene) {
+  if (!line.is_object()) throw Error("must be a JSON object such as {\"op\": \"select\", …}");
+  const auto op = line.find("op");
+  if (op == line.end()) throw FieldError("op", "is missing");
+  if (!op->is_string()) throw FieldError("op", "must be text");
+  const auto& name = op->get_ref<const std::string&>();
+  std::vector<std::string> known;
+  if (auto edit = read_as<Edit>(name, line, scene, known)) return *edit;
+  if (auto action = read_as<Action>(name, line, scene, known)) return *action;
+  const std::string near = nearest_word(name, known);
+  throw FieldError("op", near.empty() ? fmt::format("\"{}\" is not known (known: {})", name, fmt::join(known, ", ")) : fmt::format("\"{}\" is not known; did you mean \"{}\"?", name, near));
+}
+
+json with_variables(const json& line, const std::map<std::string, std::string>& variables) {
+  if (line.is_string()) return filled_in(line.get<std::string>(), variables);
+  if (!line.is_structured()) return line;
+  json out = line;
+  for (json& value : out) value = with_variables(value, variables);
+  return out;
+}
+
+void run_script(Session& session, std::string_view text, const std::filesystem::path& name, const std::map<std::string, std::string>& variables) {
+  std::istringstream lines{std::string(text)};
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const std::size_t first = line.find_first_not_of(" \t\r\xEF\xBB\xBF");
+    if (first == std::string::npos || line[first] == '#' || line.compare(first, 2, "//") == 0) continue;
+    const auto fail = [&](const std::string& what) { throw ScriptError(fmt::format("{}: line {}: {}", name.string(), number, what)); };
+    try {
+      const json object = json::parse(line.begin() + static_cast<std::ptrdiff_t>(first), line.end());
+      const Command command = read_command(with_variables(object, variables), session.scene);
+      if (const Edit* edit = std::get_if<Edit>(&command))
+        session.scene = rebake::apply(session.scene, *edit);
+      else
+        std::visit([&](const auto& action) { run(session, action); }, std::get<Action>(command));
+    } catch (const json::exception& error) {
+      fail(std::string("is not valid JSON: ") + error.what());
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& error) {
+      fail(error.what());
+    }
+  }
+}
+
+std::string command_reference() {
+  std::string out = "## Edits\n\n";
+  for_each_type<Edit>([&](const auto& command) { out += reference_of(command); });
+  out += "## Actions\n\n";
+  for_each_type<Action>([&](const auto& command) { out += reference_of(command); });
+  return out;
+}
+
+}  // namespace rebake

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "editor/actions/table.h"
+#include "editor/edits/table.h"
+
+namespace rebake {
+
+using Command = std::variant<Edit, Action>;
+
+/// A script error; says the file, the line and the field.
+class ScriptError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Reads one command. Names of nodes are looked up in `scene`. Throws Error.
+Command read_command(const nlohmann::json& line, const Scene& scene);
+
+/// Puts variables into all texts of a line: "{name}" becomes the value. Throws Error for one that has no value.
+nlohmann::json with_variables(const nlohmann::json& line, const std::map<std::string, std::string>& variables);
+
+/// Runs a script: one JSON object a line; blank lines and lines that begin with # or // are skipped. Throws ScriptError; what was
+/// written before the line in error stays.
+void run_script(Session& session, std::string_view text, const std::filesystem::path& name, const std::map<std::string, std::string>& variables);
+
+/// Markdown: every command with its fields, types and defaults.
+std::string command_reference();
+
+}  // namespace rebake

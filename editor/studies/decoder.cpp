@@ -1,0 +1,30 @@
+#include "editor/studies/study.h"
+
+namespace rebake {
+
+std::vector<StudyRow> study_decoder(const StudyInput& input) {
+  using Weights = RenderOptions::Weights;
+  using Shading = RenderOptions::Shading;
+  using Precision = RenderOptions::Precision;
+  // One sample, so that forward shading can take part.
+  View view = input.view;
+  view.samples = 1;
+  const Image reference = input.renderer.render(input.scene, view, {Weights::constants, Shading::deferred, Precision::full});
+  struct Choice {
+    const char* name;
+    RenderOptions options;
+  };
+  const Choice choices[] = {
+      {"constants, float", {Weights::constants, Shading::deferred, Precision::full}},
+      {"constants, half", {Weights::constants, Shading::deferred, Precision::half}},
+      {"buffer, float", {Weights::buffer, Shading::deferred, Precision::full}},
+      {"buffer, half", {Weights::buffer, Shading::deferred, Precision::half}},
+      {"forward, constants", {Weights::constants, Shading::forward, Precision::full}},
+      {"forward, buffer", {Weights::buffer, Shading::forward, Precision::full}},
+  };
+  std::vector<StudyRow> rows;
+  for (const Choice& choice : choices) rows.push_back(measured(input, choice.name, view, choice.options, reference));
+  return rows;
+}
+
+}  // namespace rebake
