@@ -1,0 +1,81 @@
+// The plan says what runs and why, without a GPU; what a scene does not call for must be left out.
+#include "render/frame/plan.h"
+
+#include <gtest/gtest.h>
+
+#include "mesh_ops/error.h"
+#include "render/gpu_scene/resources.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+TEST(Plan, OneSampleNeedsNoSupersampling) {
+  View view;
+  view.samples = 1;
+  EXPECT_FALSE(plan(scene_of(made_object()), view).runs("supersampling"));
+  view.samples = 4;
+  EXPECT_TRUE(plan(scene_of(made_object()), view).runs("supersampling"));
+}
+
+TEST(Plan, CompositingOnlyForSeveralDecoders) {
+  Scene scene = scene_of(made_object({.seed = 1}));
+  EXPECT_FALSE(plan(scene, {}).runs("decoder compositing"));
+  Node other;
+  other.object = made_object({.seed = 1});  // equal weights in another place of memory count as one
+  scene = with_added(scene, other, NodeId::none, 9);
+  EXPECT_FALSE(plan(scene, {}).runs("decoder compositing"));
+  EXPECT_FALSE(plan(scene, {}).runs("node frames"));
+  other.object = made_object({.seed = 2});
+  scene = with_added(scene, other, NodeId::none, 9);
+  EXPECT_TRUE(plan(scene, {}).runs("decoder compositing"));
+}
+
+TEST(Plan, CulledAndHiddenObjectsCostNoDraw) {
+  Scene scene = scene_of(made_object());
+  const NodeId id = scene.roots[0]->id;
+  EXPECT_EQ(plan(scene, {}).draws.size(), 1U);
+  EXPECT_TRUE(plan(with_changed(scene, id, [](Node& n) { n.visible = false; }), {}).draws.empty());
+  for (const Vec3& away : {Vec3(50, 0, 0), Vec3(0, 50, 0), Vec3(0, 30, 50), Vec3(0, -900, -1600)}) {
+    const FramePlan frame = plan(with_changed(scene, id, [&](Node& n) { n.to_parent.translation() = away; }), {});
+    EXPECT_TRUE(frame.draws.empty()) << away.transpose();
+    EXPECT_TRUE(frame.runs("culling"));
+    EXPECT_FALSE(frame.runs("geometry"));
+  }
+}
+
+TEST(Plan, EveryPassSaysWhy) {
+  for (const PlannedPass& pass : plan(scene_of(made_object()), {}).passes) EXPECT_FALSE(pass.why.empty()) << pass.name;
+}
+
+TEST(Plan, ForwardShadingIsRefusedAtSeveralSamples) {
+  EXPECT_THROW(plan(scene_of(made_object()), {}, {{}, RenderOptions::Shading::forward, {}}), FieldError);
+}
+
+TEST(Plan, FlattenedNodeIsRefusedByName) {
+  Scene scene = scene_of(made_object(), "leaf");
+  scene = with_changed(scene, scene.roots[0]->id, [](Node& n) { n.to_parent.linear()(1, 1) = 0; });
+  try {
+    plan(scene, {});
+    FAIL();
+  } catch (const EditError& error) {
+    EXPECT_NE(std::string(error.what()).find("leaf"), std::string::npos);
+  }
+}
+
+TEST(Resources, UnchangedPartsAreNotUploadedTwice) {
+  const Scene before = scene_of(made_object());
+  const TextureSet& set = before.roots[0]->object->sets[0];
+  const auto first = diff({}, {}, before);
+  EXPECT_EQ(first.meshes.size(), 1U);
+  const std::set<MeshKey> meshes{mesh_key(set)};
+  const std::set<TextureKey> textures{set.texels.get()};
+  const Scene moved = with_changed(before, before.roots[0]->id, [](Node& n) { n.to_parent.translation().x() = 3; });
+  const auto again = diff(meshes, textures, moved);
+  EXPECT_TRUE(again.meshes.empty() && again.textures.empty() && again.released_meshes.empty());
+  const auto gone = diff(meshes, textures, {});
+  EXPECT_EQ(gone.released_meshes.size() + gone.released_textures.size(), 2U);
+}
+
+}  // namespace
+}  // namespace rebake::test
