@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/scene/object.h"
+#include "mesh_ops/scene/camera.h"
+
+namespace rebake::bakery {
+
+/// A procedural surface over (u, v) in the unit square. Its normal is ∂P/∂u × ∂P/∂v, which should point outwards.
+struct Patch {
+  std::string name;
+  std::function<Vec3(double u, double v)> point;
+  int columns = 1, rows = 1;  ///< quads that it is baked into
+  std::function<Vec3(double u, double v, const Vec3& point)> albedo;  ///< linear
+  std::function<bool(double u, double v)> opaque = [](double, double) { return true; };
+  double reflectance = 0;  ///< at normal incidence; 0: matte
+  double sharpness = 20;   ///< exponent of the highlight
+  bool thin = false;       ///< seen and lit from both sides, such as a leaf
+};
+
+/// What a sample is baked from.
+struct Model {
+  std::string name;
+  std::vector<Patch> patches;
+  Axes axes = Axes::y_up;
+  Layout layout = Layout::split;
+  Vec3 sun{0.5, 0.8, 0.45};            ///< direction towards the light, any length
+  std::function<Camera(double s, double t)> camera;  ///< training and held-out cameras, s and t in [0, 1)
+  int picture = 400;                   ///< pixels a side of the held-out views
+};
+
+/// A surface of revolution about the y axis: `profile(v)` is (radius, height) from bottom to top.
+std::function<Vec3(double, double)> revolved(std::function<Vec2(double)> profile, const Vec3& centre = Vec3::Zero());
+
+/// A tube around a curve.
+std::function<Vec3(double, double)> tube(std::function<Vec3(double)> curve, std::function<double(double)> radius);
+
+/// A flat parallelogram.
+std::function<Vec3(double, double)> plane(const Vec3& corner, const Vec3& along_u, const Vec3& along_v);
+
+/// Smooth repeatable noise in [0, 1].
+double noise(const Vec3& p);
+
+/// Cameras around `target` at `distance`, between two elevations in degrees.
+std::function<Camera(double, double)> around(const Vec3& target, double distance, double lowest, double highest);
+
+Model ficus();
+Model kettle();
+Model courtyard();
+Model shelf();
+
+}  // namespace rebake::bakery
