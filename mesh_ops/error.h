@@ -15,15 +15,13 @@ class Error : public std::runtime_error {
 /// Something is wrong with a file or folder; the message starts with its path.
 class FileError : public Error {
  public:
-  FileError(const std::filesystem::path& path, const std::string& message)
-      : Error(path.string() + ": " + message) {}
+  FileError(const std::filesystem::path& path, const std::string& message) : Error(path.string() + ": " + message) {}
 };
 
 /// A field of an edit, script line or option does not hold what it should; the message starts with its name.
 class FieldError : public Error {
  public:
-  FieldError(const std::string& field, const std::string& message)
-      : Error("field \"" + field + "\": " + message) {}
+  FieldError(const std::string& field, const std::string& message) : Error("field \"" + field + "\": " + message) {}
 };
 
 /// An edit cannot be carried out on this scene (missing node, locked node, empty selection).

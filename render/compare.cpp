@@ -18,7 +18,8 @@ using Plane = std::vector<double>;
 
 Plane luma(const Image& image) {
   Plane out(image.rgb.size() / 3);
-  for (std::size_t p = 0; p < out.size(); ++p) out[p] = 0.299 * image.rgb[p * 3] + 0.587 * image.rgb[p * 3 + 1] + 0.114 * image.rgb[p * 3 + 2];
+  for (std::size_t p = 0; p < out.size(); ++p)
+    out[p] = 0.299 * image.rgb[p * 3] + 0.587 * image.rgb[p * 3 + 1] + 0.114 * image.rgb[p * 3 + 2];
   return out;
 }
 
@@ -33,8 +34,11 @@ Plane blurred(const Plane& in, int width, int height) {
       for (int x = 0; x < width; ++x) {
         double value = 0;
         for (int k = -5; k <= 5; ++k) {
-          const int sx = across ? std::clamp(x + k, 0, width - 1) : x, sy = across ? y : std::clamp(y + k, 0, height - 1);
-          value += kernel[static_cast<std::size_t>(k + 5)] / sum * source[static_cast<std::size_t>(sy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(sx)];
+          const int sx = across ? std::clamp(x + k, 0, width - 1) : x,
+                    sy = across ? y : std::clamp(y + k, 0, height - 1);
+          value +=
+              kernel[static_cast<std::size_t>(k + 5)] / sum *
+              source[static_cast<std::size_t>(sy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(sx)];
         }
         out[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = value;
       }
@@ -82,7 +86,8 @@ Difference compare(const Image& a, const Image& b, int tolerance) {
   }
   const double pixels = static_cast<double>(a.rgb.size()) / 3;
   result.share_beyond = static_cast<double>(beyond) / pixels;
-  result.psnr_db = squares == 0 ? std::numeric_limits<double>::infinity() : 10 * std::log10(255.0 * 255.0 * pixels * 3 / squares);
+  result.psnr_db =
+      squares == 0 ? std::numeric_limits<double>::infinity() : 10 * std::log10(255.0 * 255.0 * pixels * 3 / squares);
   if (squares > 0) result.ssim = ssim(a, b);
   return result;
 }

@@ -17,7 +17,8 @@ Image read_image(const std::filesystem::path& path) {
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width > 32768 || spec.height > 32768) throw FileError(path, "is larger than 32768 pixels a side");
   const int channels = spec.nchannels;
-  std::vector<std::uint8_t> raw(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) * static_cast<std::size_t>(channels));
+  std::vector<std::uint8_t> raw(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
+                                static_cast<std::size_t>(channels));
   Image image{spec.width, spec.height, {}};
   if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, raw.data()))
     throw FileError(path, "cannot be decoded, it may be truncated: " + input->geterror());
@@ -34,7 +35,8 @@ void write_png(const Image& image, const std::filesystem::path& path) {
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
   void* proxy = static_cast<OIIO::Filesystem::IOProxy*>(&sink);
   spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  if (!output || !output->open("picture.png", spec) || !output->write_image(OIIO::TypeDesc::UINT8, image.rgb.data()) || !output->close())
+  if (!output || !output->open("picture.png", spec) || !output->write_image(OIIO::TypeDesc::UINT8, image.rgb.data()) ||
+      !output->close())
     throw FileError(path, "cannot be encoded as PNG: " + (output ? output->geterror() : OIIO::geterror()));
   write_file_atomically(path, std::string_view(reinterpret_cast<const char*>(encoded.data()), encoded.size()));
 }

@@ -16,16 +16,20 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double milliseconds_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
 
 // Makes the buffers that the plan calls for, and frees those that it does not.
 void fit(FrameTargets& targets, const FramePlan& plan) {
-  const bool features = plan.runs("geometry"), frames = features && plan.runs("node frames"), rays = features && plan.runs("turned rays");
+  const bool features = plan.runs("geometry"), frames = features && plan.runs("node frames"),
+             rays = features && plan.runs("turned rays");
   const bool forward = plan.runs("forward");
   const int side = plan.view.side();
   const int width = plan.view.width, height = plan.view.height;
-  if (targets.picture && targets.width == width && targets.height == height && targets.side == side && targets.has_features == features &&
-      targets.has_frames == frames && targets.has_rays == rays && bool(targets.depth) == (features || forward))
+  if (targets.picture && targets.width == width && targets.height == height && targets.side == side &&
+      targets.has_features == features && targets.has_frames == frames && targets.has_rays == rays &&
+      bool(targets.depth) == (features || forward))
     return;
   targets = {};
   targets.width = width;
@@ -62,7 +66,8 @@ class Renderer::Impl {
     context_->make_current();
     const Clock::time_point start = Clock::now();
     const FramePlan frame_plan = plan(scene, view, options);
-    if (frame_plan.frames.size() > 65535) throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
+    if (frame_plan.frames.size() > 65535)
+      throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
     gpu_.update(scene);
     fit(state_.targets, frame_plan);
     glBindFramebuffer(GL_FRAMEBUFFER, state_.targets.picture_buffer.name());
@@ -89,14 +94,17 @@ class Renderer::Impl {
   }
 
   Image read_back(const View& view) {
-    Image image{view.width, view.height, std::vector<std::uint8_t>(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * 3)};
+    Image image{
+        view.width, view.height,
+        std::vector<std::uint8_t>(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * 3)};
     std::vector<std::uint8_t> rgba(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * 4);
     glBindFramebuffer(GL_FRAMEBUFFER, state_.targets.picture_buffer.name());
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, view.width, view.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
     const auto width = static_cast<std::size_t>(view.width), height = static_cast<std::size_t>(view.height);
     for (std::size_t y = 0; y < height; ++y)
-      for (std::size_t x = 0; x < width; ++x) std::memcpy(&image.rgb[(y * width + x) * 3], &rgba[((height - 1 - y) * width + x) * 4], 3);
+      for (std::size_t x = 0; x < width; ++x)
+        std::memcpy(&image.rgb[(y * width + x) * 3], &rgba[((height - 1 - y) * width + x) * 4], 3);
     return image;
   }
 

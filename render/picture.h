@@ -15,7 +15,8 @@ struct FrameTimes {
   std::map<std::string, double> pass_ms;
 };
 
-/// Draws scenes without a window. Keeps what it uploaded for the next picture; not for use from several threads at once.
+/// Draws scenes without a window. Keeps what it uploaded for the next picture; not for use from several threads at
+/// once.
 class Renderer {
  public:
   /// Throws DeviceError where there is no OpenGL.
@@ -26,7 +27,8 @@ class Renderer {
 
   Image render(const Scene& scene, const View& view, const RenderOptions& options = {});
 
-  /// Draws a frame and leaves it on the GPU. With `each_pass`, waits for each pass and fills pass_ms; else the frame as a whole.
+  /// Draws a frame and leaves it on the GPU. With `each_pass`, waits for each pass and fills pass_ms; else the frame as
+  /// a whole.
   FrameTimes time_frame(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass);
 
   std::string device() const;

@@ -7,7 +7,8 @@ namespace rebake {
 
 struct ExportAction {
   static constexpr const char* op = "export";
-  static constexpr const char* help = "Writes the scene in the MobileNeRF format, or as scene.json where one folder cannot hold it.";
+  static constexpr const char* help =
+      "Writes the scene in the MobileNeRF format, or as scene.json where one folder cannot hold it.";
   std::string out;
   std::optional<Layout> layout;
 

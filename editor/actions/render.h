@@ -18,7 +18,8 @@ struct RenderAction {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("out", self.out, Need::required, "PNG file to write");
-    visit("view", self.view, Need::optional, "name of a stored view; left out: the camera, or one that frames the scene");
+    visit("view", self.view, Need::optional,
+          "name of a stored view; left out: the camera, or one that frames the scene");
     visit("camera", self.camera, Need::optional, "the camera");
     visit("width", self.width, Need::optional, "pixels");
     visit("height", self.height, Need::optional, "pixels");

@@ -18,8 +18,12 @@ void add_export(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("export", "writes a folder or scene in the MobileNeRF format");
   command->add_option("folder", options->folder, "what to export")->required()->option_text("FOLDER|SCENE");
-  command->add_option("-o,--out", options->out, "folder to write; replaced whole or not at all")->required()->option_text("FOLDER");
-  command->add_option("--layout", options->layout, "convert the layout")->check(CLI::IsMember({"split", "chunked", "unsplit"}))->option_text("split|chunked|unsplit [as read]");
+  command->add_option("-o,--out", options->out, "folder to write; replaced whole or not at all")
+      ->required()
+      ->option_text("FOLDER");
+  command->add_option("--layout", options->layout, "convert the layout")
+      ->check(CLI::IsMember({"split", "chunked", "unsplit"}))
+      ->option_text("split|chunked|unsplit [as read]");
   add_axes_option(*command, options->axes);
   command->callback([options] {
     Session session;

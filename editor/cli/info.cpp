@@ -30,11 +30,21 @@ json object_info(const PlacedNode& placed) {
   json sizes = json::array();
   for (const TextureSet& set : object.sets) sizes.push_back({set.texels->width(), set.texels->height()});
   const Box box = transformed(object.bounds(), placed.to_world);
-  return {{"name", placed.node->name}, {"visible", placed.visible}, {"locked", placed.locked}, {"layout", Codec<Layout>::write(object.layout)},
-          {"texture_sets", object.sets.size()}, {"texture_sizes", sizes}, {"chunks", chunk_count(object)}, {"vertices", object.vertex_count()},
-          {"triangles", object.triangle_count()}, {"opaque_texels", object.opaque_texel_count()},
-          {"bounds", {{"min", list(box.min())}, {"max", list(box.max())}}}, {"axes", Codec<Axes>::write(object.axes)},
-          {"decoder", {Decoder::inputs, object.decoder->hidden0(), object.decoder->hidden1(), 3}}, {"turned", object.any_turns()}, {"memory", object.memory()}};
+  return {{"name", placed.node->name},
+          {"visible", placed.visible},
+          {"locked", placed.locked},
+          {"layout", Codec<Layout>::write(object.layout)},
+          {"texture_sets", object.sets.size()},
+          {"texture_sizes", sizes},
+          {"chunks", chunk_count(object)},
+          {"vertices", object.vertex_count()},
+          {"triangles", object.triangle_count()},
+          {"opaque_texels", object.opaque_texel_count()},
+          {"bounds", {{"min", list(box.min())}, {"max", list(box.max())}}},
+          {"axes", Codec<Axes>::write(object.axes)},
+          {"decoder", {Decoder::inputs, object.decoder->hidden0(), object.decoder->hidden1(), 3}},
+          {"turned", object.any_turns()},
+          {"memory", object.memory()}};
 }
 
 json scene_info(const Scene& scene) {
@@ -61,8 +71,16 @@ json scene_info(const Scene& scene) {
     axes = axes.is_null() || axes == own_axes ? own_axes : json("mixed");
     decoder = decoder.is_null() || decoder == own_decoder ? own_decoder : json("mixed");
   }
-  json out = {{"texture_sets", sets}, {"chunks", chunks}, {"vertices", vertices}, {"triangles", triangles}, {"opaque_texels", texels},
-              {"axes", axes}, {"decoder", decoder}, {"memory", memory}, {"objects", objects}, {"views", json::array()},
+  json out = {{"texture_sets", sets},
+              {"chunks", chunks},
+              {"vertices", vertices},
+              {"triangles", triangles},
+              {"opaque_texels", texels},
+              {"axes", axes},
+              {"decoder", decoder},
+              {"memory", memory},
+              {"objects", objects},
+              {"views", json::array()},
               {"background", list(scene.background)}};
   out["bounds"] = box.isEmpty() ? json() : json{{"min", list(box.min())}, {"max", list(box.max())}};
   for (const auto& [name, camera] : scene.views) out["views"].push_back(name);
@@ -75,19 +93,25 @@ void print(const json& info) {
   for (const json& o : info.at("objects")) {
     const json &low = o.at("bounds").at("min"), &high = o.at("bounds").at("max");
     fmt::print("{}{}\n", o.at("name").get<std::string>(), o.at("visible").get<bool>() ? "" : "  (hidden)");
-    fmt::print("  layout         {}, {} texture set(s), {} geometry file(s)\n", o.at("layout").get<std::string>(), o.at("texture_sets").get<std::size_t>(), o.at("chunks").get<std::size_t>());
-    fmt::print("  geometry       {} vertices, {} triangles\n", o.at("vertices").get<std::size_t>(), o.at("triangles").get<std::size_t>());
+    fmt::print("  layout         {}, {} texture set(s), {} geometry file(s)\n", o.at("layout").get<std::string>(),
+               o.at("texture_sets").get<std::size_t>(), o.at("chunks").get<std::size_t>());
+    fmt::print("  geometry       {} vertices, {} triangles\n", o.at("vertices").get<std::size_t>(),
+               o.at("triangles").get<std::size_t>());
     std::string sizes;
-    for (const json& size : o.at("texture_sizes")) sizes += fmt::format("{}{}×{}", sizes.empty() ? "" : ", ", size[0].get<int>(), size[1].get<int>());
+    for (const json& size : o.at("texture_sizes"))
+      sizes += fmt::format("{}{}×{}", sizes.empty() ? "" : ", ", size[0].get<int>(), size[1].get<int>());
     fmt::print("  texels         {} opaque, in {}\n", o.at("opaque_texels").get<std::uint64_t>(), sizes);
-    fmt::print("  bounds         ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n", low[0].get<double>(), low[1].get<double>(), low[2].get<double>(), high[0].get<double>(), high[1].get<double>(), high[2].get<double>());
+    fmt::print("  bounds         ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n", low[0].get<double>(),
+               low[1].get<double>(), low[2].get<double>(), high[0].get<double>(), high[1].get<double>(),
+               high[2].get<double>());
     fmt::print("  axes           {}\n", o.at("axes").get<std::string>());
     const json& d = o.at("decoder");
     fmt::print("  decoder        {}-{}-{}-{}\n", d[0].get<int>(), d[1].get<int>(), d[2].get<int>(), d[3].get<int>());
     fmt::print("  memory         {}\n", megabytes(o.at("memory").get<double>()));
   }
   if (info.at("objects").size() > 1)
-    fmt::print("together         {} triangles, {} opaque texels, {}\n", info.at("triangles").get<std::size_t>(), info.at("opaque_texels").get<std::uint64_t>(), megabytes(info.at("memory").get<double>()));
+    fmt::print("together         {} triangles, {} opaque texels, {}\n", info.at("triangles").get<std::size_t>(),
+               info.at("opaque_texels").get<std::uint64_t>(), megabytes(info.at("memory").get<double>()));
 }
 
 }  // namespace
@@ -100,7 +124,9 @@ void add_info(CLI::App& program) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("info", "says what a folder or scene holds");
-  command->add_option("folder", options->folder, "MobileNeRF folder or Rebake scene")->required()->option_text("FOLDER|SCENE");
+  command->add_option("folder", options->folder, "MobileNeRF folder or Rebake scene")
+      ->required()
+      ->option_text("FOLDER|SCENE");
   command->add_flag("--json", options->json, "machine-readable; memory in bytes");
   add_axes_option(*command, options->axes);
   command->callback([options] {

@@ -8,10 +8,13 @@
 #include "mesh_ops/error.h"
 
 int main(int argc, char** argv) {
-  CLI::App program{"Rebake: loads, composes, edits, renders and exports baked NeRF scenes (MobileNeRF format).", "rebake"};
+  CLI::App program{"Rebake: loads, composes, edits, renders and exports baked NeRF scenes (MobileNeRF format).",
+                   "rebake"};
   program.set_version_flag("--version", "rebake " REBAKE_VERSION);
   program.require_subcommand(1);
-  program.footer("Exit codes: 0 done, 1 it could not be done (the message says why), 2 wrong use of the command line, 3 compared pictures differ more than allowed.");
+  program.footer(
+      "Exit codes: 0 done, 1 it could not be done (the message says why), 2 wrong use of the command line, 3 compared "
+      "pictures differ more than allowed.");
   for (const rebake::Subcommand& command : rebake::subcommand_table) command.add(program);
   const auto fail = [](const std::string& what) {
     rebake::clear_progress_bar();

@@ -41,7 +41,8 @@ Vec3 parse_vec3(const std::string& text, const char* option) {
 
 void add_axes_option(CLI::App& command, Axes& axes) {
   command.add_option("--axes", axes, "which way MobileNeRF folders are oriented: 360 or forward")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Axes>{{"360", Axes::y_up}, {"forward", Axes::forward}}).description(""))
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Axes>{{"360", Axes::y_up}, {"forward", Axes::forward}})
+                      .description(""))
       ->option_text("360|forward [360]");
 }
 
@@ -73,18 +74,30 @@ void ViewOptions::add_to(CLI::App& command) {
   command.add_option("--fov", fov, "vertical field of view")->option_text("degrees [39]");
   command.add_option("--near", near_plane, "near plane")->option_text("n");
   command.add_option("--far", far_plane, "far plane")->option_text("f");
-  command.add_option("--camera", camera_file, "JSON file with eye, target, up, fov, near, far; or the name of a view of the scene")->option_text("FILE|VIEW");
-  command.add_option("--samples", samples, "samples a pixel")->check(CLI::IsMember({1, 4, 16}))->option_text("1|4|16 [4]");
+  command
+      .add_option("--camera", camera_file,
+                  "JSON file with eye, target, up, fov, near, far; or the name of a view of the scene")
+      ->option_text("FILE|VIEW");
+  command.add_option("--samples", samples, "samples a pixel")
+      ->check(CLI::IsMember({1, 4, 16}))
+      ->option_text("1|4|16 [4]");
   command.add_option("--background", background, "display colour, 0 to 1")->option_text("r,g,b [1,1,1]");
-  command.add_option("--weights", weights, "decoder weights in the shader")->check(CLI::IsMember({"automatic", "constants", "buffer"}))->option_text("automatic|constants|buffer");
-  command.add_option("--shading", shading, "forward decodes while drawing, at 1 sample only")->check(CLI::IsMember({"deferred", "forward"}))->option_text("deferred|forward");
-  command.add_option("--precision", precision, "decoder weights as 32- or 16-bit floats")->check(CLI::IsMember({"full", "half"}))->option_text("full|half");
+  command.add_option("--weights", weights, "decoder weights in the shader")
+      ->check(CLI::IsMember({"automatic", "constants", "buffer"}))
+      ->option_text("automatic|constants|buffer");
+  command.add_option("--shading", shading, "forward decodes while drawing, at 1 sample only")
+      ->check(CLI::IsMember({"deferred", "forward"}))
+      ->option_text("deferred|forward");
+  command.add_option("--precision", precision, "decoder weights as 32- or 16-bit floats")
+      ->check(CLI::IsMember({"full", "half"}))
+      ->option_text("full|half");
 }
 
 View ViewOptions::view(const Scene& scene) const {
   View view;
   const auto pixels = split_numbers<int>(size, 'x');
-  if (pixels.size() != 2) throw FieldError("--size", fmt::format("\"{}\" must be width and height such as 800x600", size));
+  if (pixels.size() != 2)
+    throw FieldError("--size", fmt::format("\"{}\" must be width and height such as 800x600", size));
   view.width = pixels[0];
   view.height = pixels[1];
   view.samples = samples;
@@ -127,7 +140,9 @@ View ViewOptions::view(const Scene& scene) const {
 
 RenderOptions ViewOptions::render_options() const {
   RenderOptions options;
-  options.weights = weights == "constants" ? RenderOptions::Weights::constants : weights == "buffer" ? RenderOptions::Weights::buffer : RenderOptions::Weights::automatic;
+  options.weights = weights == "constants" ? RenderOptions::Weights::constants
+                    : weights == "buffer"  ? RenderOptions::Weights::buffer
+                                           : RenderOptions::Weights::automatic;
   options.shading = shading == "forward" ? RenderOptions::Shading::forward : RenderOptions::Shading::deferred;
   options.precision = precision == "half" ? RenderOptions::Precision::half : RenderOptions::Precision::full;
   return options;
@@ -136,7 +151,8 @@ RenderOptions ViewOptions::render_options() const {
 void ViewOptions::set_background(Scene& scene) const {
   if (background.empty()) return;
   const Vec3 color = parse_vec3(background, "--background");
-  if ((color.array() < 0).any() || (color.array() > 1).any()) throw FieldError("--background", "must lie between 0 and 1");
+  if ((color.array() < 0).any() || (color.array() > 1).any())
+    throw FieldError("--background", "must lie between 0 and 1");
   scene.background = color;
 }
 

@@ -28,7 +28,8 @@ struct ViewOptions {
   std::string weights = "automatic", shading = "deferred", precision = "full";
 
   void add_to(CLI::App& command);
-  /// The view on `scene`: the options over the camera file, or over a camera that frames the scene. Throws FieldError, FileError.
+  /// The view on `scene`: the options over the camera file, or over a camera that frames the scene. Throws FieldError,
+  /// FileError.
   View view(const Scene& scene) const;
   RenderOptions render_options() const;
   void set_background(Scene& scene) const;

@@ -37,7 +37,8 @@ json spread(std::vector<double> values) {
 json measure(Renderer& renderer, const Scene& scene, const View& view, const RenderOptions& options, int frames) {
   std::vector<double> frame_ms;
   std::map<std::string, std::vector<double>> pass_ms;
-  // The first frames compile shaders; whole frames and passes are timed apart, since waiting after each pass costs time.
+  // The first frames compile shaders; whole frames and passes are timed apart, since waiting after each pass costs
+  // time.
   for (const bool each_pass : {false, true}) renderer.time_frame(scene, view, options, each_pass);
   for (int i = 0; i < frames; ++i) {
     frame_ms.push_back(renderer.time_frame(scene, view, options, false).frame_ms);
@@ -47,18 +48,24 @@ json measure(Renderer& renderer, const Scene& scene, const View& view, const Ren
   for (const auto& [name, values] : pass_ms) passes[name] = spread(values);
   rusage use{};
   getrusage(RUSAGE_SELF, &use);
-  return {{"frame_ms", spread(frame_ms)}, {"passes", passes}, {"frames", frames}, {"device", renderer.device()},
-          {"peak_cpu_bytes", static_cast<std::uint64_t>(use.ru_maxrss) * 1024}, {"peak_gpu_bytes", renderer.peak_gpu_bytes()}};
+  return {{"frame_ms", spread(frame_ms)},
+          {"passes", passes},
+          {"frames", frames},
+          {"device", renderer.device()},
+          {"peak_cpu_bytes", static_cast<std::uint64_t>(use.ru_maxrss) * 1024},
+          {"peak_gpu_bytes", renderer.peak_gpu_bytes()}};
 }
 
 void print_times(const json& times) {
   const auto line = [](const std::string& name, const json& s) {
-    fmt::print("{:<12} min {:8.2f}   median {:8.2f}   max {:8.2f} ms\n", name, s.at("min").get<double>(), s.at("median").get<double>(), s.at("max").get<double>());
+    fmt::print("{:<12} min {:8.2f}   median {:8.2f}   max {:8.2f} ms\n", name, s.at("min").get<double>(),
+               s.at("median").get<double>(), s.at("max").get<double>());
   };
   fmt::print("{} frames on {}\n", times.at("frames").get<int>(), times.at("device").get<std::string>());
   line("frame", times.at("frame_ms"));
   for (const auto& [name, s] : times.at("passes").items()) line("  " + name, s);
-  fmt::print("peak memory  {:.1f} MB CPU, {:.1f} MB GPU\n", times.at("peak_cpu_bytes").get<double>() / 1e6, times.at("peak_gpu_bytes").get<double>() / 1e6);
+  fmt::print("peak memory  {:.1f} MB CPU, {:.1f} MB GPU\n", times.at("peak_cpu_bytes").get<double>() / 1e6,
+             times.at("peak_gpu_bytes").get<double>() / 1e6);
 }
 
 void execute(const Options& options) {
@@ -73,7 +80,8 @@ void execute(const Options& options) {
     const FramePlan frame = plan(scene, view, how);
     if (!options.json) fmt::print("{}", describe(frame));
     report["plan"] = json::array();
-    for (const PlannedPass& pass : frame.passes) report["plan"].push_back({{"pass", pass.name}, {"runs", pass.runs}, {"why", pass.why}});
+    for (const PlannedPass& pass : frame.passes)
+      report["plan"].push_back({{"pass", pass.name}, {"runs", pass.runs}, {"why", pass.why}});
   }
   if (!options.out.empty() || options.time > 0) {
     Renderer renderer;
@@ -92,7 +100,9 @@ void execute(const Options& options) {
 void add_render(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("render", "draws one or several folders or scenes into a PNG");
-  command->add_option("folders", options->folders, "what to draw, together in one scene")->required()->option_text("FOLDER|SCENE...");
+  command->add_option("folders", options->folders, "what to draw, together in one scene")
+      ->required()
+      ->option_text("FOLDER|SCENE...");
   command->add_option("-o,--out", options->out, "PNG to write")->option_text("OUT.png");
   options->view.add_to(*command);
   add_axes_option(*command, options->axes);

@@ -18,8 +18,10 @@ void add_run(CLI::App& program) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("run", "runs a script of edits and actions, one JSON object a line");
-  command->add_option("script", options->script, "script; relative paths in it start at the current folder")->option_text("SCRIPT.jsonl");
-  command->add_option("--var", options->variables, "gives {name} in the script's texts a value")->option_text("name=value...");
+  command->add_option("script", options->script, "script; relative paths in it start at the current folder")
+      ->option_text("SCRIPT.jsonl");
+  command->add_option("--var", options->variables, "gives {name} in the script's texts a value")
+      ->option_text("name=value...");
   command->add_flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
   command->callback([options] {
     if (options->fields) {
@@ -30,7 +32,8 @@ void add_run(CLI::App& program) {
     std::map<std::string, std::string> variables;
     for (const std::string& pair : options->variables) {
       const std::size_t equals = pair.find('=');
-      if (equals == std::string::npos || equals == 0) throw CLI::ValidationError("--var", "\"" + pair + "\" must be name=value");
+      if (equals == std::string::npos || equals == 0)
+        throw CLI::ValidationError("--var", "\"" + pair + "\" must be name=value");
       variables[pair.substr(0, equals)] = pair.substr(equals + 1);
     }
     Session session;

@@ -23,12 +23,15 @@ void add_study(CLI::App& program) {
   auto options = std::make_shared<Options>();
   std::string names;
   for (const Study& study : study_table) names += fmt::format("\n  {:<10} {}", study.name, study.help);
-  CLI::App* command = program.add_subcommand("study", "measures accuracy against time: a table (CSV) and a plot (SVG, PNG)");
+  CLI::App* command =
+      program.add_subcommand("study", "measures accuracy against time: a table (CSV) and a plot (SVG, PNG)");
   command->footer("Studies:" + names);
   command->add_option("name", options->name, "which study")->required()->option_text("NAME");
   command->add_option("-o,--out", options->out, "folder to write to")->required()->option_text("FOLDER");
   command->add_option("--scene", options->scenes, "what to study it on")->required()->option_text("FOLDER|SCENE...");
-  command->add_option("--frames", options->frames, "frames timed for each choice")->check(CLI::Range(1, 1000))->option_text("N [9]");
+  command->add_option("--frames", options->frames, "frames timed for each choice")
+      ->check(CLI::Range(1, 1000))
+      ->option_text("N [9]");
   options->view.add_to(*command);
   add_axes_option(*command, options->axes);
   command->callback([options] {
@@ -39,7 +42,8 @@ void add_study(CLI::App& program) {
       Renderer renderer;
       const auto rows = study.run({renderer, scene, options->view.view(scene), options->frames});
       fmt::print("{:<22} {:>10} {:>10} {:>8}\n", "choice", "ms", "PSNR, dB", "largest");
-      for (const StudyRow& row : rows) fmt::print("{:<22} {:>10.2f} {:>10.2f} {:>8}\n", row.choice, row.milliseconds, row.psnr_db, row.largest);
+      for (const StudyRow& row : rows)
+        fmt::print("{:<22} {:>10.2f} {:>10.2f} {:>8}\n", row.choice, row.milliseconds, row.psnr_db, row.largest);
       write_study(study, rows, options->out);
       return;
     }

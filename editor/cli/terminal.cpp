@@ -30,7 +30,8 @@ Progress progress_bar() {
     state->second = now;
     if (share >= 1) return clear_progress_bar();
     const auto filled = static_cast<std::size_t>(share * 30);
-    fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'), std::string(30 - filled, ' '), share * 100);
+    fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'), std::string(30 - filled, ' '),
+               share * 100);
     std::fflush(stderr);
   });
 }

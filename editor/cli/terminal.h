@@ -6,7 +6,8 @@
 
 namespace rebake {
 
-/// Colour and progress on standard error, only where a person watches: both are off when it is piped, colour also under NO_COLOR.
+/// Colour and progress on standard error, only where a person watches: both are off when it is piped, colour also under
+/// NO_COLOR.
 bool is_interactive();
 std::string coloured(const std::string& text, const char* sgr);
 

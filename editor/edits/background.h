@@ -16,7 +16,8 @@ struct Background {
 };
 
 inline Scene apply(const Scene& scene, const Background& edit) {
-  if ((edit.color.array() < 0).any() || (edit.color.array() > 1).any()) throw FieldError("color", "must lie between 0 and 1");
+  if ((edit.color.array() < 0).any() || (edit.color.array() > 1).any())
+    throw FieldError("color", "must lie between 0 and 1");
   Scene result = scene;
   result.background = edit.color;
   return result;

@@ -6,7 +6,8 @@ namespace rebake {
 
 struct Duplicate {
   static constexpr const char* op = "duplicate";
-  static constexpr const char* help = "Adds a copy of a node and its children after it; triangles and texels stay shared.";
+  static constexpr const char* help =
+      "Adds a copy of a node and its children after it; triangles and texels stay shared.";
   NodeRef node;
   std::string as;
 
@@ -21,7 +22,8 @@ inline Scene apply(const Scene& scene, const Duplicate& edit) {
   const PlacedNode placed = present(scene, edit.node.id);
   Node copy = without_ids(*placed.node);
   if (!edit.as.empty()) {
-    if (find(scene, edit.as) != nullptr) throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+    if (find(scene, edit.as) != nullptr)
+      throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
     copy.name = edit.as;
   }
   const auto [parent, index] = place_of(scene, edit.node.id);

@@ -18,7 +18,8 @@ struct Group {
 };
 
 inline Scene apply(const Scene& scene, const Group& edit) {
-  if (!edit.as.empty() && find(scene, edit.as) != nullptr) throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+  if (!edit.as.empty() && find(scene, edit.as) != nullptr)
+    throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
   Node group;
   group.name = edit.as.empty() ? "group" : edit.as;
   Scene result = scene;

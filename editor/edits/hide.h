@@ -6,7 +6,8 @@ namespace rebake {
 
 struct Hide {
   static constexpr const char* op = "hide";
-  static constexpr const char* help = "Hides a node and its children; they are neither drawn nor part of a plain export.";
+  static constexpr const char* help =
+      "Hides a node and its children; they are neither drawn nor part of a plain export.";
   NodeRef node;
 
   template <class Self, class Visitor>

@@ -31,7 +31,8 @@ inline Scene apply(const Scene& scene, const Import& edit) {
     for (const NodePtr& root : read.roots) node.children.push_back(std::make_shared<const Node>(without_ids(*root)));
   }
   if (!edit.as.empty()) {
-    if (find(scene, edit.as) != nullptr) throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+    if (find(scene, edit.as) != nullptr)
+      throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
     node.name = edit.as;
   }
   Scene result = with_added(scene, std::move(node), NodeId::none, scene.roots.size());

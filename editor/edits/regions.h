@@ -37,7 +37,9 @@ inline FramePoints::FramePoints(CoordinateFrame frame, const PlacedNode& placed)
 }
 
 inline TriangleSet triangles_inside(const BakedObject& object, const FramePoints& points, const BoxRegion& box) {
-  return triangles_by_centre(object, points.from_object(), [&](const Vec3& p) { return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all(); });
+  return triangles_by_centre(object, points.from_object(), [&](const Vec3& p) {
+    return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
+  });
 }
 
 inline TriangleSet triangles_inside(const BakedObject& object, const FramePoints& points, const SphereRegion& sphere) {
@@ -47,7 +49,8 @@ inline TriangleSet triangles_inside(const BakedObject& object, const FramePoints
 }
 
 inline TriangleSet triangles_inside(const BakedObject& object, const FramePoints& points, const HalfSpaceRegion& half) {
-  return triangles_by_centre(object, points.from_object(), [&](const Vec3& p) { return half.normal.dot(p - half.point) >= 0; });
+  return triangles_by_centre(object, points.from_object(),
+                             [&](const Vec3& p) { return half.normal.dot(p - half.point) >= 0; });
 }
 
 }  // namespace rebake

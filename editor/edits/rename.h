@@ -21,7 +21,8 @@ inline Scene apply(const Scene& scene, const Rename& edit) {
   const PlacedNode placed = editable(scene, edit.node.id);
   if (edit.name.empty()) throw FieldError("name", "is empty");
   const NodePtr other = find(scene, edit.name);
-  if (other != nullptr && other->id != edit.node.id) throw FieldError("name", "\"" + edit.name + "\" is the name of another node already");
+  if (other != nullptr && other->id != edit.node.id)
+    throw FieldError("name", "\"" + edit.name + "\" is the name of another node already");
   return with_changed(scene, edit.node.id, [&](Node& node) { node.name = edit.name; });
 }
 

@@ -6,7 +6,8 @@ namespace rebake {
 
 struct Reorder {
   static constexpr const char* op = "reorder";
-  static constexpr const char* help = "Moves a node within the outline, to another place or group; it stays where it is in the world.";
+  static constexpr const char* help =
+      "Moves a node within the outline, to another place or group; it stays where it is in the world.";
   NodeRef node;
   int index;
   std::optional<NodeRef> parent;
@@ -15,7 +16,8 @@ struct Reorder {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("node", self.node, Need::required, "node to move");
-    visit("index", self.index, Need::required, "place among its new siblings, from 0; later ones are drawn on top where depths are equal");
+    visit("index", self.index, Need::required,
+          "place among its new siblings, from 0; later ones are drawn on top where depths are equal");
     visit("parent", self.parent, Need::optional, "group to move into; left out: stays in its group");
     visit("top", self.top, Need::optional, "move to the top level, out of all groups");
   }

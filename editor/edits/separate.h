@@ -19,10 +19,13 @@ struct Separate {
 
 inline Scene apply(const Scene& scene, const Separate& edit) {
   const PlacedNode placed = with_selection(scene, edit.node).front();
-  if (!edit.as.empty() && find(scene, edit.as) != nullptr) throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+  if (!edit.as.empty() && find(scene, edit.as) != nullptr)
+    throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
   const TriangleSet& selection = *placed.node->selection;
   const auto rest = triangles_of(*placed.node->object, selection, false);
-  if (!rest) throw EditError("all triangles of \"" + placed.node->name + "\" are selected; there would be nothing left to separate from");
+  if (!rest)
+    throw EditError("all triangles of \"" + placed.node->name +
+                    "\" are selected; there would be nothing left to separate from");
   Node part;
   part.name = edit.as.empty() ? placed.node->name : edit.as;
   part.visible = placed.node->visible;

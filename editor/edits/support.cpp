@@ -25,8 +25,9 @@ std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<N
     result.push_back(std::move(placed));
   }
   if (result.empty())
-    throw EditError(node ? fmt::format("no triangle of \"{}\" is selected; select some first", present(scene, node->id).node->name)
-                         : "no triangle is selected; select some first");
+    throw EditError(
+        node ? fmt::format("no triangle of \"{}\" is selected; select some first", present(scene, node->id).node->name)
+             : "no triangle is selected; select some first");
   return result;
 }
 

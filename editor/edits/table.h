@@ -22,8 +22,8 @@
 namespace rebake {
 
 /// The one table of edits: everything that changes a scene.
-using Edit = std::variant<Import, Remove, Rename, Duplicate, Group, Reorder, Show, Hide, Lock, Unlock, StoreView, Background, Transform, Select,
-                          DeleteSelected, Separate>;
+using Edit = std::variant<Import, Remove, Rename, Duplicate, Group, Reorder, Show, Hide, Lock, Unlock, StoreView,
+                          Background, Transform, Select, DeleteSelected, Separate>;
 
 /// Pure and deterministic: the scene after the edit. Throws Error and leaves nothing changed.
 Scene apply(const Scene& scene, const Edit& edit);

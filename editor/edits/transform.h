@@ -1,13 +1,14 @@
 #pragma once
 
-#include "editor/edits/support.h"
 #include <algorithm>
+#include "editor/edits/support.h"
 
 namespace rebake {
 
 struct Transform {
   static constexpr const char* op = "transform";
-  static constexpr const char* help = "Scales, then turns, then moves a node or its selected triangles about a pivot, in world axes.";
+  static constexpr const char* help =
+      "Scales, then turns, then moves a node or its selected triangles about a pivot, in world axes.";
   NodeRef node;
   bool selection = false;
   Vec3 translate{0, 0, 0};
@@ -22,7 +23,8 @@ struct Transform {
     visit("translate", self.translate, Need::optional, "in scene units");
     visit("rotate", self.rotate, Need::optional, "rotation");
     visit("scale", self.scale, Need::optional, "factor; negative mirrors, 0 is refused");
-    visit("pivot", self.pivot, Need::optional, "world point that scale and rotation keep; left out: the centre of the box of what is transformed");
+    visit("pivot", self.pivot, Need::optional,
+          "world point that scale and rotation keep; left out: the centre of the box of what is transformed");
   }
 };
 
@@ -34,7 +36,9 @@ inline Scene apply(const Scene& scene, const Transform& edit) {
   } else {
     box = selection_bounds(with_selection(scene, edit.node).front());
   }
-  const Vec3 pivot = edit.pivot ? *edit.pivot : box.isEmpty() ? Vec3(placed.to_world.translation()) : Vec3(box.center());
+  const Vec3 pivot = edit.pivot      ? *edit.pivot
+                     : box.isEmpty() ? Vec3(placed.to_world.translation())
+                                     : Vec3(box.center());
   Affine motion = Affine::Identity();
   const Mat3 linear = edit.rotate.value.toRotationMatrix() * edit.scale.value.asDiagonal();
   motion.linear() = linear;
@@ -42,8 +46,12 @@ inline Scene apply(const Scene& scene, const Transform& edit) {
   motion.translation() = linear.isIdentity(0) ? edit.translate : Vec3(pivot + edit.translate - linear * pivot);
   if (!motion.matrix().allFinite()) throw EditError("the transform is not finite");
   if (!edit.selection) {
-    const Affine parent_to_world = parent_of(scene, edit.node.id) == NodeId::none ? Affine(Affine::Identity()) : present(scene, parent_of(scene, edit.node.id)).to_world;
-    const Affine to_parent = parent_to_world.matrix().isIdentity(0) ? motion * placed.node->to_parent : parent_to_world.inverse() * motion * placed.to_world;
+    const Affine parent_to_world = parent_of(scene, edit.node.id) == NodeId::none
+                                       ? Affine(Affine::Identity())
+                                       : present(scene, parent_of(scene, edit.node.id)).to_world;
+    const Affine to_parent = parent_to_world.matrix().isIdentity(0)
+                                 ? motion * placed.node->to_parent
+                                 : parent_to_world.inverse() * motion * placed.to_world;
     checked_turn(to_parent);
     return with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
   }
@@ -54,7 +62,8 @@ inline Scene apply(const Scene& scene, const Transform& edit) {
     std::size_t first = 0;
     for (const TextureSet& set : node.object->sets) {
       const auto begin = node.selection->begin() + static_cast<std::ptrdiff_t>(first);
-      const bool any = std::any_of(begin, begin + static_cast<std::ptrdiff_t>(set.soup.triangle_count()), [](auto flag) { return flag != 0; });
+      const bool any = std::any_of(begin, begin + static_cast<std::ptrdiff_t>(set.soup.triangle_count()),
+                                   [](auto flag) { return flag != 0; });
       sets.push_back(any ? TextureSet{move_faces(set.soup, *node.selection, first, in_object), set.texels} : set);
       first += set.soup.triangle_count();
     }

@@ -58,7 +58,8 @@ json Codec<bool>::write(const bool& value) { return value; }
 
 const char* Codec<int>::type() { return "whole number"; }
 int Codec<int>::read(const json& value, const Scene&) {
-  if (!value.is_number_integer() || value.get<std::int64_t>() < -2147483647 || value.get<std::int64_t>() > 2147483647) throw Error("must be a whole number");
+  if (!value.is_number_integer() || value.get<std::int64_t>() < -2147483647 || value.get<std::int64_t>() > 2147483647)
+    throw Error("must be a whole number");
   return value.get<int>();
 }
 json Codec<int>::write(const int& value) { return value; }
@@ -87,9 +88,9 @@ NodeRef Codec<NodeRef>::read(const json& value, const Scene& scene) {
     for (const PlacedNode& placed : placed_nodes(scene)) names.push_back(placed.node->name);
     const std::string near = nearest_word(name, names);
     throw Error(fmt::format("there is no node \"{}\"{}", name,
-                            names.empty()    ? " (the scene is empty)"
-                            : !near.empty()  ? fmt::format("; did you mean \"{}\"?", near)
-                                             : fmt::format("; there are {}", fmt::join(names, ", "))));
+                            names.empty()   ? " (the scene is empty)"
+                            : !near.empty() ? fmt::format("; did you mean \"{}\"?", near)
+                                            : fmt::format("; there are {}", fmt::join(names, ", "))));
   }
   if (value.is_number_unsigned()) {
     const NodeId id{value.get<std::uint64_t>()};
@@ -98,7 +99,9 @@ NodeRef Codec<NodeRef>::read(const json& value, const Scene& scene) {
   }
   throw Error("must be the name of a node");
 }
-json Codec<NodeRef>::write(const NodeRef& value) { return value.id == NodeId::none ? json() : json(static_cast<std::uint64_t>(value.id)); }
+json Codec<NodeRef>::write(const NodeRef& value) {
+  return value.id == NodeId::none ? json() : json(static_cast<std::uint64_t>(value.id));
+}
 
 const char* Codec<std::vector<NodeRef>>::type() { return "list of nodes"; }
 std::vector<NodeRef> Codec<std::vector<NodeRef>>::read(const json& value, const Scene& scene) {
@@ -124,9 +127,12 @@ Rotation Codec<Rotation>::read(const json& value, const Scene&) {
   const Vec3 axis = vector(part(value, "axis", {"axis", "degrees"}));
   const double degrees = number(part(value, "degrees", {"axis", "degrees"}));
   if (axis.isZero(0)) throw Error("the axis has no direction");
-  return {Eigen::Quaterniond(Eigen::AngleAxisd(std::remainder(degrees, 360.0) * std::numbers::pi / 180, axis.stableNormalized()))};
+  return {Eigen::Quaterniond(
+      Eigen::AngleAxisd(std::remainder(degrees, 360.0) * std::numbers::pi / 180, axis.stableNormalized()))};
 }
-json Codec<Rotation>::write(const Rotation& value) { return {value.value.w(), value.value.x(), value.value.y(), value.value.z()}; }
+json Codec<Rotation>::write(const Rotation& value) {
+  return {value.value.w(), value.value.x(), value.value.y(), value.value.z()};
+}
 
 const char* Codec<Scale>::type() { return "number or [x, y, z]"; }
 Scale Codec<Scale>::read(const json& value, const Scene&) {
@@ -144,23 +150,32 @@ json Codec<BoxRegion>::write(const BoxRegion& value) { return {{"min", list(valu
 
 const char* Codec<SphereRegion>::type() { return "{\"center\": [x, y, z], \"radius\": r}"; }
 SphereRegion Codec<SphereRegion>::read(const json& value, const Scene&) {
-  const SphereRegion sphere{vector(part(value, "center", {"center", "radius"})), number(part(value, "radius", {"center", "radius"}))};
+  const SphereRegion sphere{vector(part(value, "center", {"center", "radius"})),
+                            number(part(value, "radius", {"center", "radius"}))};
   if (sphere.radius < 0) throw Error("the radius is negative");
   return sphere;
 }
-json Codec<SphereRegion>::write(const SphereRegion& value) { return {{"center", list(value.center)}, {"radius", value.radius}}; }
+json Codec<SphereRegion>::write(const SphereRegion& value) {
+  return {{"center", list(value.center)}, {"radius", value.radius}};
+}
 
 const char* Codec<HalfSpaceRegion>::type() { return "{\"point\": [x, y, z], \"normal\": [x, y, z]}"; }
 HalfSpaceRegion Codec<HalfSpaceRegion>::read(const json& value, const Scene&) {
-  const HalfSpaceRegion half{vector(part(value, "point", {"point", "normal"})), vector(part(value, "normal", {"point", "normal"}))};
+  const HalfSpaceRegion half{vector(part(value, "point", {"point", "normal"})),
+                             vector(part(value, "normal", {"point", "normal"}))};
   if (half.normal.isZero(0)) throw Error("the normal has no direction");
   return half;
 }
-json Codec<HalfSpaceRegion>::write(const HalfSpaceRegion& value) { return {{"point", list(value.point)}, {"normal", list(value.normal)}}; }
+json Codec<HalfSpaceRegion>::write(const HalfSpaceRegion& value) {
+  return {{"point", list(value.point)}, {"normal", list(value.normal)}};
+}
 
 const char* Codec<SelectMode>::type() { return "set, add, remove or intersect"; }
 SelectMode Codec<SelectMode>::read(const json& value, const Scene&) {
-  return word<SelectMode>(value, {{"set", SelectMode::set}, {"add", SelectMode::add}, {"remove", SelectMode::remove}, {"intersect", SelectMode::intersect}});
+  return word<SelectMode>(value, {{"set", SelectMode::set},
+                                  {"add", SelectMode::add},
+                                  {"remove", SelectMode::remove},
+                                  {"intersect", SelectMode::intersect}});
 }
 json Codec<SelectMode>::write(const SelectMode& value) {
   static const char* const names[] = {"set", "add", "remove", "intersect"};
@@ -169,7 +184,8 @@ json Codec<SelectMode>::write(const SelectMode& value) {
 
 const char* Codec<CoordinateFrame>::type() { return "world, node or bounds"; }
 CoordinateFrame Codec<CoordinateFrame>::read(const json& value, const Scene&) {
-  return word<CoordinateFrame>(value, {{"world", CoordinateFrame::world}, {"node", CoordinateFrame::node}, {"bounds", CoordinateFrame::bounds}});
+  return word<CoordinateFrame>(
+      value, {{"world", CoordinateFrame::world}, {"node", CoordinateFrame::node}, {"bounds", CoordinateFrame::bounds}});
 }
 json Codec<CoordinateFrame>::write(const CoordinateFrame& value) {
   static const char* const names[] = {"world", "node", "bounds"};
@@ -192,7 +208,9 @@ json Codec<Layout>::write(const Layout& value) {
   return names[static_cast<int>(value)];
 }
 
-const char* Codec<Camera>::type() { return "{\"eye\", \"target\", \"up\": [x, y, z], \"fov\": degrees, \"near\", \"far\"}"; }
+const char* Codec<Camera>::type() {
+  return "{\"eye\", \"target\", \"up\": [x, y, z], \"fov\": degrees, \"near\", \"far\"}";
+}
 Camera Codec<Camera>::read(const json& value, const Scene&) { return read_camera_json(value); }
 json Codec<Camera>::write(const Camera& value) { return camera_json(value); }
 
@@ -200,7 +218,8 @@ void FieldReader::finish() const {
   for (const auto& [name, value] : object_.items()) {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const std::string near = nearest_word(name, known_);
-    throw FieldError(name, near.empty() ? fmt::format("is not known here (known: {})", fmt::join(known_, ", ")) : fmt::format("is not known here; did you mean \"{}\"?", near));
+    throw FieldError(name, near.empty() ? fmt::format("is not known here (known: {})", fmt::join(known_, ", "))
+                                        : fmt::format("is not known here; did you mean \"{}\"?", near));
   }
 }
 

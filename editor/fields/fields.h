@@ -46,12 +46,12 @@ enum class Need { required, optional };
 template <class T>
 struct Codec;
 
-#define REBAKE_CODEC(Type)                                                    \
-  template <>                                                                 \
-  struct Codec<Type> {                                                        \
-    static const char* type();                                                \
-    static Type read(const nlohmann::json& value, const Scene& scene);        \
-    static nlohmann::json write(const Type& value);                           \
+#define REBAKE_CODEC(Type)                                             \
+  template <>                                                          \
+  struct Codec<Type> {                                                 \
+    static const char* type();                                         \
+    static Type read(const nlohmann::json& value, const Scene& scene); \
+    static nlohmann::json write(const Type& value);                    \
   }
 REBAKE_CODEC(bool);
 REBAKE_CODEC(int);
@@ -76,7 +76,9 @@ template <class T>
 struct Codec<std::optional<T>> {
   static const char* type() { return Codec<T>::type(); }
   static std::optional<T> read(const nlohmann::json& value, const Scene& scene) { return Codec<T>::read(value, scene); }
-  static nlohmann::json write(const std::optional<T>& value) { return value ? Codec<T>::write(*value) : nlohmann::json(); }
+  static nlohmann::json write(const std::optional<T>& value) {
+    return value ? Codec<T>::write(*value) : nlohmann::json();
+  }
 };
 
 /// Reads the fields that a struct describes from one JSON object. Node names are looked up in `scene`.
@@ -109,14 +111,14 @@ class FieldReader {
   std::vector<std::string> known_{"op"};
 };
 
-/// Writes the fields that differ from a default-constructed struct.
+/// Writes all fields that have a value.
 class FieldWriter {
  public:
   explicit FieldWriter(nlohmann::json& object) : object_(object) {}
   template <class T>
-  void operator()(const char* name, const T& value, Need need, const char* /*help*/) {
+  void operator()(const char* name, const T& value, Need /*need*/, const char* /*help*/) {
     nlohmann::json written = Codec<T>::write(value);
-    if (!written.is_null() && (need == Need::required || written != Codec<T>::write(T{}))) object_[name] = std::move(written);
+    if (!written.is_null()) object_[name] = std::move(written);
   }
 
  private:
@@ -134,7 +136,8 @@ class FieldLister {
   template <class T>
   void operator()(const char* name, const T& value, Need need, const char* help) {
     const nlohmann::json initial = Codec<T>::write(value);
-    lines_.push_back({name, Codec<T>::type(), need == Need::required || initial.is_null() ? "" : initial.dump(), help, need == Need::required});
+    lines_.push_back({name, Codec<T>::type(), need == Need::required || initial.is_null() ? "" : initial.dump(), help,
+                      need == Need::required});
   }
 
  private:

@@ -22,7 +22,8 @@ void for_each_type(Visit visit) {
 }
 
 template <class Variant>
-std::optional<Variant> read_as(const std::string& op, const json& line, const Scene& scene, std::vector<std::string>& known) {
+std::optional<Variant> read_as(const std::string& op, const json& line, const Scene& scene,
+                               std::vector<std::string>& known) {
   std::optional<Variant> result;
   for_each_type<Variant>([&](auto command) {
     known.emplace_back(command.op);
@@ -51,13 +52,17 @@ std::string filled_in(const std::string& text, const std::map<std::string, std::
 
 template <class Command>
 std::string reference_of(const Command& command) {
-  std::string out = fmt::format("### `{}`\n{}\n\n| field | value | default | meaning |\n|---|---|---|---|\n", command.op, command.help);
+  std::string out = fmt::format("### `{}`\n{}\n\n| field | value | default | meaning |\n|---|---|---|---|\n",
+                                command.op, command.help);
   std::vector<FieldLine> lines;
   FieldLister lister(lines);
   Command::fields(command, lister);
   for (const FieldLine& line : lines)
     out += fmt::format("| `{}` | {} | {} | {} |\n", line.name, line.type,
-                       line.required ? "required" : line.initial.empty() || line.initial == "\"\"" ? "–" : "`" + line.initial + "`", line.help);
+                       line.required                                    ? "required"
+                       : line.initial.empty() || line.initial == "\"\"" ? "–"
+                                                                        : "`" + line.initial + "`",
+                       line.help);
   return out + '\n';
 }
 
@@ -73,7 +78,8 @@ Command read_command(const json& line, const Scene& scene) {
   if (auto edit = read_as<Edit>(name, line, scene, known)) return *edit;
   if (auto action = read_as<Action>(name, line, scene, known)) return *action;
   const std::string near = nearest_word(name, known);
-  throw FieldError("op", near.empty() ? fmt::format("\"{}\" is not known (known: {})", name, fmt::join(known, ", ")) : fmt::format("\"{}\" is not known; did you mean \"{}\"?", name, near));
+  throw FieldError("op", near.empty() ? fmt::format("\"{}\" is not known (known: {})", name, fmt::join(known, ", "))
+                                      : fmt::format("\"{}\" is not known; did you mean \"{}\"?", name, near));
 }
 
 json with_variables(const json& line, const std::map<std::string, std::string>& variables) {
@@ -84,14 +90,17 @@ json with_variables(const json& line, const std::map<std::string, std::string>& 
   return out;
 }
 
-void run_script(Session& session, std::string_view text, const std::filesystem::path& name, const std::map<std::string, std::string>& variables) {
+void run_script(Session& session, std::string_view text, const std::filesystem::path& name,
+                const std::map<std::string, std::string>& variables) {
   std::istringstream lines{std::string(text)};
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
     const std::size_t first = line.find_first_not_of(" \t\r\xEF\xBB\xBF");
     if (first == std::string::npos || line[first] == '#' || line.compare(first, 2, "//") == 0) continue;
-    const auto fail = [&](const std::string& what) { throw ScriptError(fmt::format("{}: line {}: {}", name.string(), number, what)); };
+    const auto fail = [&](const std::string& what) {
+      throw ScriptError(fmt::format("{}: line {}: {}", name.string(), number, what));
+    };
     try {
       const json object = json::parse(line.begin() + static_cast<std::ptrdiff_t>(first), line.end());
       const Command command = read_command(with_variables(object, variables), session.scene);

@@ -25,9 +25,10 @@ Command read_command(const nlohmann::json& line, const Scene& scene);
 /// Puts variables into all texts of a line: "{name}" becomes the value. Throws Error for one that has no value.
 nlohmann::json with_variables(const nlohmann::json& line, const std::map<std::string, std::string>& variables);
 
-/// Runs a script: one JSON object a line; blank lines and lines that begin with # or // are skipped. Throws ScriptError; what was
-/// written before the line in error stays.
-void run_script(Session& session, std::string_view text, const std::filesystem::path& name, const std::map<std::string, std::string>& variables);
+/// Runs a script: one JSON object a line; blank lines and lines that begin with # or // are skipped. Throws
+/// ScriptError; what was written before the line in error stays.
+void run_script(Session& session, std::string_view text, const std::filesystem::path& name,
+                const std::map<std::string, std::string>& variables);
 
 /// Markdown: every command with its fields, types and defaults.
 std::string command_reference();

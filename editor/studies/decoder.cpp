@@ -9,7 +9,8 @@ std::vector<StudyRow> study_decoder(const StudyInput& input) {
   // One sample, so that forward shading can take part.
   View view = input.view;
   view.samples = 1;
-  const Image reference = input.renderer.render(input.scene, view, {Weights::constants, Shading::deferred, Precision::full});
+  const Image reference =
+      input.renderer.render(input.scene, view, {Weights::constants, Shading::deferred, Precision::full});
   struct Choice {
     const char* name;
     RenderOptions options;

@@ -9,7 +9,8 @@ std::vector<StudyRow> study_samples(const StudyInput& input) {
   std::vector<StudyRow> rows;
   for (const int samples : {1, 4, 16}) {
     view.samples = samples;
-    rows.push_back(measured(input, std::to_string(samples) + (samples == 1 ? " sample" : " samples"), view, {}, reference));
+    rows.push_back(
+        measured(input, std::to_string(samples) + (samples == 1 ? " sample" : " samples"), view, {}, reference));
   }
   return rows;
 }

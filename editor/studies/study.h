@@ -41,7 +41,8 @@ inline constexpr Study study_table[] = {
 };
 
 /// Times a choice and compares its picture with the reference.
-StudyRow measured(const StudyInput& input, const std::string& choice, const View& view, const RenderOptions& options, const Image& reference);
+StudyRow measured(const StudyInput& input, const std::string& choice, const View& view, const RenderOptions& options,
+                  const Image& reference);
 
 /// Writes NAME.csv, NAME.svg and NAME.png (plots need gnuplot; throws Error without it).
 void write_study(const Study& study, const std::vector<StudyRow>& rows, const std::filesystem::path& folder);

@@ -19,7 +19,9 @@ namespace {
 struct Rect {
   int left = 0, top = 0, right = 0, bottom = 0;  // right and bottom included
   auto operator<=>(const Rect&) const = default;
-  bool overlaps(const Rect& o) const { return left <= o.right && o.left <= right && top <= o.bottom && o.top <= bottom; }
+  bool overlaps(const Rect& o) const {
+    return left <= o.right && o.left <= right && top <= o.bottom && o.top <= bottom;
+  }
   void join(const Rect& o) {
     left = std::min(left, o.left);
     top = std::min(top, o.top);
@@ -57,7 +59,9 @@ Rect rect_of(const TextureSet& set, const Face& face) {
     low_v = std::min(low_v, uv.y());
     high_v = std::max(high_v, uv.y());
   }
-  const auto texel = [](double share, int size) { return std::clamp(static_cast<int>(std::floor(share * size)), 0, size - 1); };
+  const auto texel = [](double share, int size) {
+    return std::clamp(static_cast<int>(std::floor(share * size)), 0, size - 1);
+  };
   return {texel(low_u, width), texel(1 - high_v, height), texel(high_u, width), texel(1 - low_v, height)};
 }
 
@@ -141,7 +145,8 @@ bool can_pack(const TextureSet& set) {
   return true;
 }
 
-std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture, AlphaCode code) {
+std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture,
+                                                      AlphaCode code) {
   if (texture->alpha_code() == code) return texture;
   return std::make_shared<const FeatureTexture>(
       FeatureTexture::from_rows(texture->width(), texture->height(), code, [&](int y, Texel* row) {
@@ -160,7 +165,8 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
     for (std::size_t p = 0; p < patches[s].rects.size(); ++p) {
       const Rect& rect = patches[s].rects[p];
       if (rect.width() > largest_side || rect.height() > largest_side)
-        throw Error(fmt::format("a patch of {}×{} texels does not fit into textures of {}²", rect.width(), rect.height(), largest_side));
+        throw Error(fmt::format("a patch of {}×{} texels does not fit into textures of {}²", rect.width(),
+                                rect.height(), largest_side));
       places.push_back({s, p});
       area += static_cast<std::uint64_t>(rect.width()) * static_cast<std::uint64_t>(rect.height());
       widest = std::max(widest, rect.width());
@@ -199,14 +205,16 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
   for (std::size_t s = 0; s < sets.size(); ++s) place_of[s].resize(patches[s].rects.size());
   std::vector<std::vector<Texel>> pixels;
   for (const Page& page : pages)
-    pixels.emplace_back(static_cast<std::size_t>(page.width) * static_cast<std::size_t>(page.height), empty_texel(code));
+    pixels.emplace_back(static_cast<std::size_t>(page.width) * static_cast<std::size_t>(page.height),
+                        empty_texel(code));
   for (const Place& place : places) {
     place_of[place.set][place.patch] = place;
     const FeatureTexture& source = *sets[place.set].texels;
     const Rect& rect = rect_at(place);
     for (int row = 0; row < rect.height(); ++row)
       for (int column = 0; column < rect.width(); ++column)
-        pixels[place.page][static_cast<std::size_t>(place.y + row) * static_cast<std::size_t>(pages[place.page].width) + static_cast<std::size_t>(place.x + column)] =
+        pixels[place.page][static_cast<std::size_t>(place.y + row) * static_cast<std::size_t>(pages[place.page].width) +
+                           static_cast<std::size_t>(place.x + column)] =
             converted(source.at(rect.left + column, rect.top + row), source.alpha_code(), code);
   }
 
@@ -250,10 +258,12 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
   PackedSets result;
   for (std::size_t k = 0; k < pages.size(); ++k) {
     Building& b = building[k];
-    auto texels = std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(pages[k].width, pages[k].height, code, [&](int row, Texel* out) {
-      std::copy_n(pixels[k].begin() + static_cast<std::ptrdiff_t>(row) * pages[k].width, pages[k].width, out);
-    }));
-    result.sets.push_back({Soup(std::make_shared<const std::vector<Vec3>>(std::move(b.positions)), std::make_shared<const std::vector<Vec2>>(std::move(b.uvs)),
+    auto texels = std::make_shared<const FeatureTexture>(
+        FeatureTexture::from_rows(pages[k].width, pages[k].height, code, [&](int row, Texel* out) {
+          std::copy_n(pixels[k].begin() + static_cast<std::ptrdiff_t>(row) * pages[k].width, pages[k].width, out);
+        }));
+    result.sets.push_back({Soup(std::make_shared<const std::vector<Vec3>>(std::move(b.positions)),
+                                std::make_shared<const std::vector<Vec2>>(std::move(b.uvs)),
                                 std::make_shared<const std::vector<Face>>(std::move(b.faces)),
                                 b.turned ? std::make_shared<const std::vector<Mat3>>(std::move(b.turns)) : nullptr),
                            std::move(texels)});

@@ -13,14 +13,15 @@ struct PackedSets {
   std::uint64_t texel_area = 0;  ///< width × height over all new textures
 };
 
-/// Moves the patches of texels that triangles use, whole and bit for bit, into new textures; drops the rest. UVs follow by whole texels, so
-/// nearest sampling finds the same texels. Positions, turns and the order of faces within a texture are kept.
-/// Textures of another alpha code than `code` are converted (halved from plain loses the alpha's lowest bit, as the
-/// published exporter does). Throws Error for a patch larger than `largest_side`, and for UVs outside [0, 1].
+/// Moves the patches of texels that triangles use, whole and bit for bit, into new textures; drops the rest. UVs follow
+/// by whole texels, so nearest sampling finds the same texels. Positions, turns and the order of faces within a texture
+/// are kept. Textures of another alpha code than `code` are converted (halved from plain loses the alpha's lowest bit,
+/// as the published exporter does). Throws Error for a patch larger than `largest_side`, and for UVs outside [0, 1].
 PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code);
 
 /// The texture with its alpha stored the other way; the same pointer when it already is.
-std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture, AlphaCode code);
+std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture,
+                                                      AlphaCode code);
 
 /// True when all UVs of the faces lie in [0, 1], so that texels can be moved.
 bool can_pack(const TextureSet& set);

@@ -9,7 +9,8 @@
 #include <random>
 #include <stdexcept>
 
-// Adam: Kingma & Ba 2015. The network is evaluated for `lanes` observations at once in structure-of-arrays form, which the compiler vectorises.
+// Adam: Kingma & Ba 2015. The network is evaluated for `lanes` observations at once in structure-of-arrays form, which
+// the compiler vectorises.
 
 namespace rebake {
 
@@ -18,7 +19,8 @@ namespace {
 constexpr std::size_t lanes = 16;
 constexpr std::size_t widest = 64;
 constexpr std::size_t block_texels = 64;  // gradients are summed a block at a time, in a fixed order
-constexpr std::size_t batch_texels = 4096;
+constexpr std::size_t batch_texels = 1024;
+constexpr std::size_t seen_a_pass = 8;  // observations of a texel in one pass
 constexpr float beta1 = 0.9F, beta2 = 0.99F, tiny = 1e-8F;
 
 using Lane = std::array<float, lanes>;
@@ -43,8 +45,10 @@ struct Adam {
   }
 };
 
-// Forward and backward for one group of lanes: adds to the weights' gradient, writes the inputs' gradient, returns the squared error.
-float evaluate(const Network& net, const std::array<Lane, 11>& input, const std::array<Lane, 3>& target, float* gradient, std::array<Lane, 11>* input_gradient) {
+// Forward and backward for one group of lanes: adds to the weights' gradient, writes the inputs' gradient, returns the
+// squared error.
+float evaluate(const Network& net, const std::array<Lane, 11>& input, const std::array<Lane, 3>& target,
+               float* gradient, std::array<Lane, 11>* input_gradient) {
   const std::size_t h = net.hidden;
   std::array<Lane, widest> first, second, d_first, d_second;
   std::array<Lane, 3> d_out;
@@ -129,7 +133,8 @@ std::array<std::uint8_t, 8> quantised(const float* value) {
   std::array<std::uint8_t, 8> bytes{};
   for (std::size_t c = 0; c < 8; ++c) {
     // Alpha is stored as 128 … 255 and decodes to odd 255ths.
-    bytes[c] = static_cast<std::uint8_t>(c % 4 == 3 ? 128 + std::clamp(std::lround((value[c] * 255 - 1) / 2), 0L, 127L) : std::clamp(std::lround(value[c] * 255), 0L, 255L));
+    bytes[c] = static_cast<std::uint8_t>(c % 4 == 3 ? 128 + std::clamp(std::lround((value[c] * 255 - 1) / 2), 0L, 127L)
+                                                    : std::clamp(std::lround(value[c] * 255), 0L, 255L));
   }
   bytes[0] = std::max<std::uint8_t>(bytes[0], 1);
   return bytes;
@@ -156,11 +161,19 @@ Decoder to_decoder(const Network& net) {
 class Fitter {
  public:
   Fitter(const FitProblem& problem, const FitOptions& options)
-      : problem_(problem), options_(options), net_(static_cast<std::size_t>(options.hidden)), net_adam_(net_.values.size()),
-        logits_(problem.texel_count * 8), texel_adam_(problem.texel_count * 8) {
-    if (options.hidden < 1 || static_cast<std::size_t>(options.hidden) > widest) throw std::invalid_argument("hidden width must be 1 to 64");
+      : problem_(problem),
+        options_(options),
+        net_(static_cast<std::size_t>(options.hidden)),
+        net_adam_(net_.values.size()),
+        logits_(problem.texel_count * 8),
+        texel_adam_(problem.texel_count * 8) {
+    if (options.hidden < 1 || static_cast<std::size_t>(options.hidden) > widest)
+      throw std::invalid_argument("hidden width must be 1 to 64");
     const std::size_t count = problem.texel_count * problem.observations_a_texel;
-    if (count == 0 || problem.fed_directions.size() != count || problem.colors.size() != count) throw std::invalid_argument("a fit needs a direction and a colour for each observation");
+    if (count == 0 || problem.fed_directions.size() != count || problem.colors.size() != count)
+      throw std::invalid_argument("a fit needs a direction and a colour for each observation");
+    if (!problem.hints.empty() && problem.hints.size() != problem.texel_count)
+      throw std::invalid_argument("a fit needs a hint for each texel, or none");
     std::mt19937 random(options.seed);
     std::normal_distribution<float> normal;
     const std::size_t h = net_.hidden;
@@ -175,8 +188,11 @@ class Fitter {
         float mean = 0.5F;
         if (c < 3) {
           mean = 0;
-          for (std::size_t k = 0; k < problem.observations_a_texel; ++k) mean += problem.colors[t * problem.observations_a_texel + k][c];
+          for (std::size_t k = 0; k < problem.observations_a_texel; ++k)
+            mean += problem.colors[t * problem.observations_a_texel + k][c];
           mean = std::clamp(mean / static_cast<float>(problem.observations_a_texel), 0.05F, 0.95F);
+        } else if (!problem.hints.empty()) {
+          mean = std::clamp(problem.hints[t][c - 3], 0.05F, 0.95F);
         }
         logits_[t * 8 + c] = std::log(mean / (1 - mean));
       }
@@ -217,26 +233,28 @@ class Fitter {
     return fixed_.empty() ? 1 / (1 + std::exp(-logits_[texel * 8 + c])) : decoded(fixed_[texel], c);
   }
 
-  // One pass over all texels, two observations each; returns the mean squared error.
+  // One pass over all texels, some observations each; returns the mean squared error.
   double pass(int epoch, float rate, bool move_texels) {
     std::mt19937 random(options_.seed * 9176U + static_cast<unsigned>(epoch));
     std::shuffle(order_.begin(), order_.end(), random);
     double error = 0;
     for (std::size_t begin = 0; begin < order_.size(); begin += batch_texels) {
-      const std::size_t end = std::min(order_.size(), begin + batch_texels), blocks = (end - begin + block_texels - 1) / block_texels;
+      const std::size_t end = std::min(order_.size(), begin + batch_texels),
+                        blocks = (end - begin + block_texels - 1) / block_texels;
       std::vector<std::vector<float>> gradients(blocks, std::vector<float>(net_.values.size()));
       std::vector<double> errors(blocks);
-      const float texel_correction1 = 1 - std::pow(beta1, static_cast<float>(epoch + 1)), texel_correction2 = 1 - std::pow(beta2, static_cast<float>(epoch + 1));
+      const float texel_correction1 = 1 - std::pow(beta1, static_cast<float>(epoch + 1)),
+                  texel_correction2 = 1 - std::pow(beta2, static_cast<float>(epoch + 1));
       tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
         const std::size_t first = begin + b * block_texels, last = std::min(end, first + block_texels);
         std::minstd_rand pick(static_cast<unsigned>(first * 2654435761U) + static_cast<unsigned>(epoch) * 40503U + 1);
-        for (std::size_t group = first; group < last; group += lanes / 2) {
+        for (std::size_t group = first; group < last; group += lanes / seen_a_pass) {
           std::array<Lane, 11> input{}, input_gradient{};
           std::array<Lane, 3> target{};
           std::array<std::size_t, lanes> texel{};
           Lane coverage{};
           for (std::size_t l = 0; l < lanes; ++l) {
-            texel[l] = order_[std::min(group + l / 2, last - 1)];
+            texel[l] = order_[std::min(group + l / seen_a_pass, last - 1)];
             const std::size_t seen = texel[l] * problem_.observations_a_texel + pick() % problem_.observations_a_texel;
             // A fifth is shown as at an edge, where the rule scales features and directions by coverage.
             const auto dice = pick() % 15;
@@ -247,29 +265,34 @@ class Fitter {
               target[c][l] = problem_.colors[seen][c];
             }
           }
-          errors[b] += static_cast<double>(evaluate(net_, input, target, gradients[b].data(), move_texels ? &input_gradient : nullptr));
+          errors[b] += static_cast<double>(
+              evaluate(net_, input, target, gradients[b].data(), move_texels ? &input_gradient : nullptr));
           if (!move_texels) continue;
-          for (std::size_t l = 0; l < lanes; l += 2) {
-            if (group + l / 2 >= last) break;
+          for (std::size_t l = 0; l < lanes; l += seen_a_pass) {
+            if (group + l / seen_a_pass >= last) break;
             for (std::size_t c = 0; c < 8; ++c) {
               const std::size_t i = texel[l] * 8 + c;
               const float value = 1 / (1 + std::exp(-logits_[i]));
-              const float slope = (coverage[l] * input_gradient[c][l] + coverage[l + 1] * input_gradient[c][l + 1]) * value * (1 - value);
-              texel_adam_.step(i, logits_[i], slope, rate * 10, texel_correction1, texel_correction2);
+              float slope = 0;
+              for (std::size_t k = l; k < l + seen_a_pass; ++k)
+                slope += coverage[k] * input_gradient[c][k] * value * (1 - value);
+              texel_adam_.step(i, logits_[i], slope, rate * 5, texel_correction1, texel_correction2);
             }
           }
         }
       });
       ++steps_;
-      const float correction1 = 1 - std::pow(beta1, static_cast<float>(steps_)), correction2 = 1 - std::pow(beta2, static_cast<float>(steps_));
+      const float correction1 = 1 - std::pow(beta1, static_cast<float>(steps_)),
+                  correction2 = 1 - std::pow(beta2, static_cast<float>(steps_));
       for (std::size_t i = 0; i < net_.values.size(); ++i) {
         float gradient = 0;
         for (const auto& block : gradients) gradient += block[i];
-        net_adam_.step(i, net_.values[i], gradient / static_cast<float>((end - begin) * 2), rate, correction1, correction2);
+        net_adam_.step(i, net_.values[i], gradient / static_cast<float>((end - begin) * seen_a_pass), rate, correction1,
+                       correction2);
       }
       for (const double e : errors) error += e;
     }
-    return error / static_cast<double>(order_.size() * 2 * 3);
+    return error / static_cast<double>(order_.size() * seen_a_pass * 3);
   }
 
   double whole_error() const {
@@ -283,9 +306,11 @@ class Fitter {
           for (std::size_t l = 0; l < lanes; ++l) {
             const std::size_t seen = t * problem_.observations_a_texel + k + std::min(l, n - 1);
             for (std::size_t c = 0; c < 8; ++c) input[c][l] = feature(t, c);
-            for (std::size_t c = 0; c < 3; ++c) input[8 + c][l] = problem_.fed_directions[seen][c], target[c][l] = problem_.colors[seen][c];
+            for (std::size_t c = 0; c < 3; ++c)
+              input[8 + c][l] = problem_.fed_directions[seen][c], target[c][l] = problem_.colors[seen][c];
           }
-          errors[b] += static_cast<double>(evaluate(net_, input, target, nullptr, nullptr)) * static_cast<double>(n) / lanes;
+          errors[b] +=
+              static_cast<double>(evaluate(net_, input, target, nullptr, nullptr)) * static_cast<double>(n) / lanes;
         }
     });
     return std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(problem_.colors.size() * 3);
@@ -304,6 +329,8 @@ class Fitter {
 
 }  // namespace
 
-FitResult fit(const FitProblem& problem, const FitOptions& options, const Progress& progress) { return Fitter(problem, options).run(progress); }
+FitResult fit(const FitProblem& problem, const FitOptions& options, const Progress& progress) {
+  return Fitter(problem, options).run(progress);
+}
 
 }  // namespace rebake

@@ -60,8 +60,8 @@ FeatureTexture FeatureTexture::from_rows(int width, int height, AlphaCode code,
           tile = std::make_shared<TexelTile>(*shared_empty_tile(code));
         }
         std::copy(begin, end, tile->texels.begin() + (y % TexelTile::size) * TexelTile::size);
-        tile->opaque_count += static_cast<std::uint32_t>(
-            std::count_if(begin, end, [](const Texel& t) { return t.opaque(); }));
+        tile->opaque_count +=
+            static_cast<std::uint32_t>(std::count_if(begin, end, [](const Texel& t) { return t.opaque(); }));
       }
     }
     for (int column = 0; column < columns; ++column) {

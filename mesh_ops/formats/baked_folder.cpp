@@ -135,7 +135,8 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
             parts.chunks[job.chunk] = read_obj(bytes, folder / job.name);
             parts.geometry[job.chunk] = source_of(job.name, bytes);
           }
-          progress.at("reading " + folder.filename().string(), static_cast<double>(++done) / static_cast<double>(jobs.size()));
+          progress.at("reading " + folder.filename().string(),
+                      static_cast<double>(++done) / static_cast<double>(jobs.size()));
         }
       },
       tbb::simple_partitioner());
@@ -153,8 +154,8 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
     SetParts& parts = sets[i];
     TextureSet set = joined(parts);
     if (set.soup.triangle_count() == 0) throw FileError(folder / parts.geometry.front().name, "has no triangles");
-    origin->sets.push_back({parts.geometry, parts.feat0, parts.feat1, set.soup.shared_positions(), set.soup.shared_uvs(),
-                            set.soup.shared_faces(), set.texels});
+    origin->sets.push_back({parts.geometry, parts.feat0, parts.feat1, set.soup.shared_positions(),
+                            set.soup.shared_uvs(), set.soup.shared_faces(), set.texels});
     object->sets.push_back(std::move(set));
   }
   object->origin = origin;

@@ -26,21 +26,28 @@ double number(const json& value, const std::string& key) {
 }  // namespace
 
 nlohmann::json camera_json(const Camera& camera) {
-  return {{"eye", list(camera.eye)}, {"target", list(camera.target)}, {"up", list(camera.up)},
-          {"fov", camera.fov_degrees}, {"near", camera.near_plane},   {"far", camera.far_plane}};
+  return {{"eye", list(camera.eye)},   {"target", list(camera.target)}, {"up", list(camera.up)},
+          {"fov", camera.fov_degrees}, {"near", camera.near_plane},     {"far", camera.far_plane}};
 }
 
 Camera read_camera_json(const nlohmann::json& value, const Camera& base) {
   if (!value.is_object()) throw FieldError("camera", "must be an object with eye, target, up, fov, near, far");
   Camera camera = base;
   for (const auto& [key, field] : value.items()) {
-    if (key == "eye") camera.eye = vector(field, key);
-    else if (key == "target") camera.target = vector(field, key);
-    else if (key == "up") camera.up = vector(field, key);
-    else if (key == "fov") camera.fov_degrees = number(field, key);
-    else if (key == "near") camera.near_plane = number(field, key);
-    else if (key == "far") camera.far_plane = number(field, key);
-    else throw FieldError(key, "is not a field of a camera (eye, target, up, fov, near, far)");
+    if (key == "eye")
+      camera.eye = vector(field, key);
+    else if (key == "target")
+      camera.target = vector(field, key);
+    else if (key == "up")
+      camera.up = vector(field, key);
+    else if (key == "fov")
+      camera.fov_degrees = number(field, key);
+    else if (key == "near")
+      camera.near_plane = number(field, key);
+    else if (key == "far")
+      camera.far_plane = number(field, key);
+    else
+      throw FieldError(key, "is not a field of a camera (eye, target, up, fov, near, far)");
   }
   check(camera);
   return camera;

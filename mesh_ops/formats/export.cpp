@@ -87,7 +87,9 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
       };
       Group* found = nullptr;
       for (Group& group : groups)
-        if (group.visible == placed.visible && (layout || group.object.layout == object.layout) && *folded_into(group.object.axes) == *group.object.decoder) found = &group;
+        if (group.visible == placed.visible && (layout || group.object.layout == object.layout) &&
+            *folded_into(group.object.axes) == *group.object.decoder)
+          found = &group;
       if (found == nullptr) {
         Group group{placed.node->name, placed.visible, {}};
         group.object.axes = object.axes;
@@ -100,7 +102,8 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
         found->object.origin = nullptr;
       }
       for (TextureSet& set : sets) {
-        const auto same = std::find_if(found->object.sets.begin(), found->object.sets.end(), [&](const TextureSet& s) { return s.texels == set.texels; });
+        const auto same = std::find_if(found->object.sets.begin(), found->object.sets.end(),
+                                       [&](const TextureSet& s) { return s.texels == set.texels; });
         if (same == found->object.sets.end())
           found->object.sets.push_back(std::move(set));
         else
@@ -119,7 +122,8 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
   return nodes;
 }
 
-ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options, const Progress& progress) {
+ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options,
+                          const Progress& progress) {
   const std::vector<Node> nodes = merged_for_export(scene, options.layout);
   if (nodes.empty()) throw EditError("there is nothing to export: the scene has no triangles");
   ExportReport report;
@@ -130,11 +134,16 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     const BakedObject& object = *nodes.front().object;
     if (!scene.background.isOnes(0)) report.notes.emplace_back("the format has no background: viewers show white");
     if (!scene.views.empty()) report.notes.emplace_back("the format has no named views: they are left out");
-    if (object.axes == Axes::forward) report.notes.emplace_back("the format does not say that this is a forward-facing scene: open it with --axes forward");
+    if (object.axes == Axes::forward)
+      report.notes.emplace_back(
+          "the format does not say that this is a forward-facing scene: open it with --axes forward");
     write_baked_folder(out, {}, object, object.layout, report.notes, progress);
   } else {
-    report.notes.push_back(nodes.size() == 1 ? "a hidden object cannot be said in one folder: wrote scene.json"
-                                             : fmt::format("one folder holds one decoder in one orientation: wrote scene.json with {} folders", nodes.size()));
+    report.notes.push_back(
+        nodes.size() == 1
+            ? "a hidden object cannot be said in one folder: wrote scene.json"
+            : fmt::format("one folder holds one decoder in one orientation: wrote scene.json with {} folders",
+                          nodes.size()));
     Scene merged;
     merged.background = scene.background;
     merged.views = scene.views;

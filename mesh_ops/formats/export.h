@@ -15,17 +15,19 @@ struct ExportOptions {
 };
 
 struct ExportReport {
-  bool one_folder = true;            ///< a plain MobileNeRF folder; else scene.json with `folders` folders
+  bool one_folder = true;  ///< a plain MobileNeRF folder; else scene.json with `folders` folders
   std::size_t folders = 1;
-  std::vector<std::string> notes;    ///< what the result cannot hold, was converted or dropped
+  std::vector<std::string> notes;  ///< what the result cannot hold, was converted or dropped
 };
 
-/// The objects of a scene merged as far as the format stays exact: positions in world space, rotations folded into decoder weights. Nodes whose
-/// folded decoders are equal share an object; triangles turned apart from their object go with those of the same turn.
+/// The objects of a scene merged as far as the format stays exact: positions in world space, rotations folded into
+/// decoder weights. Nodes whose folded decoders are equal share an object; triangles turned apart from their object go
+/// with those of the same turn.
 std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout);
 
-/// Writes the scene in the published format: one folder where that is exact, else scene.json with as few folders as stay exact. Replaces the
-/// target whole or not at all. Throws FileError, and EditError for an empty scene.
-ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options, const Progress& progress = {});
+/// Writes the scene in the published format: one folder where that is exact, else scene.json with as few folders as
+/// stay exact. Replaces the target whole or not at all. Throws FileError, and EditError for an empty scene.
+ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options,
+                          const Progress& progress = {});
 
 }  // namespace rebake

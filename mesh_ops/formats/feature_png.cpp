@@ -37,7 +37,8 @@ Pixels decode_png(std::string_view bytes, const std::filesystem::path& name) {
   OIIO::ImageSpec spec;
   if (!input->open(name.string(), spec, config)) throw FileError(name, "cannot be decoded: " + input->geterror());
   if (spec.width < 1 || spec.height < 1 || spec.width > largest_side || spec.height > largest_side)
-    throw FileError(name, fmt::format("declares {}×{} texels; at most {}² can be read", spec.width, spec.height, largest_side));
+    throw FileError(
+        name, fmt::format("declares {}×{} texels; at most {}² can be read", spec.width, spec.height, largest_side));
   if (spec.nchannels != 4)
     throw FileError(name, fmt::format("has {} channels; feature textures have 4 (RGBA)", spec.nchannels));
   if (spec.format != OIIO::TypeDesc::UINT8)
@@ -57,8 +58,9 @@ FeatureTexture read_feature_pngs(std::string_view feat0, const std::filesystem::
   Pixels first, second;
   tbb::parallel_invoke([&] { first = decode_png(feat0, name0); }, [&] { second = decode_png(feat1, name1); });
   if (first.width != second.width || first.height != second.height)
-    throw FileError(name1, fmt::format("is {}×{} texels, but {} is {}×{}; both images of a set must be of one size", second.width,
-                                       second.height, name0.filename().string(), first.width, first.height));
+    throw FileError(
+        name1, fmt::format("is {}×{} texels, but {} is {}×{}; both images of a set must be of one size", second.width,
+                           second.height, name0.filename().string(), first.width, first.height));
   const auto width = static_cast<std::size_t>(first.width);
   return FeatureTexture::from_rows(first.width, first.height, code, [&](int y, Texel* row) {
     const std::uint8_t* a = first.rgba.data() + static_cast<std::size_t>(y) * width * 4;
@@ -82,11 +84,13 @@ std::string write_feature_png(const FeatureTexture& texture, int image) {
   void* proxy = static_cast<OIIO::Filesystem::IOProxy*>(&sink);
   spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   if (!output->open("feature.png", spec)) throw Error("a feature PNG cannot be encoded: " + output->geterror());
-  std::vector<std::uint8_t> rgba(static_cast<std::size_t>(texture.width()) * static_cast<std::size_t>(texture.height()) * 4);
+  std::vector<std::uint8_t> rgba(static_cast<std::size_t>(texture.width()) *
+                                 static_cast<std::size_t>(texture.height()) * 4);
   std::size_t at = 0;
   for (int y = 0; y < texture.height(); ++y)
     for (int x = 0; x < texture.width(); ++x, at += 4)
-      std::copy_n((image == 0 ? texture.at(x, y).feat0 : texture.at(x, y).feat1).begin(), 4, rgba.begin() + static_cast<std::ptrdiff_t>(at));
+      std::copy_n((image == 0 ? texture.at(x, y).feat0 : texture.at(x, y).feat1).begin(), 4,
+                  rgba.begin() + static_cast<std::ptrdiff_t>(at));
   if (!output->write_image(OIIO::TypeDesc::UINT8, rgba.data()) || !output->close())
     throw Error("a feature PNG cannot be encoded: " + output->geterror());
   return {encoded.begin(), encoded.end()};

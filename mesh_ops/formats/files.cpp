@@ -72,7 +72,8 @@ std::string read_file(const fs::path& path) {
 std::uint64_t content_hash(std::string_view bytes) { return OIIO::xxhash::xxhash(bytes.data(), bytes.size(), 0); }
 
 bool is_format_file_name(const std::string& name) {
-  static const std::regex pattern(R"(mlp\.json|scene\.json|turns\.json|shape\d*(_\d+)?\.obj|shape\d*\.pngfeat[01]\.png)");
+  static const std::regex pattern(
+      R"(mlp\.json|scene\.json|turns\.json|shape\d*(_\d+)?\.obj|shape\d*\.pngfeat[01]\.png)");
   return std::regex_match(name, pattern);
 }
 
@@ -87,8 +88,9 @@ AtomicFolder::AtomicFolder(fs::path target) : target_(std::move(target)) {
          it.increment(error)) {
       const bool folder_of_scene = it->is_directory() && it.depth() == 0;
       if (!folder_of_scene && !is_format_file_name(it->path().filename().string()))
-        throw FileError(target_, fmt::format("holds \"{}\", which is not part of a baked scene; choose a new or empty folder",
-                                             fs::relative(it->path(), target_).string()));
+        throw FileError(target_,
+                        fmt::format("holds \"{}\", which is not part of a baked scene; choose a new or empty folder",
+                                    fs::relative(it->path(), target_).string()));
     }
     if (error) throw FileError(target_, "cannot be read: " + error.message());
     if (::access(target_.c_str(), W_OK) != 0) throw FileError(target_, "cannot be written: " + reason());

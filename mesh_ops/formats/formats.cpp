@@ -30,7 +30,8 @@ std::span<const Format> formats() { return table; }
 
 Scene read_any(const fs::path& path, Axes axes, const Progress& progress) {
   // scene.json itself may be named in place of its folder.
-  const fs::path folder = path.filename() == "scene.json" ? (path.has_parent_path() ? path.parent_path() : fs::path(".")) : path;
+  const fs::path folder =
+      path.filename() == "scene.json" ? (path.has_parent_path() ? path.parent_path() : fs::path(".")) : path;
   if (!fs::exists(folder)) throw FileError(folder, "does not exist");
   if (!fs::is_directory(folder)) throw FileError(folder, "is not a folder");
   for (const Format& format : formats())

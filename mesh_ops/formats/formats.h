@@ -17,8 +17,8 @@ struct Format {
 
 std::span<const Format> formats();
 
-/// Reads a folder of any known kind as a scene; a MobileNeRF folder becomes one node with the folder's name. `axes` is for folders that do
-/// not say. Throws FileError.
+/// Reads a folder of any known kind as a scene; a MobileNeRF folder becomes one node with the folder's name. `axes` is
+/// for folders that do not say. Throws FileError.
 Scene read_any(const std::filesystem::path& folder, Axes axes, const Progress& progress = {});
 
 }  // namespace rebake

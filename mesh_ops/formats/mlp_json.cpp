@@ -86,7 +86,8 @@ MlpFile read_mlp_json(std::string_view text, const std::filesystem::path& name) 
   d.bias0 = read_bias(root, "0_bias", name);
   d.bias1 = read_bias(root, "1_bias", name);
   d.bias2 = read_bias(root, "2_bias", name);
-  if (d.bias2.size() != 3) throw FileError(name, fmt::format("\"2_bias\" must have 3 numbers (RGB), not {}", d.bias2.size()));
+  if (d.bias2.size() != 3)
+    throw FileError(name, fmt::format("\"2_bias\" must have 3 numbers (RGB), not {}", d.bias2.size()));
   d.weights0 = read_weights(root, "0_weights", Decoder::inputs, d.bias0.size(), name);
   d.weights1 = read_weights(root, "1_weights", d.bias0.size(), d.bias1.size(), name);
   d.weights2 = read_weights(root, "2_weights", d.bias1.size(), 3, name);

@@ -88,7 +88,8 @@ class Parser {
     while (stop != line_end_ && *stop != ' ' && *stop != '\t' && stop - from < 40) ++stop;
     std::string word(from, stop);
     // Binary files should not garble the terminal.
-    std::replace_if(word.begin(), word.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+    std::replace_if(
+        word.begin(), word.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
     return word;
   }
 
@@ -117,7 +118,8 @@ class Parser {
         ++at_;
         index(unused - 1, "normal");
       }
-      if (at_ != line_end_ && *at_ != ' ' && *at_ != '\t') fail(fmt::format("\"{}\" does not belong in a face", word_at(at_)));
+      if (at_ != line_end_ && *at_ != ' ' && *at_ != '\t')
+        fail(fmt::format("\"{}\" does not belong in a face", word_at(at_)));
       if (corner_count < 3) {
         polygon[corner_count] = corner;
       } else {
@@ -157,8 +159,9 @@ class Parser {
         fail_range();
     ObjMesh mesh;
     mesh.faces.resize(corners_.size() / 3);
-    const bool paired = positions_.size() == uvs_.size() &&
-                        std::all_of(corners_.begin(), corners_.end(), [](const Corner& c) { return c.position == c.uv; });
+    const bool paired =
+        positions_.size() == uvs_.size() &&
+        std::all_of(corners_.begin(), corners_.end(), [](const Corner& c) { return c.position == c.uv; });
     if (paired) {
       mesh.positions = std::move(positions_);
       mesh.uvs = std::move(uvs_);
@@ -246,8 +249,8 @@ std::string write_obj(const std::vector<Vec3>& positions, const std::vector<Vec2
     }
     written = end;
   };
-  // The exporter writes a quad's vertices right before its one or two faces. Faces that keep to that order keep it here, so an untouched quad
-  // is written byte for byte as it was read.
+  // The exporter writes a quad's vertices right before its one or two faces. Faces that keep to that order keep it
+  // here, so an untouched quad is written byte for byte as it was read.
   for (std::size_t f = first_face; f < last_face;) {
     std::uint32_t end = 0;
     std::size_t last = f;

@@ -16,9 +16,9 @@ struct ObjMesh {
   std::vector<Face> faces;
 };
 
-/// Reads the OBJ subset of the format: v, vt, f with texture coordinates. Polygons become fans of triangles, negative indices count
-/// back from the last vertex, and corners that pair a position with several UVs are split. `name` is for messages.
-/// Throws FileError with the line for anything out of range, not finite, or cut short.
+/// Reads the OBJ subset of the format: v, vt, f with texture coordinates. Polygons become fans of triangles, negative
+/// indices count back from the last vertex, and corners that pair a position with several UVs are split. `name` is for
+/// messages. Throws FileError with the line for anything out of range, not finite, or cut short.
 ObjMesh read_obj(std::string_view text, const std::filesystem::path& name);
 
 /// Writes faces [first_face, last_face) with the vertices they use. Values that six decimals hold exactly get

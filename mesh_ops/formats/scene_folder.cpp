@@ -44,7 +44,8 @@ json node_json(const Node& node, const std::map<const BakedObject*, std::string>
 
 class SceneReader {
  public:
-  SceneReader(fs::path folder, const Progress& progress) : folder_(std::move(folder)), name_(folder_ / "scene.json"), progress_(progress) {}
+  SceneReader(fs::path folder, const Progress& progress)
+      : folder_(std::move(folder)), name_(folder_ / "scene.json"), progress_(progress) {}
 
   Scene run() {
     const json root = [&] {
@@ -55,14 +56,18 @@ class SceneReader {
       }
     }();
     try {
-      if (!root.is_object() || !root.contains("rebake_scene")) throw FileError(name_, "is not a Rebake scene (\"rebake_scene\" is missing)");
+      if (!root.is_object() || !root.contains("rebake_scene"))
+        throw FileError(name_, "is not a Rebake scene (\"rebake_scene\" is missing)");
       if (root.at("rebake_scene") != scene_version) throw FileError(name_, "was written by a newer version of Rebake");
       Scene scene;
       if (root.contains("background"))
-        for (std::size_t c = 0; c < 3; ++c) scene.background[static_cast<Eigen::Index>(c)] = std::clamp(root.at("background").at(c).get<double>(), 0.0, 1.0);
+        for (std::size_t c = 0; c < 3; ++c)
+          scene.background[static_cast<Eigen::Index>(c)] =
+              std::clamp(root.at("background").at(c).get<double>(), 0.0, 1.0);
       if (root.contains("views"))
         for (const auto& [view, camera] : root.at("views").items()) scene.views[view] = read_camera_json(camera);
-      for (const json& node : root.at("nodes")) scene = with_added(scene, read_node(node, 0), NodeId::none, scene.roots.size());
+      for (const json& node : root.at("nodes"))
+        scene = with_added(scene, read_node(node, 0), NodeId::none, scene.roots.size());
       return scene;
     } catch (const json::exception& error) {
       throw FileError(name_, std::string("does not hold what a scene needs: ") + error.what());
@@ -80,25 +85,32 @@ class SceneReader {
     node.locked = value.value("locked", false);
     if (value.contains("transform")) {
       const json& rows = value.at("transform");
-      if (!rows.is_array() || rows.size() != 12) throw FileError(name_, fmt::format("node \"{}\": \"transform\" must have 12 numbers (3 rows of 4)", node.name));
-      for (int i = 0; i < 12; ++i) node.to_parent.matrix()(i / 4, i % 4) = rows.at(static_cast<std::size_t>(i)).get<double>();
-      if (!node.to_parent.matrix().allFinite()) throw FileError(name_, fmt::format("node \"{}\": \"transform\" is not finite", node.name));
+      if (!rows.is_array() || rows.size() != 12)
+        throw FileError(name_, fmt::format("node \"{}\": \"transform\" must have 12 numbers (3 rows of 4)", node.name));
+      for (int i = 0; i < 12; ++i)
+        node.to_parent.matrix()(i / 4, i % 4) = rows.at(static_cast<std::size_t>(i)).get<double>();
+      if (!node.to_parent.matrix().allFinite())
+        throw FileError(name_, fmt::format("node \"{}\": \"transform\" is not finite", node.name));
       try {
         orthogonal_factor(node.to_parent.linear());
       } catch (const std::invalid_argument& error) {
         throw FileError(name_, fmt::format("node \"{}\": {}", node.name, error.what()));
       }
     }
-    if (value.contains("folder")) node.object = read_object(value.at("folder").get<std::string>(), value.value("axes", "360"));
+    if (value.contains("folder"))
+      node.object = read_object(value.at("folder").get<std::string>(), value.value("axes", "360"));
     if (value.contains("children"))
-      for (const json& child : value.at("children")) node.children.push_back(std::make_shared<const Node>(read_node(child, depth + 1)));
+      for (const json& child : value.at("children"))
+        node.children.push_back(std::make_shared<const Node>(read_node(child, depth + 1)));
     return node;
   }
 
   std::shared_ptr<const BakedObject> read_object(const std::string& relative, const std::string& axes) {
-    if (axes != "360" && axes != "forward") throw FileError(name_, fmt::format("axes \"{}\" is neither 360 nor forward", axes));
+    if (axes != "360" && axes != "forward")
+      throw FileError(name_, fmt::format("axes \"{}\" is neither 360 nor forward", axes));
     const fs::path path = fs::path(relative).lexically_normal();
-    if (path.is_absolute() || path.empty() || *path.begin() == "..") throw FileError(name_, fmt::format("folder \"{}\" must lie below the scene", relative));
+    if (path.is_absolute() || path.empty() || *path.begin() == "..")
+      throw FileError(name_, fmt::format("folder \"{}\" must lie below the scene", relative));
     auto& known = objects_[relative + '\n' + axes];
     if (known) return known;
     known = read_baked_folder(folder_ / path, axes == "forward" ? Axes::forward : Axes::y_up, progress_);
@@ -121,11 +133,13 @@ class SceneReader {
 
 std::string folder_name(const std::string& name, const std::vector<std::string>& taken) {
   std::string base;
-  for (const char c : name) base += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' ? c : '_';
+  for (const char c : name)
+    base += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' ? c : '_';
   while (!base.empty() && base.front() == '.') base.erase(0, 1);
   if (base.empty() || is_format_file_name(base)) base = "object_" + base;
   std::string result = base;
-  for (int n = 2; std::find(taken.begin(), taken.end(), result) != taken.end(); ++n) result = fmt::format("{}_{}", base, n);
+  for (int n = 2; std::find(taken.begin(), taken.end(), result) != taken.end(); ++n)
+    result = fmt::format("{}_{}", base, n);
   return result;
 }
 
@@ -139,7 +153,9 @@ std::string write_scene_json(const Scene& scene, const std::map<const BakedObjec
   return root.dump(1) + '\n';
 }
 
-Scene read_scene_folder(const fs::path& folder, const Progress& progress) { return SceneReader(folder, progress).run(); }
+Scene read_scene_folder(const fs::path& folder, const Progress& progress) {
+  return SceneReader(folder, progress).run();
+}
 
 std::vector<std::string> save_scene_folder(const Scene& scene, const fs::path& folder, const Progress& progress) {
   std::vector<std::string> notes, taken;

@@ -10,9 +10,10 @@ namespace rebake {
 /// Reads scene.json and the object folders it names. Throws FileError.
 Scene read_scene_folder(const std::filesystem::path& folder, const Progress& progress = {});
 
-/// Writes every node as it is: scene.json, and one MobileNeRF folder for each distinct object. Replaces the folder whole or not at all. Returns
-/// sentences for people. Throws FileError.
-std::vector<std::string> save_scene_folder(const Scene& scene, const std::filesystem::path& folder, const Progress& progress = {});
+/// Writes every node as it is: scene.json, and one MobileNeRF folder for each distinct object. Replaces the folder
+/// whole or not at all. Returns sentences for people. Throws FileError.
+std::vector<std::string> save_scene_folder(const Scene& scene, const std::filesystem::path& folder,
+                                           const Progress& progress = {});
 
 /// The text of scene.json; `folder_of` names each object's folder.
 std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of);

@@ -69,7 +69,8 @@ void read_turns_json(std::string_view text, const std::filesystem::path& name, s
             const json& values = matrices.at(matrices.size() == 3 ? k : 0);
             Mat3& turn = (*turns)[soup.faces()[f][k]];
             for (int i = 0; i < 9; ++i) turn(i / 3, i % 3) = values.at(static_cast<std::size_t>(i)).get<double>();
-            if (!turn.isUnitary(1e-6)) throw FileError(name, fmt::format("set {}: the turn of face {} is not orthogonal", s, f));
+            if (!turn.isUnitary(1e-6))
+              throw FileError(name, fmt::format("set {}: the turn of face {} is not orthogonal", s, f));
           }
       }
       sets[s].soup = Soup(soup.shared_positions(), soup.shared_uvs(), soup.shared_faces(), turns);

@@ -25,8 +25,8 @@ const Origin::Set* source_set(const BakedObject& object, const TextureSet& set, 
   if (!object.origin) return nullptr;
   for (const Origin::Set& source : object.origin->sets) {
     if (source.texels.lock() != set.texels) continue;
-    if (geometry && (source.positions.lock() != set.soup.shared_positions() || source.uvs.lock() != set.soup.shared_uvs() ||
-                     source.faces.lock() != set.soup.shared_faces()))
+    if (geometry && (source.positions.lock() != set.soup.shared_positions() ||
+                     source.uvs.lock() != set.soup.shared_uvs() || source.faces.lock() != set.soup.shared_faces()))
       continue;
     return &source;
   }
@@ -47,7 +47,8 @@ std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFil
 std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, std::vector<std::string>& notes) {
   const AlphaCode code = layout == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved;
   const int largest = largest_texture_side(layout);
-  const bool converts = std::any_of(object.sets.begin(), object.sets.end(), [&](const TextureSet& s) { return s.texels->alpha_code() != code; });
+  const bool converts = std::any_of(object.sets.begin(), object.sets.end(),
+                                    [&](const TextureSet& s) { return s.texels->alpha_code() != code; });
   const bool too_large = std::any_of(object.sets.begin(), object.sets.end(), [&](const TextureSet& s) {
     return s.texels->width() > largest || s.texels->height() > largest;
   });
@@ -76,8 +77,9 @@ std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, std::ve
   if (edited.empty()) return kept;
   PackedSets packed = pack(edited, largest, code);
   if (packed.texel_area < edited_area) {
-    notes.push_back(fmt::format("texels nobody uses were dropped: {:.2f} instead of {:.2f} million texels in the edited sets",
-                                static_cast<double>(packed.texel_area) / 1e6, static_cast<double>(edited_area) / 1e6));
+    notes.push_back(
+        fmt::format("texels nobody uses were dropped: {:.2f} instead of {:.2f} million texels in the edited sets",
+                    static_cast<double>(packed.texel_area) / 1e6, static_cast<double>(edited_area) / 1e6));
     edited = std::move(packed.sets);
   }
   kept.insert(kept.end(), edited.begin(), edited.end());
@@ -104,8 +106,8 @@ std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
 
 int largest_texture_side(Layout layout) { return layout == Layout::unsplit ? 16384 : 4096; }
 
-void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedObject& object, Layout layout, std::vector<std::string>& notes,
-                        const Progress& progress) {
+void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedObject& object, Layout layout,
+                        std::vector<std::string>& notes, const Progress& progress) {
   if (object.triangle_count() == 0) throw Error("an object without triangles cannot be written");
   BakedObject filled = object;
   std::erase_if(filled.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
@@ -125,7 +127,11 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
       const bool in_chunks = same_geometry->geometry.front().name.find('_') != std::string::npos;
       if (copied)
         for (std::size_t j = 0; j < texts.size(); ++j)
-          out.write(folder / geometry_name(in_chunks ? Layout::chunked : layout == Layout::chunked ? Layout::split : layout, i, j), texts[j]);
+          out.write(folder / geometry_name(in_chunks                   ? Layout::chunked
+                                           : layout == Layout::chunked ? Layout::split
+                                                                       : layout,
+                                           i, j),
+                    texts[j]);
     }
     if (!copied) {
       const std::vector<std::string> texts = geometry_texts(set.soup, layout);

@@ -31,7 +31,8 @@ void check(const Camera& camera) {
   if (!camera.eye.allFinite()) throw FieldError("eye", "is not finite");
   if (!camera.target.allFinite()) throw FieldError("target", "is not finite");
   if (!camera.up.allFinite() || camera.up.isZero(0)) throw FieldError("up", "must be a finite, non-zero vector");
-  if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180)) throw FieldError("fov", "must lie between 0 and 180 degrees");
+  if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
+    throw FieldError("fov", "must lie between 0 and 180 degrees");
   if (!(camera.near_plane > 0) || !std::isfinite(camera.near_plane)) throw FieldError("near", "must be greater than 0");
   if (!(camera.far_plane > camera.near_plane) || !std::isfinite(camera.far_plane))
     throw FieldError("far", "must be greater than near");

@@ -132,7 +132,8 @@ Box transformed(const Box& box, const Affine& transform) {
 Box world_bounds(const Scene& scene) {
   Box result;
   for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.visible && placed.node->object) result.extend(transformed(placed.node->object->bounds(), placed.to_world));
+    if (placed.visible && placed.node->object)
+      result.extend(transformed(placed.node->object->bounds(), placed.to_world));
   return result;
 }
 

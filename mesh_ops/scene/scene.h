@@ -26,8 +26,8 @@ struct Node {
   bool visible = true;  ///< hides its children too
   bool locked = false;  ///< edits refuse it and its children
   Affine to_parent = Affine::Identity();
-  std::shared_ptr<const BakedObject> object;      ///< null for groups
-  std::shared_ptr<const TriangleSet> selection;   ///< null when nothing is selected
+  std::shared_ptr<const BakedObject> object;     ///< null for groups
+  std::shared_ptr<const TriangleSet> selection;  ///< null when nothing is selected
   std::vector<NodePtr> children;
 };
 
@@ -61,8 +61,8 @@ NodeId parent_of(const Scene& scene, NodeId id);
 Scene with_changed(const Scene& scene, NodeId id, const std::function<void(Node&)>& change);
 /// The scene without a node and its children.
 Scene without(const Scene& scene, NodeId id);
-/// The scene with `node` added under `parent` (none: at the top) at `index` (past the end: last). Nodes without an id get one, their
-/// children too; names that are taken get a number. `added`, where given, receives the id.
+/// The scene with `node` added under `parent` (none: at the top) at `index` (past the end: last). Nodes without an id
+/// get one, their children too; names that are taken get a number. `added`, where given, receives the id.
 Scene with_added(const Scene& scene, Node node, NodeId parent, std::size_t index, NodeId* added = nullptr);
 
 /// `wanted`, or `wanted.2`, `wanted.3`, … when it is taken.

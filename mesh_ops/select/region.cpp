@@ -28,12 +28,14 @@ struct KeyHash {
 
 Key key_of(const Vec3& p) {
   // −0 and 0 are one place.
-  return {std::bit_cast<std::uint64_t>(p.x() + 0.0), std::bit_cast<std::uint64_t>(p.y() + 0.0), std::bit_cast<std::uint64_t>(p.z() + 0.0)};
+  return {std::bit_cast<std::uint64_t>(p.x() + 0.0), std::bit_cast<std::uint64_t>(p.y() + 0.0),
+          std::bit_cast<std::uint64_t>(p.z() + 0.0)};
 }
 
 }  // namespace
 
-TriangleSet triangles_by_centre(const BakedObject& object, const Affine& transform, const std::function<bool(const Vec3&)>& inside) {
+TriangleSet triangles_by_centre(const BakedObject& object, const Affine& transform,
+                                const std::function<bool(const Vec3&)>& inside) {
   TriangleSet flags(object.triangle_count(), 0);
   std::size_t first = 0;
   for (const TextureSet& set : object.sets) {
@@ -57,7 +59,9 @@ TriangleSet triangles_connected(const BakedObject& object, const Vec3& point) {
   for (const TextureSet& set : object.sets) {
     for (const Face& face : set.soup.faces()) {
       for (const std::uint32_t vertex : face)
-        corner.push_back(welded.try_emplace(key_of(set.soup.positions()[vertex]), static_cast<std::uint32_t>(welded.size())).first->second);
+        corner.push_back(
+            welded.try_emplace(key_of(set.soup.positions()[vertex]), static_cast<std::uint32_t>(welded.size()))
+                .first->second);
       const double distance = (centre(set.soup, face) - point).squaredNorm();
       if (distance < least) {
         least = distance;

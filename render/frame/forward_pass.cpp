@@ -13,7 +13,8 @@ void execute_forward(const PassInput& input) {
   for (const Draw& draw : plan.draws) {
     const NodeFrame& frame = plan.frames[draw.frame];
     const gl::Program& shader =
-        program(input.state, "geometry.vert", "forward.frag", fmt::format("#define TURNED_MESH {}\n", draw.set.soup.turns() != nullptr ? 1 : 0) + decoder);
+        program(input.state, "geometry.vert", "forward.frag",
+                fmt::format("#define TURNED_MESH {}\n", draw.set.soup.turns() != nullptr ? 1 : 0) + decoder);
     glUseProgram(shader.name());
     set_uniform(shader, "camera_to_fed", to_glm(camera_to_fed(plan, frame)));
     set_uniform(shader, "alpha_code", alpha_factors(frame.alpha_code));

@@ -14,7 +14,8 @@ namespace rebake {
 
 namespace {
 
-// Depth 1 at the near plane and 0 at the far one keeps float depth precise at any distance; without clip control depth runs −1 … 1.
+// Depth 1 at the near plane and 0 at the far one keeps float depth precise at any distance; without clip control depth
+// runs −1 … 1.
 bool reversed_depth() {
   static const bool can = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
   return can;
@@ -61,25 +62,30 @@ bool outside(const Eigen::Matrix4d& object_to_clip, const Box& box) {
 
 }  // namespace
 
-const gl::Program& program(PassState& state, const std::string& vertex, const std::string& fragment, const std::string& preamble) {
+const gl::Program& program(PassState& state, const std::string& vertex, const std::string& fragment,
+                           const std::string& preamble) {
   const std::string key = vertex + '\n' + fragment + '\n' + preamble;
   const auto found = state.programs.find(key);
   if (found != state.programs.end()) return found->second;
-  return state.programs.emplace(key, gl::make_program(gl::shader_source(vertex, preamble), gl::shader_source(fragment, preamble)))
+  return state.programs
+      .emplace(key, gl::make_program(gl::shader_source(vertex, preamble), gl::shader_source(fragment, preamble)))
       .first->second;
 }
 
 std::string decoder_preamble(const PassInput& input) {
   const FramePlan& plan = input.plan;
-  if (plan.options.weights == RenderOptions::Weights::constants) return decoder_constants_glsl(plan.decoders, plan.options.precision);
+  if (plan.options.weights == RenderOptions::Weights::constants)
+    return decoder_constants_glsl(plan.decoders, plan.options.precision);
   DecoderTables& tables = input.state.tables;
   if (!tables.weights || tables.decoders != plan.decoders || tables.precision != plan.options.precision) {
     const DecoderBuffers buffers = decoder_buffers(plan.decoders, plan.options.precision);
     tables.decoders = plan.decoders;
     tables.precision = plan.options.precision;
     tables.widest_layer = buffers.widest_layer;
-    tables.weights_buffer = gl::make_buffer(GL_TEXTURE_BUFFER, buffers.weights.data(), buffers.weights.size() * sizeof(float));
-    tables.layout_buffer = gl::make_buffer(GL_TEXTURE_BUFFER, buffers.layout.data(), buffers.layout.size() * sizeof(float));
+    tables.weights_buffer =
+        gl::make_buffer(GL_TEXTURE_BUFFER, buffers.weights.data(), buffers.weights.size() * sizeof(float));
+    tables.layout_buffer =
+        gl::make_buffer(GL_TEXTURE_BUFFER, buffers.layout.data(), buffers.layout.size() * sizeof(float));
     tables.weights = gl::make_buffer_texture(tables.weights_buffer);
     tables.layout = gl::make_buffer_texture(tables.layout_buffer);
   }
@@ -112,18 +118,35 @@ glm::vec2 alpha_factors(AlphaCode code) { return code == AlphaCode::halved ? glm
 void set_ray_uniforms(const gl::Program& program, const View& view, int side) {
   const double half_height = std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180);
   const double half_width = half_height * view.width / view.height;
-  set_uniform(program, "ray_scale", glm::vec2(2 * half_width / (view.width * side), 2 * half_height / (view.height * side)));
+  set_uniform(program, "ray_scale",
+              glm::vec2(2 * half_width / (view.width * side), 2 * half_height / (view.height * side)));
   set_uniform(program, "ray_offset", glm::vec2(-half_width, -half_height));
 }
 
-void set_uniform(const gl::Program& program, const char* name, int value) { glUniform1i(location(program, name), value); }
-void set_uniform(const gl::Program& program, const char* name, float value) { glUniform1f(location(program, name), value); }
-void set_uniform(const gl::Program& program, const char* name, unsigned value) { glUniform1ui(location(program, name), value); }
-void set_uniform(const gl::Program& program, const char* name, const glm::vec2& value) { glUniform2fv(location(program, name), 1, glm::value_ptr(value)); }
-void set_uniform(const gl::Program& program, const char* name, const glm::vec3& value) { glUniform3fv(location(program, name), 1, glm::value_ptr(value)); }
-void set_uniform(const gl::Program& program, const char* name, const glm::ivec2& value) { glUniform2iv(location(program, name), 1, glm::value_ptr(value)); }
-void set_uniform(const gl::Program& program, const char* name, const glm::mat3& value) { glUniformMatrix3fv(location(program, name), 1, GL_FALSE, glm::value_ptr(value)); }
-void set_uniform(const gl::Program& program, const char* name, const glm::mat4& value) { glUniformMatrix4fv(location(program, name), 1, GL_FALSE, glm::value_ptr(value)); }
+void set_uniform(const gl::Program& program, const char* name, int value) {
+  glUniform1i(location(program, name), value);
+}
+void set_uniform(const gl::Program& program, const char* name, float value) {
+  glUniform1f(location(program, name), value);
+}
+void set_uniform(const gl::Program& program, const char* name, unsigned value) {
+  glUniform1ui(location(program, name), value);
+}
+void set_uniform(const gl::Program& program, const char* name, const glm::vec2& value) {
+  glUniform2fv(location(program, name), 1, glm::value_ptr(value));
+}
+void set_uniform(const gl::Program& program, const char* name, const glm::vec3& value) {
+  glUniform3fv(location(program, name), 1, glm::value_ptr(value));
+}
+void set_uniform(const gl::Program& program, const char* name, const glm::ivec2& value) {
+  glUniform2iv(location(program, name), 1, glm::value_ptr(value));
+}
+void set_uniform(const gl::Program& program, const char* name, const glm::mat3& value) {
+  glUniformMatrix3fv(location(program, name), 1, GL_FALSE, glm::value_ptr(value));
+}
+void set_uniform(const gl::Program& program, const char* name, const glm::mat4& value) {
+  glUniformMatrix4fv(location(program, name), 1, GL_FALSE, glm::value_ptr(value));
+}
 
 void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program) {
   const GpuMesh& mesh = input.gpu.mesh(draw.set);
@@ -137,7 +160,8 @@ void draw_set(const PassInput& input, const Draw& draw, const gl::Program& progr
   if (draw.set.soup.turns() != nullptr) {
     const Mat3 axes = axes_matrix(draw.axes);
     set_uniform(program, "object_to_camera", to_glm(Eigen::Matrix4d(to_camera.matrix())));
-    set_uniform(program, "camera_to_object", to_glm(Mat3(axes.transpose() * camera_to_fed(input.plan, input.plan.frames[draw.frame]))));
+    set_uniform(program, "camera_to_object",
+                to_glm(Mat3(axes.transpose() * camera_to_fed(input.plan, input.plan.frames[draw.frame]))));
     set_uniform(program, "object_to_fed", to_glm(axes));
   }
   glActiveTexture(GL_TEXTURE0);
@@ -152,7 +176,9 @@ void draw_set(const PassInput& input, const Draw& draw, const gl::Program& progr
     const auto begin = reinterpret_cast<const void*>(cluster.first_face * sizeof(Face));
     const auto count = static_cast<GLsizei>(cluster.face_count * 3);
     // Neighbours in view are drawn as one range: each separate range costs a call inside the driver.
-    if (!counts.empty() && reinterpret_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()) * 4 == reinterpret_cast<std::size_t>(begin)) {
+    if (!counts.empty() &&
+        reinterpret_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()) * 4 ==
+            reinterpret_cast<std::size_t>(begin)) {
       counts.back() += count;
       continue;
     }
@@ -160,14 +186,15 @@ void draw_set(const PassInput& input, const Draw& draw, const gl::Program& progr
     offsets.push_back(begin);
   }
   if (!counts.empty())
-    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(), static_cast<GLsizei>(counts.size()));
+    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
+                        static_cast<GLsizei>(counts.size()));
 }
 
 void begin_geometry(const FramePlan& plan, int side) {
   glViewport(0, 0, plan.view.width * side, plan.view.height * side);
   glEnable(GL_SCISSOR_TEST);
-  glScissor(plan.covered.left * side, (plan.view.height - plan.covered.bottom) * side, (plan.covered.right - plan.covered.left) * side,
-            (plan.covered.bottom - plan.covered.top) * side);
+  glScissor(plan.covered.left * side, (plan.view.height - plan.covered.bottom) * side,
+            (plan.covered.right - plan.covered.left) * side, (plan.covered.bottom - plan.covered.top) * side);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);

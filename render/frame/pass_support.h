@@ -8,7 +8,8 @@
 namespace rebake {
 
 /// The program made of two shader files behind a preamble; compiled once.
-const gl::Program& program(PassState& state, const std::string& vertex, const std::string& fragment, const std::string& preamble);
+const gl::Program& program(PassState& state, const std::string& vertex, const std::string& fragment,
+                           const std::string& preamble);
 
 /// Text of the decoder function as the plan wants it: generated constants or the buffer version.
 std::string decoder_preamble(const PassInput& input);
@@ -35,7 +36,8 @@ void set_uniform(const gl::Program& program, const char* name, const glm::mat4& 
 /// Sets what geometry.vert needs, binds mesh and texture, and draws the clusters in view.
 void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program);
 
-/// Depth test (less or equal, in reversed depth where the driver can), both sides drawn, restricted to plan.covered at `side` samples.
+/// Depth test (less or equal, in reversed depth where the driver can), both sides drawn, restricted to plan.covered at
+/// `side` samples.
 void begin_geometry(const FramePlan& plan, int side);
 void end_geometry();
 

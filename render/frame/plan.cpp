@@ -27,7 +27,8 @@ std::optional<PixelRect> projected(const Box& box, const View& view) {
   const double nearest = view.camera.near_plane, farthest = view.camera.far_plane;
   if (box.isEmpty() || -box.min().z() < nearest || -box.max().z() > farthest) return std::nullopt;
   const PixelRect whole{0, 0, view.width, view.height};
-  // The box is clipped to depths [nearest, farthest] before it is divided: each edge in x and y projects largest at one of the two depths.
+  // The box is clipped to depths [nearest, farthest] before it is divided: each edge in x and y projects largest at one
+  // of the two depths.
   const double z0 = std::max(nearest, -box.max().z()), z1 = std::min(farthest, -box.min().z());
   double left = 1e300, right = -1e300, bottom = 1e300, top = -1e300;
   for (const double z : {z0, z1}) {
@@ -78,29 +79,47 @@ std::string plural(std::size_t count, const std::string& one, const std::string&
 std::string layer_sizes(const Decoder& d) { return fmt::format("11-{}-{}-3", d.hidden0(), d.hidden1()); }
 
 void plan_passes(FramePlan& plan, std::size_t turned_draws, std::size_t culled, std::size_t hidden) {
-  const auto say = [&](const char* name, bool runs, std::string why) { plan.passes.push_back({name, runs, std::move(why)}); };
+  const auto say = [&](const char* name, bool runs, std::string why) {
+    plan.passes.push_back({name, runs, std::move(why)});
+  };
   const bool any = !plan.draws.empty();
   const bool forward = plan.options.shading == RenderOptions::Shading::forward;
   const int side = plan.view.side();
-  const std::string drawn = fmt::format("{}, {}", plural(plan.draws.size(), "draw", "draws"), plural(plan.triangles, "triangle", "triangles"));
+  const std::string drawn = fmt::format("{}, {}", plural(plan.draws.size(), "draw", "draws"),
+                                        plural(plan.triangles, "triangle", "triangles"));
   const std::string nothing = "nothing is in view";
 
   say("geometry", any && !forward, !any ? nothing : forward ? "forward shading decodes while drawing" : drawn);
   say("supersampling", any && plan.view.samples > 1,
-      !any ? nothing : plan.view.samples == 1 ? "1 sample a pixel is asked for"
-                     : fmt::format("{} samples a pixel: buffers of {}×{}", plan.view.samples, plan.view.width * side, plan.view.height * side));
+      !any                     ? nothing
+      : plan.view.samples == 1 ? "1 sample a pixel is asked for"
+                               : fmt::format("{} samples a pixel: buffers of {}×{}", plan.view.samples,
+                                             plan.view.width * side, plan.view.height * side));
   say("node frames", any && plan.frames.size() > 1,
-      !any ? nothing : plan.frames.size() == 1 ? "one decoder and orientation in view" : fmt::format("{} decoders or orientations in view", plan.frames.size()));
+      !any                      ? nothing
+      : plan.frames.size() == 1 ? "one decoder and orientation in view"
+                                : fmt::format("{} decoders or orientations in view", plan.frames.size()));
   say("turned rays", turned_draws > 0,
-      !any ? nothing : turned_draws == 0 ? "no triangle was turned apart from its object" : plural(turned_draws, "draw has", "draws have") + " turned triangles");
+      !any                ? nothing
+      : turned_draws == 0 ? "no triangle was turned apart from its object"
+                          : plural(turned_draws, "draw has", "draws have") + " turned triangles");
   say("decoder compositing", any && plan.decoders.size() > 1 && !forward,
-      !any ? nothing : plan.decoders.size() == 1 ? "one decoder in view"
-      : forward ? "at 1 sample no pixel is mixed" : fmt::format("{} decoders in view", plan.decoders.size()));
+      !any                        ? nothing
+      : plan.decoders.size() == 1 ? "one decoder in view"
+      : forward                   ? "at 1 sample no pixel is mixed"
+                                  : fmt::format("{} decoders in view", plan.decoders.size()));
   const bool constants = plan.options.weights == RenderOptions::Weights::constants;
-  const std::string how = any ? fmt::format("decoder {}, weights as {}", layer_sizes(*plan.decoders.front()), constants ? "constants" : "a buffer") : nothing;
+  const std::string how = any ? fmt::format("decoder {}, weights as {}", layer_sizes(*plan.decoders.front()),
+                                            constants ? "constants" : "a buffer")
+                              : nothing;
   say("resolve", any && !forward, !any ? nothing : forward ? "forward shading decodes while drawing" : how);
-  say("forward", any && forward, !any ? nothing : forward ? drawn + "; " + how : "deferred shading decodes each pixel once");
-  say("culling", culled > 0, culled > 0 ? plural(culled, "object is", "objects are") + " out of view and cost no draw" : "every visible object is in view");
+  say("forward", any && forward,
+      !any      ? nothing
+      : forward ? drawn + "; " + how
+                : "deferred shading decodes each pixel once");
+  say("culling", culled > 0,
+      culled > 0 ? plural(culled, "object is", "objects are") + " out of view and cost no draw"
+                 : "every visible object is in view");
   if (hidden > 0) say("hidden objects", false, plural(hidden, "is", "are") + " hidden by an edit");
 }
 
@@ -113,7 +132,8 @@ bool FramePlan::runs(const std::string& pass) const {
 FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options) {
   check(view);
   if (options.shading == RenderOptions::Shading::forward && view.samples != 1)
-    throw FieldError("shading", "forward needs 1 sample: with more, the format averages features before it decodes them");
+    throw FieldError("shading",
+                     "forward needs 1 sample: with more, the format averages features before it decodes them");
   FramePlan result;
   result.view = view;
   result.options = options;
@@ -166,7 +186,8 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
 
 std::string describe(const FramePlan& plan) {
   std::string out;
-  for (const PlannedPass& pass : plan.passes) out += fmt::format("{:<9} {:<20} {}\n", pass.runs ? "runs" : "left out", pass.name, pass.why);
+  for (const PlannedPass& pass : plan.passes)
+    out += fmt::format("{:<9} {:<20} {}\n", pass.runs ? "runs" : "left out", pass.name, pass.why);
   return out;
 }
 

@@ -73,7 +73,8 @@ struct FramePlan {
   bool runs(const std::string& pass) const;
 };
 
-/// Pure. Throws FieldError for a view or option that cannot be carried out, EditError for a node whose transform is singular.
+/// Pure. Throws FieldError for a view or option that cannot be carried out, EditError for a node whose transform is
+/// singular.
 FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options = {});
 
 /// One line a pass, e.g. "left out  node frames     one decoder and orientation in view".

@@ -34,11 +34,12 @@ void execute_resolve(const PassInput& input) {
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   glEnable(GL_SCISSOR_TEST);
-  glScissor(plan.covered.left, plan.view.height - plan.covered.bottom, plan.covered.right - plan.covered.left, plan.covered.bottom - plan.covered.top);
+  glScissor(plan.covered.left, plan.view.height - plan.covered.bottom, plan.covered.right - plan.covered.left,
+            plan.covered.bottom - plan.covered.top);
 
   const gl::Program& shader = program(input.state, "fullscreen.vert", "resolve.frag",
-                                      fmt::format("#define SIDE {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n", targets.side,
-                                                  targets.has_frames ? 1 : 0, targets.has_rays ? 1 : 0) +
+                                      fmt::format("#define SIDE {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n",
+                                                  targets.side, targets.has_frames ? 1 : 0, targets.has_rays ? 1 : 0) +
                                           decoder_preamble(input));
   glUseProgram(shader.name());
   bind(0, GL_TEXTURE_2D, targets.features);

@@ -11,7 +11,9 @@ namespace rebake::gl {
 
 namespace {
 
-bool has_extension(const char* list, const char* name) { return list != nullptr && std::string(list).find(name) != std::string::npos; }
+bool has_extension(const char* list, const char* name) {
+  return list != nullptr && std::string(list).find(name) != std::string::npos;
+}
 
 EGLDisplay initialised(EGLDisplay display) {
   return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE ? display : EGL_NO_DISPLAY;
@@ -27,12 +29,14 @@ EGLDisplay open_display() {
     for (EGLint i = 0; i < count; ++i) {
       const char* extensions = eglQueryDeviceStringEXT(devices[static_cast<std::size_t>(i)], EGL_EXTENSIONS);
       if (has_extension(extensions, "EGL_MESA_device_software")) continue;
-      const EGLDisplay display = initialised(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr));
+      const EGLDisplay display =
+          initialised(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr));
       if (display != EGL_NO_DISPLAY) return display;
     }
   }
   if (has_extension(client, "EGL_MESA_platform_surfaceless")) {
-    const EGLDisplay display = initialised(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+    const EGLDisplay display =
+        initialised(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
     if (display != EGL_NO_DISPLAY) return display;
   }
   return EGL_NO_DISPLAY;
@@ -42,11 +46,18 @@ class HeadlessContext final : public Context {
  public:
   HeadlessContext() : display_(open_display()) {
     if (display_ == EGL_NO_DISPLAY)
-      throw DeviceError("no OpenGL without a display here: EGL offers neither a device nor Mesa's surfaceless platform (install libgl1-mesa-dri and libegl-mesa0)");
+      throw DeviceError(
+          "no OpenGL without a display here: EGL offers neither a device nor Mesa's surfaceless platform (install "
+          "libgl1-mesa-dri and libegl-mesa0)");
     eglBindAPI(EGL_OPENGL_API);
     for (const auto& [major, minor] : {std::pair{4, 5}, std::pair{3, 3}}) {
-      const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION, minor,
-                                   EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+      const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                   major,
+                                   EGL_CONTEXT_MINOR_VERSION,
+                                   minor,
+                                   EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                   EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                   EGL_NONE};
       context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
       if (context_ != EGL_NO_CONTEXT) break;
     }

@@ -45,7 +45,8 @@ class Shader {
 
 void check_memory(const char* what) {
   if (glGetError() == GL_OUT_OF_MEMORY)
-    throw DeviceError(fmt::format("the GPU's memory does not hold the {}; use fewer samples or a smaller picture", what));
+    throw DeviceError(
+        fmt::format("the GPU's memory does not hold the {}; use fewer samples or a smaller picture", what));
 }
 
 }  // namespace
@@ -79,19 +80,29 @@ Texture make_texture(unsigned internal_format, int width, int height, int bytes_
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   if (width > largest || height > largest)
-    throw DeviceError(fmt::format("this driver holds textures up to {0}×{0} texels; {1}×{2} are needed (smaller picture, fewer samples, or "
-                                  "export with --layout split)",
-                                  largest, width, height));
+    throw DeviceError(fmt::format(
+        "this driver holds textures up to {0}×{0} texels; {1}×{2} are needed (smaller picture, fewer samples, or "
+        "export with --layout split)",
+        largest, width, height));
   unsigned name = 0;
   glGenTextures(1, &name);
   glBindTexture(GL_TEXTURE_2D, name);
   GLenum format = GL_RGBA, type = GL_UNSIGNED_BYTE;
   switch (internal_format) {
-    case GL_RG32UI: format = GL_RG_INTEGER, type = GL_UNSIGNED_INT; break;
-    case GL_R16UI: format = GL_RED_INTEGER, type = GL_UNSIGNED_SHORT; break;
-    case GL_RGBA32F: format = GL_RGBA, type = GL_FLOAT; break;
-    case GL_DEPTH_COMPONENT32F: format = GL_DEPTH_COMPONENT, type = GL_FLOAT; break;
-    default: break;
+    case GL_RG32UI:
+      format = GL_RG_INTEGER, type = GL_UNSIGNED_INT;
+      break;
+    case GL_R16UI:
+      format = GL_RED_INTEGER, type = GL_UNSIGNED_SHORT;
+      break;
+    case GL_RGBA32F:
+      format = GL_RGBA, type = GL_FLOAT;
+      break;
+    case GL_DEPTH_COMPONENT32F:
+      format = GL_DEPTH_COMPONENT, type = GL_FLOAT;
+      break;
+    default:
+      break;
   }
   glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal_format), width, height, 0, format, type, nullptr);
   for (const GLenum parameter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
@@ -99,7 +110,8 @@ Texture make_texture(unsigned internal_format, int width, int height, int bytes_
   for (const GLenum parameter : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     glTexParameteri(GL_TEXTURE_2D, parameter, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-  const std::uint64_t bytes = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * static_cast<std::uint64_t>(bytes_a_texel);
+  const std::uint64_t bytes = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
+                              static_cast<std::uint64_t>(bytes_a_texel);
   take(bytes);
   Texture texture(name, bytes);
   check_memory("picture or its textures");

@@ -20,7 +20,9 @@ fs::path shader_folder() {
     if (fs::is_directory(installed, error)) return installed;
   }
   if (fs::is_directory(REBAKE_SOURCE_SHADERS, error)) return REBAKE_SOURCE_SHADERS;
-  throw DeviceError("the shaders are not found: install the program with cmake --install, or keep the source tree where it was built");
+  throw DeviceError(
+      "the shaders are not found: install the program with cmake --install, or keep the source tree where it was "
+      "built");
 }
 
 std::string resolved(const fs::path& folder, const std::string& name) {

@@ -37,7 +37,8 @@ GpuMesh upload(const TextureSet& set) {
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
   glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offsetof(Vertex, texel)));
+  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                        reinterpret_cast<const void*>(offsetof(Vertex, texel)));
   if (soup.turns() != nullptr) {
     std::vector<float> turns;
     turns.reserve(soup.turns()->size() * 9);
@@ -46,7 +47,8 @@ GpuMesh upload(const TextureSet& set) {
     mesh.turns = gl::make_buffer(GL_ARRAY_BUFFER, turns.data(), turns.size() * sizeof(float));
     for (GLuint column = 0; column < 3; ++column) {
       glEnableVertexAttribArray(2 + column);
-      glVertexAttribPointer(2 + column, 3, GL_FLOAT, GL_FALSE, 9 * sizeof(float), reinterpret_cast<const void*>(column * 3 * sizeof(float)));
+      glVertexAttribPointer(2 + column, 3, GL_FLOAT, GL_FALSE, 9 * sizeof(float),
+                            reinterpret_cast<const void*>(column * 3 * sizeof(float)));
     }
   }
   mesh.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, soup.faces().data(), soup.faces().size() * sizeof(Face));

@@ -32,7 +32,8 @@ struct ResourceDiff {
   std::vector<TextureKey> released_textures;
 };
 
-/// Pure: compares what is held with what a scene can draw (hidden nodes included, so that showing them again is instant).
+/// Pure: compares what is held with what a scene can draw (hidden nodes included, so that showing them again is
+/// instant).
 ResourceDiff diff(const std::set<MeshKey>& held_meshes, const std::set<TextureKey>& held_textures, const Scene& scene);
 
 }  // namespace rebake

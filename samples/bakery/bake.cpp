@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
-#include <random>
 
 #include "mesh_ops/features/fit.h"
 
@@ -23,7 +22,8 @@ double six_decimals(double value) { return std::round(value * 1e6) / 1e6; }
 
 }  // namespace
 
-std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField& field, const BakeOptions& options, const Progress& progress) {
+std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField& field, const BakeOptions& options,
+                                        const Progress& progress) {
   struct Quad {
     std::size_t patch;
     int column, row;
@@ -57,9 +57,11 @@ std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField&
     const auto first = static_cast<std::uint32_t>(positions.size());
     for (int corner = 0; corner < 4; ++corner) {
       const int i = corner % 2, j = corner / 2;
-      const Vec3 p = patch.point((quad.column + i) / static_cast<double>(patch.columns), (quad.row + j) / static_cast<double>(patch.rows));
+      const Vec3 p = patch.point((quad.column + i) / static_cast<double>(patch.columns),
+                                 (quad.row + j) / static_cast<double>(patch.rows));
       positions.emplace_back(six_decimals(p.x()), six_decimals(p.y()), six_decimals(p.z()));
-      uvs.emplace_back(six_decimals((left + 0.5 + i * (cell - 1)) / width), six_decimals(1 - (top + 0.5 + j * (cell - 1)) / height));
+      uvs.emplace_back(six_decimals((left + 0.5 + i * (cell - 1)) / width),
+                       six_decimals(1 - (top + 0.5 + j * (cell - 1)) / height));
     }
     faces.push_back({first, first + 1, first + 3});
     faces.push_back({first, first + 3, first + 2});
@@ -71,23 +73,41 @@ std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField&
   }
 
   const auto observations = static_cast<std::size_t>(options.observations);
-  FitProblem problem{sites.size(), observations, {}, {}};
+  FitProblem problem{sites.size(), observations, {}, {}, {}};
+  problem.hints.resize(sites.size());
   problem.fed_directions.resize(sites.size() * observations);
   problem.colors.resize(sites.size() * observations);
   const Mat3 axes = axes_matrix(model.axes);
+  std::vector<Vec3> eyes;
+  for (std::size_t k = 0; k < observations * 2; ++k)
+    eyes.push_back(model
+                       .camera((static_cast<double>(k) + 0.5) / static_cast<double>(observations * 2),
+                               std::fmod(static_cast<double>(k) * 0.6180339887498949, 1.0))
+                       .eye);
+  // Eyes in the order of another low-discrepancy sequence, so that the first ones seen already lie all around.
+  std::vector<Vec3> shuffled;
+  for (std::size_t k = 0; k < eyes.size(); ++k) shuffled.push_back(eyes[k * 29 % eyes.size()]);
+  eyes = shuffled;
   tbb::parallel_for(std::size_t{0}, sites.size(), [&](std::size_t t) {
     const TexelSite& site = sites[t];
     const Vec3 point = model.patches[site.patch].point(site.u, site.v);
-    std::minstd_rand random(static_cast<unsigned>(t * 2654435761U) | 1U);
-    std::uniform_real_distribution<double> uniform;
+    // The direction that sees the sun mirrored: a highlight is where the fed direction is near to it, which few neurons
+    // can tell.
+    const Vec3 normal = field.normal(site.patch, site.u, site.v), sun = model.sun.normalized();
+    const Vec3 mirrored = axes * (sun - 2 * normal.dot(sun) * normal);
+    for (std::size_t c = 0; c < 3; ++c)
+      problem.hints[t][c] = static_cast<float>(0.5 + 0.5 * mirrored[static_cast<Eigen::Index>(c)]);
+    for (std::size_t c = 0; c < 2; ++c)
+      problem.hints[t][3 + c] = static_cast<float>(field.openness(site.patch, site.u, site.v)[c]);
+    // All texels are seen by the same eyes: what is then off is off alike in neighbours, and does not show as grain.
+    std::vector<Vec3> directions;
+    for (const Vec3& eye : eyes)
+      if (directions.size() < observations && field.visible(eye, site.patch, site.u, site.v))
+        directions.push_back((point - eye).normalized());
+    if (directions.empty())
+      for (const Vec3& eye : eyes) directions.push_back((point - eye).normalized());
     for (std::size_t k = 0; k < observations; ++k) {
-      // Prefer eyes that see the texel; one that none sees keeps the last.
-      Vec3 direction;
-      for (int attempt = 0; attempt < 6; ++attempt) {
-        const Camera camera = model.camera(uniform(random), uniform(random));
-        direction = (point - camera.eye).normalized();
-        if (field.visible(camera.eye, site.patch, site.u, site.v)) break;
-      }
+      const Vec3& direction = directions[k % directions.size()];
       const Color color = field.color(site.patch, site.u, site.v, direction);
       const Vec3 fed = axes * direction;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -98,9 +118,11 @@ std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField&
   });
   const FitResult fitted = fit(problem, {.epochs = options.epochs}, progress);
 
-  std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), empty_texel(AlphaCode::halved));
+  std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                            empty_texel(AlphaCode::halved));
   for (std::size_t t = 0; t < sites.size(); ++t) {
-    Texel& texel = texels[static_cast<std::size_t>(sites[t].y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(sites[t].x)];
+    Texel& texel = texels[static_cast<std::size_t>(sites[t].y) * static_cast<std::size_t>(width) +
+                          static_cast<std::size_t>(sites[t].x)];
     for (std::size_t c = 0; c < 4; ++c) {
       texel.feat0[c] = fitted.features[t][c];
       texel.feat1[c] = fitted.features[t][c + 4];
@@ -108,9 +130,10 @@ std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField&
   }
   auto object = std::make_shared<BakedObject>();
   object->sets.push_back({Soup(std::move(positions), std::move(uvs), std::move(faces)),
-                          std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(width, height, AlphaCode::halved, [&](int y, Texel* row) {
-                            std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(y) * width, width, row);
-                          }))});
+                          std::make_shared<const FeatureTexture>(
+                              FeatureTexture::from_rows(width, height, AlphaCode::halved, [&](int y, Texel* row) {
+                                std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(y) * width, width, row);
+                              }))});
   object->decoder = std::make_shared<const Decoder>(fitted.decoder);
   object->axes = model.axes;
   object->layout = model.layout;

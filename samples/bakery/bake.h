@@ -6,11 +6,12 @@
 namespace rebake::bakery {
 
 struct BakeOptions {
-  int epochs = 60;
-  int observations = 24;  ///< directions a texel is seen from
+  int epochs = 40;
+  int observations = 32;  ///< directions a texel is seen from, out of twice as many eyes
 };
 
 /// Quads of 17×17 texels over the model's patches, with features and decoder fitted to the field.
-std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField& field, const BakeOptions& options, const Progress& progress);
+std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField& field, const BakeOptions& options,
+                                        const Progress& progress);
 
 }  // namespace rebake::bakery

@@ -14,7 +14,7 @@ using std::numbers::pi;
 
 namespace {
 
-constexpr int finer = 4;      // tessellation of each quad's side
+constexpr int finer = 4;  // tessellation of each quad's side
 constexpr int sky_rays = 192;
 constexpr int sun_rays = 48;
 constexpr double sun_radius = 0.09;  // radians; soft shadows
@@ -50,12 +50,14 @@ struct Grid {
   const Patch* patch;
 
   Vec3 normal(double u, double v) const {
-    const double h = 1e-4, u0 = std::max(0.0, u - h), u1 = std::min(1.0, u + h), v0 = std::max(0.0, v - h), v1 = std::min(1.0, v + h);
+    const double h = 1e-4, u0 = std::max(0.0, u - h), u1 = std::min(1.0, u + h), v0 = std::max(0.0, v - h),
+                 v1 = std::min(1.0, v + h);
     Vec3 n = (patch->point(u1, v) - patch->point(u0, v)).cross(patch->point(u, v1) - patch->point(u, v0));
     if (n.norm() < 1e-14) {
       // At a pole one derivative vanishes: look a little aside.
       const double w = v < 0.5 ? v + 1e-2 : v - 1e-2;
-      n = (patch->point(u1, w) - patch->point(u0, w)).cross(patch->point(u, std::min(1.0, w + h)) - patch->point(u, std::max(0.0, w - h)));
+      n = (patch->point(u1, w) - patch->point(u0, w))
+              .cross(patch->point(u, std::min(1.0, w + h)) - patch->point(u, std::max(0.0, w - h)));
     }
     return n.stableNormalized();
   }
@@ -107,8 +109,11 @@ class RadianceField::Impl {
     }
     for (const Grid& grid : grids_) {
       RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-      auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, grid.light.size()));
-      auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, static_cast<std::size_t>(grid.columns * grid.rows * 2)));
+      auto* vertices = static_cast<float*>(
+          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, grid.light.size()));
+      auto* indices =
+          static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
+                                                         static_cast<std::size_t>(grid.columns * grid.rows * 2)));
       for (int j = 0; j <= grid.rows; ++j)
         for (int i = 0; i <= grid.columns; ++i) {
           const Vec3 p = grid.patch->point(static_cast<double>(i) / grid.columns, static_cast<double>(j) / grid.rows);
@@ -170,12 +175,16 @@ class RadianceField::Impl {
     return {encode(out.x()), encode(out.y()), encode(out.z())};
   }
 
+  const Grid& grid(std::size_t k) const { return grids_[k]; }
+
   bool occluded(const Vec3& from, const Vec3& direction, double distance) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray{};
-    ray.org_x = static_cast<float>(from.x()), ray.org_y = static_cast<float>(from.y()), ray.org_z = static_cast<float>(from.z());
-    ray.dir_x = static_cast<float>(direction.x()), ray.dir_y = static_cast<float>(direction.y()), ray.dir_z = static_cast<float>(direction.z());
+    ray.org_x = static_cast<float>(from.x()), ray.org_y = static_cast<float>(from.y()),
+    ray.org_z = static_cast<float>(from.z());
+    ray.dir_x = static_cast<float>(direction.x()), ray.dir_y = static_cast<float>(direction.y()),
+    ray.dir_z = static_cast<float>(direction.z());
     ray.tfar = static_cast<float>(distance);
     ray.mask = ~0U;
     rtcOccluded1(scene_, &context, &ray);
@@ -190,20 +199,24 @@ class RadianceField::Impl {
 
   Image trace(const Camera& camera, int width, int height) const {
     constexpr int side = 8;
-    Image image{width, height, std::vector<std::uint8_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3)};
+    Image image{width, height,
+                std::vector<std::uint8_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3)};
     const Mat3 to_world = world_to_camera(camera).transpose();
     const double tan_half = std::tan(camera.fov_degrees / 2 * pi / 180);
     tbb::parallel_for(0, height, [&](int y) {
       for (int x = 0; x < width; ++x) {
         Vec3 sum = Vec3::Zero();
         for (int s = 0; s < side * side; ++s) {
-          const double sx = (x + (s % side + 0.5) / side) / width * 2 - 1, sy = 1 - (y + (s / side + 0.5) / side) / height * 2;
+          const double sx = (x + (s % side + 0.5) / side) / width * 2 - 1,
+                       sy = 1 - (y + (s / side + 0.5) / side) / height * 2;
           const Vec3 d = (to_world * Vec3(sx * tan_half * width / height, sy * tan_half, -1)).normalized();
           RTCIntersectContext context;
           rtcInitIntersectContext(&context);
           RTCRayHit query{};
-          query.ray.org_x = static_cast<float>(camera.eye.x()), query.ray.org_y = static_cast<float>(camera.eye.y()), query.ray.org_z = static_cast<float>(camera.eye.z());
-          query.ray.dir_x = static_cast<float>(d.x()), query.ray.dir_y = static_cast<float>(d.y()), query.ray.dir_z = static_cast<float>(d.z());
+          query.ray.org_x = static_cast<float>(camera.eye.x()), query.ray.org_y = static_cast<float>(camera.eye.y()),
+          query.ray.org_z = static_cast<float>(camera.eye.z());
+          query.ray.dir_x = static_cast<float>(d.x()), query.ray.dir_y = static_cast<float>(d.y()),
+          query.ray.dir_z = static_cast<float>(d.z());
           query.ray.tfar = std::numeric_limits<float>::infinity();
           query.ray.mask = ~0U;
           query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -212,11 +225,13 @@ class RadianceField::Impl {
             sum += Vec3::Ones();
             continue;
           }
-          const PatchUv at = uv_of(grids_[query.hit.geomID], query.hit.primID, static_cast<double>(query.hit.u), static_cast<double>(query.hit.v));
+          const PatchUv at = uv_of(grids_[query.hit.geomID], query.hit.primID, static_cast<double>(query.hit.u),
+                                   static_cast<double>(query.hit.v));
           sum += color(query.hit.geomID, std::clamp(at.u, 0.0, 1.0), std::clamp(at.v, 0.0, 1.0), d);
         }
         for (int c = 0; c < 3; ++c)
-          image.rgb[static_cast<std::size_t>((y * width + x) * 3 + c)] = static_cast<std::uint8_t>(std::lround(sum[c] / (side * side) * 255));
+          image.rgb[static_cast<std::size_t>((y * width + x) * 3 + c)] =
+              static_cast<std::uint8_t>(std::lround(sum[c] / (side * side) * 255));
       }
     });
     return image;
@@ -240,8 +255,10 @@ class RadianceField::Impl {
     if (n.dot(sun) > 0) {
       const Mat3 sun_frame = basis(sun);
       for (int k = 0; k < sun_rays; ++k) {
-        const double r = sun_radius * std::sqrt((k + 0.5) / sun_rays), phi = 2 * pi * std::fmod(k * 0.6180339887498949, 1.0);
-        if (!occluded(from, (sun_frame * Vec3(r * std::cos(phi), r * std::sin(phi), 1)).normalized(), 12)) light.sun += 1.0 / sun_rays;
+        const double r = sun_radius * std::sqrt((k + 0.5) / sun_rays),
+                     phi = 2 * pi * std::fmod(k * 0.6180339887498949, 1.0);
+        if (!occluded(from, (sun_frame * Vec3(r * std::cos(phi), r * std::sin(phi), 1)).normalized(), 12))
+          light.sun += 1.0 / sun_rays;
       }
       light.irradiance += light.sun * n.dot(sun) * Vec3(1.15, 1.05, 0.9);
     }
@@ -257,8 +274,19 @@ class RadianceField::Impl {
 
 RadianceField::RadianceField(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
 RadianceField::~RadianceField() = default;
-Color RadianceField::color(std::size_t patch, double u, double v, const Vec3& direction) const { return impl_->color(patch, u, v, direction); }
-bool RadianceField::visible(const Vec3& eye, std::size_t patch, double u, double v) const { return impl_->visible(eye, patch, u, v); }
-Image RadianceField::trace(const Camera& camera, int width, int height) const { return impl_->trace(camera, width, height); }
+Color RadianceField::color(std::size_t patch, double u, double v, const Vec3& direction) const {
+  return impl_->color(patch, u, v, direction);
+}
+Vec3 RadianceField::normal(std::size_t patch, double u, double v) const { return impl_->grid(patch).normal(u, v); }
+std::array<double, 2> RadianceField::openness(std::size_t patch, double u, double v) const {
+  const Light light = impl_->grid(patch).at(u, v);
+  return {light.open, light.sun};
+}
+bool RadianceField::visible(const Vec3& eye, std::size_t patch, double u, double v) const {
+  return impl_->visible(eye, patch, u, v);
+}
+Image RadianceField::trace(const Camera& camera, int width, int height) const {
+  return impl_->trace(camera, width, height);
+}
 
 }  // namespace rebake::bakery

@@ -10,9 +10,9 @@
 
 namespace rebake::bakery {
 
-/// The model's radiance: direct light of a soft sun, sky with occlusion, one bounce and glossy highlights. Surfaces are traced as fine tessellations of the
-/// procedural patches (several times finer than the quads baked from them); shadow and occlusion are traced once at their vertices, so that the field is free
-/// of noise, and highlights are closed-form.
+/// The model's radiance: direct light of a soft sun, sky with occlusion, one bounce and glossy highlights. Surfaces are
+/// traced as fine tessellations of the procedural patches (several times finer than the quads baked from them); shadow
+/// and occlusion are traced once at their vertices, so that the field is free of noise, and highlights are closed-form.
 class RadianceField {
  public:
   explicit RadianceField(const Model& model);
@@ -22,6 +22,10 @@ class RadianceField {
 
   /// Display colour of a patch's point seen along `direction` (from the eye, unit length).
   Color color(std::size_t patch, double u, double v, const Vec3& direction) const;
+  /// Unit normal, outwards.
+  Vec3 normal(std::size_t patch, double u, double v) const;
+  /// Share of sky and sun that reach the point.
+  std::array<double, 2> openness(std::size_t patch, double u, double v) const;
   /// False when something opaque lies between the eye and the point.
   bool visible(const Vec3& eye, std::size_t patch, double u, double v) const;
   /// A picture with 64 rays a pixel, composited over white in display colours as the format's rule does.

@@ -17,10 +17,14 @@ using namespace rebake::bakery;
 
 constexpr int held_out_views = 20;
 
-double seconds_since(std::chrono::steady_clock::time_point start) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
-// Bakes one model, writes it, reads nothing back: the picture is of what was written. Returns the mean PSNR of the held-out views.
-double make(const Model& model, const std::filesystem::path& out, const BakeOptions& options, const std::filesystem::path& pictures) {
+// Bakes one model, writes it, reads nothing back: the picture is of what was written. Returns the mean PSNR of the
+// held-out views.
+double make(const Model& model, const std::filesystem::path& out, const BakeOptions& options,
+            const std::filesystem::path& pictures) {
   const auto start = std::chrono::steady_clock::now();
   const RadianceField field(model);
   const auto object = bake(model, field, options, {});
@@ -47,8 +51,9 @@ double make(const Model& model, const std::filesystem::path& out, const BakeOpti
       write_png(drawn, pictures / fmt::format("{}-{}-baked.png", model.name, k));
     }
   }
-  fmt::print("{:<10} {:>7} triangles {:>8} texels  baked in {:5.1f} s  held-out views: mean {:.2f} dB, least {:.2f} dB\n", model.name, object->triangle_count(),
-             object->opaque_texel_count(), bake_seconds, sum / held_out_views, least);
+  fmt::print(
+      "{:<10} {:>7} triangles {:>8} texels  baked in {:5.1f} s  held-out views: mean {:.2f} dB, least {:.2f} dB\n",
+      model.name, object->triangle_count(), object->opaque_texel_count(), bake_seconds, sum / held_out_views, least);
   std::fflush(stdout);
   return sum / held_out_views;
 }
@@ -56,12 +61,14 @@ double make(const Model& model, const std::filesystem::path& out, const BakeOpti
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"Bakes the sample scenes and compares 20 held-out views of each with the traced truth.", "rebake_bakery"};
+  CLI::App program{"Bakes the sample scenes and compares 20 held-out views of each with the traced truth.",
+                   "rebake_bakery"};
   std::string out, pictures;
   std::vector<std::string> names;
   BakeOptions options;
   program.add_option("-o,--out", out, "folder for the baked scenes")->required();
-  program.add_option("names", names, "ficus, kettle, courtyard, shelf; none: all")->check(CLI::IsMember({"ficus", "kettle", "courtyard", "shelf"}));
+  program.add_option("names", names, "ficus, kettle, courtyard, shelf; none: all")
+      ->check(CLI::IsMember({"ficus", "kettle", "courtyard", "shelf"}));
   program.add_option("--epochs", options.epochs, "passes of the fit")->capture_default_str();
   program.add_option("--pictures", pictures, "also write some held-out views there, baked and true");
   CLI11_PARSE(program, argc, argv);

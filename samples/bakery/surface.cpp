@@ -32,7 +32,8 @@ std::function<Vec3(double, double)> plane(const Vec3& corner, const Vec3& along_
 
 double noise(const Vec3& p) {
   const auto hash = [](int x, int y, int z) {
-    std::uint32_t h = static_cast<std::uint32_t>(x) * 374761393U + static_cast<std::uint32_t>(y) * 668265263U + static_cast<std::uint32_t>(z) * 2147483647U;
+    std::uint32_t h = static_cast<std::uint32_t>(x) * 374761393U + static_cast<std::uint32_t>(y) * 668265263U +
+                      static_cast<std::uint32_t>(z) * 2147483647U;
     h = (h ^ (h >> 13)) * 1274126177U;
     return static_cast<double>((h ^ (h >> 16)) & 0xffffffU) / 0xffffff;
   };
@@ -41,7 +42,8 @@ double noise(const Vec3& p) {
   const int x = static_cast<int>(cell.x()), y = static_cast<int>(cell.y()), z = static_cast<int>(cell.z());
   double sum = 0;
   for (int k = 0; k < 8; ++k)
-    sum += hash(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)) * (k & 1 ? s.x() : 1 - s.x()) * (k >> 1 & 1 ? s.y() : 1 - s.y()) * (k >> 2 ? s.z() : 1 - s.z());
+    sum += hash(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)) * (k & 1 ? s.x() : 1 - s.x()) *
+           (k >> 1 & 1 ? s.y() : 1 - s.y()) * (k >> 2 ? s.z() : 1 - s.z());
   return sum;
 }
 
@@ -50,7 +52,8 @@ std::function<Camera(double, double)> around(const Vec3& target, double distance
     const double elevation = (lowest + (highest - lowest) * t) * pi / 180, azimuth = 2 * pi * s;
     Camera camera;
     camera.target = target;
-    camera.eye = target + distance * Vec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth));
+    camera.eye = target + distance * Vec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                                          std::cos(elevation) * std::cos(azimuth));
     camera.near_plane = distance * 0.2;
     camera.far_plane = distance * 3;
     return camera;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/scene/object.h"
 #include "mesh_ops/scene/camera.h"
+#include "mesh_ops/scene/object.h"
 
 namespace rebake::bakery {
 
@@ -13,7 +13,7 @@ namespace rebake::bakery {
 struct Patch {
   std::string name;
   std::function<Vec3(double u, double v)> point;
-  int columns = 1, rows = 1;  ///< quads that it is baked into
+  int columns = 1, rows = 1;                                          ///< quads that it is baked into
   std::function<Vec3(double u, double v, const Vec3& point)> albedo;  ///< linear
   std::function<bool(double u, double v)> opaque = [](double, double) { return true; };
   double reflectance = 0;  ///< at normal incidence; 0: matte
@@ -27,9 +27,9 @@ struct Model {
   std::vector<Patch> patches;
   Axes axes = Axes::y_up;
   Layout layout = Layout::split;
-  Vec3 sun{0.5, 0.8, 0.45};            ///< direction towards the light, any length
+  Vec3 sun{0.5, 0.8, 0.45};                          ///< direction towards the light, any length
   std::function<Camera(double s, double t)> camera;  ///< training and held-out cameras, s and t in [0, 1)
-  int picture = 400;                   ///< pixels a side of the held-out views
+  int picture = 400;                                 ///< pixels a side of the held-out views
 };
 
 /// A surface of revolution about the y axis: `profile(v)` is (radius, height) from bottom to top.

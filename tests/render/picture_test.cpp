@@ -71,7 +71,8 @@ INSTANTIATE_TEST_SUITE_P(Picture, PictureBySamples, ::testing::Values(1, 4, 16))
 TEST_P(PictureBySamples, OneObject) { expect_as_cast(scene_of(made_object()), view_from({0.5, 1.5, 3}, GetParam())); }
 
 TEST_P(PictureBySamples, TwoDecodersMixedAtPixels) {
-  expect_as_cast(together({placed(made_object({.seed = 1}), moved(-0.4, 0, 0)), placed(made_object({.seed = 2}), moved(0.5, 0.2, 0.3))}),
+  expect_as_cast(together({placed(made_object({.seed = 1}), moved(-0.4, 0, 0)),
+                           placed(made_object({.seed = 2}), moved(0.5, 0.2, 0.3))}),
                  view_from({0.5, 1.5, 4}, GetParam()));
 }
 
@@ -80,16 +81,24 @@ TEST_P(PictureBySamples, TurnedTriangles) {
   TriangleSet flags(object->triangle_count());
   for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = f % 32 < 16 ? 1 : 0;
   auto turned = std::make_shared<BakedObject>(*object);
-  turned->sets[0].soup = move_faces(object->sets[0].soup, flags, 0, Affine(Eigen::Translation3d(0.4, 0.1, 0) * Eigen::AngleAxisd(0.8, Vec3(1, 2, 0).normalized())));
+  turned->sets[0].soup =
+      move_faces(object->sets[0].soup, flags, 0,
+                 Affine(Eigen::Translation3d(0.4, 0.1, 0) * Eigen::AngleAxisd(0.8, Vec3(1, 2, 0).normalized())));
   ASSERT_TRUE(turned->any_turns());
   expect_as_cast(scene_of(turned), view_from({0.5, 1.5, 4}, GetParam()));
 }
 
-TEST(Picture, ForwardFacingAxes) { expect_as_cast(scene_of(made_object({.axes = Axes::forward})), view_from({0, 0, 3})); }
-TEST(Picture, PlainAlphaOfUnsplitFolders) { expect_as_cast(scene_of(made_object({.code = AlphaCode::plain})), view_from({0, 1, 3})); }
+TEST(Picture, ForwardFacingAxes) {
+  expect_as_cast(scene_of(made_object({.axes = Axes::forward})), view_from({0, 0, 3}));
+}
+TEST(Picture, PlainAlphaOfUnsplitFolders) {
+  expect_as_cast(scene_of(made_object({.code = AlphaCode::plain})), view_from({0, 1, 3}));
+}
 TEST(Picture, AxesAndAlphaCodesTogether) {
-  auto second = std::make_shared<BakedObject>(*made_object({.seed = 1, .code = AlphaCode::plain, .axes = Axes::forward}));
-  expect_as_cast(together({placed(made_object(), moved(-0.5, 0, 0)), placed(second, moved(0.5, 0, 0))}), view_from({0, 1, 4}));
+  auto second =
+      std::make_shared<BakedObject>(*made_object({.seed = 1, .code = AlphaCode::plain, .axes = Axes::forward}));
+  expect_as_cast(together({placed(made_object(), moved(-0.5, 0, 0)), placed(second, moved(0.5, 0, 0))}),
+                 view_from({0, 1, 4}));
 }
 
 TEST(Picture, WideDecodersFromConstantsAndBuffer) {
@@ -100,7 +109,8 @@ TEST(Picture, WideDecodersFromConstantsAndBuffer) {
 }
 
 TEST(Picture, ForwardShadingIsTheSamePicture) {
-  const Scene scene = together({placed(made_object({.seed = 1}), moved(-0.4, 0, 0)), placed(made_object({.seed = 2}), moved(0.5, 0.2, 0.3))});
+  const Scene scene = together(
+      {placed(made_object({.seed = 1}), moved(-0.4, 0, 0)), placed(made_object({.seed = 2}), moved(0.5, 0.2, 0.3))});
   const View view = view_from({0, 1, 4}, 1);
   const Image deferred = renderer().render(scene, view);
   for (const auto weights : {RenderOptions::Weights::constants, RenderOptions::Weights::buffer}) {
@@ -155,7 +165,9 @@ TEST(Picture, CoplanarDuplicateDrawnLaterWins) {
 
 TEST(Picture, OverlappingInstancesOfOneObject) {
   const auto object = made_object();
-  expect_as_cast(together({scene_of(object), placed(object, Affine(Eigen::Translation3d(0.5, 0.1, 0.2) * Eigen::AngleAxisd(0.7, Vec3::UnitY())))}), view_from({0, 1, 4}));
+  expect_as_cast(together({scene_of(object), placed(object, Affine(Eigen::Translation3d(0.5, 0.1, 0.2) *
+                                                                   Eigen::AngleAxisd(0.7, Vec3::UnitY())))}),
+                 view_from({0, 1, 4}));
 }
 
 TEST(Picture, SeparatedPartChangesNoPixel) {
@@ -168,7 +180,8 @@ TEST(Picture, SeparatedPartChangesNoPixel) {
   b->decoder = std::make_shared<const Decoder>(*object->decoder);
   const View view = view_from({0.3, 1, 3});
   // The halves are uploaded relative to other centres, so depth differs in its last bits: allow single pixels at edges.
-  const Difference d = compare(renderer().render(scene_of(object), view), renderer().render(together({scene_of(a), scene_of(b)}), view), 1);
+  const Difference d = compare(renderer().render(scene_of(object), view),
+                               renderer().render(together({scene_of(a), scene_of(b)}), view), 1);
   EXPECT_LE(d.share_beyond, 0.0002);
 }
 
@@ -197,7 +210,8 @@ TEST(Picture, FoldedRotationIsTheSamePicture) {
   folded->sets[0].soup = Soup(positions, object->sets[0].soup.uvs(), object->sets[0].soup.faces());
   folded->decoder = std::make_shared<const Decoder>(fold_turn(*object->decoder, turn, Axes::y_up, Axes::y_up));
   const View view = view_from({0.3, 1, 3});
-  const Difference d = compare(renderer().render(placed(object, rotation), view), renderer().render(scene_of(folded), view), 1);
+  const Difference d =
+      compare(renderer().render(placed(object, rotation), view), renderer().render(scene_of(folded), view), 1);
   EXPECT_LE(d.share_beyond, 0.001);
   EXPECT_GE(d.psnr_db, 60);
 }

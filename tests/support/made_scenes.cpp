@@ -18,7 +18,8 @@ Decoder made_decoder(unsigned seed, int hidden0, int hidden1) {
   std::normal_distribution<double> normal;
   const auto matrix = [&](int rows, int columns) {
     Eigen::MatrixXd m(rows, columns);
-    for (double& value : m.reshaped()) value = static_cast<double>(static_cast<float>(normal(random) * 1.6 / std::sqrt(rows)));
+    for (double& value : m.reshaped())
+      value = static_cast<double>(static_cast<float>(normal(random) * 1.6 / std::sqrt(rows)));
     return m;
   };
   const auto vector = [&](int size) { return Eigen::VectorXd(matrix(size, 1) * 0.5); };
@@ -48,7 +49,8 @@ std::shared_ptr<const BakedObject> made_object(const MadeObject& o) {
       const auto first = static_cast<std::uint32_t>(positions.size());
       for (int corner = 0; corner < 4; ++corner) {
         positions.push_back(point(column + corner % 2, row + corner / 2));
-        const double x = k % per_row * o.cell + 0.5 + corner % 2 * (o.cell - 1), y = k / per_row * o.cell + 0.5 + corner / 2 * (o.cell - 1);
+        const double x = k % per_row * o.cell + 0.5 + corner % 2 * (o.cell - 1),
+                     y = k / per_row * o.cell + 0.5 + corner / 2 * (o.cell - 1);
         uvs.emplace_back(x / width, 1 - y / height);
       }
       faces.push_back({first, first + 1, first + 3});
@@ -67,10 +69,12 @@ std::shared_ptr<const BakedObject> made_object(const MadeObject& o) {
       const int k = y / o.cell * per_row + x / o.cell;
       row[x] = empty_texel(o.code);
       if (x >= per_row * o.cell || k >= o.columns * o.rows) continue;
-      const double u = static_cast<double>(x % o.cell) / (o.cell - 1) - 0.5, v = static_cast<double>(y % o.cell) / (o.cell - 1) - 0.5;
+      const double u = static_cast<double>(x % o.cell) / (o.cell - 1) - 0.5,
+                   v = static_cast<double>(y % o.cell) / (o.cell - 1) - 0.5;
       if (o.holes && k % 3 == 0 && u * u + v * v < 0.08) continue;
       for (std::size_t c = 0; c < 8; ++c) {
-        const double value = std::clamp(base[static_cast<std::size_t>(k)][c] + slope[static_cast<std::size_t>(k)][c] * (u + v), 0.0, 1.0);
+        const double value = std::clamp(
+            base[static_cast<std::size_t>(k)][c] + slope[static_cast<std::size_t>(k)][c] * (u + v), 0.0, 1.0);
         auto& channel = c < 4 ? row[x].feat0[c] : row[x].feat1[c - 4];
         channel = static_cast<std::uint8_t>(std::lround(value * 255));
         if (c % 4 == 3 && o.code == AlphaCode::halved) channel = static_cast<std::uint8_t>(channel / 2 + 128);
@@ -94,7 +98,8 @@ Scene scene_of(std::shared_ptr<const BakedObject> object, const std::string& nam
 }
 
 std::shared_ptr<const FeatureTexture> made_features(const Soup& soup, int width, int height, unsigned seed) {
-  std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), empty_texel(AlphaCode::halved));
+  std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                            empty_texel(AlphaCode::halved));
   for (const Face& face : soup.faces()) {
     double left = 1e9, right = -1, top = 1e9, bottom = -1;
     Vec3 centre = Vec3::Zero();
@@ -107,10 +112,13 @@ std::shared_ptr<const FeatureTexture> made_features(const Soup& soup, int width,
       for (int x = static_cast<int>(left); x <= static_cast<int>(right); ++x) {
         const double u = (x + 0.5 - left) / (right - left) - 0.5, v = (y + 0.5 - top) / (bottom - top) - 0.5;
         if (u * u + v * v < 0.02) continue;
-        Texel& texel = texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+        Texel& texel =
+            texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
         for (std::size_t c = 0; c < 8; ++c) {
           // Smooth over space, as real features are.
-          const double value = 0.5 + 0.45 * std::sin((static_cast<double>(c) + 2) * (centre.x() + 0.7 * centre.y() - 0.5 * centre.z()) + static_cast<double>(c * seed) + 0.3 * (u - v));
+          const double value =
+              0.5 + 0.45 * std::sin((static_cast<double>(c) + 2) * (centre.x() + 0.7 * centre.y() - 0.5 * centre.z()) +
+                                    static_cast<double>(c * seed) + 0.3 * (u - v));
           auto& channel = c < 4 ? texel.feat0[c] : texel.feat1[c - 4];
           channel = static_cast<std::uint8_t>(std::lround(value * 255));
           if (c % 4 == 3) channel = static_cast<std::uint8_t>(channel / 2 + 128);
@@ -118,9 +126,9 @@ std::shared_ptr<const FeatureTexture> made_features(const Soup& soup, int width,
         if (texel.feat0[0] == 0) texel.feat0[0] = 1;
       }
   }
-  return std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(width, height, AlphaCode::halved, [&](int y, Texel* row) {
-    std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(y) * width, width, row);
-  }));
+  return std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(
+      width, height, AlphaCode::halved,
+      [&](int y, Texel* row) { std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(y) * width, width, row); }));
 }
 
 std::shared_ptr<const BakedObject> mic_object() {
@@ -138,7 +146,8 @@ std::shared_ptr<const BakedObject> mic_object() {
   auto object = std::make_shared<BakedObject>();
   const Soup soup(all.positions, all.uvs, all.faces);
   object->sets.push_back({soup, made_features(soup, 4096, 4096, 3)});
-  object->decoder = std::make_shared<const Decoder>(read_mlp_json(read_file(folder / "mlp.json"), folder / "mlp.json").decoder);
+  object->decoder =
+      std::make_shared<const Decoder>(read_mlp_json(read_file(folder / "mlp.json"), folder / "mlp.json").decoder);
   object->layout = Layout::chunked;
   return object;
 }

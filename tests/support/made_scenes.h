@@ -19,10 +19,11 @@ struct MadeObject {
   Layout layout = Layout::split;
   Axes axes = Axes::y_up;
   double radius = 1;
-  bool holes = true;           ///< round holes in the quads' opacity
+  bool holes = true;  ///< round holes in the quads' opacity
 };
 
-/// An unwelded sphere of quads, each with its own patch of smooth features: what a MobileNeRF folder holds, made on the fly.
+/// An unwelded sphere of quads, each with its own patch of smooth features: what a MobileNeRF folder holds, made on the
+/// fly.
 std::shared_ptr<const BakedObject> made_object(const MadeObject& options = {});
 
 /// A scene of one node.

@@ -15,7 +15,7 @@ namespace {
 struct Surface {
   const TextureSet* set;
   const BakedObject* object;
-  Mat3 world_to_object;  // directions
+  Mat3 world_to_object;       // directions
   std::vector<Vec3> corners;  // world positions relative to the eye
   int decoder;
 };
@@ -57,11 +57,13 @@ void filter(const RTCFilterFunctionNArguments* args) {
   const Soup& soup = surface.set->soup;
   const Face& face = soup.faces()[hit->primID];
   double t = 0, u = 0, v = 0;
-  if (!intersect(context.ray, surface.corners[face[0]], surface.corners[face[1]], surface.corners[face[2]], t, u, v)) return;
+  if (!intersect(context.ray, surface.corners[face[0]], surface.corners[face[1]], surface.corners[face[2]], t, u, v))
+    return;
   if (t < context.nearest || t > context.farthest) return;
   // At equal depth the later drawn wins (less or equal).
   if (t > context.hit.t) return;
-  if (t == context.hit.t && std::pair(hit->geomID, hit->primID) < std::pair(context.hit.surface, context.hit.face)) return;
+  if (t == context.hit.t && std::pair(hit->geomID, hit->primID) < std::pair(context.hit.surface, context.hit.face))
+    return;
   const Vec2 uv = soup.uvs()[face[0]] * (1 - u - v) + soup.uvs()[face[1]] * u + soup.uvs()[face[2]] * v;
   const FeatureTexture& texels = *surface.set->texels;
   const int x = std::clamp(static_cast<int>(std::floor(uv.x() * texels.width())), 0, texels.width() - 1);
@@ -80,7 +82,12 @@ void filter(const RTCFilterFunctionNArguments* args) {
     direction = sum;
   }
   direction.normalize();
-  context.hit = {t, hit->geomID, hit->primID, texel, surface.object->axes == Axes::forward ? direction : Vec3(direction.x(), -direction.z(), direction.y()), true};
+  context.hit = {t,
+                 hit->geomID,
+                 hit->primID,
+                 texel,
+                 surface.object->axes == Axes::forward ? direction : Vec3(direction.x(), -direction.z(), direction.y()),
+                 true};
 }
 
 Mat3 turn_back(const Mat3& linear) {
@@ -117,11 +124,14 @@ Image cast_picture(const Scene& scene, const View& view) {
   for (const PlacedNode& placed : placed_list) {
     if (!placed.visible || !placed.node->object) continue;
     int decoder = 0;
-    while (decoder < static_cast<int>(decoders.size()) && !(*decoders[static_cast<std::size_t>(decoder)] == *placed.node->object->decoder)) ++decoder;
+    while (decoder < static_cast<int>(decoders.size()) &&
+           !(*decoders[static_cast<std::size_t>(decoder)] == *placed.node->object->decoder))
+      ++decoder;
     if (decoder == static_cast<int>(decoders.size())) decoders.push_back(placed.node->object->decoder.get());
     for (const TextureSet& set : placed.node->object->sets) {
       Surface surface{&set, placed.node->object.get(), turn_back(placed.to_world.linear()), {}, decoder};
-      for (const Vec3& p : set.soup.positions()) surface.corners.push_back(placed.to_world.linear() * p + (placed.to_world.translation() - view.camera.eye));
+      for (const Vec3& p : set.soup.positions())
+        surface.corners.push_back(placed.to_world.linear() * p + (placed.to_world.translation() - view.camera.eye));
       surfaces.push_back(std::move(surface));
     }
   }
@@ -130,10 +140,13 @@ Image cast_picture(const Scene& scene, const View& view) {
   rtcSetSceneFlags(rays, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   for (const Surface& surface : surfaces) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, surface.corners.size()));
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, surface.corners.size()));
     for (std::size_t v = 0; v < surface.corners.size(); ++v)
-      for (int k = 0; k < 3; ++k) vertices[v * 3 + static_cast<std::size_t>(k)] = static_cast<float>(surface.corners[v][k]);
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, surface.set->soup.faces().size()));
+      for (int k = 0; k < 3; ++k)
+        vertices[v * 3 + static_cast<std::size_t>(k)] = static_cast<float>(surface.corners[v][k]);
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   12, surface.set->soup.faces().size()));
     for (std::size_t f = 0; f < surface.set->soup.faces().size(); ++f)
       for (std::size_t k = 0; k < 3; ++k) indices[f * 3 + k] = surface.set->soup.faces()[f][k];
     rtcCommitGeometry(geometry);
@@ -145,7 +158,8 @@ Image cast_picture(const Scene& scene, const View& view) {
   const int side = view.samples == 1 ? 1 : view.samples == 4 ? 2 : 4;
   const double tan_half = std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180);
   const double aspect = static_cast<double>(view.width) / view.height;
-  Image image{view.width, view.height, std::vector<std::uint8_t>(static_cast<std::size_t>(view.width * view.height) * 3)};
+  Image image{view.width, view.height,
+              std::vector<std::uint8_t>(static_cast<std::size_t>(view.width * view.height) * 3)};
   tbb::parallel_for(0, view.height, [&](int y) {
     for (int x = 0; x < view.width; ++x) {
       struct Sum {
@@ -154,8 +168,14 @@ Image cast_picture(const Scene& scene, const View& view) {
       };
       std::vector<Sum> sums(decoders.size());
       for (int k = 0; k < side * side; ++k) {
-        const double sx = (x + (k % side + 0.5) / side) / view.width * 2 - 1, sy = 1 - (y + (k / side + 0.5) / side) / view.height * 2;
-        CastContext context{{}, &surfaces, sx * tan_half * aspect * right + sy * tan_half * up - back, view.camera.near_plane, view.camera.far_plane, {}};
+        const double sx = (x + (k % side + 0.5) / side) / view.width * 2 - 1,
+                     sy = 1 - (y + (k / side + 0.5) / side) / view.height * 2;
+        CastContext context{{},
+                            &surfaces,
+                            sx * tan_half * aspect * right + sy * tan_half * up - back,
+                            view.camera.near_plane,
+                            view.camera.far_plane,
+                            {}};
         rtcInitIntersectContext(&context.base);
         context.base.filter = filter;
         RTCRayHit query{};
@@ -174,7 +194,8 @@ Image cast_picture(const Scene& scene, const View& view) {
           const double byte = c < 4 ? context.hit.texel.feat0[c] : context.hit.texel.feat1[c - 4];
           sum.input[c] += (c % 4 == 3 && halved ? 2 * byte / 255 - 1 : byte / 255) / (side * side);
         }
-        for (std::size_t c = 0; c < 3; ++c) sum.input[8 + c] += context.hit.fed[static_cast<Eigen::Index>(c)] / (side * side);
+        for (std::size_t c = 0; c < 3; ++c)
+          sum.input[8 + c] += context.hit.fed[static_cast<Eigen::Index>(c)] / (side * side);
         sum.coverage += 1.0 / (side * side);
       }
       Vec3 color = Vec3::Zero();
@@ -186,7 +207,8 @@ Image cast_picture(const Scene& scene, const View& view) {
       }
       color += (1 - coverage) * scene.background;
       for (int c = 0; c < 3; ++c)
-        image.rgb[static_cast<std::size_t>((y * view.width + x) * 3 + c)] = static_cast<std::uint8_t>(std::lround(std::clamp(color[c], 0.0, 1.0) * 255));
+        image.rgb[static_cast<std::size_t>((y * view.width + x) * 3 + c)] =
+            static_cast<std::uint8_t>(std::lround(std::clamp(color[c], 0.0, 1.0) * 255));
     }
   });
   rtcReleaseScene(rays);

@@ -1,0 +1,90 @@
+// The program as people call it: exit codes, messages, files.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/files.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+struct Outcome {
+  int code;
+  std::string text;  // standard output and error
+};
+
+Outcome rebake_run(const std::string& arguments, const std::string& before = "") {
+  FILE* pipe = popen((before + " " + REBAKE_PROGRAM + " " + arguments + " 2>&1").c_str(), "r");
+  Outcome outcome{};
+  char buffer[4096];
+  while (const std::size_t got = std::fread(buffer, 1, sizeof buffer, pipe)) outcome.text.append(buffer, got);
+  const int status = pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  return outcome;
+}
+
+class Cli : public ::testing::Test {
+ protected:
+  Cli() { export_scene(scene_of(made_object()), folder_.path() / "ball", {}); }
+  std::string in(const std::string& name) const { return (folder_.path() / name).string(); }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Cli, InfoAsJson) {
+  const Outcome o = rebake_run("info " + in("ball") + " --json");
+  ASSERT_EQ(o.code, 0) << o.text;
+  const auto info = nlohmann::json::parse(o.text);
+  EXPECT_EQ(info.at("triangles"), 256);
+  EXPECT_EQ(info.at("vertices"), 512);
+  EXPECT_EQ(info.at("texture_sets"), 1);
+  EXPECT_EQ(info.at("chunks"), 1);
+  EXPECT_EQ(info.at("axes"), "360");
+  EXPECT_EQ(info.at("decoder"), nlohmann::json({11, 16, 16, 3}));
+  for (const char* key : {"opaque_texels", "bounds", "memory"}) EXPECT_TRUE(info.contains(key)) << key;
+}
+
+TEST_F(Cli, RenderCompareAndTimes) {
+  const Outcome o = rebake_run("render " + in("ball") + " -o " + in("a.png") + " --size 64x48 --time 2 --plan --json");
+  ASSERT_EQ(o.code, 0) << o.text;
+  const auto report = nlohmann::json::parse(o.text);
+  for (const char* key : {"min", "median", "max"}) EXPECT_GT(report.at("frame_ms").at(key).get<double>(), 0);
+  EXPECT_TRUE(report.at("passes").contains("geometry"));
+  EXPECT_FALSE(report.at("plan").empty());
+  EXPECT_EQ(rebake_run("render " + in("ball") + " -o " + in("b.png") + " --size 64x48 --background 0,0,0").code, 0);
+  EXPECT_EQ(rebake_run("compare " + in("a.png") + " " + in("a.png") + " --min-psnr 90").code, 0);
+  EXPECT_EQ(rebake_run("compare " + in("a.png") + " " + in("b.png") + " --min-psnr 90").code, 3);
+}
+
+TEST_F(Cli, WrongUseIsTwoFailureIsOne) {
+  EXPECT_EQ(rebake_run("").code, 2);
+  EXPECT_EQ(rebake_run("rendr").code, 2);
+  EXPECT_EQ(rebake_run("--help").code, 0);
+  const Outcome missing = rebake_run("info /no/such");
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_NE(missing.text.find("error: /no/such: does not exist"), std::string::npos) << missing.text;
+  EXPECT_EQ(rebake_run("render " + in("ball") + " -o " + in("no/a.png")).code, 1);
+  EXPECT_EQ(rebake_run("render " + in("ball") + " -o " + in("a.png") + " --size 0x9").code, 1);
+  EXPECT_EQ(rebake_run("render " + in("ball") + " -o " + in("a.png") + " --eye 0,0").code, 1);
+}
+
+TEST_F(Cli, PipedOutputHasNoColourOrBars) {
+  EXPECT_EQ(rebake_run("info /no/such").text.find('\033'), std::string::npos);
+}
+
+TEST_F(Cli, FullDiskLeavesWhatWasThere) {
+  const auto before = folder_bytes(folder_.path() / "ball");
+  // A file-size limit stands for a full disk: it holds for root too.
+  const Outcome o =
+      rebake_run("export " + in("ball") + " -o " + in("ball") + " --layout unsplit", "ulimit -f 8; trap '' XFSZ;");
+  EXPECT_EQ(o.code, 1) << o.text;
+  EXPECT_NE(o.text.find("cannot be written"), std::string::npos) << o.text;
+  EXPECT_EQ(folder_bytes(folder_.path() / "ball"), before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
+}
+
+}  // namespace
+}  // namespace rebake::test

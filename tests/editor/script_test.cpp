@@ -1,0 +1,177 @@
+// Scripts: every edit on a made scene, errors that name line and field, the same bytes at every replay.
+#include "editor/script/script.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/files.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+class Script : public ::testing::Test {
+ protected:
+  Script() {
+    export_scene(scene_of(made_object({.seed = 1})), folder_.path() / "ball", {});
+    export_scene(scene_of(made_object({.seed = 2})), folder_.path() / "other", {});
+  }
+  Session session;
+  void run(const std::string& text) { run_script(session, text, "s.jsonl", {{"here", folder_.path().string()}}); }
+  std::string error_of(const std::string& text) {
+    try {
+      run(text);
+    } catch (const ScriptError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  void expect_error(const std::string& text, const std::string& says) {
+    const std::string error = error_of(text);
+    EXPECT_NE(error.find(says), std::string::npos) << error;
+  }
+  NodePtr node(const std::string& name) const { return find(session.scene, name); }
+  std::size_t selected(const std::string& name) const {
+    return node(name)->selection ? count(*node(name)->selection) : 0;
+  }
+  const std::string import = R"({"op": "import", "path": "{here}/ball", "as": "ball"})"
+                             "\n";
+  TemporaryFolder folder_;
+};
+
+TEST_F(Script, CommentsBlankLinesAndVariables) {
+  run("# comment\n\n  // another\n" + import);
+  EXPECT_NE(node("ball"), nullptr);
+  EXPECT_EQ(node("ball")->object->triangle_count(), 256U);
+}
+
+TEST_F(Script, SelectInEveryFrameAndMode) {
+  run(import + R"({"op": "transform", "node": "ball", "translate": [10, 0, 0], "scale": 2})");
+  run(R"({"op": "select", "node": "ball", "half_space": {"point": [10, 0, 0], "normal": [0, 1, 0]}})");
+  EXPECT_EQ(selected("ball"), 128U);
+  run(R"({"op": "select", "node": "ball", "half_space": {"point": [0, 0, 0], "normal": [0, 1, 0]}, "frame": "node", "mode": "intersect"})");
+  EXPECT_EQ(selected("ball"), 128U);
+  run(R"({"op": "select", "node": "ball", "box": {"min": [0, 0, 0], "max": [1, 0.5, 1]}, "frame": "bounds", "mode": "add"})");
+  EXPECT_EQ(selected("ball"), 256U);
+  run(R"({"op": "select", "node": "ball", "sphere": {"center": [10, 2, 0], "radius": 1.5}, "mode": "remove"})");
+  EXPECT_LT(selected("ball"), 256U);
+  const std::size_t before = selected("ball");
+  run(R"({"op": "select", "node": "ball", "invert": true})");
+  EXPECT_EQ(selected("ball"), 256U - before);
+  run(R"({"op": "select", "node": "ball", "none": true})");
+  EXPECT_EQ(node("ball")->selection, nullptr);
+  run(R"({"op": "select", "node": "ball", "connected": [10, 2, 0]})");
+  EXPECT_EQ(selected("ball"), 256U);  // the sphere is in one piece
+}
+
+TEST_F(Script, DeleteSeparateGroupReorderRename) {
+  run(import +
+      R"({"op": "select", "node": "ball", "half_space": {"point": [0, 0, 0], "normal": [0, 1, 0]}})"
+      "\n" +
+      R"({"op": "separate", "node": "ball", "as": "top"})");
+  EXPECT_EQ(node("top")->object->triangle_count(), 128U);
+  EXPECT_EQ(node("ball")->object->triangle_count(), 128U);
+  EXPECT_EQ(node("top")->object->decoder, node("ball")->object->decoder);
+  run(R"({"op": "duplicate", "node": "top", "as": "copy"})"
+      "\n"
+      R"({"op": "transform", "node": "copy", "translate": [0, 3, 0], "rotate": {"axis": [0, 0, 1], "degrees": 90}})"
+      "\n"
+      R"({"op": "group", "nodes": ["top", "copy"], "as": "both"})"
+      "\n"
+      R"({"op": "transform", "node": "both", "translate": [0, 0, 7]})"
+      "\n"
+      R"({"op": "rename", "node": "both", "name": "pair"})");
+  const Affine before = find_placed(session.scene, node("copy")->id)->to_world;
+  run(R"({"op": "reorder", "node": "copy", "index": 0, "top": true})");
+  EXPECT_EQ(session.scene.roots[0]->name, "copy");
+  EXPECT_TRUE(find_placed(session.scene, node("copy")->id)->to_world.isApprox(before, 1e-14));
+  run(R"({"op": "select", "node": "ball", "all": true})"
+      "\n"
+      R"({"op": "delete"})");
+  EXPECT_EQ(node("ball"), nullptr);  // nothing was left of it
+}
+
+TEST_F(Script, ThrownEditLeavesTheSceneAsItWas) {
+  run(import + R"({"op": "lock", "node": "ball"})");
+  const NodePtr before = node("ball");
+  expect_error(R"({"op": "remove", "node": "ball"})", "is locked");
+  expect_error(R"({"op": "transform", "node": "ball", "scale": 0})", "line 1: field \"scale\": a scale of 0");
+  EXPECT_EQ(node("ball"), before);
+  run(R"({"op": "unlock", "node": "ball"})"
+      "\n"
+      R"({"op": "remove", "node": "ball"})");
+  EXPECT_TRUE(session.scene.roots.empty());
+}
+
+TEST_F(Script, EditsArePure) {
+  run(import);
+  const Scene before = session.scene;
+  const NodePtr root = before.roots[0];
+  const Edit edit = std::get<Edit>(
+      read_command(nlohmann::json::parse(R"({"op": "transform", "node": "ball", "translate": [1, 2, 3]})"), before));
+  const Scene a = rebake::apply(before, edit), b = rebake::apply(before, edit);
+  EXPECT_EQ(before.roots[0], root);
+  EXPECT_EQ(root->to_parent.matrix(), Affine::Identity().matrix());
+  EXPECT_EQ(a.roots[0]->to_parent.matrix(), b.roots[0]->to_parent.matrix());
+  EXPECT_EQ(a.roots[0]->object, root->object);  // shared, not copied
+}
+
+TEST_F(Script, EditsSurviveJson) {
+  run(import);
+  for (
+      const char* line :
+      {R"({"op": "select", "node": "ball", "sphere": {"center": [0, 0, 1], "radius": 0.5}, "mode": "add", "frame": "bounds"})",
+       R"({"op": "transform", "node": "ball", "rotate": {"axis": [0, 1, 1], "degrees": 30}, "scale": [1, 2, 3], "pivot": [1, 0, 0]})",
+       R"({"op": "background", "color": [0, 0.5, 1]})", R"({"op": "reorder", "node": "ball", "index": 0})"}) {
+    const Edit edit = std::get<Edit>(read_command(nlohmann::json::parse(line), session.scene));
+    const nlohmann::json written = to_json(edit);
+    EXPECT_EQ(to_json(std::get<Edit>(read_command(written, session.scene))), written) << line;
+  }
+}
+
+TEST_F(Script, ReplayGivesTheSameBytes) {
+  const std::string script = import + R"({"op": "import", "path": "{here}/other", "as": "other"}
+{"op": "select", "node": "ball", "sphere": {"center": [0, 1, 0], "radius": 0.8}}
+{"op": "transform", "node": "ball", "selection": true, "translate": [0, 0.3, 0], "rotate": {"axis": [1, 0, 0], "degrees": 25}}
+{"op": "transform", "node": "other", "translate": [2, 0, 0], "rotate": [0.9, 0, 0.3, 0], "scale": 0.5}
+)";
+  run(script + R"({"op": "export", "out": "{here}/one"})");
+  Session second;
+  std::swap(session.scene, second.scene);
+  run(script + R"({"op": "export", "out": "{here}/two"})");
+  const auto one = folder_bytes(folder_.path() / "one");
+  EXPECT_EQ(one, folder_bytes(folder_.path() / "two"));
+  EXPECT_EQ(one.count("scene.json"), 1U);
+}
+
+TEST_F(Script, ErrorsNameLineAndField) {
+  expect_error("\n{\"op\": \"selekt\"}",
+               "s.jsonl: line 2: field \"op\": \"selekt\" is not known; did you mean \"select\"?");
+  expect_error("{\"op\": \"import\"}", "line 1: field \"path\": is missing");
+  expect_error("{\"op\": \"import\", \"path\": \"{nope}/x\"}", "the variable {nope} has no value");
+  expect_error("{\"op\": \"import\", \"path\": \"/no/such/folder\"}", "/no/such/folder: does not exist");
+  expect_error("{\"op\": ", "is not valid JSON");
+  expect_error("[]", "must be a JSON object");
+  expect_error(import + R"({"op": "select", "nod": "ball", "all": true})", "line 2: field \"node\": is missing");
+  expect_error(R"({"op": "select", "node": "bal", "all": true})", "did you mean \"ball\"?");
+  expect_error(R"({"op": "select", "node": "ball", "all": true, "framee": "node"})",
+               "field \"framee\": is not known here; did you mean \"frame\"?");
+  expect_error(R"({"op": "select", "node": "ball"})", "exactly one of");
+  expect_error(R"({"op": "select", "node": "ball", "sphere": {"center": [0, 0], "radius": 1}})",
+               "field \"sphere\": must be a list of three numbers");
+  expect_error(R"({"op": "delete"})", "no triangle is selected");
+  expect_error(R"({"op": "import", "path": "{here}/ball", "as": "ball"})", "is the name of another node already");
+  expect_error(R"({"op": "render", "out": "x.png", "view": "nowhere"})", "there is no view \"nowhere\"");
+  expect_error(R"({"op": "render", "out": "/no/folder/x.png", "width": 16, "height": 16})",
+               "/no/folder: is not a folder");
+}
+
+TEST(ScriptReference, DocsHoldEveryField) {
+  const std::string docs = read_file(std::filesystem::path(REBAKE_SOURCE) / "editor/script/COMMANDS.md");
+  EXPECT_NE(docs.find(command_reference()), std::string::npos) << "regenerate: build/rebake run --fields";
+}
+
+}  // namespace
+}  // namespace rebake::test

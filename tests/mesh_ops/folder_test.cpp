@@ -1,0 +1,342 @@
+// Folders of every layout: what is read is what is written, unedited folders byte for byte, and bad ones are refused by
+// name.
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "mesh_ops/error.h"
+#include "mesh_ops/features/atlas.h"
+#include "mesh_ops/formats/baked_folder.h"
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/feature_png.h"
+#include "mesh_ops/formats/files.h"
+#include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/mlp_json.h"
+#include "mesh_ops/formats/scene_folder.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ByLayout : public ::testing::TestWithParam<Layout> {
+ protected:
+  std::shared_ptr<const BakedObject> object() const {
+    return made_object(
+        {.code = GetParam() == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved, .layout = GetParam()});
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Folder, ByLayout, ::testing::Values(Layout::split, Layout::chunked, Layout::unsplit));
+
+TEST_P(ByLayout, UneditedFolderExportsByteForByte) {
+  const TemporaryFolder temporary;
+  export_scene(scene_of(object()), temporary.path() / "a", {});
+  const Scene read = read_any(temporary.path() / "a", Axes::y_up);
+  EXPECT_EQ(read.roots[0]->object->layout, GetParam());
+  EXPECT_EQ(read.roots[0]->name, "a");
+  // A marker that no writer of ours would make shows that files are copied, not written anew.
+  const std::string mlp = read_file(temporary.path() / "a/mlp.json") + "\n  ";
+  write_text(temporary.path() / "a/mlp.json", mlp);
+  const Scene again = read_any(temporary.path() / "a", Axes::y_up);
+  const ExportReport report = export_scene(again, temporary.path() / "b", {});
+  EXPECT_TRUE(report.one_folder);
+  EXPECT_EQ(folder_bytes(temporary.path() / "a"), folder_bytes(temporary.path() / "b"));
+}
+
+TEST_P(ByLayout, FileThatChangedOnDiskIsNotCopied) {
+  const TemporaryFolder temporary;
+  export_scene(scene_of(object()), temporary.path() / "a", {});
+  const Scene read = read_any(temporary.path() / "a", Axes::y_up);
+  const auto before = folder_bytes(temporary.path() / "a");
+  write_text(temporary.path() / "a" / feature_name(GetParam(), 0, 0), "something else");
+  fs::remove(temporary.path() / "a" / geometry_name(GetParam(), 0, 0));
+  export_scene(read, temporary.path() / "b", {});
+  EXPECT_EQ(folder_bytes(temporary.path() / "b"), before);
+}
+
+TEST_P(ByLayout, DeletionKeepsTexelsAndDropsUnusedSpace) {
+  const TemporaryFolder temporary;
+  export_scene(scene_of(object()), temporary.path() / "a", {});
+  Scene scene = read_any(temporary.path() / "a", Axes::y_up);
+  const BakedObject& whole = *scene.roots[0]->object;
+  TriangleSet keep(whole.triangle_count(), 0);
+  for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = f % 10 < 2 ? 1 : 0;
+  auto cut = std::make_shared<BakedObject>(whole);
+  cut->sets[0].soup = subset(whole.sets[0].soup, keep, 0, true);
+  scene = with_changed(scene, scene.roots[0]->id, [&](Node& n) { n.object = cut; });
+  export_scene(scene, temporary.path() / "b", {});
+  const auto back = read_any(temporary.path() / "b", Axes::y_up).roots[0]->object;
+  ASSERT_EQ(back->triangle_count(), cut->triangle_count());
+  EXPECT_LT(back->sets[0].texels->width() * back->sets[0].texels->height(),
+            whole.sets[0].texels->width() * whole.sets[0].texels->height() / 3);
+  for (std::size_t f = 0; f < back->triangle_count(); ++f) {
+    const auto corner = [f](const BakedObject& o, std::size_t k) { return o.sets[0].soup.faces()[f][k]; };
+    for (int a = 0; a <= 8; ++a)
+      for (int b = 0; a + b <= 8; ++b) {
+        const auto at = [&](const BakedObject& o) {
+          const auto& uv = o.sets[0].soup.uvs();
+          const Vec2 p = (uv[corner(o, 0)] * a + uv[corner(o, 1)] * b + uv[corner(o, 2)] * (8 - a - b)) / 8;
+          return o.sets[0].texels->sample(p.x(), p.y());
+        };
+        EXPECT_EQ(at(*back), at(*cut)) << "face " << f;
+      }
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(back->sets[0].soup.positions()[corner(*back, k)], cut->sets[0].soup.positions()[corner(*cut, k)]);
+  }
+}
+
+TEST(Folder, ChunkedExportHasEightChunksThatAreNotEmpty) {
+  const TemporaryFolder temporary;
+  export_scene(scene_of(made_object({.columns = 3, .rows = 1, .layout = Layout::chunked})), temporary.path() / "a", {});
+  for (std::size_t j = 0; j < 8; ++j)
+    EXPECT_NE(read_file(temporary.path() / "a" / geometry_name(Layout::chunked, 0, j)).find("\nf "), std::string::npos);
+  EXPECT_FALSE(fs::exists(temporary.path() / "a" / geometry_name(Layout::chunked, 0, 8)));
+}
+
+TEST(Folder, LayoutsConvert) {
+  const TemporaryFolder temporary;
+  export_scene(scene_of(made_object()), temporary.path() / "split", {});
+  const Scene split = read_any(temporary.path() / "split", Axes::y_up);
+  export_scene(split, temporary.path() / "unsplit", {Layout::unsplit});
+  const auto unsplit = read_any(temporary.path() / "unsplit", Axes::y_up).roots[0]->object;
+  EXPECT_EQ(unsplit->layout, Layout::unsplit);
+  const FeatureTexture &a = *split.roots[0]->object->sets[0].texels, &b = *unsplit->sets[0].texels;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x) {
+      ASSERT_EQ(a.at(x, y).opaque(), b.at(x, y).opaque());
+      // Halved to plain is exact in what is decoded.
+      if (a.at(x, y).opaque()) {
+        const auto one = decode_features(a.at(x, y), AlphaCode::halved),
+                   other = decode_features(b.at(x, y), AlphaCode::plain);
+        for (std::size_t c = 0; c < 8; ++c) ASSERT_NEAR(one[c], other[c], 1e-15);
+      } else {
+        ASSERT_EQ(b.at(x, y), empty_texel(AlphaCode::plain));
+      }
+    }
+  export_scene(read_any(temporary.path() / "unsplit", Axes::y_up), temporary.path() / "chunked", {Layout::chunked});
+  EXPECT_EQ(read_any(temporary.path() / "chunked", Axes::y_up).roots[0]->object->layout, Layout::chunked);
+  EXPECT_EQ(folder_bytes(temporary.path() / "chunked")["shape0.pngfeat0.png"],
+            folder_bytes(temporary.path() / "split")["shape0.pngfeat0.png"]);
+}
+
+TEST(Folder, ObjectsOfOneDecoderShareAFolderOthersDoNot) {
+  const TemporaryFolder temporary;
+  Scene scene = scene_of(made_object({.seed = 1}), "a");
+  Node node;
+  node.object = made_object({.seed = 1});
+  node.to_parent.translation() = Vec3(3, 0, 0);
+  scene = with_added(scene, node, NodeId::none, 9);
+  EXPECT_TRUE(export_scene(scene, temporary.path() / "one", {}).one_folder);
+  EXPECT_EQ(read_any(temporary.path() / "one", Axes::y_up).roots[0]->object->triangle_count(), 512U);
+  // Both turned alike still agree.
+  const Affine turn(Eigen::AngleAxisd(0.3, Vec3::UnitY()));
+  const auto turned = [&](Node& n) { n.to_parent = turn * n.to_parent; };
+  const Scene both = with_changed(with_changed(scene, scene.roots[0]->id, turned), scene.roots[1]->id, turned);
+  EXPECT_TRUE(export_scene(both, temporary.path() / "one", {}).one_folder);
+  const ExportReport report =
+      export_scene(with_changed(scene, scene.roots[0]->id, turned), temporary.path() / "two", {});
+  EXPECT_FALSE(report.one_folder);
+  EXPECT_EQ(report.folders, 2U);
+  EXPECT_TRUE(fs::exists(temporary.path() / "two/scene.json"));
+}
+
+TEST(Folder, SavedSceneKeepsEveryNode) {
+  const TemporaryFolder temporary;
+  Scene scene = scene_of(made_object(), "a b/c");
+  scene.background = {0.25, 0.5, 1};
+  scene.views["front"] = {};
+  Node group;
+  group.name = "group";
+  group.locked = true;
+  Node child;
+  child.name = "shape0.obj";  // a name that must not become a file's
+  child.visible = false;
+  child.object = scene.roots[0]->object;
+  child.to_parent = Affine(Eigen::Translation3d(1.0 / 3, 2, 3) * Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()) *
+                           Eigen::Scaling(2.0, -1.0, 0.5));
+  group.children.push_back(std::make_shared<const Node>(child));
+  scene = with_added(scene, group, NodeId::none, 9);
+  auto turned = std::make_shared<BakedObject>(*made_object({.seed = 4}));
+  TriangleSet flags(turned->triangle_count(), 0);
+  for (std::size_t f = 20; f < 50; ++f) flags[f] = 1;
+  turned->sets[0].soup = move_faces(turned->sets[0].soup, flags, 0, Affine(Eigen::AngleAxisd(0.4, Vec3::UnitX())));
+  child.object = turned;
+  child.name = "turned";
+  scene = with_added(scene, child, NodeId::none, 9);
+  save_scene_folder(scene, temporary.path() / "s");
+  const Scene back = read_any(temporary.path() / "s", Axes::y_up);
+  const auto before = placed_nodes(scene), after = placed_nodes(back);
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    EXPECT_EQ(before[k].node->name, after[k].node->name);
+    EXPECT_EQ(before[k].node->visible, after[k].node->visible);
+    EXPECT_EQ(before[k].node->locked, after[k].node->locked);
+    EXPECT_EQ(before[k].node->to_parent.matrix(), after[k].node->to_parent.matrix());
+  }
+  EXPECT_EQ(back.background, scene.background);
+  EXPECT_EQ(back.views, scene.views);
+  EXPECT_EQ(after[0].node->object, after[2].node->object);  // one object in two places is stored once
+  const Soup &a = turned->sets[0].soup, &b = after[3].node->object->sets[0].soup;
+  ASSERT_NE(b.turns(), nullptr);
+  for (std::size_t f = 0; f < a.faces().size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ((*a.turns())[a.faces()[f][k]], (*b.turns())[b.faces()[f][k]]);
+}
+
+TEST(Folder, FeaturePngsCarryBytesAndNoColourChunks) {
+  const auto texture = made_object()->sets[0].texels;
+  const std::string png = write_feature_png(*texture, 0);
+  for (const char* chunk : {"gAMA", "cHRM", "iCCP", "sRGB"}) EXPECT_EQ(png.find(chunk), std::string::npos) << chunk;
+  const FeatureTexture back = read_feature_pngs(png, "a", write_feature_png(*texture, 1), "b", AlphaCode::halved);
+  for (int y = 0; y < back.height(); ++y)
+    for (int x = 0; x < back.width(); ++x) ASSERT_EQ(back.at(x, y), texture->at(x, y));
+}
+
+std::string png_of(int width, int height, int channels, OIIO::TypeDesc type) {
+  const fs::path path = fs::temp_directory_path() / ("rebake-png-" + std::to_string(getpid()) + ".png");
+  const auto out = OIIO::ImageOutput::create("png");
+  const OIIO::ImageSpec spec(width, height, channels, type);
+  const std::vector<std::uint16_t> zeros(static_cast<std::size_t>(width * height * channels));
+  out->open(path.string(), spec);
+  out->write_image(type, zeros.data());
+  out->close();
+  const std::string bytes = read_file(path);
+  fs::remove(path);
+  return bytes;
+}
+
+class BadFolder : public ::testing::Test {
+ protected:
+  BadFolder() { export_scene(scene_of(made_object()), folder(), {}); }
+  fs::path folder() const { return temporary_.path() / "bad"; }
+  void expect_refused(const std::string& says) const {
+    try {
+      read_any(folder(), Axes::y_up);
+      FAIL() << "was accepted";
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+  }
+  void replace_mlp(const std::string& from, const std::string& to) const {
+    std::string text = read_file(folder() / "mlp.json");
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos);
+    write_text(folder() / "mlp.json", text.replace(at, from.size(), to));
+  }
+
+ private:
+  TemporaryFolder temporary_;
+};
+
+TEST_F(BadFolder, MissingFiles) {
+  fs::remove(folder() / "shape0.pngfeat1.png");
+  expect_refused("shape0.pngfeat1.png: does not exist");
+  fs::remove(folder() / "mlp.json");
+  expect_refused("holds neither mlp.json");
+  fs::remove_all(folder());
+  expect_refused("does not exist");
+}
+TEST_F(BadFolder, TooLargeObjNum) {
+  replace_mlp("\"obj_num\":1", "\"obj_num\":3");
+  expect_refused("shape1.obj: does not exist");
+}
+TEST_F(BadFolder, ObjNumOfTheWrongKind) {
+  replace_mlp("\"obj_num\":1", "\"obj_num\":-1");
+  expect_refused("\"obj_num\" must be a whole number");
+}
+TEST_F(BadFolder, MissingKey) {
+  replace_mlp("1_bias", "1_bais");
+  expect_refused("mlp.json: \"1_bias\" is missing");
+}
+TEST_F(BadFolder, NanInTheDecoder) {
+  replace_mlp("\"2_bias\":[", "\"2_bias\":[NaN,");
+  expect_refused("is not valid JSON");
+}
+TEST_F(BadFolder, WrongSizeOfALayer) {
+  replace_mlp("\"1_weights\":[[", "\"1_weights\":[[0.5,");
+  expect_refused("\"1_weights\"[0] must have 16 numbers");
+}
+TEST_F(BadFolder, NoTriangles) {
+  write_text(folder() / "shape0.obj", "v 0 0 0\nvt 0 0\n");
+  expect_refused("has no triangles");
+}
+TEST_F(BadFolder, GapInTheChunks) {
+  const std::string text = read_file(folder() / "shape0.obj");
+  fs::remove(folder() / "shape0.obj");
+  for (const char* name : {"shape0_0.obj", "shape0_2.obj"}) write_text(folder() / name, text);
+  expect_refused("shape0_1.obj: does not exist, but shape0_2.obj does");
+}
+TEST_F(BadFolder, Images) {
+  const fs::path png = folder() / "shape0.pngfeat1.png";
+  const std::string good = read_file(png);
+  write_text(png, "");
+  expect_refused("is empty (0 bytes)");
+  write_text(png, "GIF89a");
+  expect_refused("is not a PNG");
+  write_text(png, good.substr(0, good.size() / 2));
+  expect_refused("shape0.pngfeat1.png: cannot be decoded");
+  write_text(png, png_of(16, 16, 4, OIIO::TypeDesc::UINT8));
+  expect_refused("both images of a set must be of one size");
+  write_text(png, png_of(16, 16, 3, OIIO::TypeDesc::UINT8));
+  expect_refused("has 3 channels");
+  write_text(png, png_of(16, 16, 4, OIIO::TypeDesc::UINT16));
+  expect_refused("is not 8 bits");
+  std::string huge = good;
+  huge[16] = huge[17] = 0x7f;  // the width in the header
+  write_text(png, huge);
+  expect_refused("shape0.pngfeat1.png: ");
+}
+
+TEST(Export, RefusesFoldersWithOtherFilesAndLeavesThemAlone) {
+  const TemporaryFolder temporary;
+  write_text(temporary.path() / "thesis.tex", "precious");
+  EXPECT_THROW(export_scene(scene_of(made_object()), temporary.path(), {}), FileError);
+  EXPECT_EQ(folder_bytes(temporary.path()), (std::map<std::string, std::string>{{"thesis.tex", "precious"}}));
+}
+
+TEST(Export, OntoItsOwnSourceIsSafe) {
+  const TemporaryFolder temporary;
+  export_scene(scene_of(made_object()), temporary.path() / "a", {});
+  const auto before = folder_bytes(temporary.path() / "a");
+  export_scene(read_any(temporary.path() / "a", Axes::y_up), temporary.path() / "a", {});
+  EXPECT_EQ(folder_bytes(temporary.path() / "a"), before);
+}
+
+TEST(Export, FailingLeavesWhatWasThere) {
+  const TemporaryFolder temporary;
+  export_scene(scene_of(made_object()), temporary.path() / "a", {});
+  const auto before = folder_bytes(temporary.path() / "a");
+  Scene broken = scene_of(made_object({.seed = 2}));
+  auto object = std::make_shared<BakedObject>(*broken.roots[0]->object);
+  object->sets[0].soup = Soup();  // nothing to write
+  broken = with_changed(broken, broken.roots[0]->id, [&](Node& n) { n.object = object; });
+  EXPECT_THROW(export_scene(broken, temporary.path() / "a", {}), Error);
+  EXPECT_EQ(folder_bytes(temporary.path() / "a"), before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(temporary.path()), {}), 1);
+}
+
+TEST(Pack, TwoTexturesBecomeOne) {
+  const auto a = made_object({.columns = 4, .rows = 2}), b = made_object({.columns = 4, .rows = 2, .seed = 2});
+  const PackedSets packed = pack({a->sets[0], b->sets[0]}, 4096, AlphaCode::halved);
+  ASSERT_EQ(packed.sets.size(), 1U);
+  EXPECT_EQ(packed.sets[0].soup.triangle_count(), a->triangle_count() + b->triangle_count());
+  EXPECT_EQ(packed.sets[0].texels->opaque_count(), a->opaque_texel_count() + b->opaque_texel_count());
+}
+
+TEST(Pack, SmallTexturesSplitIntoSeveral) {
+  const auto object = made_object();
+  const PackedSets packed = pack(object->sets, 64, AlphaCode::halved);
+  EXPECT_GT(packed.sets.size(), 1U);
+  std::size_t triangles = 0;
+  for (const TextureSet& set : packed.sets) {
+    EXPECT_LE(set.texels->width(), 64);
+    EXPECT_LE(set.texels->height(), 64);
+    triangles += set.soup.triangle_count();
+  }
+  EXPECT_EQ(triangles, object->triangle_count());
+}
+
+}  // namespace
+}  // namespace rebake::test

@@ -1,0 +1,56 @@
+// Moving a part keeps its UVs, records its turn, and splits what it shares with the rest.
+#include "mesh_ops/mesh/soup.h"
+
+#include <gtest/gtest.h>
+
+namespace rebake::test {
+namespace {
+
+// 2──3
+// │╲ │   two triangles that share an edge
+// 0──1
+Soup square() {
+  return Soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 0}, {1, 0}, {0, 1}, {1, 1}}, {{0, 1, 2}, {1, 3, 2}});
+}
+
+TEST(Soup, MovedFacesSplitSharedVertices) {
+  const Affine motion(Eigen::Translation3d(0, 0, 5));
+  const Soup moved = move_faces(square(), {0, 1}, 0, motion);
+  EXPECT_EQ(moved.positions().size(), 6U);
+  EXPECT_EQ(moved.faces()[0], (Face{0, 1, 2}));
+  for (const std::uint32_t v : moved.faces()[1]) EXPECT_EQ(moved.positions()[v].z(), 5);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_EQ(moved.uvs()[moved.faces()[1][k]], square().uvs()[square().faces()[1][k]]);
+  EXPECT_EQ(moved.turns(), nullptr);  // a move turns nothing
+}
+
+TEST(Soup, TurnsAccumulateAndScaleDoesNotCount) {
+  const Affine quarter(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()) * Eigen::Scaling(3.0));
+  Soup soup = move_faces(square(), {1, 0}, 0, quarter);
+  ASSERT_NE(soup.turns(), nullptr);
+  EXPECT_TRUE((*soup.turns())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
+  EXPECT_TRUE((*soup.turns())[3].isIdentity(0));
+  soup = move_faces(soup, {1, 0}, 0, quarter);
+  EXPECT_TRUE((*soup.turns())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
+}
+
+TEST(Soup, SubsetKeepsOrderAndDropsUnusedVertices) {
+  const Soup part = subset(square(), {0, 1}, 0, true);
+  EXPECT_EQ(part.positions(), (std::vector<Vec3>{{1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
+  EXPECT_EQ(part.faces(), (std::vector<Face>{{0, 2, 1}}));
+}
+
+TEST(Soup, FacesOutOfRangeAreRefused) { EXPECT_THROW(Soup({{0, 0, 0}}, {{0, 0}}, {{0, 0, 1}}), std::invalid_argument); }
+
+TEST(OrthogonalFactor, KnownCases) {
+  EXPECT_TRUE(orthogonal_factor(Mat3::Identity() * 1e-30).isIdentity(0));
+  EXPECT_TRUE(orthogonal_factor(Vec3(2, -3, 1e-6).asDiagonal()).isApprox(Mat3(Vec3(1, -1, 1).asDiagonal()), 0));
+  const Mat3 turn = Eigen::AngleAxisd(1, Vec3(1, 1, 1).normalized()).toRotationMatrix();
+  for (const double scale : {1e-300, 1e-6, 1.0, 1e6, 1e300})
+    EXPECT_TRUE(orthogonal_factor(turn * scale).isApprox(turn, 1e-14)) << scale;
+  EXPECT_THROW(orthogonal_factor(Vec3(1, 1, 0).asDiagonal()), std::invalid_argument);
+  EXPECT_THROW(orthogonal_factor(Mat3::Constant(NAN)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace rebake::test
