@@ -79,15 +79,11 @@ std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField&
   problem.colors.resize(sites.size() * observations);
   const Mat3 axes = axes_matrix(model.axes);
   std::vector<Vec3> eyes;
-  for (std::size_t k = 0; k < observations * 2; ++k)
+  for (std::size_t k = 0; k < observations; ++k)
     eyes.push_back(model
-                       .camera((static_cast<double>(k) + 0.5) / static_cast<double>(observations * 2),
+                       .camera((static_cast<double>(k) + 0.5) / static_cast<double>(observations),
                                std::fmod(static_cast<double>(k) * 0.6180339887498949, 1.0))
                        .eye);
-  // Eyes in the order of another low-discrepancy sequence, so that the first ones seen already lie all around.
-  std::vector<Vec3> shuffled;
-  for (std::size_t k = 0; k < eyes.size(); ++k) shuffled.push_back(eyes[k * 29 % eyes.size()]);
-  eyes = shuffled;
   tbb::parallel_for(std::size_t{0}, sites.size(), [&](std::size_t t) {
     const TexelSite& site = sites[t];
     const Vec3 point = model.patches[site.patch].point(site.u, site.v);
@@ -102,8 +98,7 @@ std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField&
     // All texels are seen by the same eyes: what is then off is off alike in neighbours, and does not show as grain.
     std::vector<Vec3> directions;
     for (const Vec3& eye : eyes)
-      if (directions.size() < observations && field.visible(eye, site.patch, site.u, site.v))
-        directions.push_back((point - eye).normalized());
+      if (field.visible(eye, site.patch, site.u, site.v)) directions.push_back((point - eye).normalized());
     if (directions.empty())
       for (const Vec3& eye : eyes) directions.push_back((point - eye).normalized());
     for (std::size_t k = 0; k < observations; ++k) {

@@ -7,7 +7,7 @@ namespace rebake::bakery {
 
 struct BakeOptions {
   int epochs = 40;
-  int observations = 32;  ///< directions a texel is seen from, out of twice as many eyes
+  int observations = 48;  ///< eyes that texels are seen from
 };
 
 /// Quads of 17×17 texels over the model's patches, with features and decoder fitted to the field.
