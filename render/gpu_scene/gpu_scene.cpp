@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "mesh_ops/features/opacity.h"
+
 namespace rebake {
 
 namespace {
@@ -51,13 +53,18 @@ GpuMesh upload(const TextureSet& set) {
                             reinterpret_cast<const void*>(column * 3 * sizeof(float)));
     }
   }
-  mesh.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, soup.faces().data(), soup.faces().size() * sizeof(Face));
+  // Faces that show nothing are not worth a draw.
+  const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
+  std::vector<Face> faces;
+  for (std::size_t f = 0; f < shows.size(); ++f)
+    if (shows[f] != 0) faces.push_back(soup.faces()[f]);
+  mesh.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, faces.data(), faces.size() * sizeof(Face));
   glBindVertexArray(0);
 
-  for (std::size_t first = 0; first < soup.faces().size(); first += faces_a_cluster) {
-    GpuMesh::Cluster cluster{first, std::min(faces_a_cluster, soup.faces().size() - first), {}};
+  for (std::size_t first = 0; first < faces.size(); first += faces_a_cluster) {
+    GpuMesh::Cluster cluster{first, std::min(faces_a_cluster, faces.size() - first), {}};
     for (std::size_t f = first; f < first + cluster.face_count; ++f)
-      for (const std::uint32_t vertex : soup.faces()[f]) cluster.bounds.extend(soup.positions()[vertex]);
+      for (const std::uint32_t vertex : faces[f]) cluster.bounds.extend(soup.positions()[vertex]);
     mesh.clusters.push_back(cluster);
   }
   return mesh;

@@ -9,14 +9,13 @@
 
 namespace rebake {
 
-/// Identity of a mesh on the GPU: the shared arrays it was made from, and the texture size its UVs were scaled by.
+/// Identity of a mesh on the GPU: the shared arrays that it was made from.
 struct MeshKey {
   const void* positions = nullptr;
   const void* uvs = nullptr;
   const void* faces = nullptr;
   const void* turns = nullptr;
-  int texture_width = 0;
-  int texture_height = 0;
+  const void* texels = nullptr;  ///< UVs are scaled by its size, and faces that show no opaque texel are left out
   auto operator<=>(const MeshKey&) const = default;
 };
 MeshKey mesh_key(const TextureSet& set);
