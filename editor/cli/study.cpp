@@ -8,6 +8,7 @@
 #include "editor/cli/commands.h"
 #include "editor/cli/options.h"
 #include "editor/cli/terminal.h"
+#include "editor/studies/default_scene.h"
 #include "mesh_ops/error.h"
 
 namespace rebake {
@@ -28,7 +29,8 @@ void add_study(CLI::App& program) {
   command->footer("Studies:" + names);
   command->add_option("name", options->name, "which study")->required()->option_text("NAME");
   command->add_option("-o,--out", options->out, "folder to write to")->required()->option_text("FOLDER");
-  command->add_option("--scene", options->scenes, "what to study it on")->required()->option_text("FOLDER|SCENE...");
+  command->add_option("--scene", options->scenes, "what to study it on")
+      ->option_text("FOLDER|SCENE... [the sample ficus]");
   command->add_option("--frames", options->frames, "frames timed for each choice")
       ->check(CLI::Range(1, 1000))
       ->option_text("N [9]");
@@ -37,6 +39,7 @@ void add_study(CLI::App& program) {
   command->callback([options] {
     for (const Study& study : study_table) {
       if (options->name != study.name) continue;
+      if (options->scenes.empty()) options->scenes.push_back(default_study_scene().string());
       Scene scene = read_all(options->scenes, options->axes, progress_bar());
       options->view.set_background(scene);
       Renderer renderer;

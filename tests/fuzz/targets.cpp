@@ -1,0 +1,77 @@
+#include "tests/fuzz/targets.h"
+
+#include <nlohmann/json.hpp>
+
+#include "editor/script/script.h"
+#include "mesh_ops/error.h"
+#include "mesh_ops/formats/camera_json.h"
+#include "mesh_ops/formats/mlp_json.h"
+#include "mesh_ops/formats/obj.h"
+#include "mesh_ops/formats/turns_json.h"
+
+namespace rebake::fuzz {
+
+namespace {
+
+// A scene that edits can work on.
+Scene small_scene() {
+  auto object = std::make_shared<BakedObject>();
+  object->sets.push_back(
+      {Soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0.1, 0.1}, {0.9, 0.1}, {0.1, 0.9}, {0.9, 0.9}},
+            {{0, 1, 2}, {1, 3, 2}}),
+       std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(4, 4, AlphaCode::halved, [](int, Texel*) {}))});
+  Node node;
+  node.name = "a";
+  node.object = object;
+  return with_added({}, node, NodeId::none, 0);
+}
+
+}  // namespace
+
+void read_obj_bytes(std::string_view bytes) {
+  try {
+    const ObjMesh mesh = read_obj(bytes, "fuzz.obj");
+    const ObjMesh back = read_obj(write_obj(mesh.positions, mesh.uvs, mesh.faces, 0, mesh.faces.size()), "back.obj");
+    if (back.faces.size() != mesh.faces.size()) std::abort();
+  } catch (const Error&) {
+  }
+}
+
+void read_json_bytes(std::string_view bytes) {
+  try {
+    const MlpFile mlp = read_mlp_json(bytes, "fuzz.json");
+    if (!(read_mlp_json(write_mlp_json(mlp), "back.json").decoder == mlp.decoder)) std::abort();
+  } catch (const Error&) {
+  }
+  try {
+    std::vector<TextureSet> sets = small_scene().roots[0]->object->sets;
+    read_turns_json(bytes, "turns.json", sets);
+  } catch (const Error&) {
+  }
+  try {
+    read_camera_json(nlohmann::json::parse(bytes));
+  } catch (const Error&) {
+  } catch (const nlohmann::json::exception&) {
+  }
+}
+
+void read_script_bytes(std::string_view bytes) {
+  Session session;
+  session.scene = small_scene();
+  std::size_t begin = 0;
+  while (begin <= bytes.size()) {
+    const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
+    try {
+      const auto line = nlohmann::json::parse(bytes.substr(begin, end - begin));
+      const Command command = read_command(with_variables(line, {{"name", "a"}}), session.scene);
+      // Files stay out of it: imports and actions are read, not carried out.
+      if (const Edit* edit = std::get_if<Edit>(&command); edit != nullptr && !std::holds_alternative<Import>(*edit))
+        session.scene = rebake::apply(session.scene, *edit);
+    } catch (const Error&) {
+    } catch (const nlohmann::json::exception&) {
+    }
+    begin = end + 1;
+  }
+}
+
+}  // namespace rebake::fuzz
