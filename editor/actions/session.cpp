@@ -12,11 +12,11 @@ Renderer& Session::renderer() {
   return *renderer_;
 }
 
-Camera framing_of(const Scene& scene, double aspect) {
+Camera framing_of(const Scene& scene, double aspect, double fov_degrees) {
   bool forward = true;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.visible && placed.node->object) forward = forward && placed.node->object->axes == Axes::forward;
-  return framing(world_bounds(scene), aspect, forward);
+  return framing(world_bounds(scene), aspect, forward, fov_degrees);
 }
 
 }  // namespace rebake

@@ -29,6 +29,6 @@ class Session {
 };
 
 /// The camera that frames everything visible; forward-facing when all objects are.
-Camera framing_of(const Scene& scene, double aspect);
+Camera framing_of(const Scene& scene, double aspect, double fov_degrees = Camera{}.fov_degrees);
 
 }  // namespace rebake

@@ -132,7 +132,7 @@ void add_info(CLI::App& program) {
   command->callback([options] {
     const nlohmann::json info = scene_info(read_all({options->folder}, options->axes, progress_bar()));
     if (options->json)
-      fmt::print("{}\n", info.dump(1));
+      fmt::print("{}\n", info.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
     else
       print(info);
   });

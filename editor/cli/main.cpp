@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
+#include <filesystem>
 #include <new>
 
 #include "editor/cli/commands.h"
@@ -16,6 +18,9 @@ int main(int argc, char** argv) {
       "Exit codes: 0 done, 1 it could not be done (the message says why), 2 wrong use of the command line, 3 compared "
       "pictures differ more than allowed.");
   for (const rebake::Subcommand& command : rebake::subcommand_table) command.add(program);
+  // A full quota then fails a write, which is reported, instead of ending the program.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rebake::stop_on_interrupt();
   const auto fail = [](const std::string& what) {
     rebake::clear_progress_bar();
     fmt::print(stderr, "{} {}\n", rebake::coloured("error:", "1;31"), what);
@@ -28,6 +33,14 @@ int main(int argc, char** argv) {
     return program.exit(error) == 0 ? 0 : 2;
   } catch (const rebake::ExitWith& exit) {
     return exit.code;
+  } catch (const rebake::FieldError& error) {
+    fail(error.what());
+    return 2;
+  } catch (const rebake::Cancelled&) {
+    fail("stopped; nothing was replaced");
+    return 130;
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(error.path1().string() + ": " + error.code().message());
   } catch (const rebake::Error& error) {
     return fail(error.what());
   } catch (const std::bad_alloc&) {

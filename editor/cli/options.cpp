@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "editor/edits/support.h"
 #include "mesh_ops/error.h"
 #include "mesh_ops/formats/camera_json.h"
 #include "mesh_ops/formats/files.h"
@@ -52,14 +53,7 @@ Scene read_all(const std::vector<std::string>& folders, Axes axes, const Progres
     const Scene read = read_any(folder, axes, progress);
     if (folders.size() == 1) return read;
     for (const NodePtr& root : read.roots) {
-      Node node = *root;
-      node.id = NodeId::none;
-      for (NodePtr& child : node.children) {
-        Node copy = *child;
-        copy.id = NodeId::none;
-        child = std::make_shared<const Node>(std::move(copy));
-      }
-      scene = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
+      scene = with_added(scene, without_ids(*root), NodeId::none, scene.roots.size());
     }
     for (const auto& [name, camera] : read.views) scene.views.try_emplace(name, camera);
   }
@@ -102,7 +96,7 @@ View ViewOptions::view(const Scene& scene) const {
   view.height = pixels[1];
   view.samples = samples;
   if (view.width < 1 || view.height < 1) throw FieldError("--size", "must be at least 1x1");
-  view.camera = framing_of(scene, static_cast<double>(view.width) / view.height);
+  view.camera = framing_of(scene, static_cast<double>(view.width) / view.height, fov.value_or(Camera{}.fov_degrees));
   if (!camera_file.empty()) {
     if (const auto found = scene.views.find(camera_file); found != scene.views.end()) {
       view.camera = found->second;
@@ -118,7 +112,7 @@ View ViewOptions::view(const Scene& scene) const {
   }
   if (!target.empty()) view.camera.target = parse_vec3(target, "--target");
   if (!up.empty()) view.camera.up = parse_vec3(up, "--up");
-  if (fov != 0) view.camera.fov_degrees = fov;
+  if (fov) view.camera.fov_degrees = *fov;
   if (!eye.empty()) {
     view.camera.eye = parse_vec3(eye, "--eye");
     // The framing's planes belong to the framing's eye.
@@ -132,8 +126,8 @@ View ViewOptions::view(const Scene& scene) const {
       }
     }
   }
-  if (near_plane != 0) view.camera.near_plane = near_plane;
-  if (far_plane != 0) view.camera.far_plane = far_plane;
+  if (near_plane) view.camera.near_plane = *near_plane;
+  if (far_plane) view.camera.far_plane = *far_plane;
   check(view);
   return view;
 }

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ Scene read_all(const std::vector<std::string>& folders, Axes axes, const Progres
 /// Camera and raster options of commands that render.
 struct ViewOptions {
   std::string size = "800x800", eye, target, up, camera_file, background;
-  double fov = 0, near_plane = 0, far_plane = 0;
+  std::optional<double> fov, near_plane, far_plane;
   int samples = 4;
   std::string weights = "automatic", shading = "deferred", precision = "full";
 

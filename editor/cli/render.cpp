@@ -71,6 +71,8 @@ void print_times(const json& times) {
 void execute(const Options& options) {
   if (options.out.empty() && !options.plan && options.time == 0)
     throw FieldError("-o", "is missing: name a PNG to write (or give --plan or --time)");
+  if (!options.out.empty() && std::filesystem::path(options.out).extension() == ".jpg")
+    throw FieldError("-o", "pictures are written as PNG; name a .png file");
   Scene scene = read_all(options.folders, options.axes, progress_bar());
   options.view.set_background(scene);
   const View view = options.view.view(scene);

@@ -3,12 +3,28 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
 
 namespace rebake {
+
+namespace {
+
+std::atomic<bool> interrupted = false;
+
+}  // namespace
+
+void stop_on_interrupt() {
+  for (const int signal : {SIGINT, SIGTERM})
+    std::signal(signal, [](int number) {
+      interrupted = true;
+      std::signal(number, SIG_DFL);
+    });
+}
 
 bool is_interactive() {
   static const bool yes = isatty(STDERR_FILENO) == 1;
@@ -21,19 +37,21 @@ std::string coloured(const std::string& text, const char* sgr) {
 }
 
 Progress progress_bar() {
-  if (!is_interactive()) return {};
+  if (!is_interactive()) return Progress({}, &interrupted);
   auto state = std::make_shared<std::pair<std::mutex, std::chrono::steady_clock::time_point>>();
-  return Progress([state](std::string_view what, double share) {
-    const std::scoped_lock lock(state->first);
-    const auto now = std::chrono::steady_clock::now();
-    if (share < 1 && now - state->second < std::chrono::milliseconds(100)) return;
-    state->second = now;
-    if (share >= 1) return clear_progress_bar();
-    const auto filled = static_cast<std::size_t>(share * 30);
-    fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'), std::string(30 - filled, ' '),
-               share * 100);
-    std::fflush(stderr);
-  });
+  return Progress(
+      [state](std::string_view what, double share) {
+        const std::scoped_lock lock(state->first);
+        const auto now = std::chrono::steady_clock::now();
+        if (share < 1 && now - state->second < std::chrono::milliseconds(100)) return;
+        state->second = now;
+        if (share >= 1) return clear_progress_bar();
+        const auto filled = static_cast<std::size_t>(share * 30);
+        fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'), std::string(30 - filled, ' '),
+                   share * 100);
+        std::fflush(stderr);
+      },
+      &interrupted);
 }
 
 void clear_progress_bar() {

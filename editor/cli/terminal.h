@@ -11,6 +11,9 @@ namespace rebake {
 bool is_interactive();
 std::string coloured(const std::string& text, const char* sgr);
 
+/// Ctrl+C asks long work to stop, which then leaves nothing half-written; a second one ends the program at once.
+void stop_on_interrupt();
+
 /// A one-line bar that is redrawn at most ten times a second and removed when done.
 Progress progress_bar();
 void clear_progress_bar();

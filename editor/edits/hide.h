@@ -7,7 +7,7 @@ namespace rebake {
 struct Hide {
   static constexpr const char* op = "hide";
   static constexpr const char* help =
-      "Hides a node and its children; they are neither drawn nor part of a plain export.";
+      "Hides a node and its children; they are neither drawn nor exported; save keeps them.";
   NodeRef node;
 
   template <class Self, class Visitor>

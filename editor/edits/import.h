@@ -27,7 +27,7 @@ inline Scene apply(const Scene& scene, const Import& edit) {
   if (read.roots.size() == 1) {
     node = without_ids(*read.roots.front());
   } else {
-    node.name = std::filesystem::path(edit.path).lexically_normal().filename().string();
+    node.name = folder_title(edit.path);
     for (const NodePtr& root : read.roots) node.children.push_back(std::make_shared<const Node>(without_ids(*root)));
   }
   if (!edit.as.empty()) {

@@ -16,7 +16,7 @@ struct Remove {
 };
 
 inline Scene apply(const Scene& scene, const Remove& edit) {
-  editable(scene, edit.node.id);
+  editable_with_children(scene, edit.node.id);
   return without(scene, edit.node.id);
 }
 

@@ -38,8 +38,13 @@ inline Scene apply(const Scene& scene, const Reorder& edit) {
     editable(scene, parent);
     parent_to_world = target->to_world;
   }
-  if (parent != parent_of(scene, edit.node.id)) moved.to_parent = parent_to_world.inverse() * placed.to_world;
-  return with_added(rest, std::move(moved), parent, static_cast<std::size_t>(edit.index));
+  if (parent != parent_of(scene, edit.node.id)) {
+    moved.to_parent = parent_to_world.inverse() * placed.to_world;
+    moved.visible = placed.visible;  // hidden by a group above stays hidden
+  }
+  const Scene result = with_added(rest, std::move(moved), parent, static_cast<std::size_t>(edit.index));
+  check_subtree(result, edit.node.id);
+  return result;
 }
 
 }  // namespace rebake

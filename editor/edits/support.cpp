@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace rebake {
 
 PlacedNode present(const Scene& scene, NodeId id) {
@@ -13,6 +15,20 @@ PlacedNode present(const Scene& scene, NodeId id) {
 PlacedNode editable(const Scene& scene, NodeId id) {
   PlacedNode placed = present(scene, id);
   if (placed.locked) throw EditError(fmt::format("node \"{}\" is locked; unlock it first", placed.node->name));
+  return placed;
+}
+
+PlacedNode editable_with_children(const Scene& scene, NodeId id) {
+  PlacedNode placed = editable(scene, id);
+  std::vector<NodePtr> open = placed.node->children;
+  while (!open.empty()) {
+    const NodePtr node = open.back();
+    open.pop_back();
+    if (node->locked)
+      throw EditError(
+          fmt::format("\"{}\" holds the locked node \"{}\"; unlock it first", placed.node->name, node->name));
+    open.insert(open.end(), node->children.begin(), node->children.end());
+  }
   return placed;
 }
 
@@ -92,6 +108,19 @@ Box selection_bounds(const PlacedNode& placed) {
       if ((*placed.node->selection)[f++] != 0)
         for (const std::uint32_t vertex : face) box.extend(placed.to_world * set.soup.positions()[vertex]);
   return box;
+}
+
+void check_subtree(const Scene& scene, NodeId id) {
+  if (depth(scene) > deepest_group) throw EditError(fmt::format("groups can be nested {} deep at most", deepest_group));
+  std::vector<NodeId> inside{id};
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (std::find(inside.begin(), inside.end(), placed.node->id) == inside.end()) continue;
+    for (const NodePtr& child : placed.node->children) inside.push_back(child->id);
+    checked_turn(placed.to_world);
+    const Box box = placed.node->object ? transformed(placed.node->object->bounds(), placed.to_world) : Box();
+    if (!placed.to_world.matrix().allFinite() || !(box.isEmpty() || (box.min().allFinite() && box.max().allFinite())))
+      throw EditError(fmt::format("\"{}\" would lie beyond what numbers can hold", placed.node->name));
+  }
 }
 
 void checked_turn(const Affine& transform) {

@@ -9,6 +9,9 @@ namespace rebake {
 /// The node, where it may be edited. Throws EditError when it is absent, or locked (itself or a group above it).
 PlacedNode editable(const Scene& scene, NodeId id);
 
+/// As editable(), and throws EditError where a node inside it is locked.
+PlacedNode editable_with_children(const Scene& scene, NodeId id);
+
 /// The node, locked or not. Throws EditError when it is absent.
 PlacedNode present(const Scene& scene, NodeId id);
 
@@ -35,6 +38,10 @@ OutlinePlace place_of(const Scene& scene, NodeId id);
 Box subtree_bounds(const Scene& scene, NodeId id);
 /// World box of a node's selected triangles.
 Box selection_bounds(const PlacedNode& placed);
+
+/// Throws EditError when a node below `id` (itself included) is flattened or lies beyond what numbers hold, and when
+/// groups nest too deep.
+void check_subtree(const Scene& scene, NodeId id);
 
 /// Throws EditError when the transform flattens what it moves.
 void checked_turn(const Affine& transform);

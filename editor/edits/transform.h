@@ -29,7 +29,7 @@ struct Transform {
 };
 
 inline Scene apply(const Scene& scene, const Transform& edit) {
-  const PlacedNode placed = editable(scene, edit.node.id);
+  const PlacedNode placed = editable_with_children(scene, edit.node.id);
   Box box;
   if (!edit.selection) {
     box = subtree_bounds(scene, edit.node.id);
@@ -52,23 +52,30 @@ inline Scene apply(const Scene& scene, const Transform& edit) {
     const Affine to_parent = parent_to_world.matrix().isIdentity(0)
                                  ? motion * placed.node->to_parent
                                  : parent_to_world.inverse() * motion * placed.to_world;
-    checked_turn(to_parent);
-    return with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
+    const Scene result = with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
+    check_subtree(result, edit.node.id);
+    return result;
   }
   const Affine in_object = placed.to_world.inverse() * motion * placed.to_world;
   checked_turn(in_object);
-  return with_changed(scene, edit.node.id, [&](Node& node) {
+  // The colour belongs to the direction turned back by the orthogonal factor of all that was done, seen from the
+  // object's own frame.
+  const Mat3 turn = orthogonal_factor(placed.to_world.linear()).transpose() *
+                    orthogonal_factor(motion.linear() * placed.to_world.linear());
+  const Scene result = with_changed(scene, edit.node.id, [&](Node& node) {
     std::vector<TextureSet> sets;
     std::size_t first = 0;
     for (const TextureSet& set : node.object->sets) {
       const auto begin = node.selection->begin() + static_cast<std::ptrdiff_t>(first);
       const bool any = std::any_of(begin, begin + static_cast<std::ptrdiff_t>(set.soup.triangle_count()),
                                    [](auto flag) { return flag != 0; });
-      sets.push_back(any ? TextureSet{move_faces(set.soup, *node.selection, first, in_object), set.texels} : set);
+      sets.push_back(any ? TextureSet{move_faces(set.soup, *node.selection, first, in_object, turn), set.texels} : set);
       first += set.soup.triangle_count();
     }
     node.object = with_sets(*node.object, std::move(sets));
   });
+  check_subtree(result, edit.node.id);
+  return result;
 }
 
 }  // namespace rebake

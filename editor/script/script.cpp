@@ -82,12 +82,20 @@ Command read_command(const json& line, const Scene& scene) {
                                       : fmt::format("\"{}\" is not known; did you mean \"{}\"?", name, near));
 }
 
-json with_variables(const json& line, const std::map<std::string, std::string>& variables) {
+json with_variables(json line, const std::map<std::string, std::string>& variables) {
   if (line.is_string()) return filled_in(line.get<std::string>(), variables);
-  if (!line.is_structured()) return line;
-  json out = line;
-  for (json& value : out) value = with_variables(value, variables);
-  return out;
+  if (line.is_structured())
+    for (json& value : line) value = with_variables(std::move(value), variables);
+  return line;
+}
+
+json read_line(std::string_view text) {
+  // Deeper lines mean nothing and could exhaust the stack.
+  static constexpr int deepest = 32;
+  return json::parse(text.begin(), text.end(), [](int depth, json::parse_event_t, json&) {
+    if (depth > deepest) throw Error(fmt::format("nests deeper than {} levels", deepest));
+    return true;
+  });
 }
 
 void run_script(Session& session, std::string_view text, const std::filesystem::path& name,
@@ -102,7 +110,7 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
       throw ScriptError(fmt::format("{}: line {}: {}", name.string(), number, what));
     };
     try {
-      const json object = json::parse(line.begin() + static_cast<std::ptrdiff_t>(first), line.end());
+      const json object = read_line(std::string_view(line).substr(first));
       const Command command = read_command(with_variables(object, variables), session.scene);
       if (const Edit* edit = std::get_if<Edit>(&command))
         session.scene = rebake::apply(session.scene, *edit);
@@ -112,6 +120,8 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
       fail(std::string("is not valid JSON: ") + error.what());
     } catch (const Cancelled&) {
       throw;
+    } catch (const std::filesystem::filesystem_error& error) {
+      fail(error.path1().string() + ": " + error.code().message());
     } catch (const Error& error) {
       fail(error.what());
     }

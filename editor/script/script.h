@@ -23,7 +23,10 @@ class ScriptError : public Error {
 Command read_command(const nlohmann::json& line, const Scene& scene);
 
 /// Puts variables into all texts of a line: "{name}" becomes the value. Throws Error for one that has no value.
-nlohmann::json with_variables(const nlohmann::json& line, const std::map<std::string, std::string>& variables);
+nlohmann::json with_variables(nlohmann::json line, const std::map<std::string, std::string>& variables);
+
+/// Parses one line of JSON, nested 32 levels at most. Throws Error, and nlohmann's exceptions for what is not JSON.
+nlohmann::json read_line(std::string_view text);
 
 /// Runs a script: one JSON object a line; blank lines and lines that begin with # or // are skipped. Throws
 /// ScriptError; what was written before the line in error stays.

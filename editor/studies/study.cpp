@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
@@ -34,6 +35,8 @@ void write_study(const Study& study, const std::vector<StudyRow>& rows, const st
     data += fmt::format("\"{}\" {} {}\n", row.choice, row.milliseconds, row.psnr_db);
   }
   const std::string base = (folder / study.name).string();
+  std::string quoted;  // for gnuplot, which doubles single quotes
+  for (const char c : base) quoted += c == '\'' ? std::string("''") : std::string(1, c);
   write_file_atomically(base + ".csv", csv);
   std::string plot = fmt::format(
       "$rows << EOD\n{}EOD\nset title \"{}\"\nset xlabel \"milliseconds a frame (median)\"\nset ylabel \"PSNR, dB "
@@ -45,7 +48,8 @@ void write_study(const Study& study, const std::vector<StudyRow>& rows, const st
     plot += fmt::format(
         "set terminal {}\nset output '{}.{}'\nplot $rows using 2:3 with points pt 7 ps 1.2, $rows using 2:3:1 with "
         "labels offset 0,1\n",
-        terminal, base, extension);
+        terminal, quoted, extension);
+  std::signal(SIGPIPE, SIG_IGN);  // gnuplot may be missing; its exit status says so
   FILE* pipe = popen("gnuplot", "w");
   if (pipe == nullptr) throw Error("gnuplot cannot be started; install gnuplot-nox for the plots");
   std::fputs(plot.c_str(), pipe);

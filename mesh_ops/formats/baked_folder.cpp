@@ -10,6 +10,7 @@
 #include "mesh_ops/formats/files.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
+#include "mesh_ops/formats/turns_json.h"
 
 namespace rebake {
 
@@ -159,6 +160,8 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
     object->sets.push_back(std::move(set));
   }
   object->origin = origin;
+  if (const fs::path turns = folder / "turns.json"; fs::exists(turns))
+    read_turns_json(read_file(turns), turns, object->sets);
   return object;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "mesh_ops/error.h"
 #include "mesh_ops/formats/scene_folder.h"
@@ -28,6 +29,14 @@ std::vector<Mat3> distinct_turns(const BakedObject& object) {
       if (set.soup.turns() == nullptr) break;
     }
   return turns;
+}
+
+// Equal but for the rounding of a folded rotation.
+bool nearly_equal(const Decoder& a, const Decoder& b) {
+  if (a == b) return true;
+  Decoder same = a;
+  same.weights0 = b.weights0;
+  return same == b && (a.weights0 - b.weights0).cwiseAbs().maxCoeff() <= 1e-13 * a.weights0.cwiseAbs().maxCoeff();
 }
 
 // Triangles of one turn, in world space and without turns. The arrays are shared where nothing changes.
@@ -68,14 +77,19 @@ Soup appended(const Soup& a, const Soup& b) {
 std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout) {
   struct Group {
     std::string name;
-    bool visible;
     BakedObject object;
   };
   std::vector<Group> groups;
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.node->object || placed.node->object->triangle_count() == 0) continue;
     const BakedObject& object = *placed.node->object;
-    const Mat3 node_turn = orthogonal_factor(placed.to_world.linear());
+    if (!placed.visible) continue;
+    Mat3 node_turn;
+    try {
+      node_turn = orthogonal_factor(placed.to_world.linear());
+    } catch (const std::invalid_argument& error) {
+      throw EditError(fmt::format("node \"{}\": {}", placed.node->name, error.what()));
+    }
     const std::vector<Mat3> turns = distinct_turns(object);
     for (const Mat3& turn : turns) {
       std::vector<TextureSet> sets = world_sets(object, turn, turns.size() == 1, placed.to_world);
@@ -87,11 +101,11 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
       };
       Group* found = nullptr;
       for (Group& group : groups)
-        if (group.visible == placed.visible && (layout || group.object.layout == object.layout) &&
-            *folded_into(group.object.axes) == *group.object.decoder)
+        if ((layout || group.object.layout == object.layout) &&
+            nearly_equal(*folded_into(group.object.axes), *group.object.decoder))
           found = &group;
       if (found == nullptr) {
-        Group group{placed.node->name, placed.visible, {}};
+        Group group{placed.node->name, {}};
         group.object.axes = object.axes;
         group.object.layout = layout.value_or(object.layout);
         group.object.decoder = folded_into(object.axes);
@@ -115,7 +129,6 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
   for (Group& group : groups) {
     Node node;
     node.name = group.name;
-    node.visible = group.visible;
     node.object = std::make_shared<const BakedObject>(std::move(group.object));
     nodes.push_back(std::move(node));
   }
@@ -125,10 +138,13 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
 ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options,
                           const Progress& progress) {
   const std::vector<Node> nodes = merged_for_export(scene, options.layout);
-  if (nodes.empty()) throw EditError("there is nothing to export: the scene has no triangles");
+  if (nodes.empty()) throw EditError("there is nothing to export: no visible node has triangles");
   ExportReport report;
   report.folders = nodes.size();
-  report.one_folder = nodes.size() == 1 && nodes.front().visible;
+  report.one_folder = nodes.size() == 1;
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->object && !placed.visible)
+      report.notes.push_back(fmt::format("the hidden node \"{}\" is left out; save keeps it", placed.node->name));
   AtomicFolder out(folder);
   if (report.one_folder) {
     const BakedObject& object = *nodes.front().object;
@@ -140,10 +156,7 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     write_baked_folder(out, {}, object, object.layout, report.notes, progress);
   } else {
     report.notes.push_back(
-        nodes.size() == 1
-            ? "a hidden object cannot be said in one folder: wrote scene.json"
-            : fmt::format("one folder holds one decoder in one orientation: wrote scene.json with {} folders",
-                          nodes.size()));
+        fmt::format("one folder holds one decoder in one orientation: wrote scene.json with {} folders", nodes.size()));
     Scene merged;
     merged.background = scene.background;
     merged.views = scene.views;

@@ -8,8 +8,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
+#include <set>
+#include <vector>
 
 #include "mesh_ops/error.h"
 
@@ -38,6 +41,43 @@ void write_synced(const fs::path& path, std::string_view bytes) {
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
   if (::fsync(file.value) != 0 && errno != EINVAL) throw FileError(path, "cannot be written: " + reason());
+}
+
+// The object folders that a folder's own scene.json names.
+std::set<std::string> named_folders(const fs::path& folder) {
+  std::set<std::string> names;
+  if (!fs::exists(folder / "scene.json")) return names;
+  const nlohmann::json scene = nlohmann::json::parse(read_file(folder / "scene.json"), nullptr, false);
+  if (!scene.is_object() || !scene.contains("rebake_scene")) return names;
+  std::vector<const nlohmann::json*> open{&scene};
+  while (!open.empty()) {
+    const nlohmann::json& value = *open.back();
+    open.pop_back();
+    for (const char* key : {"nodes", "children"})
+      if (value.is_object() && value.contains(key) && value.at(key).is_array())
+        for (const nlohmann::json& child : value.at(key)) open.push_back(&child);
+    if (value.is_object() && value.contains("folder") && value.at("folder").is_string())
+      names.insert(value.at("folder").get<std::string>());
+  }
+  return names;
+}
+
+// Replacing a folder must never lose what is not part of the scene in it.
+void refuse_foreign_content(const fs::path& folder) {
+  const std::set<std::string> own = named_folders(folder);
+  const auto refuse = [&](const fs::path& path) {
+    throw FileError(folder,
+                    fmt::format("holds \"{}\", which is not part of the scene there; choose a new or empty folder",
+                                path.lexically_relative(folder).string()));
+  };
+  std::error_code error;
+  for (auto it = fs::recursive_directory_iterator(folder, error); !error && it != fs::recursive_directory_iterator();
+       it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (it->is_symlink()) refuse(it->path());
+    if (it->is_directory() ? it.depth() > 0 || !own.contains(name) : !is_format_file_name(name)) refuse(it->path());
+  }
+  if (error) throw FileError(folder, "cannot be read: " + error.message());
 }
 
 std::string random_suffix() {
@@ -78,21 +118,15 @@ bool is_format_file_name(const std::string& name) {
 }
 
 AtomicFolder::AtomicFolder(fs::path target) : target_(std::move(target)) {
-  target_ = fs::absolute(target_).lexically_normal();
-  if (!target_.has_filename()) target_ = target_.parent_path();
+  if (target_.empty()) throw FieldError("out", "names no folder to write to");
   std::error_code error;
+  // Through symbolic links: what they point to is replaced, not the link.
+  target_ = fs::weakly_canonical(fs::absolute(target_), error);
+  if (error) throw FileError(target_, "cannot be reached: " + error.message());
+  if (!target_.has_filename()) target_ = target_.parent_path();
   if (fs::exists(target_, error)) {
     if (!fs::is_directory(target_)) throw FileError(target_, "is a file; name a folder to write to");
-    // Replacing the folder must never lose what is not ours.
-    for (auto it = fs::recursive_directory_iterator(target_, error); !error && it != fs::recursive_directory_iterator();
-         it.increment(error)) {
-      const bool folder_of_scene = it->is_directory() && it.depth() == 0;
-      if (!folder_of_scene && !is_format_file_name(it->path().filename().string()))
-        throw FileError(target_,
-                        fmt::format("holds \"{}\", which is not part of a baked scene; choose a new or empty folder",
-                                    fs::relative(it->path(), target_).string()));
-    }
-    if (error) throw FileError(target_, "cannot be read: " + error.message());
+    refuse_foreign_content(target_);
     if (::access(target_.c_str(), W_OK) != 0) throw FileError(target_, "cannot be written: " + reason());
   }
   fs::create_directories(target_.parent_path(), error);
@@ -122,7 +156,12 @@ void AtomicFolder::commit() {
     if (errno != EINVAL && errno != ENOSYS) throw FileError(target_, "cannot be replaced: " + reason());
     const fs::path old = staging_.string() + ".old";
     fs::rename(target_, old);
-    fs::rename(staging_, target_);
+    std::error_code error;
+    fs::rename(staging_, target_, error);
+    if (error) {
+      fs::rename(old, target_);
+      throw FileError(target_, "cannot be replaced: " + error.message());
+    }
     staging_ = old;
     return;
   }
@@ -130,10 +169,19 @@ void AtomicFolder::commit() {
   staging_.clear();
 }
 
-void write_file_atomically(const fs::path& path, std::string_view bytes) {
-  if (path.has_parent_path() && !fs::is_directory(path.parent_path()))
-    throw FileError(path.parent_path(), "is not a folder; create it first");
-  if (fs::is_directory(path)) throw FileError(path, "is a folder; name a file to write to");
+void write_file_atomically(const fs::path& named, std::string_view bytes) {
+  std::error_code error;
+  // Through symbolic links: what they point to is replaced, not the link.
+  const fs::path path = fs::weakly_canonical(fs::absolute(named), error);
+  if (error) throw FileError(named, "cannot be reached: " + error.message());
+  if (path.has_parent_path() && !fs::is_directory(path.parent_path(), error))
+    throw FileError(named.parent_path(), "is not a folder; create it first");
+  if (fs::is_directory(path)) throw FileError(named, "is a folder; name a file to write to");
+  if (fs::exists(path) && !fs::is_regular_file(path)) {
+    // Devices and pipes are written to; a rename would put a file in their place.
+    write_synced(path, bytes);
+    return;
+  }
   const fs::path partial = path.string() + "." + random_suffix() + ".partial";
   try {
     write_synced(partial, bytes);

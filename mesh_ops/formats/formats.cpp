@@ -12,8 +12,7 @@ namespace {
 
 Scene read_mobilenerf(const fs::path& folder, Axes axes, const Progress& progress) {
   Node node;
-  const fs::path normal = fs::absolute(folder).lexically_normal();
-  node.name = (normal.has_filename() ? normal.filename() : normal.parent_path().filename()).string();
+  node.name = folder_title(folder);
   node.object = read_baked_folder(folder, axes, progress);
   return with_added({}, node, NodeId::none, 0);
 }
@@ -25,6 +24,12 @@ constexpr Format table[] = {
 };
 
 }  // namespace
+
+std::string folder_title(const fs::path& path) {
+  fs::path normal = fs::absolute(path).lexically_normal();
+  if (!normal.has_filename() || normal.filename() == "scene.json") normal = normal.parent_path();
+  return normal.filename().string();
+}
 
 std::span<const Format> formats() { return table; }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "mesh_ops/progress.h"
 #include "mesh_ops/scene/scene.h"
@@ -16,6 +17,9 @@ struct Format {
 };
 
 std::span<const Format> formats();
+
+/// The name that people know a folder by; scene.json stands for its folder.
+std::string folder_title(const std::filesystem::path& path);
 
 /// Reads a folder of any known kind as a scene; a MobileNeRF folder becomes one node with the folder's name. `axes` is
 /// for folders that do not say. Throws FileError.

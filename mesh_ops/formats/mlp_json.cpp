@@ -25,7 +25,7 @@ const json& member(const json& root, const char* key, const std::filesystem::pat
 double number(const json& value, const std::string& where, const std::filesystem::path& name) {
   if (!value.is_number()) throw FileError(name, where + " is not a number");
   const double result = value.get<double>();
-  if (!std::isfinite(result)) throw FileError(name, where + " is not finite");
+  if (!std::isfinite(static_cast<float>(result))) throw FileError(name, where + " is beyond what 32-bit floats hold");
   return result;
 }
 

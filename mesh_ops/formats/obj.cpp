@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <unordered_map>
 
@@ -25,7 +26,9 @@ struct Corner {
 class Parser {
  public:
   Parser(std::string_view text, const std::filesystem::path& name)
-      : at_(text.data()), end_(text.data() + text.size()), name_(name) {}
+      : at_(text.data()), end_(text.data() + text.size()), name_(name) {
+    if (text.starts_with("\xEF\xBB\xBF")) at_ += 3;  // a byte-order mark
+  }
 
   ObjMesh run() {
     while (at_ != end_) {
@@ -78,7 +81,9 @@ class Parser {
     const auto [stop, error] = std::from_chars(at_, line_end_, value);
     if (error == std::errc::invalid_argument || (stop != line_end_ && *stop != ' ' && *stop != '\t'))
       fail(fmt::format("\"{}\" is not a number", word_at(at_)));
-    if (error != std::errc() || !std::isfinite(value)) fail(fmt::format("\"{}\" is not a finite number", word_at(at_)));
+    // Too small to be told from 0 is 0.
+    if (error == std::errc::result_out_of_range) value = std::strtod(std::string(at_, stop).c_str(), nullptr);
+    if (!std::isfinite(value)) fail(fmt::format("\"{}\" is not a finite number", word_at(at_)));
     at_ = stop;
     return value;
   }
@@ -107,7 +112,7 @@ class Parser {
   void face() {
     Corner polygon[3] = {};
     int corner_count = 0;
-    for (skip_blanks(); at_ != line_end_; skip_blanks()) {
+    for (skip_blanks(); at_ != line_end_ && *at_ != '#'; skip_blanks()) {
       Corner corner{};
       corner.position = index(positions_.size(), "vertex");
       if (at_ == line_end_ || *at_ != '/') fail("a face has no texture coordinates (vt): write f v/vt v/vt v/vt");

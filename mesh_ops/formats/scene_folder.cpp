@@ -11,7 +11,6 @@
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/camera_json.h"
 #include "mesh_ops/formats/files.h"
-#include "mesh_ops/formats/turns_json.h"
 #include "mesh_ops/formats/write_baked_folder.h"
 
 namespace rebake {
@@ -22,7 +21,6 @@ using nlohmann::json;
 namespace {
 
 constexpr int scene_version = 1;
-constexpr int deepest_group = 64;
 
 json node_json(const Node& node, const std::map<const BakedObject*, std::string>& folder_of) {
   json rows = json::array();
@@ -78,7 +76,7 @@ class SceneReader {
 
  private:
   Node read_node(const json& value, int depth) {
-    if (depth > deepest_group) throw FileError(name_, fmt::format("nests groups deeper than {}", deepest_group));
+    if (depth >= deepest_group) throw FileError(name_, fmt::format("nests groups deeper than {}", deepest_group));
     Node node;
     node.name = value.at("name").get<std::string>();
     node.visible = value.value("visible", true);
@@ -114,12 +112,6 @@ class SceneReader {
     auto& known = objects_[relative + '\n' + axes];
     if (known) return known;
     known = read_baked_folder(folder_ / path, axes == "forward" ? Axes::forward : Axes::y_up, progress_);
-    const fs::path turns = folder_ / path / "turns.json";
-    if (fs::exists(turns)) {
-      auto turned = std::make_shared<BakedObject>(*known);
-      read_turns_json(read_file(turns), turns, turned->sets);
-      known = turned;
-    }
     return known;
   }
 

@@ -63,15 +63,15 @@ std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, std::ve
   // Sets that lost triangles give up the texels that nobody uses; sets as they were read are left alone.
   std::vector<TextureSet> kept, edited;
   std::uint64_t edited_area = 0;
-  for (TextureSet set : object.sets) {
-    set.texels = with_alpha_code(set.texels, code);
+  for (const TextureSet& set : object.sets) {
+    const TextureSet same_or_converted{set.soup, with_alpha_code(set.texels, code)};
     const Origin::Set* source = source_set(object, set, false);
     const bool same_faces = source != nullptr && source->faces.lock() == set.soup.shared_faces();
-    if (same_faces || converts || !can_pack(set)) {
-      kept.push_back(std::move(set));
+    if (same_faces || !can_pack(set)) {
+      kept.push_back(same_or_converted);
     } else {
       edited_area += static_cast<std::uint64_t>(set.texels->width()) * static_cast<std::uint64_t>(set.texels->height());
-      edited.push_back(std::move(set));
+      edited.push_back(same_or_converted);
     }
   }
   if (edited.empty()) return kept;
@@ -86,17 +86,20 @@ std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, std::ve
   return kept;
 }
 
+// Chunk viewers fail on an empty chunk: fewer than 8 triangles are drawn several times, which changes no pixel.
+Soup with_a_face_for_each_chunk(const Soup& soup) {
+  if (soup.triangle_count() >= chunks_a_set) return soup;
+  auto faces = std::make_shared<std::vector<Face>>(soup.faces());
+  while (faces->size() < chunks_a_set) faces->push_back((*faces)[faces->size() % soup.triangle_count()]);
+  return Soup(soup.shared_positions(), soup.shared_uvs(), faces, soup.shared_turns());
+}
+
 std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
   const std::size_t faces = soup.triangle_count();
   if (layout != Layout::chunked) return {write_obj(soup.positions(), soup.uvs(), soup.faces(), 0, faces)};
   std::vector<std::string> texts(chunks_a_set);
   tbb::parallel_for(std::size_t{0}, chunks_a_set, [&](std::size_t j) {
-    std::size_t first = faces * j / chunks_a_set, last = faces * (j + 1) / chunks_a_set;
-    // Chunk viewers fail on an empty chunk: with fewer than 8 triangles some are drawn twice, which changes no pixel.
-    if (first == last) {
-      first = std::min(first, faces - 1);
-      last = first + 1;
-    }
+    const std::size_t first = faces * j / chunks_a_set, last = faces * (j + 1) / chunks_a_set;
     texts[j] = write_obj(soup.positions(), soup.uvs(), soup.faces(), first, last);
   });
   return texts;
@@ -111,7 +114,9 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
   if (object.triangle_count() == 0) throw Error("an object without triangles cannot be written");
   BakedObject filled = object;
   std::erase_if(filled.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
-  const std::vector<TextureSet> sets = fitted(filled, layout, notes);
+  std::vector<TextureSet> sets = fitted(filled, layout, notes);
+  if (layout == Layout::chunked)
+    for (TextureSet& set : sets) set.soup = with_a_face_for_each_chunk(set.soup);
   const bool same_layout = object.origin && object.origin->layout == layout;
 
   for (std::size_t i = 0; i < sets.size(); ++i) {

@@ -66,9 +66,8 @@ Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t
               any_turn ? Soup::Turns(turns) : nullptr);
 }
 
-Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag,
-                const Affine& motion) {
-  const Mat3 turn = orthogonal_factor(motion.linear());
+Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,
+                const Mat3& turn) {
   std::vector<std::uint8_t> by_moved(soup.positions().size(), 0);
   std::vector<std::uint8_t> by_unmoved(soup.positions().size(), 0);
   for (std::size_t f = 0; f < soup.faces().size(); ++f)

@@ -50,9 +50,10 @@ class Soup {
 /// The faces whose `keep` flag (one a face) is `wanted`, with the vertices they use, in the old order.
 Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted);
 
-/// Moves the flagged faces by `motion`, recording its orthogonal factor in their vertices' turns. Vertices shared by
-/// moved
-Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion);
+/// Moves the flagged faces by `motion`, recording `turn` (orthogonal, in object space) in their vertices' turns.
+/// Vertices shared by moved
+Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,
+                const Mat3& turn);
 
 /// The orthogonal polar factor of `linear`: its rotation, or rotation and reflection. Throws std::invalid_argument when
 /// `linear` is singular or not finite. Scale does not matter.

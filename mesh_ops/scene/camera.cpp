@@ -39,8 +39,10 @@ void check(const Camera& camera) {
   world_to_camera(camera);
 }
 
-Camera framing(const Box& bounds, double aspect, bool forward) {
+Camera framing(const Box& bounds, double aspect, bool forward, double fov_degrees) {
   Camera camera;
+  if (!(fov_degrees > 0 && fov_degrees < 180)) throw FieldError("fov", "must lie between 0 and 180 degrees");
+  camera.fov_degrees = fov_degrees;
   if (bounds.isEmpty()) return camera;
   const Vec3 center = bounds.center();
   const double radius = std::max(bounds.diagonal().norm() / 2, 1e-30);

@@ -25,6 +25,6 @@ void check(const Camera& camera);
 
 /// A camera that sees all of `bounds` at the given aspect (width / height), from the front and slightly above.
 /// `forward` scenes are looked at along −z.
-Camera framing(const Box& bounds, double aspect, bool forward);
+Camera framing(const Box& bounds, double aspect, bool forward, double fov_degrees = Camera{}.fov_degrees);
 
 }  // namespace rebake

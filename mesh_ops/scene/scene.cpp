@@ -129,6 +129,13 @@ Box transformed(const Box& box, const Affine& transform) {
   return result;
 }
 
+int depth(const Scene& scene) {
+  int levels = 0;
+  for (std::vector<NodePtr> row = scene.roots, next; !row.empty(); row = std::move(next), next.clear(), ++levels)
+    for (const NodePtr& node : row) next.insert(next.end(), node->children.begin(), node->children.end());
+  return levels;
+}
+
 Box world_bounds(const Scene& scene) {
   Box result;
   for (const PlacedNode& placed : placed_nodes(scene))

@@ -68,6 +68,11 @@ Scene with_added(const Scene& scene, Node node, NodeId parent, std::size_t index
 /// `wanted`, or `wanted.2`, `wanted.3`, … when it is taken.
 std::string unique_name(const Scene& scene, const std::string& wanted);
 
+/// Groups are nested at most this deep.
+inline constexpr int deepest_group = 64;
+/// Levels of nodes: 0 for an empty scene, 1 without groups.
+int depth(const Scene& scene);
+
 /// World box of all visible objects.
 Box world_bounds(const Scene& scene);
 /// Box of an axis-aligned box after a transform.

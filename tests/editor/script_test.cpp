@@ -105,6 +105,40 @@ TEST_F(Script, ThrownEditLeavesTheSceneAsItWas) {
   EXPECT_TRUE(session.scene.roots.empty());
 }
 
+TEST_F(Script, TurningAllTrianglesOfAStretchedNodeTurnsItsColoursLikeTheNode) {
+  run(import + R"({"op": "transform", "node": "ball", "scale": [4, 1, 1]})");
+  const Mat3 before = find_placed(session.scene, node("ball")->id)->to_world.linear();
+  run(R"({"op": "select", "node": "ball", "all": true})"
+      "\n"
+      R"({"op": "transform", "node": "ball", "selection": true, "rotate": {"axis": [0, 1, 0], "degrees": 60}})");
+  const Mat3 turn = Eigen::AngleAxisd(EIGEN_PI / 3, Vec3::UnitY()).toRotationMatrix();
+  const Mat3 wanted = orthogonal_factor(before).transpose() * orthogonal_factor(turn * before);
+  for (const Mat3& t : *node("ball")->object->sets[0].soup.turns()) ASSERT_TRUE(t.isApprox(wanted, 1e-12));
+}
+
+TEST_F(Script, WhatWouldBeLostIsRefused) {
+  run(import);
+  expect_error(R"({"op": "transform", "node": "ball", "translate": [1.7e308, 0, 0]}
+{"op": "transform", "node": "ball", "translate": [1.7e308, 0, 0]})",
+               "beyond what numbers can hold");
+  run(R"({"op": "group", "nodes": ["ball"], "as": "g"})"
+      "\n"
+      R"({"op": "lock", "node": "ball"})");
+  expect_error(R"({"op": "remove", "node": "g"})", "holds the locked node \"ball\"");
+  std::string nested = "{\"op\": ";
+  for (int i = 0; i < 5000; ++i) nested += "[";
+  expect_error(nested, "nests deeper than 32 levels");
+}
+
+TEST_F(Script, LeavingAHiddenGroupStaysHidden) {
+  run(import + R"({"op": "group", "nodes": ["ball"], "as": "g"})"
+               "\n"
+               R"({"op": "hide", "node": "g"})"
+               "\n"
+               R"({"op": "reorder", "node": "ball", "index": 0, "top": true})");
+  EXPECT_FALSE(find_placed(session.scene, node("ball")->id)->visible);
+}
+
 TEST_F(Script, EditsArePure) {
   run(import);
   const Scene before = session.scene;

@@ -62,7 +62,7 @@ void read_script_bytes(std::string_view bytes) {
   while (begin <= bytes.size()) {
     const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
     try {
-      const auto line = nlohmann::json::parse(bytes.substr(begin, end - begin));
+      const auto line = read_line(bytes.substr(begin, end - begin));
       const Command command = read_command(with_variables(line, {{"name", "a"}}), session.scene);
       // Files stay out of it: imports and actions are read, not carried out.
       if (const Edit* edit = std::get_if<Edit>(&command); edit != nullptr && !std::holds_alternative<Import>(*edit))

@@ -20,6 +20,10 @@
 namespace rebake::test {
 namespace {
 
+Soup moved_part(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first, const Affine& motion) {
+  return move_faces(soup, flags, first, motion, orthogonal_factor(motion.linear()));
+}
+
 namespace fs = std::filesystem;
 
 class ByLayout : public ::testing::TestWithParam<Layout> {
@@ -29,7 +33,11 @@ class ByLayout : public ::testing::TestWithParam<Layout> {
         {.code = GetParam() == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved, .layout = GetParam()});
   }
 };
-INSTANTIATE_TEST_SUITE_P(Folder, ByLayout, ::testing::Values(Layout::split, Layout::chunked, Layout::unsplit));
+std::string layout_name(const ::testing::TestParamInfo<Layout>& instance) {
+  return instance.param == Layout::split ? "split" : instance.param == Layout::chunked ? "chunked" : "unsplit";
+}
+INSTANTIATE_TEST_SUITE_P(Folder, ByLayout, ::testing::Values(Layout::split, Layout::chunked, Layout::unsplit),
+                         layout_name);
 
 TEST_P(ByLayout, UneditedFolderExportsByteForByte) {
   const TemporaryFolder temporary;
@@ -61,7 +69,8 @@ TEST_P(ByLayout, DeletionKeepsTexelsAndDropsUnusedSpace) {
   const TemporaryFolder temporary;
   export_scene(scene_of(object()), temporary.path() / "a", {});
   Scene scene = read_any(temporary.path() / "a", Axes::y_up);
-  const BakedObject& whole = *scene.roots[0]->object;
+  const auto read = scene.roots[0]->object;
+  const BakedObject& whole = *read;
   TriangleSet keep(whole.triangle_count(), 0);
   for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = f % 10 < 2 ? 1 : 0;
   auto cut = std::make_shared<BakedObject>(whole);
@@ -162,7 +171,7 @@ TEST(Folder, SavedSceneKeepsEveryNode) {
   auto turned = std::make_shared<BakedObject>(*made_object({.seed = 4}));
   TriangleSet flags(turned->triangle_count(), 0);
   for (std::size_t f = 20; f < 50; ++f) flags[f] = 1;
-  turned->sets[0].soup = move_faces(turned->sets[0].soup, flags, 0, Affine(Eigen::AngleAxisd(0.4, Vec3::UnitX())));
+  turned->sets[0].soup = moved_part(turned->sets[0].soup, flags, 0, Affine(Eigen::AngleAxisd(0.4, Vec3::UnitX())));
   child.object = turned;
   child.name = "turned";
   scene = with_added(scene, child, NodeId::none, 9);
@@ -294,6 +303,57 @@ TEST(Export, RefusesFoldersWithOtherFilesAndLeavesThemAlone) {
   write_text(temporary.path() / "thesis.tex", "precious");
   EXPECT_THROW(export_scene(scene_of(made_object()), temporary.path(), {}), FileError);
   EXPECT_EQ(folder_bytes(temporary.path()), (std::map<std::string, std::string>{{"thesis.tex", "precious"}}));
+}
+
+TEST(Export, RefusesAFolderOfOtherScenes) {
+  const TemporaryFolder temporary;
+  for (const char* name : {"a", "b"}) export_scene(scene_of(made_object()), temporary.path() / "library" / name, {});
+  const auto before = folder_bytes(temporary.path());
+  EXPECT_THROW(export_scene(scene_of(made_object()), temporary.path() / "library", {}), FileError);
+  EXPECT_EQ(folder_bytes(temporary.path()), before);
+}
+
+TEST(Export, FollowsLinksAndReplacesItsOwnScene) {
+  const TemporaryFolder temporary;
+  Scene two = scene_of(made_object({.seed = 1}));
+  Node other;
+  other.object = made_object({.seed = 2});
+  two = with_added(two, other, NodeId::none, 9);
+  EXPECT_FALSE(export_scene(two, temporary.path() / "real", {}).one_folder);
+  fs::create_directory_symlink(temporary.path() / "real", temporary.path() / "link");
+  EXPECT_TRUE(export_scene(scene_of(made_object()), temporary.path() / "link", {}).one_folder);
+  EXPECT_TRUE(fs::is_symlink(temporary.path() / "link"));
+  EXPECT_FALSE(fs::exists(temporary.path() / "real/scene.json"));
+}
+
+TEST(Export, HiddenNodesAreLeftOutAndEqualTurnsShareAFolder) {
+  const TemporaryFolder temporary;
+  Scene scene = scene_of(made_object());
+  Node other;
+  other.object = scene.roots[0]->object;
+  scene = with_added(scene, other, NodeId::none, 9);
+  const Eigen::AngleAxisd turn(0.5, Vec3(1, 2, 3).normalized());
+  scene = with_changed(scene, scene.roots[0]->id, [&](Node& n) { n.to_parent = turn; });
+  scene = with_changed(scene, scene.roots[1]->id, [&](Node& n) { n.to_parent = Affine(turn * Eigen::Scaling(2.0)); });
+  EXPECT_TRUE(export_scene(scene, temporary.path() / "both", {}).one_folder);
+  scene = with_changed(scene, scene.roots[1]->id, [&](Node& n) { n.visible = false; });
+  const ExportReport report = export_scene(scene, temporary.path() / "one", {});
+  EXPECT_TRUE(report.one_folder);
+  EXPECT_NE(report.notes.front().find("hidden"), std::string::npos);
+  EXPECT_EQ(read_any(temporary.path() / "one", Axes::y_up).roots[0]->object->triangle_count(), 256U);
+}
+
+TEST(Folder, TurnsOfAFewChunkedTrianglesSurvive) {
+  const TemporaryFolder temporary;
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 3, .rows = 1, .layout = Layout::chunked}));
+  object->sets[0].soup =
+      moved_part(object->sets[0].soup, {0, 0, 1, 1, 0, 0}, 0, Affine(Eigen::AngleAxisd(0.4, Vec3::UnitX())));
+  save_scene_folder(scene_of(object), temporary.path() / "s");
+  const auto back = read_any(temporary.path() / "s", Axes::y_up).roots[0]->object;
+  const Soup &a = object->sets[0].soup, &b = back->sets[0].soup;
+  ASSERT_NE(b.turns(), nullptr);
+  for (std::size_t f = 0; f < b.faces().size(); ++f)
+    EXPECT_EQ((*b.turns())[b.faces()[f][0]], (*a.turns())[a.faces()[f % 6][0]]) << f;
 }
 
 TEST(Export, OntoItsOwnSourceIsSafe) {

@@ -6,6 +6,10 @@
 namespace rebake::test {
 namespace {
 
+Soup moved_part(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first, const Affine& motion) {
+  return move_faces(soup, flags, first, motion, orthogonal_factor(motion.linear()));
+}
+
 // 2──3
 // │╲ │   two triangles that share an edge
 // 0──1
@@ -15,7 +19,7 @@ Soup square() {
 
 TEST(Soup, MovedFacesSplitSharedVertices) {
   const Affine motion(Eigen::Translation3d(0, 0, 5));
-  const Soup moved = move_faces(square(), {0, 1}, 0, motion);
+  const Soup moved = moved_part(square(), {0, 1}, 0, motion);
   EXPECT_EQ(moved.positions().size(), 6U);
   EXPECT_EQ(moved.faces()[0], (Face{0, 1, 2}));
   for (const std::uint32_t v : moved.faces()[1]) EXPECT_EQ(moved.positions()[v].z(), 5);
@@ -26,11 +30,11 @@ TEST(Soup, MovedFacesSplitSharedVertices) {
 
 TEST(Soup, TurnsAccumulateAndScaleDoesNotCount) {
   const Affine quarter(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()) * Eigen::Scaling(3.0));
-  Soup soup = move_faces(square(), {1, 0}, 0, quarter);
+  Soup soup = moved_part(square(), {1, 0}, 0, quarter);
   ASSERT_NE(soup.turns(), nullptr);
   EXPECT_TRUE((*soup.turns())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
   EXPECT_TRUE((*soup.turns())[3].isIdentity(0));
-  soup = move_faces(soup, {1, 0}, 0, quarter);
+  soup = moved_part(soup, {1, 0}, 0, quarter);
   EXPECT_TRUE((*soup.turns())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
 }
 

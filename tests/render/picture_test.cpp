@@ -13,6 +13,10 @@
 namespace rebake::test {
 namespace {
 
+Soup moved_part(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first, const Affine& motion) {
+  return move_faces(soup, flags, first, motion, orthogonal_factor(motion.linear()));
+}
+
 constexpr double least_psnr_db = 45;
 constexpr double most_beyond = 0.005;
 
@@ -82,7 +86,7 @@ TEST_P(PictureBySamples, TurnedTriangles) {
   for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = f % 32 < 16 ? 1 : 0;
   auto turned = std::make_shared<BakedObject>(*object);
   turned->sets[0].soup =
-      move_faces(object->sets[0].soup, flags, 0,
+      moved_part(object->sets[0].soup, flags, 0,
                  Affine(Eigen::Translation3d(0.4, 0.1, 0) * Eigen::AngleAxisd(0.8, Vec3(1, 2, 0).normalized())));
   ASSERT_TRUE(turned->any_turns());
   expect_as_cast(scene_of(turned), view_from({0.5, 1.5, 4}, GetParam()));
