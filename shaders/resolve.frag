@@ -30,28 +30,60 @@ vec3 fed_ray(ivec2 at, mat3 to_fed) {
 }
 
 #if !WRITES_FRAME
+Sums sums = Sums(uvec4(0u), 0u);
+vec3 ray = vec3(0.0);       // sum over the covered samples
+vec2 position = vec2(0.0);  // the same, in samples from the pixel's first
+
+void add_sample(ivec2 base, ivec2 offset, uvec2 texel) {
+  if (texel.r == 0u) return;
+  add(sums, texel);
+#if WRITES_RAY
+  ray += fed_ray(base + offset, camera_to_fed);
+#elif RAY_PER_SAMPLE
+  ray += normalize(vec3((vec2(base + offset) + 0.5) * ray_scale + ray_offset, -1.0));
+#else
+  position += vec2(offset);
+#endif
+}
+
+// Where the k-th 2×2 samples of a pixel meet.
+vec2 middle(ivec2 base, int k) {
+  const int quads = max(SIDE / 2, 1);
+  return vec2(base + ivec2(k % quads, k / quads) * 2 + 1) / vec2(textureSize(features, 0));
+}
+
 void main() {
   ivec2 base = ivec2(gl_FragCoord.xy) * SIDE;
-  Sums sums = Sums(uvec4(0u), 0u);
-  vec3 ray = vec3(0.0);
-  for (int y = 0; y < SIDE; ++y) {
-    for (int x = 0; x < SIDE; ++x) {
-      ivec2 at = base + ivec2(x, y);
-      uvec2 texel = texelFetch(features, at, 0).rg;
-      if (texel.r != 0u) {
-        add(sums, texel);
-#if WRITES_RAY
-        ray += fed_ray(at, camera_to_fed);
-#else
-        ray += normalize(vec3((vec2(at) + 0.5) * ray_scale + ray_offset, -1.0));
-#endif
-      }
-    }
+#if GATHERS && SIDE > 1
+  const int quads = SIDE / 2;
+  uvec4 red[quads * quads];
+  uint any = 0u;
+  for (int k = 0; k < quads * quads; ++k) {
+    red[k] = textureGather(features, middle(base, k), 0);
+    any |= red[k].x | red[k].y | red[k].z | red[k].w;
   }
+  // Before all else: blocks of pixels that nothing covers end here.
+  if (any == 0u) discard;
+  for (int k = 0; k < quads * quads; ++k) {
+    uvec4 green = textureGather(features, middle(base, k), 1);
+    ivec2 first = ivec2(k % quads, k / quads) * 2;
+    add_sample(base, first + ivec2(0, 1), uvec2(red[k].x, green.x));
+    add_sample(base, first + ivec2(1, 1), uvec2(red[k].y, green.y));
+    add_sample(base, first + ivec2(1, 0), uvec2(red[k].z, green.z));
+    add_sample(base, first, uvec2(red[k].w, green.w));
+  }
+#else
+  for (int y = 0; y < SIDE; ++y)
+    for (int x = 0; x < SIDE; ++x) add_sample(base, ivec2(x, y), texelFetch(features, base + ivec2(x, y), 0).rg);
   if (sums.count == 0u) discard;
+#endif
   vec4 low, high;
   average(sums, samples, alpha_code, low, high);
 #if !WRITES_RAY
+#if !RAY_PER_SAMPLE
+  float count = float(sums.count);
+  ray = count * normalize(vec3((vec2(base) + position / count + 0.5) * ray_scale + ray_offset, -1.0));
+#endif
   ray = camera_to_fed * ray;
 #endif
   float coverage = float(sums.count) / samples;

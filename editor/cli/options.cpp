@@ -80,8 +80,8 @@ void ViewOptions::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"automatic", "constants", "buffer"}))
       ->option_text("automatic|constants|buffer");
   command.add_option("--shading", shading, "forward decodes while drawing, at 1 sample only")
-      ->check(CLI::IsMember({"deferred", "forward"}))
-      ->option_text("deferred|forward");
+      ->check(CLI::IsMember({"automatic", "deferred", "forward"}))
+      ->option_text("automatic|deferred|forward");
   command.add_option("--precision", precision, "decoder weights as 32- or 16-bit floats")
       ->check(CLI::IsMember({"full", "half"}))
       ->option_text("full|half");
@@ -137,7 +137,9 @@ RenderOptions ViewOptions::render_options() const {
   options.weights = weights == "constants" ? RenderOptions::Weights::constants
                     : weights == "buffer"  ? RenderOptions::Weights::buffer
                                            : RenderOptions::Weights::automatic;
-  options.shading = shading == "forward" ? RenderOptions::Shading::forward : RenderOptions::Shading::deferred;
+  options.shading = shading == "forward"    ? RenderOptions::Shading::forward
+                    : shading == "deferred" ? RenderOptions::Shading::deferred
+                                            : RenderOptions::Shading::automatic;
   options.precision = precision == "half" ? RenderOptions::Precision::half : RenderOptions::Precision::full;
   return options;
 }

@@ -16,6 +16,15 @@ namespace {
 constexpr std::size_t most_constant_decoders = 4;
 constexpr std::size_t most_constant_weights = 4096;
 
+// Largest share of its distance that a pixel may span for its samples' rays to be taken as one. The mean of unit
+// vectors spread by s differs from the unit vector of their mean position by O(s^2): at most 4e-6 here.
+constexpr double widest_single_ray = 1.0 / 256;
+
+// Width or height of a pixel over its distance along the view axis.
+double pixel_span(const View& view) {
+  return 2 * std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180) / view.height;
+}
+
 std::size_t weight_count(const Decoder& d) {
   return static_cast<std::size_t>(d.weights0.size() + d.weights1.size() + d.weights2.size());
 }
@@ -108,18 +117,34 @@ void plan_passes(FramePlan& plan, std::size_t turned_draws, std::size_t culled, 
       : plan.decoders.size() == 1 ? "one decoder in view"
       : forward                   ? "at 1 sample no pixel is mixed"
                                   : fmt::format("{} decoders in view", plan.decoders.size()));
+  const double pixel = pixel_span(plan.view);
+  const bool resolved_rays = any && !forward && plan.view.samples > 1;
+  const bool mixed_rays = plan.frames.size() > 1 || turned_draws > 0;
+  say("ray per sample", resolved_rays && (mixed_rays || pixel > widest_single_ray),
+      !any             ? nothing
+      : !resolved_rays ? "a pixel has one sample"
+      : mixed_rays     ? "samples of a pixel may differ in orientation"
+      : pixel > widest_single_ray
+          ? fmt::format("a pixel spans {:.2g} of its distance", pixel)
+          : fmt::format("a pixel spans {:.2g} of its distance: one ray through the middle of its "
+                        "samples differs by less than {:.0e}",
+                        pixel, pixel * pixel / 4));
   const bool constants = plan.options.weights == RenderOptions::Weights::constants;
   const std::string how = any ? fmt::format("decoder {}, weights as {}", layer_sizes(*plan.decoders.front()),
                                             constants ? "constants" : "a buffer")
                               : nothing;
   say("resolve", any && !forward, !any ? nothing : forward ? "forward shading decodes while drawing" : how);
   say("forward", any && forward,
-      !any      ? nothing
-      : forward ? drawn + "; " + how
-                : "deferred shading decodes each pixel once");
-  say("culling", culled > 0,
-      culled > 0 ? plural(culled, "object is", "objects are") + " out of view and cost no draw"
-                 : "every visible object is in view");
+      !any                    ? nothing
+      : forward               ? drawn + "; " + how
+      : plan.view.samples > 1 ? "features are averaged over a pixel's samples before they are decoded"
+                              : "deferred shading decodes each pixel once");
+  const std::string in_object = "clusters of triangles out of view are left out";
+  say("culling", any || culled > 0,
+      culled > 0 ? plural(culled, "object is", "objects are") + " out of view and cost no draw" +
+                       (any ? "; of the others, " + in_object : "")
+      : any ? in_object
+            : "no object is shown");
   if (hidden > 0) say("hidden objects", false, plural(hidden, "is", "are") + " hidden by an edit");
 }
 
@@ -180,6 +205,10 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
                                  ? RenderOptions::Weights::constants
                                  : RenderOptions::Weights::buffer;
   }
+  if (result.options.shading == RenderOptions::Shading::automatic)
+    result.options.shading = view.samples == 1 && result.options.weights == RenderOptions::Weights::constants
+                                 ? RenderOptions::Shading::forward
+                                 : RenderOptions::Shading::deferred;
   plan_passes(result, turned, culled, hidden);
   return result;
 }

@@ -17,6 +17,7 @@ struct RenderOptions {
     buffer,     ///< decoder weights are fetched: any number and width of decoders with one shader
   };
   enum class Shading {
+    automatic,  ///< forward at 1 sample with constant weights, where it is faster; else deferred
     deferred,  ///< features are drawn first and decoded once a pixel
     forward,   ///< features are decoded while drawing; the rule allows it at 1 sample only
   };
@@ -25,7 +26,7 @@ struct RenderOptions {
     half,  ///< decoder weights rounded to 16-bit floats (11 significant bits)
   };
   Weights weights = Weights::automatic;
-  Shading shading = Shading::deferred;
+  Shading shading = Shading::automatic;
   Precision precision = Precision::full;
 };
 
@@ -61,7 +62,7 @@ struct PixelRect {
 /// Everything that the GPU is to do for one picture.
 struct FramePlan {
   View view;
-  RenderOptions options;
+  RenderOptions options;  ///< with automatic choices made
   Color background{1, 1, 1};
   std::vector<Draw> draws;
   std::vector<std::shared_ptr<const Decoder>> decoders;  ///< distinct weights in view

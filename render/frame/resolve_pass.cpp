@@ -38,8 +38,10 @@ void execute_resolve(const PassInput& input) {
             plan.covered.bottom - plan.covered.top);
 
   const gl::Program& shader = program(input.state, "fullscreen.vert", "resolve.frag",
-                                      fmt::format("#define SIDE {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n",
-                                                  targets.side, targets.has_frames ? 1 : 0, targets.has_rays ? 1 : 0) +
+                                      fmt::format("#define SIDE {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n"
+                                                  "#define RAY_PER_SAMPLE {}\n",
+                                                  targets.side, targets.has_frames ? 1 : 0, targets.has_rays ? 1 : 0,
+                                                  plan.runs("ray per sample") ? 1 : 0) +
                                           decoder_preamble(input));
   glUseProgram(shader.name());
   bind(0, GL_TEXTURE_2D, targets.features);

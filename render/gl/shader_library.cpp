@@ -1,5 +1,8 @@
 #include "render/gl/shader_library.h"
 
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <sstream>
 
@@ -41,7 +44,10 @@ std::string resolved(const fs::path& folder, const std::string& name) {
 }  // namespace
 
 std::string shader_source(const std::string& name, const std::string& preamble) {
-  return "#version 330 core\n" + preamble + resolved(shader_folder(), name);
+  // 4.0 brings textureGather of any component.
+  const bool gathers = epoxy_gl_version() >= 40;
+  return fmt::format("#version {} core\n#define GATHERS {}\n", gathers ? 400 : 330, gathers ? 1 : 0) + preamble +
+         resolved(shader_folder(), name);
 }
 
 }  // namespace rebake::gl

@@ -1,5 +1,6 @@
 // The GPU's picture against the independent oracle: 45 dB and 99.5 % of pixels within 2/255, whatever the scene.
 #include "render/picture.h"
+#include "render/frame/plan.h"
 
 #include <gtest/gtest.h>
 
@@ -74,6 +75,14 @@ INSTANTIATE_TEST_SUITE_P(Picture, PictureBySamples, ::testing::Values(1, 4, 16))
 
 TEST_P(PictureBySamples, OneObject) { expect_as_cast(scene_of(made_object()), view_from({0.5, 1.5, 3}, GetParam())); }
 
+TEST_P(PictureBySamples, OneRayForAllSamplesOfANarrowPixel) {
+  const Scene scene = scene_of(made_object());
+  View view = view_from({0.8, 2.4, 4.8}, GetParam());
+  view.camera.fov_degrees = 25;  // just under the span at which each sample gets its own ray
+  EXPECT_FALSE(plan(scene, view).runs("ray per sample"));
+  expect_as_cast(scene, view);
+}
+
 TEST_P(PictureBySamples, TwoDecodersMixedAtPixels) {
   expect_as_cast(together({placed(made_object({.seed = 1}), moved(-0.4, 0, 0)),
                            placed(made_object({.seed = 2}), moved(0.5, 0.2, 0.3))}),
@@ -116,7 +125,7 @@ TEST(Picture, ForwardShadingIsTheSamePicture) {
   const Scene scene = together(
       {placed(made_object({.seed = 1}), moved(-0.4, 0, 0)), placed(made_object({.seed = 2}), moved(0.5, 0.2, 0.3))});
   const View view = view_from({0, 1, 4}, 1);
-  const Image deferred = renderer().render(scene, view);
+  const Image deferred = renderer().render(scene, view, {{}, RenderOptions::Shading::deferred, {}});
   for (const auto weights : {RenderOptions::Weights::constants, RenderOptions::Weights::buffer}) {
     const Image forward = renderer().render(scene, view, {weights, RenderOptions::Shading::forward, {}});
     EXPECT_LE(compare(deferred, forward, 0).largest, 1);

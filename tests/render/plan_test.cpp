@@ -48,6 +48,25 @@ TEST(Plan, EveryPassSaysWhy) {
   for (const PlannedPass& pass : plan(scene_of(made_object()), {}).passes) EXPECT_FALSE(pass.why.empty()) << pass.name;
 }
 
+TEST(Plan, ShadingIsChosenBySamplesAndWeights) {
+  const Scene scene = scene_of(made_object());
+  View view;
+  view.samples = 1;
+  EXPECT_TRUE(plan(scene, view).runs("forward"));
+  EXPECT_TRUE(plan(scene, view, {RenderOptions::Weights::buffer, {}, {}}).runs("resolve"));
+  view.samples = 4;
+  EXPECT_TRUE(plan(scene, view).runs("resolve"));
+}
+
+TEST(Plan, WidePixelsGetARayPerSample) {
+  View view;
+  view.height = 200;
+  view.camera.fov_degrees = 40;
+  EXPECT_FALSE(plan(scene_of(made_object()), view).runs("ray per sample"));
+  view.camera.fov_degrees = 60;
+  EXPECT_TRUE(plan(scene_of(made_object()), view).runs("ray per sample"));
+}
+
 TEST(Plan, ForwardShadingIsRefusedAtSeveralSamples) {
   EXPECT_THROW(plan(scene_of(made_object()), {}, {{}, RenderOptions::Shading::forward, {}}), FieldError);
 }
