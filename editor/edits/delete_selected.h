@@ -18,16 +18,14 @@ struct DeleteSelected {
 inline Scene apply(const Scene& scene, const DeleteSelected& edit) {
   Scene result = scene;
   for (const PlacedNode& placed : with_selection(scene, edit.node)) {
-    const auto rest = triangles_of(*placed.node->object, *placed.node->selection, false);
+    const TriangleSet& selection = *placed.node->selection;
+    const bool all = count(selection) == selection.size();
     // A node without triangles stays when it groups others.
-    if (!rest && placed.node->children.empty()) {
+    if (all && placed.node->children.empty()) {
       result = without(result, placed.node->id);
       continue;
     }
-    result = with_changed(result, placed.node->id, [&](Node& node) {
-      node.object = rest;
-      node.selection = nullptr;
-    });
+    result = with_changed(result, placed.node->id, [&](Node& node) { keep_triangles(node, selection, false); });
   }
   return result;
 }

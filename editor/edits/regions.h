@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "editor/fields/fields.h"
 #include "mesh_ops/select/region.h"
 
@@ -36,21 +38,26 @@ inline FramePoints::FramePoints(CoordinateFrame frame, const PlacedNode& placed)
   }
 }
 
-inline TriangleSet triangles_inside(const BakedObject& object, const FramePoints& points, const BoxRegion& box) {
-  return triangles_by_centre(object, points.from_object(), [&](const Vec3& p) {
+/// Whether a point in object space lies in a region.
+inline std::function<bool(const Vec3&)> inside_of(const FramePoints& points, const BoxRegion& box) {
+  return [from_object = points.from_object(), box](const Vec3& object_point) {
+    const Vec3 p = from_object * object_point;
     return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
-  });
+  };
 }
 
-inline TriangleSet triangles_inside(const BakedObject& object, const FramePoints& points, const SphereRegion& sphere) {
+inline std::function<bool(const Vec3&)> inside_of(const FramePoints& points, const SphereRegion& sphere) {
   const Vec3 center = points.metric() * points.to_object(sphere.center);
   const double radius = sphere.radius * points.radius_scale();
-  return triangles_by_centre(object, points.metric(), [&](const Vec3& p) { return (p - center).norm() <= radius; });
+  return [metric = points.metric(), center, radius](const Vec3& object_point) {
+    return (metric * object_point - center).norm() <= radius;
+  };
 }
 
-inline TriangleSet triangles_inside(const BakedObject& object, const FramePoints& points, const HalfSpaceRegion& half) {
-  return triangles_by_centre(object, points.from_object(),
-                             [&](const Vec3& p) { return half.normal.dot(p - half.point) >= 0; });
+inline std::function<bool(const Vec3&)> inside_of(const FramePoints& points, const HalfSpaceRegion& half) {
+  return [from_object = points.from_object(), half](const Vec3& object_point) {
+    return half.normal.dot(from_object * object_point - half.point) >= 0;
+  };
 }
 
 }  // namespace rebake

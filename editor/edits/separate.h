@@ -22,19 +22,16 @@ inline Scene apply(const Scene& scene, const Separate& edit) {
   if (!edit.as.empty() && find(scene, edit.as) != nullptr)
     throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
   const TriangleSet& selection = *placed.node->selection;
-  const auto rest = triangles_of(*placed.node->object, selection, false);
-  if (!rest)
+  if (count(selection) == selection.size())
     throw EditError("all triangles of \"" + placed.node->name +
                     "\" are selected; there would be nothing left to separate from");
-  Node part;
+  Node part = *placed.node;
+  part.id = NodeId::none;
   part.name = edit.as.empty() ? placed.node->name : edit.as;
-  part.visible = placed.node->visible;
-  part.to_parent = placed.node->to_parent;
-  part.object = triangles_of(*placed.node->object, selection, true);
-  const Scene changed = with_changed(scene, placed.node->id, [&](Node& node) {
-    node.object = rest;
-    node.selection = nullptr;
-  });
+  part.children.clear();
+  keep_triangles(part, selection, true);
+  const Scene changed =
+      with_changed(scene, placed.node->id, [&](Node& node) { keep_triangles(node, selection, false); });
   const auto [parent, index] = place_of(changed, placed.node->id);
   return with_added(changed, std::move(part), parent, index + 1);
 }

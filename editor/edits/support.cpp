@@ -72,6 +72,17 @@ std::shared_ptr<const BakedObject> triangles_of(const BakedObject& object, const
   return with_sets(object, std::move(sets));
 }
 
+void keep_triangles(Node& node, const TriangleSet& flags, bool wanted) {
+  node.object = triangles_of(*node.object, flags, wanted);
+  node.selection = nullptr;
+  for (auto& [name, saved] : node.saved_selections) {
+    TriangleSet kept;
+    for (std::size_t f = 0; f < flags.size(); ++f)
+      if ((flags[f] != 0) == wanted) kept.push_back((*saved)[f]);
+    saved = std::make_shared<const TriangleSet>(std::move(kept));
+  }
+}
+
 Node without_ids(const Node& node) {
   Node copy = node;
   copy.id = NodeId::none;

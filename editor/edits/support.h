@@ -24,6 +24,10 @@ std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vec
 /// The object's selected (or, with `wanted` false, unselected) triangles; null when there are none.
 std::shared_ptr<const BakedObject> triangles_of(const BakedObject& object, const TriangleSet& flags, bool wanted);
 
+/// Keeps the triangles of a node whose flag is `wanted`, in its object and its saved selections; nothing is selected
+/// then.
+void keep_triangles(Node& node, const TriangleSet& flags, bool wanted);
+
 /// The node and its children without ids and selections, to be added as new ones.
 Node without_ids(const Node& node);
 

@@ -5,16 +5,27 @@
 #include "editor/edits/background.h"
 #include "editor/edits/delete_selected.h"
 #include "editor/edits/duplicate.h"
+#include "editor/edits/erase.h"
+#include "editor/edits/fill.h"
 #include "editor/edits/group.h"
+#include "editor/edits/grow.h"
 #include "editor/edits/hide.h"
 #include "editor/edits/import.h"
 #include "editor/edits/lock.h"
+#include "editor/edits/merge.h"
 #include "editor/edits/remove.h"
 #include "editor/edits/rename.h"
 #include "editor/edits/reorder.h"
 #include "editor/edits/select.h"
+#include "editor/edits/select_connected.h"
+#include "editor/edits/select_floaters.h"
+#include "editor/edits/select_like.h"
+#include "editor/edits/select_picture.h"
+#include "editor/edits/select_unneeded.h"
 #include "editor/edits/separate.h"
 #include "editor/edits/show.h"
+#include "editor/edits/shrink.h"
+#include "editor/edits/store_selection.h"
 #include "editor/edits/transform.h"
 #include "editor/edits/unlock.h"
 #include "editor/edits/view.h"
@@ -23,7 +34,8 @@ namespace rebake {
 
 /// The one table of edits: everything that changes a scene.
 using Edit = std::variant<Import, Remove, Rename, Duplicate, Group, Reorder, Show, Hide, Lock, Unlock, StoreView,
-                          Background, Transform, Select, DeleteSelected, Separate>;
+                          Background, Transform, Select, SelectPicture, SelectConnected, SelectLike, SelectFloaters,
+                          SelectUnneeded, Grow, Shrink, Fill, StoreSelection, DeleteSelected, Separate, Merge, Erase>;
 
 /// Pure and deterministic: the scene after the edit. Throws Error and leaves nothing changed.
 Scene apply(const Scene& scene, const Edit& edit);

@@ -29,6 +29,23 @@ Vec3 vector(const json& value) {
 
 json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
+std::vector<Vec2> points(const json& value, std::size_t least) {
+  if (!value.is_array() || value.size() < least)
+    throw Error(fmt::format("must be a list of at least {} points [x, y]", least));
+  std::vector<Vec2> result;
+  for (const json& point : value) {
+    if (!point.is_array() || point.size() != 2) throw Error("a point must be a list of two numbers");
+    result.emplace_back(number(point[0]), number(point[1]));
+  }
+  return result;
+}
+
+json list(const std::vector<Vec2>& points) {
+  json out = json::array();
+  for (const Vec2& p : points) out.push_back({p.x(), p.y()});
+  return out;
+}
+
 const json& part(const json& value, const char* key, std::initializer_list<const char*> all) {
   const std::string shape = fmt::format("must be an object with {}", fmt::join(all, " and "));
   if (!value.is_object() || value.size() != all.size()) throw Error(shape);
@@ -168,6 +185,51 @@ HalfSpaceRegion Codec<HalfSpaceRegion>::read(const json& value, const Scene&) {
 }
 json Codec<HalfSpaceRegion>::write(const HalfSpaceRegion& value) {
   return {{"point", list(value.point)}, {"normal", list(value.normal)}};
+}
+
+const char* Codec<PixelPolygon>::type() { return "[[x, y], …] in pixels"; }
+PixelPolygon Codec<PixelPolygon>::read(const json& value, const Scene&) { return {points(value, 3)}; }
+json Codec<PixelPolygon>::write(const PixelPolygon& value) { return list(value.corners); }
+
+const char* Codec<BrushStroke>::type() { return "{\"points\": [[x, y], …], \"radius\": pixels}"; }
+BrushStroke Codec<BrushStroke>::read(const json& value, const Scene&) {
+  const BrushStroke stroke{points(part(value, "points", {"points", "radius"}), 1),
+                           number(part(value, "radius", {"points", "radius"}))};
+  if (!(stroke.radius > 0)) throw Error("the radius must be positive");
+  return stroke;
+}
+json Codec<BrushStroke>::write(const BrushStroke& value) {
+  return {{"points", list(value.points)}, {"radius", value.radius}};
+}
+
+const char* Codec<Interval>::type() { return "[min, max]"; }
+Interval Codec<Interval>::read(const json& value, const Scene&) {
+  if (!value.is_array() || value.size() != 2) throw Error("must be a list of two numbers: least and most");
+  const Interval interval{number(value[0]), number(value[1])};
+  if (interval.min > interval.max) throw Error("the first number must not be above the second");
+  return interval;
+}
+json Codec<Interval>::write(const Interval& value) { return json::array({value.min, value.max}); }
+
+const char* Codec<PixelSize>::type() { return "[width, height] in pixels"; }
+PixelSize Codec<PixelSize>::read(const json& value, const Scene& scene) {
+  if (!value.is_array() || value.size() != 2) throw Error("must be a list of two whole numbers: width and height");
+  const PixelSize size{Codec<int>::read(value[0], scene), Codec<int>::read(value[1], scene)};
+  if (std::min(size.width, size.height) < 1 || std::max(size.width, size.height) > 16384)
+    throw Error("must lie between 1 and 16384 pixels");
+  return size;
+}
+json Codec<PixelSize>::write(const PixelSize& value) { return json::array({value.width, value.height}); }
+
+const char* Codec<std::vector<std::string>>::type() { return "list of names"; }
+std::vector<std::string> Codec<std::vector<std::string>>::read(const json& value, const Scene& scene) {
+  if (!value.is_array() || value.empty()) throw Error("must be a list of names");
+  std::vector<std::string> names;
+  for (const json& name : value) names.push_back(Codec<std::string>::read(name, scene));
+  return names;
+}
+json Codec<std::vector<std::string>>::write(const std::vector<std::string>& value) {
+  return value.empty() ? json() : json(value);
 }
 
 const char* Codec<SelectMode>::type() { return "set, add, remove or intersect"; }

@@ -37,6 +37,23 @@ struct HalfSpaceRegion {
   Vec3 point, normal;
 };
 
+/// Corners of a polygon in pixels, x to the right and y down.
+struct PixelPolygon {
+  std::vector<Vec2> corners;
+};
+/// A round brush drawn through points, in pixels.
+struct BrushStroke {
+  std::vector<Vec2> points;
+  double radius = 0;
+};
+/// Numbers from min to max.
+struct Interval {
+  double min = 0, max = 0;
+};
+struct PixelSize {
+  int width = 800, height = 800;
+};
+
 enum class SelectMode { set, add, remove, intersect };
 enum class CoordinateFrame { world, node, bounds };
 
@@ -65,6 +82,11 @@ REBAKE_CODEC(Scale);
 REBAKE_CODEC(BoxRegion);
 REBAKE_CODEC(SphereRegion);
 REBAKE_CODEC(HalfSpaceRegion);
+REBAKE_CODEC(PixelPolygon);
+REBAKE_CODEC(BrushStroke);
+REBAKE_CODEC(Interval);
+REBAKE_CODEC(PixelSize);
+REBAKE_CODEC(std::vector<std::string>);
 REBAKE_CODEC(SelectMode);
 REBAKE_CODEC(CoordinateFrame);
 REBAKE_CODEC(Axes);

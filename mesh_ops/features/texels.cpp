@@ -79,6 +79,31 @@ const Texel& FeatureTexture::sample(double u, double v) const {
   return at(x, y);
 }
 
+FeatureTexture::Change::Change(const FeatureTexture& from)
+    : texture_(std::make_shared<FeatureTexture>(from)), fresh_(from.tiles_.size()) {}
+
+Texel& FeatureTexture::Change::at(int x, int y) {
+  const auto tile = static_cast<std::size_t>(y / TexelTile::size) * static_cast<std::size_t>(texture_->tile_columns()) +
+                    static_cast<std::size_t>(x / TexelTile::size);
+  if (!fresh_[tile]) fresh_[tile] = std::make_shared<TexelTile>(*texture_->tiles_[tile]);
+  return fresh_[tile]->texels[static_cast<std::size_t>(y % TexelTile::size) * TexelTile::size +
+                              static_cast<std::size_t>(x % TexelTile::size)];
+}
+
+bool FeatureTexture::Change::touched() const {
+  return std::any_of(fresh_.begin(), fresh_.end(), [](const auto& tile) { return tile != nullptr; });
+}
+
+std::shared_ptr<const FeatureTexture> FeatureTexture::Change::finish() {
+  for (std::size_t k = 0; k < fresh_.size(); ++k) {
+    if (!fresh_[k]) continue;
+    fresh_[k]->opaque_count = static_cast<std::uint32_t>(
+        std::count_if(fresh_[k]->texels.begin(), fresh_[k]->texels.end(), [](const Texel& t) { return t.opaque(); }));
+    texture_->tiles_[k] = std::move(fresh_[k]);
+  }
+  return std::move(texture_);
+}
+
 std::uint64_t FeatureTexture::opaque_count() const {
   std::uint64_t count = 0;
   for (const auto& tile : tiles_) count += tile->opaque_count;

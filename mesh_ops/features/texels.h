@@ -61,6 +61,20 @@ class FeatureTexture {
   /// The texel that nearest sampling with clamping finds at (u, v), v pointing up.
   const Texel& sample(double u, double v) const;
 
+  /// A copy in the making: tiles are copied when one of their texels is first asked for.
+  class Change {
+   public:
+    explicit Change(const FeatureTexture& from);
+    Texel& at(int x, int y);
+    bool touched() const;
+    /// The changed texture. The change is spent.
+    std::shared_ptr<const FeatureTexture> finish();
+
+   private:
+    std::shared_ptr<FeatureTexture> texture_;
+    std::vector<std::shared_ptr<TexelTile>> fresh_;  ///< null where not touched
+  };
+
   std::uint64_t opaque_count() const;
   /// Bytes held, counting a tile that is shared within this texture once.
   std::uint64_t memory() const;

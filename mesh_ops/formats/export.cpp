@@ -61,17 +61,6 @@ std::vector<TextureSet> world_sets(const BakedObject& object, const Mat3& turn, 
   return sets;
 }
 
-Soup appended(const Soup& a, const Soup& b) {
-  std::vector<Vec3> positions = a.positions();
-  std::vector<Vec2> uvs = a.uvs();
-  std::vector<Face> faces = a.faces();
-  const auto base = static_cast<std::uint32_t>(positions.size());
-  positions.insert(positions.end(), b.positions().begin(), b.positions().end());
-  uvs.insert(uvs.end(), b.uvs().begin(), b.uvs().end());
-  for (const Face& face : b.faces()) faces.push_back({face[0] + base, face[1] + base, face[2] + base});
-  return Soup(std::move(positions), std::move(uvs), std::move(faces));
-}
-
 }  // namespace
 
 std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout) {
@@ -121,7 +110,7 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
         if (same == found->object.sets.end())
           found->object.sets.push_back(std::move(set));
         else
-          same->soup = appended(same->soup, set.soup);
+          same->soup = united(same->soup, set.soup);
       }
     }
   }

@@ -19,6 +19,12 @@ json matrix_json(const Mat3& m) {
   return list;
 }
 
+// A number that fits: converting any other is undefined.
+std::size_t whole_number(const json& value, const std::filesystem::path& name) {
+  if (!value.is_number_unsigned()) throw FileError(name, "set and face numbers must be whole and not negative");
+  return value.get<std::size_t>();
+}
+
 }  // namespace
 
 std::string write_turns_json(const std::vector<TextureSet>& sets) {
@@ -55,12 +61,12 @@ void read_turns_json(std::string_view text, const std::filesystem::path& name, s
     const json root = json::parse(text);
     if (root.at("rebake_turns") != 1) throw FileError(name, "was written by a newer version of Rebake");
     for (const json& entry : root.at("sets")) {
-      const auto s = entry.at("set").get<std::size_t>();
+      const auto s = whole_number(entry.at("set"), name);
       if (s >= sets.size()) throw FileError(name, fmt::format("names set {}, but the folder has {}", s, sets.size()));
       const Soup& soup = sets[s].soup;
       auto turns = std::make_shared<std::vector<Mat3>>(soup.positions().size(), Mat3::Identity());
       for (const json& run : entry.at("runs")) {
-        const auto first = run.at(0).get<std::size_t>(), count = run.at(1).get<std::size_t>();
+        const auto first = whole_number(run.at(0), name), count = whole_number(run.at(1), name);
         if (first > soup.faces().size() || count > soup.faces().size() - first)
           throw FileError(name, fmt::format("set {}: faces {} to {} are not there", s, first, first + count));
         const json& matrices = run.at(2);

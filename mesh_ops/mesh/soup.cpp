@@ -2,7 +2,9 @@
 
 #include <Eigen/SVD>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 namespace rebake {
 
@@ -40,9 +42,12 @@ std::uint64_t Soup::memory() const {
 Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted) {
   std::vector<std::uint8_t> used(soup.positions().size(), 0);
   std::vector<Face> faces;
+  auto lineage = std::make_shared<Soup::Lineage>();
+  lineage->whole = soup.lineage() ? soup.lineage()->whole : soup;
   for (std::size_t f = 0; f < soup.faces().size(); ++f) {
     if ((keep[first_flag + f] != 0) != wanted) continue;
     faces.push_back(soup.faces()[f]);
+    lineage->faces.push_back(soup.lineage() ? soup.lineage()->faces[f] : static_cast<std::uint32_t>(f));
     for (const std::uint32_t vertex : soup.faces()[f]) used[vertex] = 1;
   }
   std::vector<std::uint32_t> renumbered(soup.positions().size(), unused);
@@ -62,8 +67,53 @@ Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t
   }
   for (Face& face : faces)
     for (std::uint32_t& vertex : face) vertex = renumbered[vertex];
-  return Soup(positions, uvs, std::make_shared<const std::vector<Face>>(std::move(faces)),
+  Soup result(positions, uvs, std::make_shared<const std::vector<Face>>(std::move(faces)),
               any_turn ? Soup::Turns(turns) : nullptr);
+  result.lineage_ = std::move(lineage);
+  return result;
+}
+
+namespace {
+
+// The parts of one soup put together, or nothing when they are not such parts.
+std::optional<Soup> reunited(const Soup& a, const Soup& b) {
+  if (!a.lineage() || !b.lineage()) return std::nullopt;
+  const Soup& whole = a.lineage()->whole;
+  if (whole.shared_faces() != b.lineage()->whole.shared_faces() ||
+      whole.shared_positions() != b.lineage()->whole.shared_positions() ||
+      whole.shared_uvs() != b.lineage()->whole.shared_uvs() ||
+      whole.shared_turns() != b.lineage()->whole.shared_turns())
+    return std::nullopt;
+  std::vector<std::uint8_t> flags(whole.triangle_count(), 0);
+  for (const Soup* part : {&a, &b})
+    for (const std::uint32_t face : part->lineage()->faces)
+      if (std::exchange(flags[face], std::uint8_t{1}) != 0) return std::nullopt;
+  if (a.triangle_count() + b.triangle_count() == whole.triangle_count()) return whole;
+  return subset(whole, flags, 0, true);
+}
+
+}  // namespace
+
+Soup united(const Soup& a, const Soup& b) {
+  if (auto whole = reunited(a, b)) return std::move(*whole);
+  auto positions = std::make_shared<std::vector<Vec3>>(a.positions());
+  auto uvs = std::make_shared<std::vector<Vec2>>(a.uvs());
+  auto faces = std::make_shared<std::vector<Face>>(a.faces());
+  const auto base = static_cast<std::uint32_t>(positions->size());
+  positions->insert(positions->end(), b.positions().begin(), b.positions().end());
+  uvs->insert(uvs->end(), b.uvs().begin(), b.uvs().end());
+  for (const Face& face : b.faces()) faces->push_back({face[0] + base, face[1] + base, face[2] + base});
+  std::shared_ptr<std::vector<Mat3>> turns;
+  if (a.turns() != nullptr || b.turns() != nullptr) {
+    turns = std::make_shared<std::vector<Mat3>>();
+    for (const Soup* part : {&a, &b}) {
+      if (part->turns() != nullptr)
+        turns->insert(turns->end(), part->turns()->begin(), part->turns()->end());
+      else
+        turns->insert(turns->end(), part->positions().size(), Mat3::Identity());
+    }
+  }
+  return Soup(positions, uvs, faces, turns);
 }
 
 Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,

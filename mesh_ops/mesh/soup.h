@@ -34,24 +34,41 @@ class Soup {
   const Faces& shared_faces() const { return faces_; }
   const Turns& shared_turns() const { return turns_; }
 
+  /// Of which soup this is a subset, so that parts can be put together again as they were; null for a whole soup and
+  /// for one whose vertices were moved.
+  struct Lineage;
+  const std::shared_ptr<const Lineage>& lineage() const { return lineage_; }
+
   std::size_t triangle_count() const { return faces_->size(); }
   /// Box of the vertices that faces use; empty when there are no faces.
   const Box& bounds() const { return bounds_; }
   std::uint64_t memory() const;
 
  private:
+  friend Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted);
+
   Positions positions_;
   Uvs uvs_;
   Faces faces_;
   Turns turns_;
   Box bounds_;
+  std::shared_ptr<const Lineage> lineage_;
+};
+
+struct Soup::Lineage {
+  Soup whole;
+  std::vector<std::uint32_t> faces;  ///< number in `whole` of each face
 };
 
 /// The faces whose `keep` flag (one a face) is `wanted`, with the vertices they use, in the old order.
 Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted);
 
+/// Both soups as one. Parts of one soup without a common face become its subset again (the soup itself when all faces
+/// are there, bit for bit); others are put one after the other.
+Soup united(const Soup& a, const Soup& b);
+
 /// Moves the flagged faces by `motion`, recording `turn` (orthogonal, in object space) in their vertices' turns.
-/// Vertices shared by moved
+/// Vertices shared by moved and unmoved faces are split.
 Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,
                 const Mat3& turn);
 

@@ -8,6 +8,7 @@
 
 #include "mesh_ops/features/decoder.h"
 #include "mesh_ops/features/texels.h"
+#include "mesh_ops/memo.h"
 #include "mesh_ops/mesh/soup.h"
 
 namespace rebake {
@@ -46,6 +47,8 @@ struct Origin {
   std::shared_ptr<const Decoder> decoder;
 };
 
+class ObjectIndex;
+
 /// One baked scene: texture sets that share a decoder. Immutable once made; nodes share it.
 struct BakedObject {
   std::vector<TextureSet> sets;
@@ -53,6 +56,7 @@ struct BakedObject {
   Axes axes = Axes::y_up;
   Layout layout = Layout::split;
   std::shared_ptr<const Origin> origin;  ///< null for objects that were not read from a folder
+  Memo<ObjectIndex> index;               ///< see select/index.h
 
   std::size_t triangle_count() const;
   std::size_t vertex_count() const;

@@ -28,6 +28,7 @@ struct Node {
   Affine to_parent = Affine::Identity();
   std::shared_ptr<const BakedObject> object;     ///< null for groups
   std::shared_ptr<const TriangleSet> selection;  ///< null when nothing is selected
+  std::map<std::string, std::shared_ptr<const TriangleSet>> saved_selections;
   std::vector<NodePtr> children;
 };
 

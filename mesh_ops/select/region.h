@@ -6,12 +6,11 @@
 
 namespace rebake {
 
-/// Triangles whose centre, after `transform`, is inside.
-TriangleSet triangles_by_centre(const BakedObject& object, const Affine& transform,
-                                const std::function<bool(const Vec3&)>& inside);
+/// Triangles whose centre, in object space, is inside. `inside` is called from several threads.
+TriangleSet triangles_by_centre(const BakedObject& object, const std::function<bool(const Vec3&)>& inside);
 
-/// Triangles joined through shared corner positions (equal bit for bit, since files repeat them) to the one whose
-/// centre is nearest to `point`, in object space. Transparent corners join too.
-TriangleSet triangles_connected(const BakedObject& object, const Vec3& point);
+/// Triangles joined to the given one through shared corner positions (equal bit for bit, since files repeat them).
+/// Transparent corners join too.
+TriangleSet triangles_connected(const BakedObject& object, std::size_t triangle);
 
 }  // namespace rebake

@@ -1,0 +1,82 @@
+#include "editor/edits/erase.h"
+
+#include "editor/edits/regions.h"
+#include "mesh_ops/features/erase.h"
+#include "mesh_ops/select/index.h"
+
+namespace rebake {
+
+namespace {
+
+// Whether something opaque stands between the eye and a world point.
+class Hiding {
+ public:
+  Hiding(const Scene& scene, const Vec3& eye) : eye_(eye) {
+    for (const PlacedNode& placed : visible_objects(scene))
+      objects_.push_back(
+          {rays_of(*placed.node->object), placed.to_world.inverse(), placed.node->object->bounds().diagonal().norm()});
+  }
+  bool operator()(const Vec3& world) const {
+    for (const Object& object : objects_) {
+      const Vec3 from = object.to_object * eye_, way = object.to_object * world - from;
+      const double distance = way.norm();
+      // Stops short of the point itself by more than the tree's rounding.
+      if (distance > 0 && object.rays->blocked(from, way, 0, 1 - 1e-5 * std::max(1.0, object.size / distance)))
+        return true;
+    }
+    return false;
+  }
+
+ private:
+  struct Object {
+    std::shared_ptr<const RayTree> rays;
+    Affine to_object;
+    double size;
+  };
+  Vec3 eye_;
+  std::vector<Object> objects_;
+};
+
+Scene erased(const Scene& scene, const std::vector<PlacedNode>& targets,
+             const std::function<std::function<bool(const Vec3&)>(const PlacedNode&)>& inside) {
+  Scene result = scene;
+  std::uint64_t texels = 0;
+  for (const PlacedNode& placed : targets) {
+    Erased change = erase_texels(*placed.node->object, inside(placed));
+    texels += change.texels;
+    if (change.texels == 0) continue;
+    result = with_changed(result, placed.node->id,
+                          [&](Node& node) { node.object = with_sets(*node.object, std::move(change.sets)); });
+  }
+  if (texels == 0) throw EditError("no opaque texel lies there: nothing was erased");
+  return result;
+}
+
+}  // namespace
+
+Scene apply(const Scene& scene, const Erase& edit) {
+  const std::vector<PlacedNode> targets = selectable(scene, edit.node);
+  const bool in_picture = edit.picture.polygon || edit.picture.brush || edit.picture.depth;
+  const int ways =
+      int{edit.box.has_value()} + int{edit.sphere.has_value()} + int{edit.half_space.has_value()} + int{in_picture};
+  if (ways != 1) throw FieldError("box", "exactly one of box, sphere, half_space and a picture's region must be given");
+  if (in_picture) {
+    const PictureRegion region(scene, edit.picture);
+    const std::optional<Hiding> hidden =
+        edit.through ? std::nullopt : std::optional<Hiding>(std::in_place, scene, region.projector().eye());
+    return erased(scene, targets, [&](const PlacedNode& placed) {
+      return [&region, &hidden, to_world = placed.to_world](const Vec3& p) {
+        const Vec3 world = to_world * p;
+        return region.contains(world) && !(hidden && (*hidden)(world));
+      };
+    });
+  }
+  return erased(scene, targets, [&](const PlacedNode& placed) -> std::function<bool(const Vec3&)> {
+    const FramePoints points(edit.frame, placed);
+    if (edit.box) return inside_of(points, *edit.box);
+    if (edit.sphere) return inside_of(points, *edit.sphere);
+    return inside_of(points, *edit.half_space);
+  });
+}
+
+}  // namespace rebake

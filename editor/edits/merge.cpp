@@ -1,0 +1,84 @@
+#include "editor/edits/merge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rebake {
+
+namespace {
+
+// All triangles of a node in the frame of another, which they are to join.
+std::vector<TextureSet> sets_in_frame(const PlacedNode& placed, const PlacedNode& frame) {
+  std::vector<TextureSet> sets = placed.node->object->sets;
+  if (placed.to_world.matrix() == frame.to_world.matrix()) return sets;
+  const Affine motion = frame.to_world.inverse() * placed.to_world;
+  checked_turn(motion);
+  const Mat3 turn =
+      orthogonal_factor(frame.to_world.linear()).transpose() * orthogonal_factor(placed.to_world.linear());
+  for (TextureSet& set : sets)
+    set.soup = move_faces(set.soup, std::vector<std::uint8_t>(set.soup.triangle_count(), 1), 0, motion, turn);
+  return sets;
+}
+
+// Where a set's texels come among those that the object was read with.
+std::size_t place_in_origin(const BakedObject& object, const TextureSet& set) {
+  if (!object.origin) return 0;
+  const auto& sources = object.origin->sets;
+  return static_cast<std::size_t>(
+      std::find_if(sources.begin(), sources.end(),
+                   [&](const Origin::Set& source) { return source.texels.lock() == set.texels; }) -
+      sources.begin());
+}
+
+}  // namespace
+
+Scene apply(const Scene& scene, const Merge& edit) {
+  if (edit.nodes.size() < 2) throw FieldError("nodes", "must name at least two nodes");
+  std::vector<PlacedNode> parts;
+  for (const NodeRef& node : edit.nodes) {
+    parts.push_back(editable(scene, node.id));
+    const PlacedNode& part = parts.back();
+    if (!part.node->object) throw EditError(fmt::format("\"{}\" is a group; merge its objects", part.node->name));
+    if (!part.node->children.empty())
+      throw EditError(fmt::format("\"{}\" groups other nodes; move them out first", part.node->name));
+    const BakedObject &first = *parts.front().node->object, &other = *part.node->object;
+    if (!(*other.decoder == *first.decoder) || other.axes != first.axes)
+      throw EditError(
+          fmt::format("\"{}\" and \"{}\" have different decoders or axes; one object can have only one: "
+                      "group them instead",
+                      parts.front().node->name, part.node->name));
+    for (std::size_t k = 0; k + 1 < parts.size(); ++k)
+      if (parts[k].node->id == part.node->id)
+        throw FieldError("nodes", fmt::format("\"{}\" is named twice", part.node->name));
+  }
+  const PlacedNode& first = parts.front();
+  if (!edit.as.empty() && edit.as != first.node->name && find(scene, edit.as) != nullptr)
+    throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+  auto merged = std::make_shared<BakedObject>(*first.node->object);
+  merged->sets.clear();
+  for (const PlacedNode& part : parts) {
+    if (part.node->object->origin != merged->origin) merged->origin = nullptr;
+    for (TextureSet& set : sets_in_frame(part, first)) {
+      const auto same = std::find_if(merged->sets.begin(), merged->sets.end(),
+                                     [&](const TextureSet& s) { return s.texels == set.texels; });
+      if (same == merged->sets.end())
+        merged->sets.push_back(std::move(set));
+      else
+        same->soup = united(same->soup, set.soup);
+    }
+  }
+  std::stable_sort(merged->sets.begin(), merged->sets.end(), [&](const TextureSet& a, const TextureSet& b) {
+    return place_in_origin(*merged, a) < place_in_origin(*merged, b);
+  });
+  Scene result = with_changed(scene, first.node->id, [&](Node& node) {
+    if (!edit.as.empty()) node.name = edit.as;
+    node.object = merged;
+    node.selection = nullptr;
+    node.saved_selections.clear();
+  });
+  for (std::size_t k = 1; k < parts.size(); ++k) result = without(result, parts[k].node->id);
+  return result;
+}
+
+}  // namespace rebake

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "editor/edits/selecting.h"
+#include "mesh_ops/select/index.h"
+
+namespace rebake {
+
+struct SelectConnected {
+  static constexpr const char* op = "select_connected";
+  static constexpr const char* help =
+      "Selects the parts that hang together, across opaque texels, with the triangle nearest to a point or with the "
+      "present selection.";
+  std::optional<NodeRef> node;
+  std::optional<Vec3> point;
+  double tolerance = 0;
+  double gap = 0;
+  SelectMode mode = SelectMode::set;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("node", self.node, Need::optional, "only of this node and those inside it; left out: of all that is visible");
+    visit("point", self.point, Need::optional, "world point; left out: from the present selection");
+    visit("tolerance", self.tolerance, Need::optional,
+          "corners at most this far apart count as one, in the object's units; 0: only equal ones");
+    visit("gap", self.gap, Need::optional,
+          "opaque texels at most this far apart hang together too, in the object's units");
+    visit("mode", self.mode, Need::optional, "how the result joins the present selection");
+  }
+};
+
+inline Scene apply(const Scene& scene, const SelectConnected& edit) {
+  if (edit.tolerance < 0) throw FieldError("tolerance", "must not be negative");
+  if (edit.gap < 0) throw FieldError("gap", "must not be negative");
+  std::vector<PlacedNode> targets = selectable(scene, edit.node);
+  std::vector<TriangleSet> from;
+  if (edit.point) {
+    const NearestTriangle nearest = nearest_triangle(targets, *edit.point);
+    for (const PlacedNode& placed : targets) from.emplace_back(placed.node->object->triangle_count(), 0);
+    if (!from[nearest.target].empty()) from[nearest.target][nearest.triangle] = 1;
+  } else {
+    with_selection(scene, edit.node);
+    for (const PlacedNode& placed : targets) from.push_back(selection_of(placed));
+  }
+  std::size_t k = 0;
+  return with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
+    const TriangleSet& start = from[k++];
+    if (count(start) == 0) return start;
+    const auto parts = components_of(*placed.node->object, {edit.tolerance, edit.gap});
+    std::vector<std::uint8_t> wanted(parts->triangles_in.size(), 0);
+    for (std::size_t f = 0; f < start.size(); ++f)
+      if (start[f] != 0) wanted[parts->part_of[f]] = 1;
+    TriangleSet flags(start.size());
+    for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = wanted[parts->part_of[f]];
+    return flags;
+  });
+}
+
+}  // namespace rebake

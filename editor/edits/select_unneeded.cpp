@@ -1,0 +1,49 @@
+#include "editor/edits/select_unneeded.h"
+
+#include <fmt/format.h>
+
+#include "mesh_ops/features/opacity.h"
+#include "mesh_ops/select/duplicates.h"
+
+namespace rebake {
+
+namespace {
+
+TriangleSet transparent_triangles(const BakedObject& object) {
+  TriangleSet flags;
+  for (const TextureSet& set : object.sets)
+    for (const std::uint8_t shows : faces_with_opaque_texels(set)) flags.push_back(shows != 0 ? 0 : 1);
+  return flags;
+}
+
+void add(TriangleSet& flags, const TriangleSet& more) {
+  for (std::size_t f = 0; f < flags.size(); ++f) flags[f] |= more[f];
+}
+
+}  // namespace
+
+Scene apply(const Scene& scene, const SelectUnneeded& edit) {
+  if (!edit.transparent && !edit.duplicates && edit.unseen == 0 && edit.unseen_from.empty())
+    throw FieldError("transparent", "at least one of transparent, duplicates, unseen and unseen_from must be given");
+  if (edit.unseen < 0 || edit.unseen > 100000) throw FieldError("unseen", "must lie between 0 and 100000");
+  if (!(edit.distance > 1)) throw FieldError("distance", "must be above 1: the eyes are outside the box");
+  std::vector<Vec3> world_eyes;
+  for (const std::string& name : edit.unseen_from) {
+    const auto found = scene.views.find(name);
+    if (found == scene.views.end()) throw FieldError("unseen_from", fmt::format("there is no view \"{}\"", name));
+    world_eyes.push_back(found->second.eye);
+  }
+  return with_selected(scene, selectable(scene, edit.node), edit.mode, [&](const PlacedNode& placed) {
+    const BakedObject& object = *placed.node->object;
+    TriangleSet flags(object.triangle_count(), 0);
+    if (edit.transparent) add(flags, transparent_triangles(object));
+    if (edit.duplicates) add(flags, duplicate_triangles(object));
+    std::vector<Vec3> eyes;
+    if (edit.unseen > 0) eyes = eyes_around(object.bounds(), edit.unseen, edit.distance);
+    for (const Vec3& eye : world_eyes) eyes.push_back(placed.to_world.inverse() * eye);
+    if (!eyes.empty()) add(flags, triangles_unseen(object, eyes));
+    return flags;
+  });
+}
+
+}  // namespace rebake

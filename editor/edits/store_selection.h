@@ -1,0 +1,35 @@
+#pragma once
+
+#include "editor/edits/selecting.h"
+
+namespace rebake {
+
+struct StoreSelection {
+  static constexpr const char* op = "store_selection";
+  static constexpr const char* help =
+      "Stores the present selection of all nodes under a name, for select's field saved; replaces what had the name.";
+  std::string name;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("name", self.name, Need::required, "name of the selection");
+  }
+};
+
+inline Scene apply(const Scene& scene, const StoreSelection& edit) {
+  if (edit.name.empty()) throw FieldError("name", "must not be empty");
+  Scene result = scene;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object || (!placed.node->selection && !placed.node->saved_selections.contains(edit.name)))
+      continue;
+    result = with_changed(result, placed.node->id, [&](Node& node) {
+      if (node.selection)
+        node.saved_selections[edit.name] = node.selection;
+      else
+        node.saved_selections.erase(edit.name);
+    });
+  }
+  return result;
+}
+
+}  // namespace rebake

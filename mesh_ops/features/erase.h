@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+
+#include "mesh_ops/scene/object.h"
+
+namespace rebake {
+
+/// Clears the opacity (feat0.R) of texels that show a place for which `inside` holds: a texel's place is the point of a
+/// triangle nearest to the texel's centre, in object space. All other bytes stay as they are, and tiles without a
+/// cleared texel stay shared. A texel that several triangles show is cleared for all. `inside` is called from several
+/// threads.
+struct Erased {
+  std::vector<TextureSet> sets;
+  std::uint64_t texels = 0;  ///< opaque before, transparent now
+};
+Erased erase_texels(const BakedObject& object, const std::function<bool(const Vec3&)>& inside);
+
+}  // namespace rebake

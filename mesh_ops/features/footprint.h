@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh_ops/scene/object.h"
+
+namespace rebake {
+
+/// A face's corners in texel coordinates of its texture, v pointing down: texel (x, y) is the square [x, x+1) × [y,
+/// y+1).
+inline std::array<Vec2, 3> texel_corners(const TextureSet& set, std::size_t face) {
+  std::array<Vec2, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2& uv = set.soup.uvs()[set.soup.faces()[face][k]];
+    corners[k] = {uv.x() * set.texels->width(), (1 - uv.y()) * set.texels->height()};
+  }
+  return corners;
+}
+
+/// Calls visit(x, y) for the texels whose centre lies in the triangle, clamped to the texture. A centre on an edge that
+/// two triangles share counts for one or both.
+template <class Visit>
+void for_each_texel_inside(const std::array<Vec2, 3>& p, int width, int height, Visit visit) {
+  double top = std::min({p[0].y(), p[1].y(), p[2].y()}), bottom = std::max({p[0].y(), p[1].y(), p[2].y()});
+  const int first = static_cast<int>(std::ceil(std::clamp(top - 0.5, 0.0, static_cast<double>(height))));
+  const int last = static_cast<int>(std::floor(std::clamp(bottom - 0.5, -1.0, height - 1.0)));
+  for (int y = first; y <= last; ++y) {
+    double left = 1e300, right = -1e300;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 &a = p[k], &b = p[(k + 1) % 3];
+      const double row = y + 0.5;
+      if ((a.y() < row && b.y() < row) || (a.y() > row && b.y() > row)) continue;
+      if (a.y() == b.y()) {
+        left = std::min({left, a.x(), b.x()});
+        right = std::max({right, a.x(), b.x()});
+        continue;
+      }
+      const double x = a.x() + (b.x() - a.x()) * ((row - a.y()) / (b.y() - a.y()));
+      left = std::min(left, x);
+      right = std::max(right, x);
+    }
+    const int begin = static_cast<int>(std::ceil(std::clamp(left - 0.5, 0.0, static_cast<double>(width))));
+    const int end = static_cast<int>(std::floor(std::clamp(right - 0.5, -1.0, width - 1.0)));
+    for (int x = begin; x <= end; ++x) visit(x, y);
+  }
+}
+
+/// Weights of the corners at a point, summing to 1; all on the first corner where the triangle has no area.
+inline Vec3 barycentric(const std::array<Vec2, 3>& p, const Vec2& at) {
+  const Vec2 a = p[1] - p[0], b = p[2] - p[0], c = at - p[0];
+  const double area = a.x() * b.y() - a.y() * b.x();
+  if (area == 0) return {1, 0, 0};
+  const double v = (c.x() * b.y() - c.y() * b.x()) / area, w = (a.x() * c.y() - a.y() * c.x()) / area;
+  return {1 - v - w, v, w};
+}
+
+}  // namespace rebake

@@ -1,0 +1,192 @@
+#include "mesh_ops/select/picture.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mesh_ops/error.h"
+#include "mesh_ops/features/footprint.h"
+#include "mesh_ops/select/index.h"
+
+namespace rebake {
+
+PixelMask full_mask(int width, int height) {
+  return {width, height,
+          std::vector<std::uint8_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 1)};
+}
+
+PixelMask polygon_mask(const std::vector<Vec2>& corners, int width, int height) {
+  PixelMask mask = full_mask(width, height);
+  std::fill(mask.flags.begin(), mask.flags.end(), std::uint8_t{0});
+  std::vector<double> crossings;
+  for (int y = 0; y < height; ++y) {
+    const double row = y + 0.5;
+    crossings.clear();
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Vec2 &a = corners[k], &b = corners[(k + 1) % corners.size()];
+      if ((a.y() <= row) == (b.y() <= row)) continue;
+      crossings.push_back(a.x() + (b.x() - a.x()) * ((row - a.y()) / (b.y() - a.y())));
+    }
+    std::sort(crossings.begin(), crossings.end());
+    for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) {
+      const int begin = static_cast<int>(std::ceil(std::clamp(crossings[k] - 0.5, 0.0, static_cast<double>(width))));
+      const int end = static_cast<int>(std::ceil(std::clamp(crossings[k + 1] - 0.5, 0.0, static_cast<double>(width))));
+      const auto line = mask.flags.begin() + static_cast<std::ptrdiff_t>(y) * width;
+      std::fill(line + begin, line + std::max(begin, end), std::uint8_t{1});
+    }
+  }
+  return mask;
+}
+
+PixelMask brush_mask(const std::vector<Vec2>& points, double radius, int width, int height) {
+  PixelMask mask = full_mask(width, height);
+  std::fill(mask.flags.begin(), mask.flags.end(), std::uint8_t{0});
+  const auto pixel = [](double v, int size) { return static_cast<int>(std::clamp(std::floor(v), 0.0, size - 1.0)); };
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Vec2 &a = points[k], &b = points[std::min(k + 1, points.size() - 1)];
+    const Vec2 low = a.cwiseMin(b).array() - radius - 1, high = a.cwiseMax(b).array() + radius + 1;
+    if (high.minCoeff() < 0 || low.x() > width || low.y() > height) continue;
+    const Vec2 along = b - a;
+    for (int y = pixel(low.y(), height); y <= pixel(high.y(), height); ++y)
+      for (int x = pixel(low.x(), width); x <= pixel(high.x(), width); ++x) {
+        const Vec2 p = Vec2(x + 0.5, y + 0.5) - a;
+        const double t = along.isZero(0) ? 0 : std::clamp(p.dot(along) / along.squaredNorm(), 0.0, 1.0);
+        if ((p - along * t).norm() <= radius)
+          mask.flags[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = 1;
+      }
+  }
+  return mask;
+}
+
+Projector::Projector(const Picture& picture) : picture_(picture), eye_(picture.camera.eye) {
+  check(picture.camera);
+  rows_ = world_to_camera(picture.camera);
+  half_height_ = std::tan(picture.camera.fov_degrees / 2 * std::numbers::pi / 180);
+  half_width_ = half_height_ * picture.width / picture.height;
+}
+
+bool Projector::operator()(const Vec3& world, At& at) const {
+  const Vec3 p = rows_ * (world - eye_);
+  at.depth = -p.z();
+  if (!(at.depth >= picture_.camera.near_plane && at.depth <= picture_.camera.far_plane)) return false;
+  const auto pixel = [](double v) { return static_cast<int>(std::floor(std::clamp(v, -1e9, 1e9))); };
+  at.x = pixel((p.x() / (at.depth * half_width_) + 1) / 2 * picture_.width);
+  at.y = pixel((1 - p.y() / (at.depth * half_height_)) / 2 * picture_.height);
+  return true;
+}
+
+Vec3 Projector::ray(int x, int y) const {
+  const Vec3 p((2 * (x + 0.5) / picture_.width - 1) * half_width_, (1 - 2 * (y + 0.5) / picture_.height) * half_height_,
+               -1);
+  return rows_.transpose() * p;
+}
+
+TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, const Projector& project,
+                            const PixelMask& mask, double nearest, double farthest) {
+  TriangleSet flags(object.triangle_count(), 0);
+  std::size_t first = 0;
+  for (const TextureSet& set : object.sets) {
+    const std::vector<Vec3>& p = set.soup.positions();
+    tbb::parallel_for(std::size_t{0}, set.soup.triangle_count(), [&](std::size_t f) {
+      const Face& face = set.soup.faces()[f];
+      Projector::At at;
+      if (!project(to_world * Vec3((p[face[0]] + p[face[1]] + p[face[2]]) / 3), at)) return;
+      if (at.depth >= nearest && at.depth <= farthest && mask.at(at.x, at.y)) flags[first + f] = 1;
+    });
+    first += set.soup.triangle_count();
+  }
+  return flags;
+}
+
+std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, const Projector& project,
+                                        const PixelMask& mask, double nearest, double farthest) {
+  struct Seen {
+    std::shared_ptr<const RayTree> rays;
+    Vec3 eye;
+    Mat3 to_object;
+  };
+  std::vector<Seen> trees;
+  std::vector<TriangleSet> flags;
+  for (const PlacedNode& placed : objects) {
+    const Affine to_object = placed.to_world.inverse();
+    trees.push_back({rays_of(*placed.node->object), to_object * project.eye(), to_object.linear()});
+    flags.emplace_back(placed.node->object->triangle_count(), 0);
+  }
+  struct Pick {
+    std::uint32_t object, triangle;
+  };
+  std::vector<std::vector<Pick>> picks(static_cast<std::size_t>(mask.height));
+  tbb::parallel_for(0, mask.height, [&](int y) {
+    for (int x = 0; x < mask.width; ++x) {
+      if (!mask.at(x, y)) continue;
+      const Vec3 ray = project.ray(x, y);
+      double far = project.camera().far_plane;
+      std::optional<Pick> pick;
+      for (std::uint32_t k = 0; k < trees.size(); ++k) {
+        const auto hit =
+            trees[k].rays->nearest(trees[k].eye, trees[k].to_object * ray, project.camera().near_plane, far);
+        if (!hit) continue;
+        far = hit->t;
+        pick = Pick{k, hit->triangle};
+      }
+      if (pick && far >= nearest && far <= farthest) picks[static_cast<std::size_t>(y)].push_back(*pick);
+    }
+  });
+  for (const auto& row : picks)
+    for (const Pick& pick : row) flags[pick.object][pick.triangle] = 1;
+  return flags;
+}
+
+TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Vec3>& eyes) {
+  const auto rays = rays_of(object);
+  const double size = object.bounds().diagonal().norm();
+  TriangleSet flags(object.triangle_count(), 0);
+  std::size_t first = 0;
+  for (const TextureSet& set : object.sets) {
+    tbb::parallel_for(std::size_t{0}, set.soup.triangle_count(), [&](std::size_t f) {
+      const std::array<Vec2, 3> uv = texel_corners(set, f);
+      const Face& face = set.soup.faces()[f];
+      const std::vector<Vec3>& p = set.soup.positions();
+      std::vector<Vec3> opaque;
+      for_each_texel_inside(uv, set.texels->width(), set.texels->height(), [&](int x, int y) {
+        if (!set.texels->at(x, y).opaque()) return;
+        const Vec3 w = barycentric(uv, {x + 0.5, y + 0.5});
+        opaque.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
+      });
+      // Spread over all of them.
+      constexpr std::size_t most = 16;
+      const std::size_t tried = std::min(most, opaque.size());
+      bool seen = false;
+      for (std::size_t k = 0; k < tried && !seen; ++k) {
+        const Vec3& point = opaque[k * opaque.size() / tried];
+        for (const Vec3& eye : eyes) {
+          // Stops short of the point by more than the tree's rounding.
+          const Vec3 way = point - eye;
+          const double distance = way.norm();
+          if (distance > 0 && rays->blocked(eye, way, 0, 1 - 1e-5 * std::max(1.0, size / distance))) continue;
+          seen = true;
+          break;
+        }
+      }
+      flags[first + f] = seen ? 0 : 1;
+    });
+    first += set.soup.triangle_count();
+  }
+  return flags;
+}
+
+std::vector<Vec3> eyes_around(const Box& box, int count, double distance) {
+  // A Fibonacci lattice.
+  std::vector<Vec3> eyes;
+  const double radius = distance * box.diagonal().norm() / 2;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z);
+    const double angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    eyes.push_back(box.center() + radius * Vec3(r * std::cos(angle), z, r * std::sin(angle)));
+  }
+  return eyes;
+}
+
+}  // namespace rebake

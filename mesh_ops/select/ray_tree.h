@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "mesh_ops/scene/object.h"
+
+namespace rebake {
+
+/// Finds the opaque triangle that a ray meets first. Transparent texels let rays through. Distances are found in single
+/// precision, relative to the object's centre: good to about 1e-6 of its size.
+class RayTree {
+ public:
+  explicit RayTree(const BakedObject& object);
+  ~RayTree();
+
+  struct Hit {
+    double t;                ///< at origin + t · direction
+    std::uint32_t triangle;  ///< in the object's numbering
+  };
+  /// The nearest hit with t in [near, far]. Origin and direction in object space, the direction of any length.
+  std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const;
+  /// Whether anything opaque lies at t in [near, far].
+  bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rebake
