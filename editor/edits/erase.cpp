@@ -38,11 +38,12 @@ class Hiding {
 };
 
 Scene erased(const Scene& scene, const std::vector<PlacedNode>& targets,
-             const std::function<std::function<bool(const Vec3&)>(const PlacedNode&)>& inside) {
+             const std::function<ObjectRegion(const PlacedNode&)>& region_in) {
   Scene result = scene;
   std::uint64_t texels = 0;
   for (const PlacedNode& placed : targets) {
-    Erased change = erase_texels(*placed.node->object, inside(placed));
+    const ObjectRegion region = region_in(placed);
+    Erased change = erase_texels(*placed.node->object, region.inside, region.may_touch);
     texels += change.texels;
     if (change.texels == 0) continue;
     result = with_changed(result, placed.node->id,
@@ -65,17 +66,21 @@ Scene apply(const Scene& scene, const Erase& edit) {
     const std::optional<Hiding> hidden =
         edit.through ? std::nullopt : std::optional<Hiding>(std::in_place, scene, region.projector().eye());
     return erased(scene, targets, [&](const PlacedNode& placed) {
-      return [&region, &hidden, to_world = placed.to_world](const Vec3& p) {
+      const auto inside = [&region, &hidden, to_world = placed.to_world](const Vec3& p) {
         const Vec3 world = to_world * p;
         return region.contains(world) && !(hidden && (*hidden)(world));
       };
+      const auto may_touch = [&region, to_world = placed.to_world](const std::array<Vec3, 3>& corners) {
+        return region.may_touch({to_world * corners[0], to_world * corners[1], to_world * corners[2]});
+      };
+      return ObjectRegion{inside, may_touch};
     });
   }
-  return erased(scene, targets, [&](const PlacedNode& placed) -> std::function<bool(const Vec3&)> {
+  return erased(scene, targets, [&](const PlacedNode& placed) {
     const FramePoints points(edit.frame, placed);
-    if (edit.box) return inside_of(points, *edit.box);
-    if (edit.sphere) return inside_of(points, *edit.sphere);
-    return inside_of(points, *edit.half_space);
+    if (edit.box) return region_of(points, *edit.box);
+    if (edit.sphere) return region_of(points, *edit.sphere);
+    return region_of(points, *edit.half_space);
   });
 }
 

@@ -27,7 +27,7 @@ inline Scene apply(const Scene& scene, const Fill& edit) {
   if (edit.tolerance < 0) throw FieldError("tolerance", "must not be negative");
   with_selection(scene, edit.node);
   return with_selected(scene, selectable(scene, edit.node), SelectMode::set, [&](const PlacedNode& placed) {
-    return filled(*corners_of(*placed.node->object, edit.tolerance), selection_of(placed),
+    return filled(*edges_of(*placed.node->object, edit.tolerance), selection_of(placed),
                   static_cast<std::size_t>(edit.at_most) + 1);
   });
 }

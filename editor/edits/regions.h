@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <functional>
 
 #include "editor/fields/fields.h"
@@ -38,26 +40,50 @@ inline FramePoints::FramePoints(CoordinateFrame frame, const PlacedNode& placed)
   }
 }
 
-/// Whether a point in object space lies in a region.
-inline std::function<bool(const Vec3&)> inside_of(const FramePoints& points, const BoxRegion& box) {
-  return [from_object = points.from_object(), box](const Vec3& object_point) {
+/// A region of an object, in object space.
+struct ObjectRegion {
+  std::function<bool(const Vec3&)> inside;
+  /// False only where the triangle between the corners lies outside altogether.
+  std::function<bool(const std::array<Vec3, 3>&)> may_touch;
+};
+
+inline ObjectRegion region_of(const FramePoints& points, const BoxRegion& box) {
+  const Affine from_object = points.from_object();
+  const auto inside = [from_object, box](const Vec3& object_point) {
     const Vec3 p = from_object * object_point;
     return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
   };
+  const auto may_touch = [from_object, box](const std::array<Vec3, 3>& corners) {
+    Box triangle;
+    for (const Vec3& corner : corners) triangle.extend(from_object * corner);
+    return (triangle.max().array() >= box.min.array()).all() && (triangle.min().array() <= box.max.array()).all();
+  };
+  return {inside, may_touch};
 }
 
-inline std::function<bool(const Vec3&)> inside_of(const FramePoints& points, const SphereRegion& sphere) {
+inline ObjectRegion region_of(const FramePoints& points, const SphereRegion& sphere) {
   const Vec3 center = points.metric() * points.to_object(sphere.center);
   const double radius = sphere.radius * points.radius_scale();
-  return [metric = points.metric(), center, radius](const Vec3& object_point) {
+  const Affine metric = points.metric();
+  const auto inside = [metric, center, radius](const Vec3& object_point) {
     return (metric * object_point - center).norm() <= radius;
   };
+  const auto may_touch = [metric, center, radius](const std::array<Vec3, 3>& corners) {
+    Box triangle;
+    for (const Vec3& corner : corners) triangle.extend(metric * corner);
+    return triangle.exteriorDistance(center) <= radius;
+  };
+  return {inside, may_touch};
 }
 
-inline std::function<bool(const Vec3&)> inside_of(const FramePoints& points, const HalfSpaceRegion& half) {
-  return [from_object = points.from_object(), half](const Vec3& object_point) {
+inline ObjectRegion region_of(const FramePoints& points, const HalfSpaceRegion& half) {
+  const auto inside = [from_object = points.from_object(), half](const Vec3& object_point) {
     return half.normal.dot(from_object * object_point - half.point) >= 0;
   };
+  const auto may_touch = [inside](const std::array<Vec3, 3>& corners) {
+    return std::any_of(corners.begin(), corners.end(), inside);
+  };
+  return {inside, may_touch};
 }
 
 }  // namespace rebake

@@ -56,9 +56,9 @@ Scene apply(const Scene& scene, const Select& edit) {
       for (auto& flag : flags) flag = flag != 0 ? 0 : 1;
       return flags;
     }
-    if (edit.box) return triangles_by_centre(object, inside_of(points, *edit.box));
-    if (edit.sphere) return triangles_by_centre(object, inside_of(points, *edit.sphere));
-    if (edit.half_space) return triangles_by_centre(object, inside_of(points, *edit.half_space));
+    if (edit.box) return triangles_by_centre(object, region_of(points, *edit.box).inside);
+    if (edit.sphere) return triangles_by_centre(object, region_of(points, *edit.sphere).inside);
+    if (edit.half_space) return triangles_by_centre(object, region_of(points, *edit.half_space).inside);
     if (start && start->target == k && object.triangle_count() > 0) return triangles_connected(object, start->triangle);
     if (edit.texture_set) return triangles_of_set(placed, *edit.texture_set);
     if (const auto saved = placed.node->saved_selections.find(edit.saved);

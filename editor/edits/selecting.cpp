@@ -112,11 +112,26 @@ NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const V
 PictureRegion::PictureRegion(const Scene& scene, const PictureFields& fields)
     : projector_(picture_of(scene, fields)),
       mask_(mask_of(fields)),
-      depth_(fields.depth.value_or(Interval{0, std::numeric_limits<double>::infinity()})) {}
+      depth_(fields.depth.value_or(Interval{0, std::numeric_limits<double>::infinity()})) {
+  for (int y = 0; y < mask_.height; ++y)
+    for (int x = 0; x < mask_.width; ++x)
+      if (mask_.at(x, y)) flagged_.extend(Eigen::Vector2i(x, y));
+}
 
 bool PictureRegion::contains(const Vec3& world) const {
   Projector::At at;
   return projector_(world, at) && at.depth >= depth_.min && at.depth <= depth_.max && mask_.at(at.x, at.y);
+}
+
+bool PictureRegion::may_touch(const std::array<Vec3, 3>& world) const {
+  Eigen::AlignedBox2i covered;
+  for (const Vec3& corner : world) {
+    Projector::At at;
+    // A triangle that crosses the near plane covers pixels that its corners do not tell.
+    if (!projector_(corner, at)) return true;
+    covered.extend(Eigen::Vector2i(at.x, at.y));
+  }
+  return flagged_.intersects(covered);
 }
 
 }  // namespace rebake

@@ -60,11 +60,14 @@ class PictureRegion {
   double farthest() const { return depth_.max; }
   /// Whether a world point falls into it, hidden or not.
   bool contains(const Vec3& world) const;
+  /// False only where the triangle between world points lies outside altogether.
+  bool may_touch(const std::array<Vec3, 3>& world) const;
 
  private:
   Projector projector_;
   PixelMask mask_;
   Interval depth_;
+  Eigen::AlignedBox2i flagged_;  ///< of the mask
 };
 
 }  // namespace rebake

@@ -52,13 +52,15 @@ void for_each_opaque_texel_touched(const FeatureTexture& texels, const std::arra
 
 }  // namespace
 
-Erased erase_texels(const BakedObject& object, const std::function<bool(const Vec3&)>& inside) {
+Erased erase_texels(const BakedObject& object, const std::function<bool(const Vec3&)>& inside,
+                    const std::function<bool(const std::array<Vec3, 3>&)>& may_touch) {
   Erased result;
   for (const TextureSet& set : object.sets) {
     tbb::enumerable_thread_specific<std::vector<TexelAt>> found;
     tbb::parallel_for(std::size_t{0}, set.soup.triangle_count(), [&](std::size_t f) {
       const Face& face = set.soup.faces()[f];
       const std::vector<Vec3>& p = set.soup.positions();
+      if (!may_touch({p[face[0]], p[face[1]], p[face[2]]})) return;
       std::vector<TexelAt>& mine = found.local();
       for_each_opaque_texel_touched(*set.texels, texel_corners(set, f), [&](int x, int y, const Vec3& w) {
         if (inside(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2])) mine.push_back({x, y});

@@ -14,6 +14,9 @@ struct Erased {
   std::vector<TextureSet> sets;
   std::uint64_t texels = 0;  ///< opaque before, transparent now
 };
-Erased erase_texels(const BakedObject& object, const std::function<bool(const Vec3&)>& inside);
+/// `may_touch` says of three corners whether the triangle between them may hold such a place; where it says no the
+/// triangle's texels are not looked at.
+Erased erase_texels(const BakedObject& object, const std::function<bool(const Vec3&)>& inside,
+                    const std::function<bool(const std::array<Vec3, 3>&)>& may_touch);
 
 }  // namespace rebake

@@ -19,11 +19,11 @@ inline std::array<Vec2, 3> texel_corners(const TextureSet& set, std::size_t face
   return corners;
 }
 
-/// Calls visit(x, y) for the texels whose centre lies in the triangle, clamped to the texture. A centre on an edge that
-/// two triangles share counts for one or both.
+/// Calls visit(y, begin, end) for the rows of texels, begin ≤ x < end, whose centres lie in the triangle, clamped to
+/// the texture. A centre on an edge that two triangles share counts for one or both.
 template <class Visit>
-void for_each_texel_inside(const std::array<Vec2, 3>& p, int width, int height, Visit visit) {
-  double top = std::min({p[0].y(), p[1].y(), p[2].y()}), bottom = std::max({p[0].y(), p[1].y(), p[2].y()});
+void for_each_row_inside(const std::array<Vec2, 3>& p, int width, int height, Visit visit) {
+  const double top = std::min({p[0].y(), p[1].y(), p[2].y()}), bottom = std::max({p[0].y(), p[1].y(), p[2].y()});
   const int first = static_cast<int>(std::ceil(std::clamp(top - 0.5, 0.0, static_cast<double>(height))));
   const int last = static_cast<int>(std::floor(std::clamp(bottom - 0.5, -1.0, height - 1.0)));
   for (int y = first; y <= last; ++y) {
@@ -43,8 +43,16 @@ void for_each_texel_inside(const std::array<Vec2, 3>& p, int width, int height, 
     }
     const int begin = static_cast<int>(std::ceil(std::clamp(left - 0.5, 0.0, static_cast<double>(width))));
     const int end = static_cast<int>(std::floor(std::clamp(right - 0.5, -1.0, width - 1.0)));
-    for (int x = begin; x <= end; ++x) visit(x, y);
+    if (begin <= end) visit(y, begin, end + 1);
   }
+}
+
+/// The same texels one by one: visit(x, y).
+template <class Visit>
+void for_each_texel_inside(const std::array<Vec2, 3>& p, int width, int height, Visit visit) {
+  for_each_row_inside(p, width, height, [&](int y, int begin, int end) {
+    for (int x = begin; x < end; ++x) visit(x, y);
+  });
 }
 
 /// Weights of the corners at a point, summing to 1; all on the first corner where the triangle has no area.

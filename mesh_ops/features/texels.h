@@ -53,10 +53,14 @@ class FeatureTexture {
     return tiles_[static_cast<std::size_t>(row) * static_cast<std::size_t>(tile_columns()) +
                   static_cast<std::size_t>(column)];
   }
-  const Texel& at(int x, int y) const {
-    return tile(x / TexelTile::size, y / TexelTile::size)
-        ->texels[static_cast<std::size_t>(y % TexelTile::size) * TexelTile::size +
-                 static_cast<std::size_t>(x % TexelTile::size)];
+  const Texel& at(int x, int y) const { return *row_part(x, y); }
+  /// Texel (x, y), followed by those to its right as far as the tile reaches: x up to the next multiple of 256.
+  const Texel* row_part(int x, int y) const {
+    // Unsigned, so that dividing by the power of two is a shift: this is called for every texel.
+    const auto column = static_cast<unsigned>(x), row = static_cast<unsigned>(y);
+    constexpr unsigned size = TexelTile::size;
+    return &tiles_[static_cast<std::size_t>(row / size) * static_cast<unsigned>(tile_columns()) + column / size]
+                ->texels[static_cast<std::size_t>(row % size) * size + column % size];
   }
   /// The texel that nearest sampling with clamping finds at (u, v), v pointing up.
   const Texel& sample(double u, double v) const;

@@ -1,13 +1,13 @@
 #include "mesh_ops/select/connection.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "mesh_ops/features/footprint.h"
 
@@ -119,7 +119,7 @@ void join_near(UnionFind& parts, const std::vector<Vec3>& points, const std::vec
   }
 }
 
-// Bit i is set when the texel beside the i-th of 32 places along an edge is opaque, counted from corner a to corner b.
+// Bit i is set when the texel beside the i-th of 32 places along an edge is opaque, counted from a to b.
 std::uint32_t opaque_along(const FeatureTexture& texels, const Vec2& a, const Vec2& b, const Vec2& inside) {
   constexpr int places = 32;
   // A quarter of a texel off the edge, towards the inside, so that rounding cannot fall into a neighbouring patch.
@@ -127,46 +127,18 @@ std::uint32_t opaque_along(const FeatureTexture& texels, const Vec2& a, const Ve
   const Vec2 off = inside - a - along * (along.squaredNorm() > 0 ? (inside - a).dot(along) / along.squaredNorm() : 0.0);
   const double distance = off.norm();
   const Vec2 shift = distance > 0 ? Vec2(off * (std::min(0.25, distance / 2) / distance)) : Vec2(0, 0);
+  const Vec2 first = a + shift + along * (0.5 / places), step = along / places;
+  const double right = texels.width() - 1.0, bottom = texels.height() - 1.0;
   std::uint32_t mask = 0;
+  const Texel* texel = nullptr;
+  int x = -1, y = -1;
   for (int i = 0; i < places; ++i) {
-    const Vec2 at = a + along * ((i + 0.5) / places) + shift;
-    const int x = static_cast<int>(std::clamp(at.x(), 0.0, texels.width() - 1.0));
-    const int y = static_cast<int>(std::clamp(at.y(), 0.0, texels.height() - 1.0));
-    mask |= texels.at(x, y).opaque() ? 1U << i : 0U;
+    const int next_x = static_cast<int>(std::clamp(first.x() + i * step.x(), 0.0, right));
+    const int next_y = static_cast<int>(std::clamp(first.y() + i * step.y(), 0.0, bottom));
+    if (next_x != x || next_y != y) texel = &texels.at(x = next_x, y = next_y);
+    mask |= texel->opaque() ? 1U << i : 0U;
   }
   return mask;
-}
-
-struct HalfEdge {
-  std::uint64_t places;  // lower place number, higher one
-  std::uint32_t triangle;
-  std::uint32_t opaque;  // along the edge, from the lower place to the higher
-  bool operator<(const HalfEdge& other) const {
-    return std::tie(places, triangle, opaque) < std::tie(other.places, other.triangle, other.opaque);
-  }
-};
-
-std::vector<HalfEdge> half_edges(const std::vector<std::uint32_t>& places) {
-  std::vector<HalfEdge> edges(places.size());
-  tbb::parallel_for(std::size_t{0}, places.size() / 3, [&](std::size_t t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint64_t a = places[t * 3 + k], b = places[t * 3 + (k + 1) % 3];
-      edges[t * 3 + k] = {std::min(a, b) << 32 | std::max(a, b), static_cast<std::uint32_t>(t), 0};
-    }
-  });
-  return edges;
-}
-
-// Calls visit(first, last) for each group of half edges between the same two places.
-template <class Visit>
-void for_each_edge(std::vector<HalfEdge>& edges, Visit visit) {
-  tbb::parallel_sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t end = i + 1;
-    while (end < edges.size() && edges[end].places == edges[i].places) ++end;
-    visit(i, end);
-    i = end;
-  }
 }
 
 // Opaque texel centres of every triangle, at a pitch of at most a quarter of the gap.
@@ -235,34 +207,60 @@ WeldedCorners weld(const BakedObject& object, double tolerance) {
   return welded;
 }
 
-Components opaque_components(const BakedObject& object, const WeldedCorners& corners, const Joining& joining) {
+EdgeTable edges_between(const WeldedCorners& corners) {
+  const std::vector<std::uint32_t>& places = corners.places;
+  const auto end_of = [&](std::size_t half_edge) { return places[half_edge - half_edge % 3 + (half_edge + 1) % 3]; };
+  const auto low = [&](std::size_t e) { return std::min(places[e], end_of(e)); };
+  const auto high = [&](std::size_t e) { return std::max(places[e], end_of(e)); };
+  // By the lower place, as a counting sort; the few of each place then by the higher one.
+  std::vector<std::uint32_t> begin(corners.place_count + 1U, 0);
+  for (std::size_t e = 0; e < places.size(); ++e) ++begin[low(e) + 1U];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  EdgeTable table;
+  table.half_edges.resize(places.size());
+  std::vector<std::uint32_t> at(begin.begin(), begin.end() - 1);
+  for (std::uint32_t e = 0; e < places.size(); ++e) table.half_edges[at[low(e)]++] = e;
+  tbb::parallel_for(std::size_t{0}, static_cast<std::size_t>(corners.place_count), [&](std::size_t place) {
+    std::sort(table.half_edges.begin() + begin[place], table.half_edges.begin() + begin[place + 1],
+              [&](std::uint32_t a, std::uint32_t b) { return std::pair(high(a), a) < std::pair(high(b), b); });
+  });
+  for (std::uint32_t i = 0; i < places.size(); ++i) {
+    const std::uint32_t e = table.half_edges[i];
+    if (i == 0 || low(e) != low(table.half_edges[i - 1]) || high(e) != high(table.half_edges[i - 1]))
+      table.first_of.push_back(i);
+  }
+  table.first_of.push_back(static_cast<std::uint32_t>(places.size()));
+  return table;
+}
+
+Components opaque_components(const BakedObject& object, const WeldedCorners& corners, const EdgeTable& edges,
+                             double gap) {
   const std::size_t total = object.triangle_count();
-  std::vector<HalfEdge> edges = half_edges(corners.places);
+  std::vector<std::uint32_t> opaque(total * 3);  // along each half edge, from the lower place to the higher
   std::size_t first = 0;
   for (const TextureSet& set : object.sets) {
     tbb::parallel_for(std::size_t{0}, set.soup.triangle_count(), [&](std::size_t f) {
       const std::array<Vec2, 3> uv = texel_corners(set, f);
       for (std::size_t k = 0; k < 3; ++k) {
-        HalfEdge& edge = edges[(first + f) * 3 + k];
-        const bool forward = corners.places[(first + f) * 3 + k] <= corners.places[(first + f) * 3 + (k + 1) % 3];
+        const std::size_t e = (first + f) * 3 + k;
+        const bool forward = corners.places[e] <= corners.places[(first + f) * 3 + (k + 1) % 3];
         const Vec2 &a = uv[k], &b = uv[(k + 1) % 3];
-        edge.opaque = opaque_along(*set.texels, forward ? a : b, forward ? b : a, uv[(k + 2) % 3]);
+        opaque[e] = opaque_along(*set.texels, forward ? a : b, forward ? b : a, uv[(k + 2) % 3]);
       }
     });
     first += set.soup.triangle_count();
   }
-  std::erase_if(edges, [](const HalfEdge& edge) { return edge.opaque == 0; });
   UnionFind parts(total);
-  for_each_edge(edges, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t j = i + 1; j < end; ++j)
-        if ((edges[i].opaque & edges[j].opaque) != 0) parts.join(edges[i].triangle, edges[j].triangle);
-  });
-  if (joining.gap > 0) {
+  for (std::size_t edge = 0; edge + 1 < edges.first_of.size(); ++edge)
+    for (std::uint32_t i = edges.first_of[edge]; i < edges.first_of[edge + 1]; ++i)
+      for (std::uint32_t j = i + 1; j < edges.first_of[edge + 1]; ++j)
+        if ((opaque[edges.half_edges[i]] & opaque[edges.half_edges[j]]) != 0)
+          parts.join(edges.half_edges[i] / 3, edges.half_edges[j] / 3);
+  if (gap > 0) {
     std::vector<Vec3> points;
     std::vector<std::uint32_t> owner;
-    opaque_points(object, joining.gap, points, owner);
-    if (!points.empty()) join_near(parts, points, owner, joining.gap, object.bounds().min());
+    opaque_points(object, gap, points, owner);
+    if (!points.empty()) join_near(parts, points, owner, gap, object.bounds().min());
   }
   Components result;
   result.part_of.resize(total);
@@ -299,24 +297,24 @@ TriangleSet shrunk(const WeldedCorners& corners, const TriangleSet& selection) {
   return result;
 }
 
-TriangleSet filled(const WeldedCorners& corners, const TriangleSet& selection, std::size_t largest) {
-  std::vector<HalfEdge> edges = half_edges(corners.places);
+TriangleSet filled(const EdgeTable& edges, const TriangleSet& selection, std::size_t largest) {
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   UnionFind islands(selection.size());
   std::vector<std::uint32_t> beside;  // unselected triangles that share an edge with a selected one
-  for_each_edge(edges, [&](std::size_t begin, std::size_t end) {
+  for (std::size_t edge = 0; edge + 1 < edges.first_of.size(); ++edge) {
     bool borders = false;
-    std::uint32_t open = std::numeric_limits<std::uint32_t>::max();
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t t = edges[i].triangle;
+    std::uint32_t open = none;
+    for (std::uint32_t i = edges.first_of[edge]; i < edges.first_of[edge + 1]; ++i) {
+      const std::uint32_t t = edges.half_edges[i] / 3;
       if (selection[t] != 0)
         borders = true;
-      else if (open == std::numeric_limits<std::uint32_t>::max())
+      else if (open == none)
         open = t;
       else
         islands.join(open, t);
     }
-    if (borders && open != std::numeric_limits<std::uint32_t>::max()) beside.push_back(open);
-  });
+    if (borders && open != none) beside.push_back(open);
+  }
   std::vector<std::uint32_t> size(selection.size(), 0);
   std::vector<std::uint8_t> borders(selection.size(), 0);
   for (std::uint32_t t = 0; t < selection.size(); ++t)

@@ -24,6 +24,14 @@ struct WeldedCorners {
 };
 WeldedCorners weld(const BakedObject& object, double tolerance);
 
+/// Which triangles share an edge: half edges (3 · triangle + corner it starts at), those between the same two places
+/// side by side.
+struct EdgeTable {
+  std::vector<std::uint32_t> half_edges;
+  std::vector<std::uint32_t> first_of;  ///< where each edge's begin; one more at the end
+};
+EdgeTable edges_between(const WeldedCorners& corners);
+
 /// The object's triangles in parts that hang together where they are opaque: two triangles that share an edge are
 /// joined where opaque texels face each other across it (looked at in 32 places along the edge). Triangles without an
 /// opaque texel are parts of their own.
@@ -31,7 +39,8 @@ struct Components {
   std::vector<std::uint32_t> part_of;       ///< a triangle's part
   std::vector<std::uint32_t> triangles_in;  ///< triangles of a part
 };
-Components opaque_components(const BakedObject& object, const WeldedCorners& corners, const Joining& joining);
+Components opaque_components(const BakedObject& object, const WeldedCorners& corners, const EdgeTable& edges,
+                             double gap);
 
 /// The selection and the triangles that share a place with it.
 TriangleSet grown(const WeldedCorners& corners, const TriangleSet& selection);
@@ -39,6 +48,6 @@ TriangleSet grown(const WeldedCorners& corners, const TriangleSet& selection);
 TriangleSet shrunk(const WeldedCorners& corners, const TriangleSet& selection);
 /// The selection and the islands inside it: unselected triangles, joined through shared edges, that border selected
 /// ones and are fewer than `largest`.
-TriangleSet filled(const WeldedCorners& corners, const TriangleSet& selection, std::size_t largest);
+TriangleSet filled(const EdgeTable& edges, const TriangleSet& selection, std::size_t largest);
 
 }  // namespace rebake

@@ -16,11 +16,18 @@ class ObjectIndex {
     return kept(corners_, tolerance, 0.0,
                 [&] { return std::make_shared<const WeldedCorners>(weld(object, tolerance)); });
   }
+  std::shared_ptr<const EdgeTable> edges(const BakedObject& object, double tolerance) const {
+    const auto welded = corners(object, tolerance);
+    const std::scoped_lock lock(edges_mutex_);
+    return kept(edges_, tolerance, 0.0, [&] { return std::make_shared<const EdgeTable>(edges_between(*welded)); });
+  }
   std::shared_ptr<const Components> components(const BakedObject& object, const Joining& joining) const {
     const auto welded = corners(object, joining.tolerance);
+    const auto table = edges(object, joining.tolerance);
     const std::scoped_lock lock(components_mutex_);
-    return kept(components_, joining, Joining{},
-                [&] { return std::make_shared<const Components>(opaque_components(object, *welded, joining)); });
+    return kept(components_, joining, Joining{}, [&] {
+      return std::make_shared<const Components>(opaque_components(object, *welded, *table, joining.gap));
+    });
   }
 
  private:
@@ -41,8 +48,9 @@ class ObjectIndex {
     return store.other;
   }
 
-  mutable std::mutex corners_mutex_, components_mutex_;
+  mutable std::mutex corners_mutex_, edges_mutex_, components_mutex_;
   mutable Kept<double, WeldedCorners> corners_;
+  mutable Kept<double, EdgeTable> edges_;
   mutable Kept<Joining, Components> components_;
 };
 
@@ -60,6 +68,9 @@ std::shared_ptr<const std::vector<TriangleTraits>> traits_of(const BakedObject& 
 }
 std::shared_ptr<const WeldedCorners> corners_of(const BakedObject& object, double tolerance) {
   return index_of(object)->corners(object, tolerance);
+}
+std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tolerance) {
+  return index_of(object)->edges(object, tolerance);
 }
 std::shared_ptr<const Components> components_of(const BakedObject& object, const Joining& joining) {
   return index_of(object)->components(object, joining);

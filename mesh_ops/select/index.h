@@ -12,6 +12,7 @@ namespace rebake {
 
 std::shared_ptr<const std::vector<TriangleTraits>> traits_of(const BakedObject& object);
 std::shared_ptr<const WeldedCorners> corners_of(const BakedObject& object, double tolerance = 0);
+std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tolerance = 0);
 std::shared_ptr<const Components> components_of(const BakedObject& object, const Joining& joining = {});
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object);
 

@@ -3,37 +3,53 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <bit>
+
 #include "mesh_ops/features/footprint.h"
 
 namespace rebake {
 
 namespace {
 
-// Sums of the texels' bytes become features once.
+// Sums of the texels' bytes; they become features once.
 struct Sum {
   std::array<std::uint32_t, 8> bytes{};
   std::uint32_t opaque = 0;
   std::uint32_t all = 0;
 
-  void add(const Texel& texel) {
-    ++all;
-    if (!texel.opaque()) return;
-    ++opaque;
+  // At most 256 texels, whose bytes then fit into 16 bits each: four are added at a time.
+  void add(const Texel* texels, int count) {
+    std::uint64_t even = 0, odd = 0;
+    for (int i = 0; i < count; ++i) {
+      if (!texels[i].opaque()) continue;
+      ++opaque;
+      const auto all_bytes = std::bit_cast<std::uint64_t>(texels[i]);
+      even += all_bytes & 0x00ff00ff00ff00ffULL;
+      odd += all_bytes >> 8 & 0x00ff00ff00ff00ffULL;
+    }
+    all += static_cast<std::uint32_t>(count);
     for (std::size_t k = 0; k < 4; ++k) {
-      bytes[k] += texel.feat0[k];
-      bytes[4 + k] += texel.feat1[k];
+      bytes[2 * k] += static_cast<std::uint32_t>(even >> 16 * k & 0xffff);
+      bytes[2 * k + 1] += static_cast<std::uint32_t>(odd >> 16 * k & 0xffff);
     }
   }
 };
+static_assert(std::endian::native == std::endian::little && sizeof(Texel) == 8);
 
 TriangleTraits traits_of(const TextureSet& set, std::size_t f) {
   const FeatureTexture& texels = *set.texels;
   const std::array<Vec2, 3> corners = texel_corners(set, f);
   Sum sum;
-  for_each_texel_inside(corners, texels.width(), texels.height(), [&](int x, int y) { sum.add(texels.at(x, y)); });
+  for_each_row_inside(corners, texels.width(), texels.height(), [&](int y, int begin, int end) {
+    while (begin < end) {
+      const int part = std::min(end, (begin / TexelTile::size + 1) * TexelTile::size);
+      sum.add(texels.row_part(begin, y), part - begin);
+      begin = part;
+    }
+  });
   if (sum.all == 0) {
     const Vec2 middle = (corners[0] + corners[1] + corners[2]) / 3;
-    sum.add(texels.sample(middle.x() / texels.width(), 1 - middle.y() / texels.height()));
+    sum.add(&texels.sample(middle.x() / texels.width(), 1 - middle.y() / texels.height()), 1);
   }
   TriangleTraits traits;
   traits.opacity = static_cast<float>(sum.opaque) / static_cast<float>(sum.all);

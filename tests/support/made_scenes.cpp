@@ -152,6 +152,21 @@ std::shared_ptr<const BakedObject> mic_object() {
   return object;
 }
 
+std::shared_ptr<const BakedObject> tiled(const BakedObject& object) {
+  auto result = std::make_shared<BakedObject>(object);
+  result->sets.clear();
+  const Vec3 step = object.bounds().sizes() * 1.1;
+  for (int k = 0; k < 9; ++k)
+    for (const TextureSet& set : object.sets) {
+      std::vector<Vec3> positions = set.soup.positions();
+      for (Vec3& p : positions) p += Vec3(k % 3 * step.x(), 0, k / 3 * step.z());
+      result->sets.push_back({Soup(std::make_shared<const std::vector<Vec3>>(std::move(positions)),
+                                   set.soup.shared_uvs(), set.soup.shared_faces()),
+                              set.texels});
+    }
+  return result;
+}
+
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (fs::temp_directory_path() / "rebake-test-XXXXXX").string();
   path_ = mkdtemp(pattern.data());

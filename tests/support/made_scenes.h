@@ -32,6 +32,10 @@ Scene scene_of(std::shared_ptr<const BakedObject> object, const std::string& nam
 /// The real mic from shared/data with made-up features; nothing where shared/ is absent.
 std::shared_ptr<const BakedObject> mic_object();
 
+/// The object nine times side by side, a texture set each: the real mic so tiled has 741,789 triangles, about as many
+/// as a real unbounded scene.
+std::shared_ptr<const BakedObject> tiled(const BakedObject& object);
+
 /// Features for given geometry: opaque texels with smooth random values inside each quad's patch, round holes in some.
 std::shared_ptr<const FeatureTexture> made_features(const Soup& soup, int width, int height, unsigned seed);
 

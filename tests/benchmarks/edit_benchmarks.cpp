@@ -1,0 +1,133 @@
+// Selections and edits at the real mic's size (argument 1) and tiled to 741,789 triangles (argument 9). Without
+// ../shared a made sphere stands in for the mic.
+#include <benchmark/benchmark.h>
+
+#include "editor/edits/table.h"
+#include "mesh_ops/select/index.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+const Scene& scene_at(std::int64_t tiles) {
+  static const auto one = [] {
+    const auto mic = mic_object();
+    return mic ? mic : made_object({.columns = 256, .rows = 160});
+  }();
+  static const Scene small = scene_of(one), large = scene_of(tiled(*one));
+  return tiles == 1 ? small : large;
+}
+
+const BakedObject& object_of(const Scene& scene) { return *scene.roots[0]->object; }
+
+Camera camera_of(const Scene& scene) { return framing(world_bounds(scene), 1, false); }
+
+void index(benchmark::State& state) {
+  for (auto _ : state) {
+    state.PauseTiming();
+    const BakedObject fresh = object_of(scene_at(state.range(0)));
+    state.ResumeTiming();
+    prepare_index(fresh);
+  }
+}
+void index_part(benchmark::State& state, void (*part)(const BakedObject&)) {
+  for (auto _ : state) {
+    state.PauseTiming();
+    const BakedObject fresh = object_of(scene_at(state.range(0)));
+    state.ResumeTiming();
+    part(fresh);
+  }
+}
+void traits(const BakedObject& object) { traits_of(object); }
+void components(const BakedObject& object) { components_of(object); }
+void rays(const BakedObject& object) { rays_of(object); }
+
+// One edit, over and over on the same scene, with the index there.
+void edit(benchmark::State& state, Edit (*make)(const Scene&), bool half_selected) {
+  Scene scene = scene_at(state.range(0));
+  prepare_index(object_of(scene));
+  if (half_selected) {
+    Select half;
+    half.half_space = HalfSpaceRegion{Vec3(0.5, 0.5, 0.5), Vec3(1, 0.1, 0)};
+    half.frame = CoordinateFrame::bounds;
+    scene = rebake::apply(scene, half);
+  }
+  const Edit made = make(scene);
+  for (auto _ : state) benchmark::DoNotOptimize(rebake::apply(scene, made));
+}
+
+Edit select_box(const Scene&) {
+  Select edit;
+  edit.box = BoxRegion{Vec3(0, 0.5, 0), Vec3(1, 1, 1)};
+  edit.frame = CoordinateFrame::bounds;
+  return edit;
+}
+Edit select_invert(const Scene&) {
+  Select edit;
+  edit.invert = true;
+  return edit;
+}
+Edit brush_visible(const Scene& scene) {
+  SelectPicture edit;
+  edit.picture.camera = camera_of(scene);
+  edit.picture.brush = BrushStroke{{Vec2(300, 400), Vec2(500, 450)}, 30};
+  return edit;
+}
+Edit polygon_through(const Scene& scene) {
+  SelectPicture edit;
+  edit.picture.camera = camera_of(scene);
+  edit.picture.polygon = PixelPolygon{{Vec2(100, 100), Vec2(700, 200), Vec2(400, 700)}};
+  edit.through = true;
+  return edit;
+}
+Edit whole_picture_visible(const Scene& scene) {
+  SelectPicture edit;
+  edit.picture.camera = camera_of(scene);
+  edit.picture.polygon = PixelPolygon{{Vec2(0, 0), Vec2(800, 0), Vec2(800, 800), Vec2(0, 800)}};
+  return edit;
+}
+Edit connected(const Scene&) {
+  SelectConnected edit;
+  edit.point = Vec3(0, 0, 0);
+  return edit;
+}
+Edit like_color(const Scene&) {
+  SelectLike edit;
+  edit.point = Vec3(0, 0, 0);
+  edit.color = 0.1;
+  edit.size = 4;
+  return edit;
+}
+Edit floaters(const Scene&) { return SelectFloaters{}; }
+Edit grow(const Scene&) { return Grow{}; }
+Edit fill(const Scene&) { return Fill{}; }
+Edit delete_half(const Scene&) { return DeleteSelected{}; }
+Edit erase_sphere(const Scene&) {
+  Erase edit;
+  edit.sphere = SphereRegion{Vec3(0.5, 0.5, 0.5), 0.1};
+  edit.frame = CoordinateFrame::bounds;
+  return edit;
+}
+
+#define REBAKE_BENCHMARK(...) \
+  BENCHMARK_CAPTURE(__VA_ARGS__)->Arg(1)->Arg(9)->Unit(benchmark::kMillisecond)->UseRealTime()
+BENCHMARK(index)->Arg(1)->Arg(9)->Unit(benchmark::kMillisecond)->UseRealTime();
+REBAKE_BENCHMARK(index_part, traits, traits);
+REBAKE_BENCHMARK(index_part, components, components);
+REBAKE_BENCHMARK(index_part, rays, rays);
+REBAKE_BENCHMARK(edit, select_box, select_box, false);
+REBAKE_BENCHMARK(edit, select_invert, select_invert, true);
+REBAKE_BENCHMARK(edit, brush_visible, brush_visible, false);
+REBAKE_BENCHMARK(edit, polygon_through, polygon_through, false);
+REBAKE_BENCHMARK(edit, whole_picture_visible, whole_picture_visible, false);
+REBAKE_BENCHMARK(edit, connected, connected, false);
+REBAKE_BENCHMARK(edit, like_color, like_color, false);
+REBAKE_BENCHMARK(edit, floaters, floaters, false);
+REBAKE_BENCHMARK(edit, grow, grow, true);
+REBAKE_BENCHMARK(edit, fill, fill, true);
+REBAKE_BENCHMARK(edit, delete_half, delete_half, true);
+REBAKE_BENCHMARK(edit, erase_sphere, erase_sphere, false);
+#undef REBAKE_BENCHMARK
+
+}  // namespace
+}  // namespace rebake::test

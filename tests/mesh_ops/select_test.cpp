@@ -1,0 +1,260 @@
+// What selecting relies on: welding, parts that hang together, likeness, pictures, visibility.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "mesh_ops/select/duplicates.h"
+#include "mesh_ops/select/index.h"
+#include "mesh_ops/select/picture.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+// A strip of unit squares in the plane z = 0, two triangles each, every square with its own 16×16 texels and its own
+// corners, `apart` away from the next. `opaque(square, x, y)` says which texels are.
+BakedObject strip(int squares, double apart, const std::function<bool(int, int, int)>& opaque) {
+  std::vector<Vec3> positions;
+  std::vector<Vec2> uvs;
+  std::vector<Face> faces;
+  for (int s = 0; s < squares; ++s) {
+    const auto base = static_cast<std::uint32_t>(positions.size());
+    for (const auto& [x, y] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
+      positions.emplace_back(s * (1 + apart) + x, y, 0);
+      uvs.emplace_back((s + x) / static_cast<double>(squares), y);
+    }
+    faces.push_back({base, base + 1, base + 2});
+    faces.push_back({base, base + 2, base + 3});
+  }
+  BakedObject object;
+  object.decoder = std::make_shared<const Decoder>(made_decoder(1));
+  object.sets.push_back({Soup(positions, uvs, faces), std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(
+                                                          squares * 16, 16, AlphaCode::halved, [&](int y, Texel* row) {
+                                                            for (int x = 0; x < squares * 16; ++x) {
+                                                              row[x] = empty_texel(AlphaCode::halved);
+                                                              if (opaque(x / 16, x % 16, y)) row[x].feat0[0] = 200;
+                                                            }
+                                                          }))});
+  return object;
+}
+
+bool everywhere(int, int, int) { return true; }
+
+TEST(Select, EqualCornersWeldAndNearOnesWithinTheTolerance) {
+  EXPECT_EQ(weld(strip(3, 0, everywhere), 0).place_count, 8U);
+  EXPECT_EQ(weld(strip(3, 1e-3, everywhere), 0).place_count, 12U);
+  EXPECT_EQ(weld(strip(3, 1e-3, everywhere), 2e-3).place_count, 8U);
+  EXPECT_EQ(weld(strip(3, 1e-3, everywhere), 5e-4).place_count, 12U);
+}
+
+TEST(Select, WeldingFindsWhatComparingAllPairsFinds) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  std::vector<Vec3> positions;
+  for (int i = 0; i < 300; ++i) positions.emplace_back(coordinate(random), coordinate(random), coordinate(random));
+  std::vector<Face> faces;
+  for (std::uint32_t i = 0; i < 300; i += 3) faces.push_back({i, i + 1, i + 2});
+  BakedObject object = strip(1, 0, everywhere);
+  object.sets[0].soup = Soup(positions, std::vector<Vec2>(300, Vec2(0.5, 0.5)), faces);
+  for (const double tolerance : {0.01, 0.1, 0.2}) {
+    const WeldedCorners welded = weld(object, tolerance);
+    std::vector<std::uint32_t> group(300);
+    for (std::uint32_t i = 0; i < 300; ++i) group[i] = i;
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (std::size_t i = 0; i < 300; ++i)
+        for (std::size_t j = 0; j < i; ++j)
+          if ((positions[i] - positions[j]).norm() <= tolerance && group[i] != group[j]) {
+            group[i] = group[j] = std::min(group[i], group[j]);
+            changed = true;
+          }
+    }
+    for (std::size_t i = 0; i < 300; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        ASSERT_EQ(welded.places[i] == welded.places[j], group[i] == group[j]) << i << " " << j << " " << tolerance;
+  }
+}
+
+std::size_t parts_of(const BakedObject& object, const Joining& joining = {}) {
+  return components_of(object, joining)->triangles_in.size();
+}
+
+TEST(Select, PartsHangTogetherAcrossOpaqueTexelsOnly) {
+  EXPECT_EQ(parts_of(strip(3, 0, everywhere)), 1U);
+  // A transparent column at the left of each square cuts the strip, though all corners are shared.
+  EXPECT_EQ(parts_of(strip(3, 0, [](int, int x, int) { return x > 0; })), 3U);
+  // Opaque only in the upper half on one side and the lower on the other: nothing faces anything.
+  EXPECT_EQ(parts_of(strip(2, 0, [](int s, int, int y) { return s == 0 ? y < 8 : y >= 8; })), 2U);
+  // One texel is enough.
+  EXPECT_EQ(parts_of(strip(2, 0, [](int s, int, int y) { return s == 0 || y == 5; })), 1U);
+}
+
+TEST(Select, ToleranceAndGapJoinWhatIsApart) {
+  EXPECT_EQ(parts_of(strip(3, 0.01, everywhere)), 3U);
+  EXPECT_EQ(parts_of(strip(3, 0.01, everywhere), {.tolerance = 0.02, .gap = 0}), 1U);
+  // Texel centres of neighbours are 0.05 + 1/16 apart.
+  EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = 0.1}), 3U);
+  EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = 0.13}), 1U);
+}
+
+TEST(Select, GrowShrinkAndFill) {
+  const BakedObject object = strip(5, 0, everywhere);
+  TriangleSet middle(10, 0);
+  middle[4] = 1;
+  const auto corners = corners_of(object);
+  // The lower triangle of the middle square shares no corner with the upper one of the square before.
+  const TriangleSet more = grown(*corners, middle);
+  EXPECT_EQ(more, (TriangleSet{0, 0, 1, 0, 1, 1, 1, 1, 0, 0}));
+  EXPECT_EQ(shrunk(*corners, more), middle);
+  const TriangleSet all(10, 1);
+  EXPECT_EQ(shrunk(*corners, all), all);
+  const TriangleSet gap{1, 1, 1, 1, 0, 0, 1, 1, 1, 1};
+  EXPECT_EQ(filled(*edges_of(object), gap, 3), all);
+  EXPECT_EQ(filled(*edges_of(object), gap, 2), gap) << "the island is not smaller than asked";
+}
+
+TEST(Select, TraitsAreThoseOfTheOpaqueTexels) {
+  const auto object = made_object();
+  const auto traits = traits_of(*object);
+  const TextureSet& set = object->sets[0];
+  for (std::size_t f = 0; f < set.soup.triangle_count(); f += 7) {
+    // By brute force: every texel of the picture whose centre is in the triangle.
+    std::array<Vec2, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2& uv = set.soup.uvs()[set.soup.faces()[f][k]];
+      p[k] = {uv.x() * set.texels->width(), (1 - uv.y()) * set.texels->height()};
+    }
+    Eigen::Array<double, 8, 1> sum = Eigen::Array<double, 8, 1>::Zero();
+    int all = 0, opaque = 0;
+    const auto side = [](const Vec2& a, const Vec2& b, const Vec2& c) {
+      return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+    };
+    for (int y = 0; y < set.texels->height(); ++y)
+      for (int x = 0; x < set.texels->width(); ++x) {
+        const Vec2 c(x + 0.5, y + 0.5);
+        const double s0 = side(p[0], p[1], c), s1 = side(p[1], p[2], c), s2 = side(p[2], p[0], c);
+        if (std::min({s0, s1, s2}) < 0 && std::max({s0, s1, s2}) > 0) continue;
+        ++all;
+        const Texel& texel = set.texels->at(x, y);
+        if (!texel.opaque()) continue;
+        ++opaque;
+        const auto decoded = decode_features(texel, AlphaCode::halved);
+        sum += Eigen::Map<const Eigen::Array<double, 8, 1>>(decoded.data());
+      }
+    const TriangleTraits& t = (*traits)[f];
+    // Centres that lie on the diagonal may count here or there.
+    EXPECT_NEAR(static_cast<double>(t.opacity), static_cast<double>(opaque) / all, 0.06) << f;
+    if (opaque == 0) continue;
+    std::array<double, 8> mean;
+    Color color = Color::Zero();
+    for (std::size_t k = 0; k < 8; ++k) mean[k] = static_cast<double>(t.features[k]);
+    for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(mean[k], sum[static_cast<Eigen::Index>(k)] / opaque, 0.02) << f;
+    for (const Vec3& axis : std::vector<Vec3>{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()})
+      for (const double sign : {-1.0, 1.0}) color += decode(*object->decoder, mean, sign * axis) / 6;
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(static_cast<double>(t.color[static_cast<std::size_t>(k)]), color[k], 1e-5);
+  }
+}
+
+TEST(Select, PolygonAndBrushFlagThePixelsWhoseCentresAreInside) {
+  const std::vector<Vec2> corners{{3.1, 2.2}, {27.3, 5.1}, {15.2, 14.4}, {25.7, 28.1}, {2.3, 25.6}};
+  const PixelMask polygon = polygon_mask(corners, 30, 30), brush = brush_mask({{5, 5}, {20, 12}}, 3.5, 30, 30);
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 30; ++x) {
+      const Vec2 c(x + 0.5, y + 0.5);
+      double turns = 0;
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        const Vec2 a = corners[k] - c, b = corners[(k + 1) % corners.size()] - c;
+        turns += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+      }
+      EXPECT_EQ(polygon.at(x, y), std::abs(turns) > 3) << x << " " << y;
+      const double t = std::clamp((c - Vec2(5, 5)).dot(Vec2(15, 7)) / Vec2(15, 7).squaredNorm(), 0.0, 1.0);
+      EXPECT_EQ(brush.at(x, y), (c - Vec2(5, 5) - Vec2(15, 7) * t).norm() <= 3.5) << x << " " << y;
+    }
+  EXPECT_FALSE(polygon.at(-1, 4));
+}
+
+Picture front_picture() {
+  Picture picture;
+  picture.camera.eye = {0, 0, 4};
+  picture.camera.near_plane = 0.1;
+  return picture;
+}
+
+TEST(Select, WhatIsSeenIsTheNearSide) {
+  const Scene scene = scene_of(made_object({.holes = false}));
+  const Projector project(front_picture());
+  const PixelMask whole = full_mask(800, 800);
+  const auto objects = placed_nodes(scene);
+  const TriangleSet seen = triangles_seen(objects, project, whole, 0, 100)[0];
+  const TriangleSet under = triangles_under(*objects[0].node->object, objects[0].to_world, project, whole, 0, 100);
+  EXPECT_EQ(count(under), under.size()) << "all of the sphere is in the picture";
+  std::size_t f = 0;
+  for (const Face& face : objects[0].node->object->sets[0].soup.faces()) {
+    Vec3 centre = Vec3::Zero();
+    for (const std::uint32_t v : face) centre += objects[0].node->object->sets[0].soup.positions()[v] / 3;
+    // From 4 away the near side of the unit sphere is what lies beyond z = 1/4; a facet's width either way.
+    if (centre.z() > 0.55) {
+      EXPECT_EQ(seen[f], 1) << centre.transpose();
+    }
+    if (centre.z() < -0.05) {
+      EXPECT_EQ(seen[f], 0) << centre.transpose();
+    }
+    ++f;
+  }
+  const TriangleSet near = triangles_seen(objects, project, whole, 0, 3.2)[0];
+  EXPECT_LT(count(near), count(seen));
+  EXPECT_GT(count(near), 0U);
+}
+
+TEST(Select, ObjectsHideEachOtherAndHolesLetThrough) {
+  Node node;
+  node.object = made_object({.holes = false});
+  Scene scene = scene_of(made_object());
+  node.to_parent.translation() = Vec3(0, 0, -3);
+  scene = with_added(scene, node, NodeId::none, 9);
+  const auto seen = triangles_seen(placed_nodes(scene), Projector(front_picture()), full_mask(800, 800), 0, 100);
+  EXPECT_GT(count(seen[1]), 0U) << "through the holes of the sphere in front";
+  const auto alone = triangles_seen({placed_nodes(scene)[1]}, Projector(front_picture()), full_mask(800, 800), 0, 100);
+  EXPECT_LT(count(seen[1]), count(alone[0]));
+}
+
+TEST(Select, WhatIsInsideIsUnseenFromOutside) {
+  auto object = std::make_shared<BakedObject>(*made_object({.holes = false}));
+  object->sets.push_back(made_object({.radius = 0.5, .holes = false})->sets[0]);
+  const TriangleSet unseen = triangles_unseen(*object, eyes_around(object->bounds(), 64, 3));
+  const std::size_t outer = object->sets[0].soup.triangle_count();
+  for (std::size_t f = 0; f < unseen.size(); ++f) EXPECT_EQ(unseen[f] != 0, f >= outer) << f;
+}
+
+TEST(Select, OnlyTheEarlierOfEqualTrianglesIsADuplicate) {
+  BakedObject object = strip(2, 0, everywhere);
+  const Soup& soup = object.sets[0].soup;
+  std::vector<Face> faces = soup.faces();
+  faces.push_back({faces[1][2], faces[1][0], faces[1][1]});
+  object.sets[0].soup =
+      Soup(soup.shared_positions(), soup.shared_uvs(), std::make_shared<const std::vector<Face>>(faces));
+  EXPECT_EQ(duplicate_triangles(object), (TriangleSet{0, 1, 0, 0, 0}));
+}
+
+TEST(Select, TheIndexIsKeptWithTheObjectAndNotCopied) {
+  const BakedObject object = strip(2, 0, everywhere);
+  EXPECT_EQ(traits_of(object), traits_of(object));
+  EXPECT_EQ(components_of(object, {.tolerance = 0.1, .gap = 0}), components_of(object, {.tolerance = 0.1, .gap = 0}));
+  const BakedObject copy = object;
+  EXPECT_NE(traits_of(object), traits_of(copy));
+}
+
+TEST(Select, NineMicsAreAtLeastNineParts) {
+  const auto mic = mic_object();
+  if (!mic) GTEST_SKIP() << "../shared is not here";
+  const auto one = tiled(*mic);
+  EXPECT_EQ(one->triangle_count(), 741789U);
+  const auto parts = components_of(*one);
+  std::size_t largest = 0;
+  for (const std::uint32_t size : parts->triangles_in) largest = std::max<std::size_t>(largest, size);
+  EXPECT_LE(largest, mic->triangle_count()) << "nothing joins two of them";
+}
+
+}  // namespace
+}  // namespace rebake::test
