@@ -7,7 +7,7 @@
 namespace rebake {
 
 void run(Session& session, const SaveAction& action) {
-  for (const std::string& note : save_scene_folder(session.scene, action.out, session.progress))
+  for (const std::string& note : save_scene_folder(session.scene(), action.out, session.progress))
     session.say("note: " + note);
   session.say(fmt::format("saved {}", action.out));
 }

@@ -1,11 +1,52 @@
 #include "editor/actions/session.h"
 
+#include <fmt/format.h>
+
+#include <string_view>
+
 #include "render/picture.h"
 
 namespace rebake {
 
 Session::Session() = default;
 Session::~Session() = default;
+
+namespace {
+
+struct Numbers {
+  std::size_t triangles = 0, selected = 0;
+  std::uint64_t opaque_texels = 0;
+};
+
+Numbers numbers_of(const Scene& scene, bool texels) {
+  Numbers numbers;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object) continue;
+    numbers.triangles += placed.node->object->triangle_count();
+    if (texels) numbers.opaque_texels += placed.node->object->opaque_texel_count();
+    if (placed.node->selection) numbers.selected += count(*placed.node->selection);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+void Session::edit(const Edit& edit) {
+  const bool erases = std::holds_alternative<Erase>(edit);
+  const bool selects = std::visit([](const auto& e) { return std::string_view(e.op).starts_with("select"); }, edit) ||
+                       std::holds_alternative<Grow>(edit) || std::holds_alternative<Shrink>(edit) ||
+                       std::holds_alternative<Fill>(edit);
+  const Numbers before = numbers_of(scene(), erases);
+  document.edit(edit);
+  const Numbers after = numbers_of(scene(), erases);
+  const char* op = std::visit([](const auto& e) { return e.op; }, edit);
+  if (selects) say(fmt::format("{}: {} of {} triangles selected", op, after.selected, after.triangles));
+  if (erases)
+    say(fmt::format("{}: {} texels cleared, {} opaque ones left", op, before.opaque_texels - after.opaque_texels,
+                    after.opaque_texels));
+  if (std::holds_alternative<DeleteSelected>(edit))
+    say(fmt::format("{}: {} triangles removed, {} left", op, before.triangles - after.triangles, after.triangles));
+}
 
 Renderer& Session::renderer() {
   if (!renderer_) renderer_ = std::make_unique<Renderer>();

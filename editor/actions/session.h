@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "editor/document/document.h"
 #include "mesh_ops/progress.h"
-#include "mesh_ops/scene/scene.h"
 
 namespace rebake {
 
@@ -17,7 +17,11 @@ class Session {
   Session();
   ~Session();
 
-  Scene scene;
+  Document document;
+  const Scene& scene() const { return document.scene(); }
+  /// Carries an edit out and says in numbers what became of selections and triangles.
+  void edit(const Edit& edit);
+
   Progress progress;
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< one line for people
 

@@ -32,10 +32,10 @@ void add_export(CLI::App& program) {
       clear_progress_bar();
       fmt::print(stderr, "{}\n", line);
     };
-    session.scene = read_all({options->folder}, options->axes, session.progress);
+    session.document = Document(read_all({options->folder}, options->axes, session.progress));
     ExportAction action;
     action.out = options->out;
-    if (!options->layout.empty()) action.layout = Codec<Layout>::read(options->layout, session.scene);
+    if (!options->layout.empty()) action.layout = Codec<Layout>::read(options->layout, session.scene());
     run(session, action);
   });
 }

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "editor/document/document.h"
+#include "editor/document/project.h"
 #include "editor/edits/support.h"
 #include "mesh_ops/error.h"
 #include "mesh_ops/formats/camera_json.h"
@@ -50,7 +52,7 @@ void add_axes_option(CLI::App& command, Axes& axes) {
 Scene read_all(const std::vector<std::string>& folders, Axes axes, const Progress& progress) {
   Scene scene;
   for (const std::string& folder : folders) {
-    const Scene read = read_any(folder, axes, progress);
+    const Scene read = is_project_file(folder) ? Document::open(folder).scene() : read_any(folder, axes, progress);
     if (folders.size() == 1) return read;
     for (const NodePtr& root : read.roots) {
       scene = with_added(scene, without_ids(*root), NodeId::none, scene.roots.size());

@@ -12,7 +12,7 @@ namespace rebake {
 
 void add_run(CLI::App& program) {
   struct Options {
-    std::string script;
+    std::string script, journal;
     std::vector<std::string> variables;
     bool fields = false;
   };
@@ -22,6 +22,8 @@ void add_run(CLI::App& program) {
       ->option_text("SCRIPT.jsonl");
   command->add_option("--var", options->variables, "gives {name} in the script's texts a value")
       ->option_text("name=value...");
+  command->add_option("--journal", options->journal, "keep every edit safe in this file until the script is done")
+      ->option_text("FILE");
   command->add_flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
   command->callback([options] {
     if (options->fields) {
@@ -42,7 +44,15 @@ void add_run(CLI::App& program) {
       clear_progress_bar();
       fmt::print(stderr, "{}\n", line);
     };
-    run_script(session, read_file(options->script), options->script, variables);
+    if (!options->journal.empty()) session.document.keep_journal(options->journal);
+    try {
+      run_script(session, read_file(options->script), options->script, variables);
+    } catch (const Error&) {
+      if (!options->journal.empty())
+        session.say(fmt::format("what was done is kept in {0}: rebake recover {0} -o FILE.rebake", options->journal));
+      throw;
+    }
+    session.document.discard_journal();
   });
 }
 

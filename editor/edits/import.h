@@ -1,6 +1,9 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include "editor/edits/support.h"
+#include "mesh_ops/formats/files.h"
 #include "mesh_ops/formats/formats.h"
 
 namespace rebake {
@@ -11,16 +14,21 @@ struct Import {
   std::string path;
   std::string as;
   Axes axes = Axes::y_up;
+  std::string content;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("path", self.path, Need::required, "folder to read");
     visit("as", self.as, Need::optional, "name of the new node; empty: the folder's name");
     visit("axes", self.axes, Need::optional, "which way a MobileNeRF folder is oriented; scenes say so themselves");
+    visit("content", self.content, Need::optional,
+          "hash of the folder's files as projects and journals record it: anything else there is refused");
   }
 };
 
 inline Scene apply(const Scene& scene, const Import& edit) {
+  if (!edit.content.empty() && fmt::format("{:016x}", folder_hash(edit.path)) != edit.content)
+    throw EditError(edit.path + ": has changed since it was imported; put the files back as they were");
   const Scene read = read_any(edit.path, edit.axes);
   if (read.roots.empty()) throw EditError(edit.path + ": holds no objects");
   Node node;

@@ -40,6 +40,9 @@ using Edit = std::variant<Import, Remove, Rename, Duplicate, Group, Reorder, Sho
 /// Pure and deterministic: the scene after the edit. Throws Error and leaves nothing changed.
 Scene apply(const Scene& scene, const Edit& edit);
 
+/// Reads an edit from its JSON object. Names of nodes are looked up in `scene`. Throws FieldError.
+Edit read_edit(const nlohmann::json& object, const Scene& scene);
+
 /// One JSON object, node numbers in place of names.
 nlohmann::json to_json(const Edit& edit);
 

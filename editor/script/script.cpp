@@ -2,39 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <optional>
 #include <sstream>
+
+#include "editor/fields/variants.h"
 
 namespace rebake {
 
 using nlohmann::json;
 
 namespace {
-
-// Calls `visit` with a default-constructed command of each type in a variant.
-template <class Variant, class Visit, std::size_t... I>
-void for_each_type(Visit visit, std::index_sequence<I...>) {
-  (visit(std::variant_alternative_t<I, Variant>{}), ...);
-}
-template <class Variant, class Visit>
-void for_each_type(Visit visit) {
-  for_each_type<Variant>(visit, std::make_index_sequence<std::variant_size_v<Variant>>{});
-}
-
-template <class Variant>
-std::optional<Variant> read_as(const std::string& op, const json& line, const Scene& scene,
-                               std::vector<std::string>& known) {
-  std::optional<Variant> result;
-  for_each_type<Variant>([&](auto command) {
-    known.emplace_back(command.op);
-    if (op != command.op) return;
-    FieldReader reader(line, scene);
-    decltype(command)::fields(command, reader);
-    reader.finish();
-    result = std::move(command);
-  });
-  return result;
-}
 
 std::string filled_in(const std::string& text, const std::map<std::string, std::string>& variables) {
   std::string out;
@@ -111,9 +87,9 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
     };
     try {
       const json object = read_line(std::string_view(line).substr(first));
-      const Command command = read_command(with_variables(object, variables), session.scene);
+      const Command command = read_command(with_variables(object, variables), session.scene());
       if (const Edit* edit = std::get_if<Edit>(&command))
-        session.scene = rebake::apply(session.scene, *edit);
+        session.edit(*edit);
       else
         std::visit([&](const auto& action) { run(session, action); }, std::get<Action>(command));
     } catch (const json::exception& error) {

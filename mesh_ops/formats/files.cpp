@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
@@ -191,6 +192,21 @@ void write_file_atomically(const fs::path& named, std::string_view bytes) {
     fs::remove(partial, ignored);
     throw;
   }
+}
+
+std::uint64_t folder_hash(const fs::path& path) {
+  const fs::path folder = path.filename() == "scene.json" ? path.parent_path() : path;
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) throw FileError(path, "is not there, or is not a folder");
+  std::map<std::string, fs::path> files;
+  for (auto it = fs::recursive_directory_iterator(folder, error); !error && it != fs::recursive_directory_iterator();
+       it.increment(error))
+    if (it->is_regular_file() && is_format_file_name(it->path().filename().string()))
+      files.emplace(it->path().lexically_relative(folder).generic_string(), it->path());
+  if (error) throw FileError(folder, "cannot be read: " + error.message());
+  std::string all;
+  for (const auto& [name, file] : files) all += fmt::format("{} {:016x}\n", name, content_hash(read_file(file)));
+  return content_hash(all);
 }
 
 }  // namespace rebake

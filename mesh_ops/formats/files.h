@@ -14,6 +14,10 @@ std::string read_file(const std::filesystem::path& path);
 /// XXH64, seed 0.
 std::uint64_t content_hash(std::string_view bytes);
 
+/// Names and bytes of the files of a scene folder (those whose names belong to the formats, folders within included),
+/// in one number; scene.json stands for its folder. Throws FileError.
+std::uint64_t folder_hash(const std::filesystem::path& folder);
+
 /// A folder that appears whole or not at all: files are written beside the target and moved into place by commit().
 /// Destroyed without commit, it leaves what was there before.
 class AtomicFolder {

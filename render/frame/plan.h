@@ -18,8 +18,8 @@ struct RenderOptions {
   };
   enum class Shading {
     automatic,  ///< forward at 1 sample with constant weights, where it is faster; else deferred
-    deferred,  ///< features are drawn first and decoded once a pixel
-    forward,   ///< features are decoded while drawing; the rule allows it at 1 sample only
+    deferred,   ///< features are drawn first and decoded once a pixel
+    forward,    ///< features are decoded while drawing; the rule allows it at 1 sample only
   };
   enum class Precision {
     full,  ///< decoder weights as 32-bit floats

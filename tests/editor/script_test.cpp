@@ -32,7 +32,7 @@ class Script : public ::testing::Test {
     const std::string error = error_of(text);
     EXPECT_NE(error.find(says), std::string::npos) << error;
   }
-  NodePtr node(const std::string& name) const { return find(session.scene, name); }
+  NodePtr node(const std::string& name) const { return find(session.scene(), name); }
   std::size_t selected(const std::string& name) const {
     return node(name)->selection ? count(*node(name)->selection) : 0;
   }
@@ -83,10 +83,10 @@ TEST_F(Script, DeleteSeparateGroupReorderRename) {
       R"({"op": "transform", "node": "both", "translate": [0, 0, 7]})"
       "\n"
       R"({"op": "rename", "node": "both", "name": "pair"})");
-  const Affine before = find_placed(session.scene, node("copy")->id)->to_world;
+  const Affine before = find_placed(session.scene(), node("copy")->id)->to_world;
   run(R"({"op": "reorder", "node": "copy", "index": 0, "top": true})");
-  EXPECT_EQ(session.scene.roots[0]->name, "copy");
-  EXPECT_TRUE(find_placed(session.scene, node("copy")->id)->to_world.isApprox(before, 1e-14));
+  EXPECT_EQ(session.scene().roots[0]->name, "copy");
+  EXPECT_TRUE(find_placed(session.scene(), node("copy")->id)->to_world.isApprox(before, 1e-14));
   run(R"({"op": "select", "node": "ball", "all": true})"
       "\n"
       R"({"op": "delete"})");
@@ -102,12 +102,12 @@ TEST_F(Script, ThrownEditLeavesTheSceneAsItWas) {
   run(R"({"op": "unlock", "node": "ball"})"
       "\n"
       R"({"op": "remove", "node": "ball"})");
-  EXPECT_TRUE(session.scene.roots.empty());
+  EXPECT_TRUE(session.scene().roots.empty());
 }
 
 TEST_F(Script, TurningAllTrianglesOfAStretchedNodeTurnsItsColoursLikeTheNode) {
   run(import + R"({"op": "transform", "node": "ball", "scale": [4, 1, 1]})");
-  const Mat3 before = find_placed(session.scene, node("ball")->id)->to_world.linear();
+  const Mat3 before = find_placed(session.scene(), node("ball")->id)->to_world.linear();
   run(R"({"op": "select", "node": "ball", "all": true})"
       "\n"
       R"({"op": "transform", "node": "ball", "selection": true, "rotate": {"axis": [0, 1, 0], "degrees": 60}})");
@@ -136,12 +136,12 @@ TEST_F(Script, LeavingAHiddenGroupStaysHidden) {
                R"({"op": "hide", "node": "g"})"
                "\n"
                R"({"op": "reorder", "node": "ball", "index": 0, "top": true})");
-  EXPECT_FALSE(find_placed(session.scene, node("ball")->id)->visible);
+  EXPECT_FALSE(find_placed(session.scene(), node("ball")->id)->visible);
 }
 
 TEST_F(Script, EditsArePure) {
   run(import);
-  const Scene before = session.scene;
+  const Scene before = session.scene();
   const NodePtr root = before.roots[0];
   const Edit edit = std::get<Edit>(
       read_command(nlohmann::json::parse(R"({"op": "transform", "node": "ball", "translate": [1, 2, 3]})"), before));
@@ -159,9 +159,9 @@ TEST_F(Script, EditsSurviveJson) {
       {R"({"op": "select", "node": "ball", "sphere": {"center": [0, 0, 1], "radius": 0.5}, "mode": "add", "frame": "bounds"})",
        R"({"op": "transform", "node": "ball", "rotate": {"axis": [0, 1, 1], "degrees": 30}, "scale": [1, 2, 3], "pivot": [1, 0, 0]})",
        R"({"op": "background", "color": [0, 0.5, 1]})", R"({"op": "reorder", "node": "ball", "index": 0})"}) {
-    const Edit edit = std::get<Edit>(read_command(nlohmann::json::parse(line), session.scene));
+    const Edit edit = std::get<Edit>(read_command(nlohmann::json::parse(line), session.scene()));
     const nlohmann::json written = to_json(edit);
-    EXPECT_EQ(to_json(std::get<Edit>(read_command(written, session.scene))), written) << line;
+    EXPECT_EQ(to_json(std::get<Edit>(read_command(written, session.scene()))), written) << line;
   }
 }
 
@@ -173,7 +173,7 @@ TEST_F(Script, ReplayGivesTheSameBytes) {
 )";
   run(script + R"({"op": "export", "out": "{here}/one"})");
   Session second;
-  std::swap(session.scene, second.scene);
+  std::swap(session.document, second.document);
   run(script + R"({"op": "export", "out": "{here}/two"})");
   const auto one = folder_bytes(folder_.path() / "one");
   EXPECT_EQ(one, folder_bytes(folder_.path() / "two"));

@@ -56,17 +56,16 @@ void read_json_bytes(std::string_view bytes) {
 }
 
 void read_script_bytes(std::string_view bytes) {
-  Session session;
-  session.scene = small_scene();
+  Scene scene = small_scene();
   std::size_t begin = 0;
   while (begin <= bytes.size()) {
     const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
     try {
       const auto line = read_line(bytes.substr(begin, end - begin));
-      const Command command = read_command(with_variables(line, {{"name", "a"}}), session.scene);
+      const Command command = read_command(with_variables(line, {{"name", "a"}}), scene);
       // Files stay out of it: imports and actions are read, not carried out.
       if (const Edit* edit = std::get_if<Edit>(&command); edit != nullptr && !std::holds_alternative<Import>(*edit))
-        session.scene = rebake::apply(session.scene, *edit);
+        scene = rebake::apply(scene, *edit);
     } catch (const Error&) {
     } catch (const nlohmann::json::exception&) {
     }

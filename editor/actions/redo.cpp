@@ -1,0 +1,13 @@
+#include "editor/actions/redo.h"
+
+#include <fmt/format.h>
+
+namespace rebake {
+
+void run(Session& session, const RedoAction& action) {
+  if (action.steps < 1 || static_cast<std::size_t>(action.steps) > session.document.history().redo_count())
+    throw FieldError("steps", fmt::format("{} edits can be redone", session.document.history().redo_count()));
+  for (int step = 0; step < action.steps; ++step) session.document.redo();
+}
+
+}  // namespace rebake

@@ -1,0 +1,136 @@
+#include "editor/document/history.h"
+
+#include <deque>
+#include <unordered_set>
+
+namespace rebake {
+
+namespace {
+
+constexpr std::size_t checkpoint_distance = 32;
+
+// Calls visit(address, bytes) for every shared part that a scene holds, some more than once.
+template <class Visit>
+void for_each_part(const Scene& scene, Visit visit) {
+  std::unordered_set<const void*> textures;
+  std::vector<NodePtr> open(scene.roots.begin(), scene.roots.end());
+  const auto visit_soup = [&](const Soup& soup) {
+    visit(soup.shared_positions().get(), soup.positions().size() * sizeof(Vec3));
+    visit(soup.shared_uvs().get(), soup.uvs().size() * sizeof(Vec2));
+    visit(soup.shared_faces().get(), soup.faces().size() * sizeof(Face));
+    if (soup.turns() != nullptr) visit(soup.shared_turns().get(), soup.turns()->size() * sizeof(Mat3));
+  };
+  while (!open.empty()) {
+    const NodePtr node = open.back();
+    open.pop_back();
+    open.insert(open.end(), node->children.begin(), node->children.end());
+    visit(node.get(), sizeof(Node) + node->name.size());
+    if (node->selection) visit(node->selection.get(), node->selection->size());
+    for (const auto& [name, saved] : node->saved_selections) visit(saved.get(), saved->size());
+    if (!node->object) continue;
+    for (const TextureSet& set : node->object->sets) {
+      visit_soup(set.soup);
+      if (set.soup.lineage()) {
+        visit_soup(set.soup.lineage()->whole);
+        visit(set.soup.lineage().get(), set.soup.lineage()->faces.size() * sizeof(std::uint32_t));
+      }
+      if (!textures.insert(set.texels.get()).second) continue;
+      for (int row = 0; row < set.texels->tile_rows(); ++row)
+        for (int column = 0; column < set.texels->tile_columns(); ++column)
+          visit(set.texels->tile(column, row).get(), TexelTile::size * TexelTile::size * sizeof(Texel));
+    }
+  }
+}
+
+}  // namespace
+
+History::History(Scene start, std::uint64_t budget) : budget_(budget) {
+  steps_.push_back({});
+  keep(0, std::move(start));
+}
+
+std::vector<Edit> History::edits() const {
+  std::vector<Edit> result;
+  for (std::size_t k = 1; k <= position_; ++k) result.push_back(*steps_[k].edit);
+  return result;
+}
+
+std::size_t History::kept() const {
+  std::size_t result = 0;
+  for (const Step& step : steps_) result += step.scene ? 1 : 0;
+  return result;
+}
+
+void History::add(Edit edit, Scene scene) {
+  while (steps_.size() > position_ + 1) {
+    drop(steps_.size() - 1);
+    steps_.pop_back();
+  }
+  steps_.push_back({std::move(edit), std::nullopt});
+  keep(++position_, std::move(scene));
+  fit_budget();
+}
+
+bool History::undo() {
+  if (position_ == 0) return false;
+  go_to(position_ - 1);
+  return true;
+}
+
+bool History::redo() {
+  if (redo_count() == 0) return false;
+  go_to(position_ + 1);
+  return true;
+}
+
+void History::go_to(std::size_t step) {
+  std::size_t from = step;
+  while (!steps_[from].scene) --from;
+  // The last values on the way are kept too: whoever undoes once usually undoes again.
+  std::deque<Scene> scenes{*steps_[from].scene};
+  for (std::size_t k = from + 1; k <= step; ++k) {
+    scenes.push_back(rebake::apply(scenes.back(), *steps_[k].edit));
+    if (scenes.size() > checkpoint_distance) scenes.pop_front();
+  }
+  for (std::size_t k = step; k > from && !scenes.empty(); --k, scenes.pop_back()) keep(k, std::move(scenes.back()));
+  position_ = step;
+  fit_budget();
+}
+
+void History::keep(std::size_t step, Scene scene) {
+  std::unordered_set<const void*> seen;
+  for_each_part(scene, [&](const void* part, std::uint64_t bytes) {
+    if (!seen.insert(part).second) return;
+    Part& entry = parts_.try_emplace(part, Part{0, bytes}).first->second;
+    if (entry.uses++ == 0) memory_ += bytes;
+  });
+  steps_[step].scene = std::move(scene);
+}
+
+void History::drop(std::size_t step) {
+  if (!steps_[step].scene) return;
+  std::unordered_set<const void*> seen;
+  for_each_part(*steps_[step].scene, [&](const void* part, std::uint64_t) {
+    if (!seen.insert(part).second) return;
+    const auto entry = parts_.find(part);
+    if (--entry->second.uses > 0) return;
+    memory_ -= entry->second.bytes;
+    parts_.erase(entry);
+  });
+  steps_[step].scene.reset();
+}
+
+void History::fit_budget() {
+  // Every so many values one stays longer than the others, so that few edits need repeating to get one back.
+  for (const bool checkpoints : {false, true}) {
+    // From both ends towards the present, the farther end first.
+    std::size_t first = 1, last = steps_.size() - 1;
+    while (memory_ > budget_ && (first < position_ || last > position_)) {
+      const bool oldest = first < position_ && (last <= position_ || position_ - first >= last - position_);
+      const std::size_t k = oldest ? first++ : last--;
+      if ((k % checkpoint_distance == 0) == checkpoints) drop(k);
+    }
+  }
+}
+
+}  // namespace rebake

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "editor/edits/table.h"
+
+namespace rebake {
+
+/// All scenes since the start, each as a value that shares with its neighbours what did not change. What they hold
+/// together is kept within a budget: those farthest from the present are dropped first (one in 32 stays longer), and
+/// computed again from the edits when they are wanted.
+class History {
+ public:
+  static constexpr std::uint64_t default_budget = 2ULL << 30;
+  /// `budget` in bytes; the present scene and the start are kept whatever they take.
+  explicit History(Scene start = {}, std::uint64_t budget = default_budget);
+
+  const Scene& now() const { return *steps_[position_].scene; }
+  /// Edits that led to now().
+  std::vector<Edit> edits() const;
+  std::size_t undo_count() const { return position_; }
+  std::size_t redo_count() const { return steps_.size() - 1 - position_; }
+
+  /// Adds the scene after an edit; what was undone is forgotten.
+  void add(Edit edit, Scene scene);
+  /// One step back or forth; false where there is none. A dropped value is computed again: throws Error when that fails
+  /// (a source changed), and nothing changes then.
+  bool undo();
+  bool redo();
+
+  /// Bytes that the kept scenes hold, what is shared counted once.
+  std::uint64_t memory() const { return memory_; }
+  /// Scenes kept as values, of undo_count() + redo_count() + 1.
+  std::size_t kept() const;
+
+ private:
+  struct Step {
+    std::optional<Edit> edit;  ///< that led here; none at the start
+    std::optional<Scene> scene;
+  };
+  void keep(std::size_t step, Scene scene);
+  void drop(std::size_t step);
+  void fit_budget();
+  void go_to(std::size_t step);
+
+  std::vector<Step> steps_;
+  std::size_t position_ = 0;
+  std::uint64_t budget_;
+  std::uint64_t memory_ = 0;
+  struct Part {
+    std::uint32_t uses;
+    std::uint64_t bytes;
+  };
+  std::unordered_map<const void*, Part> parts_;
+};
+
+}  // namespace rebake

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace rebake {
+
+/// A file of what was done, a checksummed line each, for getting work back after a crash. A line is on the disk before
+/// append() returns.
+///
+///     <16 hexadecimal digits: XXH64 of the rest of the line> {"rebake_journal": 1, …}
+///     <digits> {"n": 1, "edit": {"op": "import", …}}
+///     <digits> {"n": 2, "undo": true}
+class Journal {
+ public:
+  /// Begins a journal. Throws FileError when there is a file already (it may hold work) or it cannot be written.
+  /// `about` is kept in the first line; `entries` come behind it, all on the disk before this returns.
+  static Journal create(const std::filesystem::path& path, nlohmann::json about,
+                        std::vector<nlohmann::json> entries = {});
+  /// Opens a journal to go on where `contents` ends: what is torn behind that is cut off. Throws FileError.
+  struct Contents;
+  static Journal reopen(const std::filesystem::path& path, const Contents& contents);
+
+  ~Journal();
+  Journal(Journal&&) noexcept;
+  Journal& operator=(Journal&&) noexcept;
+
+  /// Appends one entry and waits until it is on the disk. Throws FileError; the journal then ends before the entry.
+  void append(nlohmann::json entry);
+  const std::filesystem::path& path() const;
+  /// Removes the file: the work is safe elsewhere.
+  void discard();
+
+  /// What a journal holds, in order.
+  struct Contents {
+    nlohmann::json about;
+    std::vector<nlohmann::json> entries;
+    std::uint64_t good_bytes = 0;  ///< where the last whole line ends
+    bool torn = false;             ///< something follows that was being written when the program ended
+  };
+  /// Throws FileError for a file that is no journal, is from a newer version, or is damaged before its last line.
+  static Contents read(const std::filesystem::path& path);
+
+ private:
+  class File;
+  explicit Journal(std::unique_ptr<File> file);
+  std::unique_ptr<File> file_;
+};
+
+}  // namespace rebake

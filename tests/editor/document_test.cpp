@@ -1,0 +1,447 @@
+// Nothing that was done is lost: history, journal, project.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <random>
+
+#include "editor/document/document.h"
+#include "editor/document/project.h"
+#include "editor/script/script.h"
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/files.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::string error_of(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+class DocumentTest : public ::testing::Test {
+ protected:
+  DocumentTest() { export_scene(scene_of(made_object()), path("sources/ball"), {}); }
+  fs::path path(const std::string& name) const { return folder_.path() / name; }
+  void act(Document& document, const json& edit) const { document.edit(read_edit(edit, document.scene())); }
+  void act(Document& document, const char* edit) const { act(document, json::parse(edit)); }
+  void import(Document& document) const {
+    act(document, json{{"op", "import"}, {"path", path("sources/ball").string()}, {"as", "ball"}});
+  }
+  // Half removed, half of the rest separated and moved.
+  void work(Document& document) const {
+    import(document);
+    act(document,
+        R"({"op": "select", "node": "ball", "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds"})");
+    act(document, R"({"op": "delete"})");
+    act(document, R"({"op": "select", "box": {"min": [0, 0, 0], "max": [0.5, 1, 1]}, "frame": "bounds"})");
+    act(document, R"({"op": "separate", "node": "ball", "as": "part"})");
+    act(document, R"({"op": "transform", "node": "part", "translate": [3, 0, 0]})");
+    act(document, R"({"op": "erase", "node": "part", "sphere": {"center": [2, 0, 0], "radius": 0.6}})");
+  }
+  std::map<std::string, std::string> exported(const Scene& scene) const {
+    const TemporaryFolder out;
+    export_scene(scene, out.path() / "out", {});
+    return folder_bytes(out.path() / "out");
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(DocumentTest, UndoAndRedoWalkTheSameScenes) {
+  Document document;
+  work(document);
+  const auto last = exported(document.scene());
+  EXPECT_EQ(document.history().undo_count(), 7U);
+  for (int k = 0; k < 7; ++k) EXPECT_TRUE(document.undo());
+  EXPECT_FALSE(document.undo());
+  EXPECT_TRUE(document.scene().roots.empty());
+  while (document.redo()) {
+  }
+  EXPECT_EQ(exported(document.scene()), last);
+  document.undo();
+  act(document, R"({"op": "rename", "node": "part", "name": "piece"})");
+  EXPECT_FALSE(document.redo()) << "a new edit forgets what was undone";
+}
+
+TEST_F(DocumentTest, AThrownEditLeavesEverything) {
+  Document document;
+  import(document);
+  const auto node = document.scene().roots[0];
+  EXPECT_NE(error_of([&] { document.edit(DeleteSelected{}); }).find("no triangle is selected"), std::string::npos);
+  EXPECT_EQ(document.scene().roots[0], node);
+  EXPECT_EQ(document.history().undo_count(), 1U);
+}
+
+TEST_F(DocumentTest, OldScenesAreDroppedWithinTheBudgetAndComputedAgain) {
+  Document all, tight({}, 1);
+  work(all);
+  work(tight);
+  EXPECT_EQ(tight.history().kept(), 2U) << "the start and the present";
+  EXPECT_LT(tight.history().memory(), all.history().memory());
+  while (all.undo()) {
+    ASSERT_TRUE(tight.undo());
+    if (!all.scene().roots.empty()) {
+      ASSERT_EQ(exported(tight.scene()), exported(all.scene()));
+    }
+  }
+  EXPECT_EQ(tight.history().undo_count(), 0U);
+}
+
+TEST_F(DocumentTest, SharedPartsAreCountedOnce) {
+  Document document;
+  import(document);
+  const std::uint64_t one = document.history().memory();
+  for (int k = 0; k < 20; ++k) act(document, R"({"op": "transform", "node": "ball", "translate": [1, 0, 0]})");
+  EXPECT_LT(document.history().memory(), one + 20 * 1000) << "a moved node shares its triangles and texels";
+}
+
+TEST_F(DocumentTest, AJournalGivesTheWorkBack) {
+  Document document;
+  document.keep_journal(path("j"));
+  work(document);
+  document.undo();
+  document.undo();
+  document.redo();
+  const auto bytes = exported(document.scene());
+  document = Document();  // as if the program had ended
+  const Document::Recovered recovered = Document::recover(path("j"));
+  EXPECT_EQ(recovered.edits, 6U);
+  EXPECT_FALSE(recovered.torn);
+  EXPECT_EQ(exported(recovered.document.scene()), bytes);
+}
+
+TEST_F(DocumentTest, ScriptJournalAndProjectGiveTheSameBytes) {
+  Document document;
+  document.keep_journal(path("j"));
+  work(document);
+  document.save(path("p.rebake"));
+  const auto bytes = exported(document.scene());
+  document = Document();
+  EXPECT_EQ(exported(Document::recover(path("j")).document.scene()), bytes);
+  EXPECT_EQ(exported(Document::open(path("p.rebake")).scene()), bytes);
+  Session session;
+  run_script(session, R"({"op": "import", "path": "{from}", "as": "ball"}
+{"op": "select", "node": "ball", "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds"}
+{"op": "delete"}
+{"op": "select", "box": {"min": [0, 0, 0], "max": [0.5, 1, 1]}, "frame": "bounds"}
+{"op": "separate", "node": "ball", "as": "part"}
+{"op": "transform", "node": "part", "translate": [3, 0, 0]}
+{"op": "erase", "node": "part", "sphere": {"center": [2, 0, 0], "radius": 0.6}}
+)",
+             "s", {{"from", path("sources/ball").string()}});
+  EXPECT_EQ(exported(session.scene()), bytes);
+}
+
+TEST_F(DocumentTest, AJournalCutAtAnyByteLosesTheEditInFlightAtMost) {
+  Document document;
+  document.keep_journal(path("j"));
+  for (int k = 0; k < 3; ++k) act(document, json{{"op", "background"}, {"color", {k / 3.0, 0, 0}}});
+  const std::string whole = read_file(path("j"));
+  document = Document();
+  const std::size_t last = whole.rfind('\n', whole.size() - 2) + 1;
+  for (std::size_t size = last; size <= whole.size(); ++size) {
+    std::ofstream(path("cut"), std::ios::binary) << whole.substr(0, size);
+    Document::Recovered recovered = Document::recover(path("cut"));
+    ASSERT_EQ(recovered.edits, size == whole.size() ? 3U : 2U) << size;
+    ASSERT_EQ(recovered.torn, size > last && size < whole.size()) << size;
+    // Going on writes behind the last whole line.
+    act(recovered.document, R"({"op": "background", "color": [0, 1, 0]})");
+    const std::size_t edits = recovered.edits + 1;
+    recovered.document = Document();
+    ASSERT_EQ(Document::recover(path("cut")).edits, edits) << size;
+    fs::remove(path("cut"));
+  }
+}
+
+TEST_F(DocumentTest, KilledAtAnyMomentAndTwiceTheReportedEditsAreThere) {
+  // The child reports each edit that is done by a byte; both the first run and the one that goes on are killed.
+  std::mt19937 random(11);
+  int in_flight = 0;
+  for (int round = 0; round < 200; ++round) {
+    const fs::path journal = path(fmt::format("k{}", round));
+    std::size_t reported = 0;
+    for (int life = 0; life < 2; ++life) {
+      int ends[2];
+      ASSERT_EQ(pipe(ends), 0);
+      const pid_t child = fork();
+      if (child == 0) {
+        close(ends[0]);
+        try {
+          Document document;
+          if (life == 0)
+            document.keep_journal(journal);
+          else
+            document = std::move(Document::recover(journal).document);
+          for (int k = 0;; ++k) {
+            Background edit;
+            edit.color = Color(0.5, 0.25, (k % 100) / 100.0);
+            document.edit(edit);
+            if (write(ends[1], "", 1) != 1) _exit(1);
+          }
+        } catch (...) {
+          _exit(1);
+        }
+      }
+      close(ends[1]);
+      usleep(static_cast<useconds_t>(random() % 4000));
+      kill(child, SIGKILL);
+      int status = 0;
+      waitpid(child, &status, 0);
+      ASSERT_TRUE(WIFSIGNALED(status)) << "the child failed by itself";
+      char byte = 0;
+      while (read(ends[0], &byte, 1) == 1) ++reported;
+      close(ends[0]);
+      if (!fs::exists(journal)) break;
+      const Journal::Contents contents = Journal::read(journal);
+      ASSERT_GE(contents.entries.size(), reported) << round;
+      ASSERT_LE(contents.entries.size(), reported + 1 + static_cast<std::size_t>(life)) << round;
+      in_flight += contents.entries.size() > reported ? 1 : 0;
+      reported = contents.entries.size();
+    }
+    if (fs::exists(journal)) {
+      EXPECT_EQ(Document::recover(journal).edits, reported);
+    }
+  }
+  RecordProperty("killed_between_disk_and_report", in_flight);
+}
+
+TEST_F(DocumentTest, BadJournalsAreRefusedWithWhatIsWrong) {
+  const auto says = [&](const std::string& bytes, const std::string& what) {
+    std::ofstream(path("bad"), std::ios::binary) << bytes;
+    const std::string error = error_of([&] { Document::recover(path("bad")); });
+    EXPECT_NE(error.find(what), std::string::npos) << error;
+    EXPECT_EQ(read_file(path("bad")), bytes) << "left as it was";
+  };
+  says(std::string(300, 'x'), "is not a journal");
+  {
+    Document document;
+    document.keep_journal(path("j"));
+    for (int k = 0; k < 3; ++k) act(document, R"({"op": "background", "color": [0, 0, 1]})");
+    EXPECT_NE(error_of([&] { Document().keep_journal(path("j")); }).find("is there already"), std::string::npos);
+    EXPECT_NE(error_of([&] { Document::recover(path("j")); }).find("written by another Rebake"), std::string::npos);
+  }
+  std::string bytes = read_file(path("j"));
+  std::string damaged = bytes;
+  damaged[damaged.find("background")] = 'B';
+  says(damaged, "line 2 is damaged");
+  const auto line = [](const std::string& text) {
+    char digits[17];
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(content_hash(text)));
+    return fmt::format("{} {}\n", digits, text);
+  };
+  says(line(R"({"rebake_journal":2})"), "newer version");
+  says(line(R"({"rebake_journal":1})") + line(R"({"n":2,"undo":true})"), "line 2 does not follow");
+  says(line(R"({"rebake_journal":1})") + line(R"({"n":1,"undo":true})"), "nothing to undo");
+  says(line(R"({"rebake_journal":1})") + line(R"({"n":1,"edit":{"op":"remove","node":7}})"), "no node number 7");
+}
+
+TEST_F(DocumentTest, ProjectsMoveWithTheirSourcesAndReportWhatChanged) {
+  Document document;
+  work(document);
+  act(document, R"({"op": "view", "name": "front", "camera": {"eye": [0, 0, 4], "target": [0, 0, 0]}})");
+  document.save(path("p.rebake"));
+  const auto bytes = exported(document.scene());
+  fs::create_directory(path("elsewhere"));
+  fs::copy(path("p.rebake"), path("elsewhere/p.rebake"));
+  fs::copy(path("sources"), path("elsewhere/sources"), fs::copy_options::recursive);
+  fs::rename(path("sources"), path("gone"));
+  const Document opened = Document::open(path("elsewhere/p.rebake"));
+  EXPECT_EQ(exported(opened.scene()), bytes);
+  EXPECT_TRUE(opened.scene().views.contains("front"));
+  EXPECT_NE(error_of([&] { Document::open(path("p.rebake")); }).find("sources/ball is not there any more"),
+            std::string::npos);
+  std::ofstream(path("elsewhere/sources/ball/mlp.json"), std::ios::app) << " ";
+  EXPECT_NE(error_of([&] { Document::open(path("elsewhere/p.rebake")); }).find("sources/ball has changed"),
+            std::string::npos);
+}
+
+TEST_F(DocumentTest, BadProjectsAreRefusedWithWhatIsWrong) {
+  const auto says = [&](const std::string& text, const std::string& what) {
+    write_text(path("bad.rebake"), text);
+    const std::string error = error_of([&] { Document::open(path("bad.rebake")); });
+    EXPECT_NE(error.find(what), std::string::npos) << error;
+  };
+  says("{", "is not a valid project");
+  says("{}", "is not a project of Rebake");
+  says(R"({"rebake_project": 9, "sources": [], "edits": []})", "newer version");
+  says(R"({"rebake_project": 1, "edits": []})", "sources");
+  says(R"({"rebake_project": 1, "sources": [], "edits": [{"op": "remove", "node": 3}]})", "edit 1: ");
+  says(R"({"rebake_project": 1, "sources": [], "edits": [{"op": "render"}]})", "is no edit");
+}
+
+TEST_F(DocumentTest, SeparateThenMergeGivesTheOriginalBytes) {
+  Document document;
+  import(document);
+  const auto bytes = exported(document.scene());
+  act(document, R"({"op": "select", "sphere": {"center": [0, 1, 0], "radius": 0.8}})");
+  act(document, R"({"op": "separate", "node": "ball", "as": "part"})");
+  act(document,
+      R"({"op": "select", "node": "part", "box": {"min": [0, 0, 0], "max": [0.5, 1, 1]}, "frame": "bounds"})");
+  act(document, R"({"op": "separate", "node": "part", "as": "corner"})");
+  EXPECT_NE(exported(find(document.scene(), "ball") ? without(document.scene(), find(document.scene(), "part")->id)
+                                                    : document.scene()),
+            bytes);
+  act(document, R"({"op": "merge", "nodes": ["corner", "ball", "part"], "as": "ball again"})");
+  EXPECT_EQ(exported(document.scene()), bytes);
+}
+
+// Every node's flags fit its triangles, ids and names are unique.
+void expect_sound(const Scene& scene) {
+  std::set<std::uint64_t> ids;
+  std::set<std::string> names;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    ASSERT_TRUE(ids.insert(static_cast<std::uint64_t>(placed.node->id)).second);
+    ASSERT_TRUE(names.insert(placed.node->name).second);
+    ASSERT_LT(static_cast<std::uint64_t>(placed.node->id), scene.next_id);
+    if (!placed.node->object) continue;
+    ASSERT_GT(placed.node->object->triangle_count(), 0U);
+    if (placed.node->selection) {
+      ASSERT_EQ(placed.node->selection->size(), placed.node->object->triangle_count());
+      ASSERT_GT(count(*placed.node->selection), 0U);
+    }
+    for (const auto& [name, saved] : placed.node->saved_selections)
+      ASSERT_EQ(saved->size(), placed.node->object->triangle_count()) << name;
+  }
+}
+
+TEST_F(DocumentTest, TenThousandRandomEditsKeepEveryInvariantAndUndoToTheStart) {
+  export_scene(scene_of(made_object({.columns = 6, .rows = 4, .cell = 4})), path("sources/small"), {});
+  Document document({}, 256 << 20);  // less than all scenes need
+  std::mt19937 random(3);
+  const auto number = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto point = [&] { return json{number(-1, 1), number(-1, 1), number(-1, 1)}; };
+  const auto any_node = [&]() -> std::uint64_t {
+    const auto placed = placed_nodes(document.scene());
+    return placed.empty() ? 0 : static_cast<std::uint64_t>(placed[random() % placed.size()].node->id);
+  };
+  const char* const modes[] = {"set", "add", "remove", "intersect"};
+  const std::vector<std::function<json()>> kinds{
+      [&] {
+        return json{{"op", "import"}, {"path", path("sources/small").string()}};
+      },
+      [&] {
+        return json{{"op", "duplicate"}, {"node", any_node()}};
+      },
+      [&] {
+        return json{{"op", "group"}, {"nodes", {any_node()}}, {"as", "group"}};
+      },
+      [&] {
+        return json{{"op", "delete"}};
+      },
+      [&] {
+        return json{{"op", "separate"}, {"node", any_node()}};
+      },
+      [&] {
+        return json{{"op", "merge"}, {"nodes", {any_node(), any_node()}}};
+      },
+      [&] {
+        return json{{"op", "grow"}};
+      },
+      [&] {
+        return json{{"op", "shrink"}};
+      },
+      [&] {
+        return json{{"op", "fill"}};
+      },
+      [&] {
+        return json{{"op", "hide"}, {"node", any_node()}};
+      },
+      [&] {
+        return json{{"op", "show"}, {"node", any_node()}};
+      },
+      [&] {
+        return json{{"op", "store_selection"}, {"name", random() % 2 == 0 ? "a" : "b"}};
+      },
+      [&] {
+        return json{{"op", "erase"}, {"sphere", {{"center", point()}, {"radius", 0.1}}}};
+      },
+      [&] {
+        return json{{"op", "transform"},
+                    {"node", any_node()},
+                    {"selection", true},
+                    {"translate", point()},
+                    {"rotate", {{"axis", {0, 1, 0}}, {"degrees", number(0, 90)}}}};
+      }};
+  const std::vector<std::function<json()>> selections{
+      [&] {
+        return json{{"op", "select"}, {"saved", random() % 2 == 0 ? "a" : "b"}};
+      },
+      [&] {
+        return json{{"op", "select_connected"}, {"point", point()}};
+      },
+      [&] {
+        return json{{"op", "select_like"}, {"point", point()}, {"color", 0.2}};
+      },
+      [&] {
+        return json{{"op", "select_floaters"}, {"at_most", 3}};
+      },
+      [&] {
+        return json{{"op", "select"}, {"sphere", {{"center", point()}, {"radius", number(0.1, 1)}}}};
+      }};
+  std::size_t done = 0, refused = 0;
+  for (int k = 0; k < 10000; ++k) {
+    json line;
+    std::size_t triangles = 0;
+    for (const PlacedNode& placed : placed_nodes(document.scene()))
+      if (placed.node->object) triangles += placed.node->object->triangle_count();
+    if (placed_nodes(document.scene()).size() > 12 || triangles > 1000) {
+      line = json{{"op", "remove"}, {"node", any_node()}};
+    } else if (random() % 3 == 0) {
+      line = selections[random() % selections.size()]();
+      line["mode"] = modes[random() % 4];
+    } else {
+      line = kinds[random() % kinds.size()]();
+    }
+    try {
+      act(document, line);
+      ++done;
+    } catch (const Error&) {
+      ++refused;  // nothing selected, nothing there: the document must stay as it is
+    }
+    if (random() % 20 == 0) document.undo();
+    if (random() % 40 == 0) document.redo();
+    if (k % 10 == 0) expect_sound(document.scene());
+    if (HasFatalFailure()) FAIL() << line.dump();
+  }
+  EXPECT_GT(done, 3000U);
+  EXPECT_GT(refused, 100U);
+  while (document.undo()) expect_sound(document.scene());
+  EXPECT_TRUE(document.scene().roots.empty());
+  EXPECT_EQ(document.history().undo_count(), 0U);
+}
+
+TEST_F(DocumentTest, SelectAndItsInverseAreAll) {
+  Document document;
+  import(document);
+  for (const json& region :
+       {json{{"sphere", {{"center", {0, 1, 0}}, {"radius", 0.8}}}},
+        json{{"half_space", {{"point", {0, 0, 0}}, {"normal", {1, 2, 3}}}}}, json{{"connected", {0, 1, 0}}}}) {
+    json select = region;
+    select["op"] = "select";
+    act(document, select);
+    const TriangleSet chosen = *document.scene().roots[0]->selection;
+    act(document, R"({"op": "select", "invert": true})");
+    const NodePtr node = document.scene().roots[0];
+    const TriangleSet others = node->selection ? *node->selection : TriangleSet(chosen.size(), 0);
+    for (std::size_t f = 0; f < chosen.size(); ++f) ASSERT_NE(chosen[f] != 0, others[f] != 0);
+    select["mode"] = "add";
+    act(document, select);
+    EXPECT_EQ(count(*document.scene().roots[0]->selection), chosen.size());
+  }
+}
+
+}  // namespace
+}  // namespace rebake::test
