@@ -7,12 +7,13 @@
 #include "editor/cli/terminal.h"
 #include "editor/script/script.h"
 #include "mesh_ops/formats/files.h"
+#include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
 void add_run(CLI::App& program) {
   struct Options {
-    std::string script, journal;
+    std::string script, journal, scene, out;
     std::vector<std::string> variables;
     bool fields = false;
   };
@@ -24,6 +25,10 @@ void add_run(CLI::App& program) {
       ->option_text("name=value...");
   command->add_option("--journal", options->journal, "keep every edit safe in this file until the script is done")
       ->option_text("FILE");
+  command->add_option("--scene", options->scene, "import this first as the node \"scene\"; gives {name} and {path}")
+      ->option_text("FOLDER");
+  command->add_option("--out", options->out, "export there at the end, unless the script exports itself")
+      ->option_text("FOLDER");
   command->add_flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
   command->callback([options] {
     if (options->fields) {
@@ -45,8 +50,21 @@ void add_run(CLI::App& program) {
       fmt::print(stderr, "{}\n", line);
     };
     if (!options->journal.empty()) session.document.keep_journal(options->journal);
+    if (!options->scene.empty()) {
+      variables["name"] = folder_title(options->scene);
+      variables["path"] = options->scene;
+      Import import;
+      import.path = options->scene;
+      import.as = "scene";
+      session.edit(import);
+    }
     try {
       run_script(session, read_file(options->script), options->script, variables);
+      if (!options->out.empty() && !session.exported) {
+        ExportAction action;
+        action.out = options->out;
+        run(session, action);
+      }
     } catch (const Error&) {
       if (!options->journal.empty())
         session.say(fmt::format("what was done is kept in {0}: rebake recover {0} -o FILE.rebake", options->journal));

@@ -1,0 +1,206 @@
+#include "editor/batch/batch.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <glob.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "mesh_ops/formats/files.h"
+#include "mesh_ops/formats/formats.h"
+
+extern char** environ;
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Where the batch keeps what it knows of a scene: a mark when it is done, and what its process said.
+fs::path state_folder(const BatchOptions& options) { return options.out / ".rebake-batch"; }
+
+// What a result depends on. A scene that was done under the same key need not be done again.
+std::string key_of(const BatchOptions& options, const std::string& script, const fs::path& scene) {
+  std::string all = fmt::format("{:016x} {:016x}", content_hash(script), folder_hash(scene));
+  for (const std::string& variable : options.variables) all += '\n' + variable;
+  return fmt::format("{:016x}", content_hash(all));
+}
+
+// What marks a scene as done; differs once its result was taken away.
+std::string mark_of(const BatchOptions& options, const std::string& name, const std::string& key) {
+  return key + (fs::exists(options.out / name) ? " exported\n" : "\n");
+}
+
+pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& log) {
+  std::vector<std::string> words{
+      options.program, "run", options.script, "--scene", scene.string(), "--out", options.out / folder_title(scene)};
+  for (const std::string& variable : options.variables) words.insert(words.end(), {"--var", variable});
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
+  pid_t process = 0;
+  const int error = posix_spawn(&process, options.program.c_str(), &files, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  if (error != 0) throw FileError(options.program, "cannot be started");
+  return process;
+}
+
+// Processes that are stopped and waited for when the batch ends early.
+class Processes {
+ public:
+  struct Job {
+    std::size_t scene;
+    std::string key;
+    Clock::time_point since;
+  };
+  Processes() = default;
+  Processes(const Processes&) = delete;
+  Processes& operator=(const Processes&) = delete;
+  ~Processes() {
+    for (const auto& [process, job] : jobs_) ::kill(process, SIGINT);
+    for (const auto& [process, job] : jobs_) ::waitpid(process, nullptr, 0);
+  }
+  std::size_t size() const { return jobs_.size(); }
+  void add(pid_t process, Job job) { jobs_.emplace(process, std::move(job)); }
+  // The next that ends, with its status; nothing when a signal came in between.
+  std::optional<Job> wait(int& status) {
+    const auto ended = jobs_.find(::waitpid(-1, &status, 0));
+    if (ended == jobs_.end()) return std::nullopt;
+    Job job = std::move(ended->second);
+    jobs_.erase(ended);
+    return job;
+  }
+
+ private:
+  std::map<pid_t, Job> jobs_;
+};
+
+// The error that a process ended with, from what it said.
+std::string last_error(const fs::path& log, int status) {
+  std::string found;
+  try {
+    const std::string text = read_file(log);
+    const std::string mark = "error: ";
+    if (const std::size_t at = text.rfind(mark); at != std::string::npos)
+      found = text.substr(at + mark.size(), text.find_last_not_of('\n') + 1 - at - mark.size());
+  } catch (const FileError&) {
+    // Without its log the status has to do.
+  }
+  if (WIFSIGNALED(status))
+    return fmt::format("crashed (signal {}){}{}", WTERMSIG(status), found.empty() ? "" : ": ", found);
+  return found.empty() ? fmt::format("ended with code {}", WEXITSTATUS(status)) : found;
+}
+
+}  // namespace
+
+const char* to_string(BatchResult::Status status) {
+  static const char* const names[] = {"done", "skipped", "failed"};
+  return names[static_cast<int>(status)];
+}
+
+std::vector<fs::path> batch_scenes(const BatchOptions& options) {
+  std::map<std::string, fs::path> by_name;
+  for (const std::string& pattern : options.scenes) {
+    glob_t matches{};
+    const int error = ::glob(pattern.c_str(), GLOB_BRACE | GLOB_TILDE, nullptr, &matches);
+    std::vector<fs::path> folders;
+    for (std::size_t k = 0; error == 0 && k < matches.gl_pathc; ++k)
+      if (fs::path path = matches.gl_pathv[k]; fs::is_directory(path)) {
+        if (!path.has_filename()) path = path.parent_path();
+        folders.push_back(path);
+      }
+    ::globfree(&matches);
+    if (folders.empty()) throw FieldError("--scenes", fmt::format("\"{}\" matches no folder", pattern));
+    for (const fs::path& folder : folders) {
+      const auto [other, added] = by_name.emplace(folder_title(folder), folder);
+      if (!added && fs::weakly_canonical(other->second) != fs::weakly_canonical(folder))
+        throw FieldError("--scenes", fmt::format("{} and {} have one name, and their results would too; run them apart",
+                                                 other->second.string(), folder.string()));
+    }
+  }
+  std::vector<fs::path> mine;
+  int number = 0;
+  for (const auto& [name, folder] : by_name)
+    if (number++ % options.shards == options.shard - 1) mine.push_back(folder);
+  return mine;
+}
+
+std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& progress,
+                                   const std::function<void(const BatchResult&)>& ended) {
+  const std::string script = read_file(options.script);
+  const std::vector<fs::path> scenes = batch_scenes(options);
+  std::error_code error;
+  fs::create_directories(state_folder(options), error);
+  if (error) throw FileError(options.out, "cannot be made: " + error.message());
+  Processes running;
+  std::vector<BatchResult> results(scenes.size());
+  std::size_t next = 0, over = 0;
+  // Also where the wish to stop arrives.
+  const auto report = [&](std::size_t more) {
+    over += more;
+    progress.at(fmt::format("{} of {} scenes", over, scenes.size()),
+                static_cast<double>(over) / static_cast<double>(scenes.size()));
+  };
+  const auto finish = [&](std::size_t k) {
+    ended(results[k]);
+    report(1);
+  };
+  while (over < scenes.size()) {
+    while (next < scenes.size() && running.size() < static_cast<std::size_t>(options.jobs)) {
+      const std::size_t k = next++;
+      BatchResult& result = results[k];
+      result.scene = scenes[k];
+      result.name = folder_title(scenes[k]);
+      const fs::path mark = state_folder(options) / (result.name + ".done");
+      try {
+        const std::string key = key_of(options, script, scenes[k]);
+        if (options.resume && fs::exists(mark) && read_file(mark) == mark_of(options, result.name, key)) {
+          result.status = BatchResult::Status::skipped;
+          finish(k);
+          continue;
+        }
+        fs::remove(mark);
+        running.add(start(options, scenes[k], state_folder(options) / (result.name + ".log")), {k, key, Clock::now()});
+      } catch (const FileError& why) {
+        result.message = why.what();
+        finish(k);
+      }
+    }
+    if (running.size() == 0) continue;
+    int status = 0;
+    const auto ended_job = running.wait(status);
+    if (!ended_job) {
+      report(0);
+      continue;
+    }
+    const Processes::Job& job = *ended_job;
+    BatchResult& result = results[job.scene];
+    result.seconds = std::chrono::duration<double>(Clock::now() - job.since).count();
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+      result.status = BatchResult::Status::done;
+      write_file_atomically(state_folder(options) / (result.name + ".done"), mark_of(options, result.name, job.key));
+    } else {
+      result.message = last_error(state_folder(options) / (result.name + ".log"), status);
+    }
+    finish(job.scene);
+  }
+  return results;
+}
+
+}  // namespace rebake

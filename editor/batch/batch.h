@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/progress.h"
+
+namespace rebake {
+
+/// One script over many scenes, each in a process of its own, so that what fails or crashes harms no other.
+struct BatchOptions {
+  std::filesystem::path script;
+  std::vector<std::string> scenes;     ///< folders, or patterns such as scenes/* (as of a shell, with {a,b})
+  std::filesystem::path out;           ///< a scene's result goes to out/NAME, unless the script exports
+  std::vector<std::string> variables;  ///< name=value, for the script
+  int jobs = 1;
+  bool resume = false;            ///< leave out what was done before with the same script, variables and scene
+  int shard = 1, shards = 1;      ///< of all scenes in order, every shards-th from the shard-th on
+  std::filesystem::path program;  ///< that is run for each scene: rebake itself
+};
+
+struct BatchResult {
+  enum class Status { done, skipped, failed };
+  std::string name;
+  std::filesystem::path scene;
+  Status status = Status::failed;
+  std::string message;  ///< why it failed
+  double seconds = 0;
+};
+
+const char* to_string(BatchResult::Status status);
+
+/// The folders that the patterns match and that are this shard's, by name. Throws FieldError when a pattern matches
+/// nothing and when two scenes have one name.
+std::vector<std::filesystem::path> batch_scenes(const BatchOptions& options);
+
+/// Runs all, and reports each as it ends. Results come in the order of the scenes. Throws FileError when the script or
+/// the output folder is no good, Cancelled when stopping was asked for (what is done stays done).
+std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& progress,
+                                   const std::function<void(const BatchResult&)>& ended);
+
+}  // namespace rebake

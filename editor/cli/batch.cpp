@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "editor/batch/batch.h"
+#include "editor/cli/commands.h"
+#include "editor/cli/terminal.h"
+
+namespace rebake {
+
+namespace {
+
+// "i/n" as two numbers, 1 ≤ i ≤ n.
+void parse_shard(const std::string& text, BatchOptions& options) {
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, options.shard);
+  if (first.ec == std::errc() && first.ptr != end && *first.ptr == '/') {
+    const auto second = std::from_chars(first.ptr + 1, end, options.shards);
+    if (second.ec == std::errc() && second.ptr == end && options.shard >= 1 && options.shard <= options.shards) return;
+  }
+  throw FieldError("--shard", fmt::format("\"{}\" must be i/n with 1 ≤ i ≤ n", text));
+}
+
+nlohmann::json to_json(const BatchResult& result) {
+  nlohmann::json line = {{"scene", result.name},
+                         {"path", result.scene.string()},
+                         {"status", to_string(result.status)},
+                         {"seconds", result.seconds}};
+  if (!result.message.empty()) line["message"] = result.message;
+  return line;
+}
+
+void print_table(const std::vector<BatchResult>& results) {
+  std::size_t width = 5;
+  for (const BatchResult& result : results) width = std::max(width, result.name.size());
+  fmt::print("{:<{}}  {:<8} {:>8}  message\n", "scene", width, "status", "seconds");
+  std::size_t failed = 0;
+  for (const BatchResult& result : results) {
+    failed += result.status == BatchResult::Status::failed ? 1 : 0;
+    fmt::print("{:<{}}  {:<8} {:>8.2f}  {}\n", result.name, width, to_string(result.status), result.seconds,
+               result.message);
+  }
+  fmt::print("{} scenes, {} failed\n", results.size(), failed);
+}
+
+}  // namespace
+
+void add_batch(CLI::App& program) {
+  struct Options {
+    BatchOptions batch;
+    std::string script, out, report, shard = "1/1";
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "batch", "runs one script on many scenes, each imported first as the node \"scene\" and exported at the end");
+  command->add_option("script", options->script, "script; {name} and {path} of the scene may stand in its texts")
+      ->required()
+      ->option_text("SCRIPT.jsonl");
+  command->add_option("--scenes", options->batch.scenes, "scene folders or patterns that match them")
+      ->required()
+      ->option_text("GLOB...");
+  command->add_option("-o,--out", options->out, "results go to FOLDER/{name}, unless the script exports itself")
+      ->required()
+      ->option_text("FOLDER");
+  command->add_option("--var", options->batch.variables, "gives {name} in the script's texts a value")
+      ->option_text("name=value...");
+  command->add_option("--jobs", options->batch.jobs, "scenes at a time")
+      ->check(CLI::Range(1, 1024))
+      ->option_text("N [1]");
+  command->add_flag("--resume", options->batch.resume, "leave out what was done before with this script and scene");
+  command->add_option("--shard", options->shard, "only the i-th of n parts, for a scheduler to run all of them")
+      ->option_text("i/n");
+  command->add_option("--report", options->report, "one JSON object a line for each scene")
+      ->option_text("FILE [FOLDER/report.jsonl]");
+  command->callback([options] {
+    BatchOptions& batch = options->batch;
+    parse_shard(options->shard, batch);
+    batch.script = options->script;
+    batch.out = options->out;
+    batch.program = "/proc/self/exe";
+    std::error_code error;
+    if (const auto self = std::filesystem::read_symlink(batch.program, error); !error) batch.program = self;
+    batch_scenes(batch);  // what is wrong with the patterns is said before anything is made
+    std::filesystem::create_directories(batch.out, error);
+    const std::filesystem::path report =
+        !options->report.empty() ? std::filesystem::path(options->report)
+        : batch.shards > 1       ? batch.out / fmt::format("report-{}-of-{}.jsonl", batch.shard, batch.shards)
+                                 : batch.out / "report.jsonl";
+    std::ofstream lines(report);
+    if (!lines) throw FileError(report, "cannot be written");
+    const std::vector<BatchResult> results = run_batch(batch, progress_bar(), [&](const BatchResult& result) {
+      lines << to_json(result).dump() << std::endl;
+      if (!lines) throw FileError(report, "cannot be written");
+    });
+    clear_progress_bar();
+    print_table(results);
+    for (const BatchResult& result : results)
+      if (result.status == BatchResult::Status::failed) throw ExitWith{1};
+  });
+}
+
+}  // namespace rebake

@@ -1,0 +1,106 @@
+// One script over many scenes: what fails harms no other, what was done is not done again.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "editor/batch/batch.h"
+#include "mesh_ops/formats/export.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Status = BatchResult::Status;
+
+class Batch : public ::testing::Test {
+ protected:
+  Batch() {
+    for (const char* name : {"a", "b", "c"})
+      export_scene(scene_of(made_object({.columns = 8, .rows = 4, .seed = static_cast<unsigned>(name[0])})),
+                   folder_.path() / "scenes" / name, {});
+    write_text(folder_.path() / "s.jsonl",
+               R"({"op": "select", "node": "scene", "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds"})"
+               "\n"
+               R"({"op": "delete"})"
+               "\n");
+    options.script = folder_.path() / "s.jsonl";
+    options.scenes = {(folder_.path() / "scenes/*").string()};
+    options.out = folder_.path() / "out";
+    options.program = REBAKE_PROGRAM;
+  }
+  std::map<std::string, Status> run() {
+    std::map<std::string, Status> statuses;
+    std::size_t reported = 0;
+    for (const BatchResult& result : run_batch(options, {}, [&](const BatchResult&) { ++reported; })) {
+      statuses[result.name] = result.status;
+      messages[result.name] = result.message;
+    }
+    EXPECT_EQ(reported, statuses.size());
+    return statuses;
+  }
+  TemporaryFolder folder_;
+  BatchOptions options;
+  std::map<std::string, std::string> messages;
+};
+
+TEST_F(Batch, EveryResultIsThatOfTheScriptAlone) {
+  options.jobs = 2;
+  EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::done}, {"c", Status::done}}));
+  const std::string alone = (folder_.path() / "alone").string();
+  ASSERT_EQ(std::system(("\"" REBAKE_PROGRAM "\" run " + options.script.string() + " --scene " +
+                         (folder_.path() / "scenes/b").string() + " --out " + alone + " 2>/dev/null")
+                            .c_str()),
+            0);
+  EXPECT_EQ(folder_bytes(options.out / "b"), folder_bytes(alone));
+  const auto once = folder_bytes(options.out);
+  run();
+  EXPECT_EQ(folder_bytes(options.out), once) << "a second run gives the same bytes";
+}
+
+TEST_F(Batch, FailuresStandAlone) {
+  fs::remove(folder_.path() / "scenes/b/mlp.json");
+  EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::failed}, {"c", Status::done}}));
+  EXPECT_NE(messages["b"].find("scenes/b"), std::string::npos) << messages["b"];
+  EXPECT_FALSE(fs::exists(options.out / "b"));
+}
+
+TEST_F(Batch, ResumeLeavesOutWhatIsDoneAndStillHolds) {
+  fs::rename(folder_.path() / "scenes/b/mlp.json", folder_.path() / "kept");
+  run();
+  fs::rename(folder_.path() / "kept", folder_.path() / "scenes/b/mlp.json");
+  options.resume = true;
+  EXPECT_EQ(run(),
+            (std::map<std::string, Status>{{"a", Status::skipped}, {"b", Status::done}, {"c", Status::skipped}}));
+  fs::remove_all(options.out / "a");
+  std::ofstream(folder_.path() / "scenes/c/mlp.json", std::ios::app) << " ";
+  EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::skipped}, {"c", Status::done}}));
+  options.variables = {"unused=1"};
+  EXPECT_EQ(run()["b"], Status::done) << "other variables may give another result";
+}
+
+TEST_F(Batch, ShardsShareTheScenes) {
+  options.shards = 2;
+  EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"c", Status::done}}));
+  options.shard = 2;
+  EXPECT_EQ(run(), (std::map<std::string, Status>{{"b", Status::done}}));
+}
+
+TEST_F(Batch, AScriptMayExportItself) {
+  write_text(options.script, R"({"op": "export", "out": "{to}/{name}-own"})");
+  options.variables = {"to=" + folder_.path().string()};
+  run();
+  EXPECT_TRUE(fs::exists(folder_.path() / "a-own/mlp.json"));
+  EXPECT_FALSE(fs::exists(options.out / "a"));
+}
+
+TEST_F(Batch, PatternsThatMatchNothingAndNamesTwiceAreRefused) {
+  options.scenes = {"/no/such/*"};
+  EXPECT_THROW(batch_scenes(options), FieldError);
+  fs::create_directories(folder_.path() / "more/a");
+  options.scenes = {(folder_.path() / "{scenes,more}/*").string()};
+  EXPECT_THROW(batch_scenes(options), FieldError);
+}
+
+}  // namespace
+}  // namespace rebake::test
