@@ -43,7 +43,7 @@ Scene apply(const Scene& scene, const Select& edit) {
       if (targets.size() != 1) throw FieldError("frame", "must be world where several objects are selected from");
       point = targets[0].to_world * FramePoints(edit.frame, targets[0]).to_object(point);
     }
-    start = nearest_triangle(targets, point);
+    start = nearest_triangle(targets, point, false);
   }
   const SelectMode mode = edit.invert ? SelectMode::set : edit.mode;
   std::size_t index = 0;

@@ -19,7 +19,8 @@ struct SelectConnected {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("node", self.node, Need::optional, "only of this node and those inside it; left out: of all that is visible");
-    visit("point", self.point, Need::optional, "world point; left out: from the present selection");
+    visit("point", self.point, Need::optional,
+          "world point, near a triangle that shows something; left out: from the present selection");
     visit("tolerance", self.tolerance, Need::optional,
           "corners at most this far apart count as one, in the object's units; 0: only equal ones");
     visit("gap", self.gap, Need::optional,
@@ -34,7 +35,7 @@ inline Scene apply(const Scene& scene, const SelectConnected& edit) {
   std::vector<PlacedNode> targets = selectable(scene, edit.node);
   std::vector<TriangleSet> from;
   if (edit.point) {
-    const NearestTriangle nearest = nearest_triangle(targets, *edit.point);
+    const NearestTriangle nearest = nearest_triangle(targets, *edit.point, true);
     for (const PlacedNode& placed : targets) from.emplace_back(placed.node->object->triangle_count(), 0);
     if (!from[nearest.target].empty()) from[nearest.target][nearest.triangle] = 1;
   } else {

@@ -81,7 +81,7 @@ Scene apply(const Scene& scene, const SelectLike& edit) {
   const std::vector<PlacedNode> targets = selectable(scene, edit.node);
   std::vector<TriangleSet> picked;
   if (edit.point) {
-    const NearestTriangle nearest = nearest_triangle(targets, *edit.point);
+    const NearestTriangle nearest = nearest_triangle(targets, *edit.point, true);
     for (const PlacedNode& placed : targets) picked.emplace_back(placed.node->object->triangle_count(), 0);
     picked[nearest.target].at(nearest.triangle) = 1;
   } else {

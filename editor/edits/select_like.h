@@ -18,7 +18,8 @@ struct SelectLike {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("node", self.node, Need::optional, "only of this node and those inside it; left out: of all that is visible");
-    visit("point", self.point, Need::optional, "world point; left out: like the present selection");
+    visit("point", self.point, Need::optional,
+          "world point, near a triangle that shows something; left out: like the present selection");
     visit("color", self.color, Need::optional, "distance of mean decoded colours, channels 0 to 1");
     visit("features", self.features, Need::optional, "root mean square difference of mean features, 0 to 1");
     visit("opacity", self.opacity, Need::optional, "difference of the share of opaque texels, 0 to 1");

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "mesh_ops/select/index.h"
+
 namespace rebake {
 
 namespace {
@@ -88,17 +90,18 @@ Scene with_selected(const Scene& scene, const std::vector<PlacedNode>& targets, 
   return result;
 }
 
-NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const Vec3& world) {
+NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const Vec3& world, bool opaque) {
   NearestTriangle nearest{0, 0};
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < targets.size(); ++k) {
+    const auto traits = opaque ? traits_of(*targets[k].node->object) : nullptr;
     std::size_t f = 0;
     for (const TextureSet& set : targets[k].node->object->sets) {
       const std::vector<Vec3>& p = set.soup.positions();
       for (const Face& face : set.soup.faces()) {
         const Vec3 centre = targets[k].to_world * Vec3((p[face[0]] + p[face[1]] + p[face[2]]) / 3);
         const double distance = (centre - world).squaredNorm();
-        if (distance < least) {
+        if (distance < least && (!traits || (*traits)[f].opacity > 0)) {
           least = distance;
           nearest = {k, f};
         }

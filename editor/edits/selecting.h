@@ -22,13 +22,13 @@ Scene with_selected(const Scene& scene, const std::vector<PlacedNode>& targets, 
 /// The present selection of a node, empty where nothing is selected.
 TriangleSet selection_of(const PlacedNode& placed);
 
-/// The number of the triangle whose centre is nearest to a world point, and whose it is. Throws EditError for no
-/// targets.
+/// The number of the triangle whose centre is nearest to a world point, and whose it is; with `opaque` among those that
+/// show an opaque texel, as far as there are any.
 struct NearestTriangle {
   std::size_t target;
   std::size_t triangle;
 };
-NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const Vec3& world);
+NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const Vec3& world, bool opaque);
 
 /// Fields of edits that work in a camera's picture.
 struct PictureFields {

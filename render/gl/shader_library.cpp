@@ -1,5 +1,6 @@
 #include "render/gl/shader_library.h"
 
+#include <dlfcn.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 
 #include "mesh_ops/error.h"
 #include "mesh_ops/formats/files.h"
+#include "render/gl/objects.h"
 
 namespace rebake::gl {
 
@@ -16,11 +18,15 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path shader_folder() {
+  // Installed, they lie below the same prefix as this code: bin/rebake, or the Python module some folders deeper.
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    const fs::path installed = program.parent_path().parent_path() / REBAKE_INSTALLED_SHADERS;
-    if (fs::is_directory(installed, error)) return installed;
+  Dl_info self{};
+  if (::dladdr(reinterpret_cast<const void*>(&make_program), &self) != 0) {
+    fs::path folder = fs::weakly_canonical(self.dli_fname, error).parent_path();
+    for (int up = 0; up < 4; ++up) {
+      folder = folder.parent_path();
+      if (fs::is_directory(folder / REBAKE_INSTALLED_SHADERS, error)) return folder / REBAKE_INSTALLED_SHADERS;
+    }
   }
   if (fs::is_directory(REBAKE_SOURCE_SHADERS, error)) return REBAKE_SOURCE_SHADERS;
   throw DeviceError(

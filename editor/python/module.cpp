@@ -1,0 +1,336 @@
+// The Python module: a document, its edits as methods, and its arrays as NumPy views.
+#include <fmt/format.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "editor/actions/session.h"
+#include "editor/document/project.h"
+#include "editor/fields/variants.h"
+#include "editor/python/stub.h"
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/scene_folder.h"
+#include "render/picture.h"
+
+namespace py = pybind11;
+using nlohmann::json;
+
+namespace rebake {
+
+namespace {
+
+json to_json(const py::handle& value) {
+  if (value.is_none()) return nullptr;
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
+  if (py::isinstance<py::int_>(value)) {
+    const auto number = value.cast<std::int64_t>();
+    return number < 0 ? json(number) : json(static_cast<std::uint64_t>(number));
+  }
+  if (py::isinstance<py::float_>(value)) return value.cast<double>();
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (py::hasattr(value, "__fspath__")) return value.attr("__fspath__")().cast<std::string>();
+  if (py::isinstance<py::dict>(value)) {
+    json object = json::object();
+    for (const auto& [key, entry] : value.cast<py::dict>())
+      if (!entry.is_none()) object[key.cast<std::string>()] = to_json(entry);
+    return object;
+  }
+  if (py::isinstance<py::array>(value) || py::hasattr(value, "tolist")) return to_json(value.attr("tolist")());
+  if (py::isinstance<py::sequence>(value)) {
+    json list = json::array();
+    for (const auto& entry : value.cast<py::sequence>()) list.push_back(to_json(entry));
+    return list;
+  }
+  throw py::type_error("a field cannot be a " + py::str(value.get_type()).cast<std::string>());
+}
+
+py::object to_python(const json& value) {
+  switch (value.type()) {
+    case json::value_t::boolean:
+      return py::bool_(value.get<bool>());
+    case json::value_t::number_integer:
+      return py::int_(value.get<std::int64_t>());
+    case json::value_t::number_unsigned:
+      return py::int_(value.get<std::uint64_t>());
+    case json::value_t::number_float:
+      return py::float_(value.get<double>());
+    case json::value_t::string:
+      return py::str(value.get<std::string>());
+    case json::value_t::array: {
+      py::list list;
+      for (const json& entry : value) list.append(to_python(entry));
+      return list;
+    }
+    case json::value_t::object: {
+      py::dict object;
+      for (const auto& [key, entry] : value.items()) object[py::str(key)] = to_python(entry);
+      return object;
+    }
+    default:
+      return py::none();
+  }
+}
+
+// A read-only view of rows that `owner` keeps alive.
+template <class T, class Owner>
+py::array view_of(const T* data, std::vector<py::ssize_t> shape, Owner owner) {
+  const py::capsule keeper(new Owner(std::move(owner)), [](void* kept) { delete static_cast<Owner*>(kept); });
+  py::array_t<T> array(std::move(shape), data, keeper);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+class PyDocument {
+ public:
+  PyDocument() = default;
+  explicit PyDocument(Document document) { session_.document = std::move(document); }
+
+  Session& session() { return session_; }
+  const Scene& scene() const { return session_.scene(); }
+
+  void edit(const json& line) {
+    const Edit edit = read_edit(line, scene());
+    const py::gil_scoped_release unlocked;
+    session_.edit(edit);
+  }
+
+  PlacedNode node(const py::object& name) const {
+    const PlacedNode placed = *find_placed(scene(), Codec<NodeRef>::read(to_json(name), scene()).id);
+    if (!placed.node->object) throw EditError("node \"" + placed.node->name + "\" is a group: it has no triangles");
+    return placed;
+  }
+  TextureSet set(const py::object& name, std::size_t index) const {
+    const PlacedNode placed = node(name);
+    const auto& sets = placed.node->object->sets;
+    if (index >= sets.size())
+      throw FieldError("texture_set", fmt::format("\"{}\" has {}, counted from 0", placed.node->name, sets.size()));
+    return sets[index];
+  }
+
+  py::dict selections() const {
+    py::dict result;
+    for (const PlacedNode& placed : placed_nodes(scene()))
+      if (placed.node->object) result[py::str(placed.node->name)] = mask(placed);
+    return result;
+  }
+  static py::array mask(const PlacedNode& placed) {
+    const std::size_t count = placed.node->object->triangle_count();
+    py::array_t<bool> result(static_cast<py::ssize_t>(count));
+    auto flags = result.mutable_unchecked<1>();
+    for (std::size_t f = 0; f < count; ++f)
+      flags(static_cast<py::ssize_t>(f)) = placed.node->selection && (*placed.node->selection)[f] != 0;
+    return result;
+  }
+
+  py::array render(int width, int height, int samples, const py::object& camera, const std::string& view_name) {
+    View view;
+    view.width = width;
+    view.height = height;
+    view.samples = samples;
+    if (!camera.is_none() && !view_name.empty()) throw FieldError("view", "contradicts camera");
+    if (!camera.is_none())
+      view.camera = Codec<Camera>::read(to_json(camera), scene());
+    else if (view_name.empty())
+      view.camera = framing_of(scene(), static_cast<double>(width) / std::max(height, 1));
+    else if (const auto found = scene().views.find(view_name); found != scene().views.end())
+      view.camera = found->second;
+    else
+      throw FieldError("view", "there is no view \"" + view_name + "\"");
+    auto image = std::make_shared<Image>();
+    {
+      const py::gil_scoped_release unlocked;
+      *image = session_.renderer().render(scene(), view);
+    }
+    py::array_t<std::uint8_t> picture({image->height, image->width, 3}, image->rgb.data());
+    return picture;
+  }
+
+ private:
+  Session session_;
+};
+
+py::list nodes_of(const PyDocument& document) {
+  py::list result;
+  for (const PlacedNode& placed : placed_nodes(document.scene())) {
+    const NodeId parent = parent_of(document.scene(), placed.node->id);
+    py::array_t<double> to_world({4, 4});
+    auto matrix = to_world.mutable_unchecked<2>();
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) matrix(row, column) = placed.to_world.matrix()(row, column);
+    py::dict node;
+    node["id"] = static_cast<std::uint64_t>(placed.node->id);
+    node["name"] = placed.node->name;
+    node["parent"] = parent == NodeId::none ? py::object(py::none()) : py::str(find(document.scene(), parent)->name);
+    node["visible"] = placed.visible;
+    node["locked"] = placed.locked;
+    node["triangles"] = placed.node->object ? placed.node->object->triangle_count() : 0;
+    node["to_world"] = to_world;
+    result.append(node);
+  }
+  return result;
+}
+
+py::list tiles_of(const PyDocument& document, const py::object& name, std::size_t index) {
+  const TextureSet set = document.set(name, index);
+  py::list rows;
+  for (int row = 0; row < set.texels->tile_rows(); ++row) {
+    py::list columns;
+    for (int column = 0; column < set.texels->tile_columns(); ++column) {
+      const auto& tile = set.texels->tile(column, row);
+      columns.append(view_of(reinterpret_cast<const std::uint8_t*>(tile->texels.data()),
+                             {TexelTile::size, TexelTile::size, 8}, tile));
+    }
+    rows.append(columns);
+  }
+  return rows;
+}
+
+py::array texture_of(const PyDocument& document, const py::object& name, std::size_t index) {
+  const TextureSet set = document.set(name, index);
+  const int width = set.texels->width(), height = set.texels->height();
+  py::array_t<std::uint8_t> result({height, width, 8});
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; x += TexelTile::size)
+      std::memcpy(result.mutable_data(y, x, 0), set.texels->row_part(x, y),
+                  static_cast<std::size_t>(std::min(TexelTile::size, width - x)) * sizeof(Texel));
+  return result;
+}
+
+template <class T>
+void define_edit(py::class_<PyDocument>& type, const T& edit) {
+  const bool selects = std::string_view(edit.op).starts_with("select");
+  const std::string name = std::string_view(edit.op) == "import" ? "import_" : edit.op;
+  std::vector<FieldLine> lines;
+  FieldLister lister(lines);
+  edit.fields(edit, lister);
+  std::string help = std::string(edit.help) + "\n";
+  for (const FieldLine& line : lines)
+    help += fmt::format("\n{}: {}{}. {}", line.name, line.type, line.required ? ", required" : "", line.help);
+  type.def(
+      name.c_str(),
+      [selects](PyDocument& document, const py::kwargs& fields) -> py::object {
+        // Names that are words of Python are written with an underscore: as_.
+        json line = {{"op", T::op}};
+        for (const auto& [key, value] : fields) {
+          auto field = py::cast<std::string>(key);
+          if (field.ends_with('_')) field.pop_back();
+          if (!value.is_none()) line[field] = to_json(value);
+        }
+        document.edit(line);
+        if (selects) return document.selections();
+        return py::none();
+      },
+      help.c_str());
+}
+
+std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, const std::string& axes) {
+  if (is_project_file(path)) return std::make_unique<PyDocument>(Document::open(path));
+  Document document;
+  Import import;
+  import.path = path.string();
+  import.axes = Codec<Axes>::read(axes, {});
+  document.edit(import);
+  return std::make_unique<PyDocument>(std::move(document));
+}
+
+}  // namespace
+
+PYBIND11_MODULE(rebake, module) {
+  module.doc() = "Edit and compose baked NeRF scenes (MobileNeRF format).";
+  const auto& error = py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
+  py::register_exception<FileError>(module, "FileError", error);
+  py::register_exception<FieldError>(module, "FieldError", error);
+  py::register_exception<EditError>(module, "EditError", error);
+  py::register_exception<DeviceError>(module, "DeviceError", error);
+
+  py::class_<PyDocument> type(module, "Document",
+                              "A scene with its history. An edit that raises leaves everything as it was.");
+  type.def(py::init<>());
+  type.def_property_readonly("nodes", &nodes_of, "Every node: id, name, parent, visible, locked, triangles, to_world.");
+  type.def(
+      "edit", [](PyDocument& document, const py::dict& line) { document.edit(to_json(line)); }, py::arg("edit"),
+      "Carries out one edit, given as a line of a script.");
+  type.def(
+      "edits",
+      [](PyDocument& document) {
+        py::list lines;
+        for (const Edit& edit : document.session().document.history().edits())
+          lines.append(to_python(rebake::to_json(edit)));
+        return lines;
+      },
+      "What was done, as lines of a script; nodes by number.");
+  type.def(
+      "undo", [](PyDocument& document) { return document.session().document.undo(); },
+      "False where there is nothing to undo.");
+  type.def(
+      "redo", [](PyDocument& document) { return document.session().document.redo(); },
+      "False where there is nothing to redo.");
+  type.def(
+      "keep_journal",
+      [](PyDocument& document, const std::filesystem::path& path) { document.session().document.keep_journal(path); },
+      py::arg("path"), "From here on every edit is on the disk before it returns.");
+  type.def("discard_journal", [](PyDocument& document) { document.session().document.discard_journal(); });
+  type.def(
+      "save",
+      [](PyDocument& document, const std::filesystem::path& path) {
+        if (path.extension() == ".rebake")
+          document.session().document.save(path);
+        else
+          save_scene_folder(document.scene(), path);
+      },
+      py::arg("path"), "Writes a project (.rebake), or a scene folder that keeps every node.");
+  type.def(
+      "export",
+      [](PyDocument& document, const std::filesystem::path& path, const py::object& layout) {
+        ExportOptions options;
+        if (!layout.is_none()) options.layout = Codec<Layout>::read(to_json(layout), {});
+        return export_scene(document.scene(), path, options).notes;
+      },
+      py::arg("path"), py::arg("layout") = py::none(),
+      "Writes the MobileNeRF format; returns what the result cannot hold or was converted.");
+  type.def("render", &PyDocument::render, py::arg("width") = 800, py::arg("height") = 800, py::arg("samples") = 4,
+           py::arg("camera") = py::none(), py::arg("view") = "", "A picture, height × width × 3.");
+  type.def(
+      "selection",
+      [](const PyDocument& document, const py::object& node) { return PyDocument::mask(document.node(node)); },
+      py::arg("node"), "Which of an object's triangles are selected.");
+  type.def(
+      "vertices",
+      [](const PyDocument& document, const py::object& node, std::size_t index) {
+        const auto positions = document.set(node, index).soup.shared_positions();
+        return view_of(positions->data()->data(), {static_cast<py::ssize_t>(positions->size()), 3}, positions);
+      },
+      py::arg("node"), py::arg("texture_set") = 0, "Positions in the object's own space, n × 3; a read-only view.");
+  type.def(
+      "uvs",
+      [](const PyDocument& document, const py::object& node, std::size_t index) {
+        const auto uvs = document.set(node, index).soup.shared_uvs();
+        return view_of(uvs->data()->data(), {static_cast<py::ssize_t>(uvs->size()), 2}, uvs);
+      },
+      py::arg("node"), py::arg("texture_set") = 0, "Texture coordinates, n × 2, v up; a read-only view.");
+  type.def(
+      "faces",
+      [](const PyDocument& document, const py::object& node, std::size_t index) {
+        const auto faces = document.set(node, index).soup.shared_faces();
+        return view_of(faces->data()->data(), {static_cast<py::ssize_t>(faces->size()), 3}, faces);
+      },
+      py::arg("node"), py::arg("texture_set") = 0, "Vertex numbers, n × 3; a read-only view.");
+  type.def("tiles", &tiles_of, py::arg("node"), py::arg("texture_set") = 0,
+           "The texels, 256 × 256 × 8 a tile, by row and column; read-only views.");
+  type.def("texture", &texture_of, py::arg("node"), py::arg("texture_set") = 0,
+           "The texels in one piece, height × width × 8; a copy.");
+  for_each_type<Edit>([&](const auto& edit) { define_edit(type, edit); });
+
+  module.def("open", &open_document, py::arg("path"), py::arg("axes") = "360",
+             "A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project.");
+  module.def(
+      "recover",
+      [](const std::filesystem::path& journal) {
+        return std::make_unique<PyDocument>(std::move(Document::recover(journal).document));
+      },
+      py::arg("journal"), "The work that a journal kept; goes on writing it.");
+  module.def("python_stub", &python_stub, "The module's type stub.");
+}
+
+}  // namespace rebake

@@ -1,0 +1,300 @@
+# Written by rebake.python_stub(); the edits are those of the one table.
+"""Edit and compose baked NeRF scenes (MobileNeRF format).
+
+Lengths are in scene units, angles in degrees, colours display values from 0 to 1. Names and fields are those of scripts.
+"""
+from os import PathLike
+from typing import Any, Literal, Sequence, TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = Sequence[float] | NDArray[np.floating[Any]]
+Node = str | int
+class AxisAngle(TypedDict):
+    axis: Vector
+    degrees: float
+Rotation = AxisAngle | Sequence[float]
+class Box(TypedDict):
+    min: Vector
+    max: Vector
+class Sphere(TypedDict):
+    center: Vector
+    radius: float
+class HalfSpace(TypedDict):
+    point: Vector
+    normal: Vector
+class Brush(TypedDict):
+    points: Sequence[Sequence[float]]
+    radius: float
+class Camera(TypedDict, total=False):
+    eye: Vector
+    target: Vector
+    up: Vector
+    fov: float
+    near: float
+    far: float
+
+class Error(RuntimeError):
+    """Base of everything that Rebake raises on purpose."""
+class FileError(Error):
+    """Something is wrong with a file or folder; the message starts with its path."""
+class FieldError(Error):
+    """A field does not hold what it should; the message starts with its name."""
+class EditError(Error):
+    """An edit cannot be carried out on this scene."""
+class DeviceError(Error):
+    """The machine lacks something: no OpenGL, no memory on the GPU."""
+
+def open(path: str | PathLike[str], axes: Literal["360", "forward"] = "360") -> Document:
+    """A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project (.rebake)."""
+def recover(journal: str | PathLike[str]) -> Document:
+    """The work that a journal kept; goes on writing it."""
+def python_stub() -> str:
+    """This text."""
+
+class Document:
+    """A scene with its history. An edit that raises leaves everything as it was."""
+    def __init__(self) -> None: ...
+    @property
+    def nodes(self) -> list[dict[str, Any]]:
+        """Every node: id, name, parent, visible, locked, triangles, to_world (4×4)."""
+    def edit(self, edit: dict[str, Any]) -> None:
+        """Carries out one edit, given as a line of a script."""
+    def edits(self) -> list[dict[str, Any]]:
+        """What was done, as lines of a script; nodes by number."""
+    def undo(self) -> bool:
+        """False where there is nothing to undo."""
+    def redo(self) -> bool:
+        """False where there is nothing to redo."""
+    def keep_journal(self, path: str | PathLike[str]) -> None:
+        """From here on every edit is on the disk before it returns."""
+    def discard_journal(self) -> None: ...
+    def save(self, path: str | PathLike[str]) -> None:
+        """Writes a project (.rebake), or a scene folder that keeps every node."""
+    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None) -> list[str]:
+        """Writes the MobileNeRF format; returns what the result cannot hold or was converted."""
+    def render(self, width: int = 800, height: int = 800, samples: int = 4, camera: Camera | None = None,
+               view: str = "") -> NDArray[np.uint8]:
+        """A picture, height × width × 3; without camera and view, one that frames the scene."""
+    def selection(self, node: Node) -> NDArray[np.bool_]:
+        """Which of an object's triangles are selected, in the order of faces() set by set."""
+    def vertices(self, node: Node, texture_set: int = 0) -> NDArray[np.float64]:
+        """Positions in the object's own space, n × 3; a read-only view, nothing is copied."""
+    def uvs(self, node: Node, texture_set: int = 0) -> NDArray[np.float64]:
+        """Texture coordinates, n × 2, v up; a read-only view."""
+    def faces(self, node: Node, texture_set: int = 0) -> NDArray[np.uint32]:
+        """Vertex numbers, n × 3; a read-only view."""
+    def tiles(self, node: Node, texture_set: int = 0) -> list[list[NDArray[np.uint8]]]:
+        """The texels, 256 × 256 × 8 a tile (feat0 RGBA, feat1 RGBA), by row and column; read-only views."""
+    def texture(self, node: Node, texture_set: int = 0) -> NDArray[np.uint8]:
+        """The same in one piece, height × width × 8; a copy."""
+    def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", content: str = "") -> None:
+        """Reads a MobileNeRF folder or a Rebake scene into the scene.
+
+        path: folder to read
+        as_: name of the new node; empty: the folder's name
+        axes: which way a MobileNeRF folder is oriented; scenes say so themselves
+        content: hash of the folder's files as projects and journals record it: anything else there is refused
+        """
+    def remove(self, *, node: Node) -> None:
+        """Takes a node and its children out of the scene.
+
+        node: node to remove
+        """
+    def rename(self, *, node: Node, name: str) -> None:
+        """Gives a node another name.
+
+        node: node to rename
+        name: new name, not in use yet
+        """
+    def duplicate(self, *, node: Node, as_: str = "") -> None:
+        """Adds a copy of a node and its children after it; triangles and texels stay shared.
+
+        node: node to copy
+        as_: name of the copy; empty: the node's with a number
+        """
+    def group(self, *, nodes: Sequence[Node], as_: str = "") -> None:
+        """Puts nodes into a new group; they stay where they are in the world.
+
+        nodes: nodes to put together
+        as_: name of the group; empty: group
+        """
+    def reorder(self, *, node: Node, index: int, parent: Node | None = None, top: bool = False) -> None:
+        """Moves a node within the outline, to another place or group; it stays where it is in the world.
+
+        node: node to move
+        index: place among its new siblings, from 0; later ones are drawn on top where depths are equal
+        parent: group to move into; left out: stays in its group
+        top: move to the top level, out of all groups
+        """
+    def show(self, *, node: Node) -> None:
+        """Makes a node visible again.
+
+        node: node
+        """
+    def hide(self, *, node: Node) -> None:
+        """Hides a node and its children; they are neither drawn nor exported; save keeps them.
+
+        node: node
+        """
+    def lock(self, *, node: Node) -> None:
+        """Protects a node and its children from edits.
+
+        node: node
+        """
+    def unlock(self, *, node: Node) -> None:
+        """Allows edits again.
+
+        node: node
+        """
+    def view(self, *, name: str, camera: Camera) -> None:
+        """Stores a camera under a name.
+
+        name: name of the view
+        camera: the camera; what is left out has its usual value
+        """
+    def background(self, *, color: Vector) -> None:
+        """Sets the colour behind everything.
+
+        color: display red, green, blue from 0 to 1
+        """
+    def transform(self, *, node: Node, selection: bool = False, translate: Vector = [0.0,0.0,0.0], rotate: Rotation = [1.0,0.0,0.0,0.0], scale: float | Vector = [1.0,1.0,1.0], pivot: Vector | None = None) -> None:
+        """Scales, then turns, then moves a node or its selected triangles about a pivot, in world axes.
+
+        node: node to transform
+        selection: only the selected triangles
+        translate: in scene units
+        rotate: rotation
+        scale: factor; negative mirrors, 0 is refused
+        pivot: world point that scale and rotation keep; left out: the centre of the box of what is transformed
+        """
+    def select(self, *, node: Node | None = None, all: bool = False, none: bool = False, invert: bool = False, box: Box | None = None, sphere: Sphere | None = None, half_space: HalfSpace | None = None, connected: Vector | None = None, texture_set: int | None = None, saved: str = "", mode: Literal["set", "add", "remove", "intersect"] = "set", frame: Literal["world", "node", "bounds"] = "world") -> dict[str, NDArray[np.bool_]]:
+        """Selects triangles by their centres.
+
+        node: only of this node and those inside it; left out: of all that is visible
+        all: every triangle
+        none: no triangle
+        invert: those not selected now
+        box: inside a box
+        sphere: inside a sphere; radius in units of the frame, in frame bounds as a share of the box diagonal
+        half_space: on the side that the normal points to
+        connected: joined through shared corners to the triangle nearest to this point
+        texture_set: of this texture set, counted from 0
+        saved: stored by store_selection under this name
+        mode: how the result joins the present selection
+        frame: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
+        """
+    def select_picture(self, *, node: Node | None = None, polygon: Sequence[Sequence[float]] | None = None, brush: Brush | None = None, depth: Sequence[float] | None = None, view: str = "", camera: Camera | None = None, size: Sequence[int] = [800,800], through: bool = False, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
+        """Selects triangles in a camera's picture: those seen through a pixel of the region, or with through all whose centre falls into it.
+
+        node: only of this node and those inside it; left out: of all that is visible
+        polygon: inside a polygon in the picture
+        brush: under a brush stroke in the picture
+        depth: only at these depths along the view axis
+        view: name of the stored view whose picture it is
+        camera: the camera whose picture it is
+        size: the picture's size, in whose pixels points are given
+        through: hidden triangles too
+        mode: how the result joins the present selection
+        """
+    def select_connected(self, *, node: Node | None = None, point: Vector | None = None, tolerance: float = 0.0, gap: float = 0.0, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
+        """Selects the parts that hang together, across opaque texels, with the triangle nearest to a point or with the present selection.
+
+        node: only of this node and those inside it; left out: of all that is visible
+        point: world point, near a triangle that shows something; left out: from the present selection
+        tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
+        gap: opaque texels at most this far apart hang together too, in the object's units
+        mode: how the result joins the present selection
+        """
+    def select_like(self, *, node: Node | None = None, point: Vector | None = None, color: float | None = None, features: float | None = None, opacity: float | None = None, size: float | None = None, orientation: float | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
+        """Selects triangles that are like the picked ones: within every tolerance that is given, of the mean over the present selection or of the triangle nearest to a point.
+
+        node: only of this node and those inside it; left out: of all that is visible
+        point: world point, near a triangle that shows something; left out: like the present selection
+        color: distance of mean decoded colours, channels 0 to 1
+        features: root mean square difference of mean features, 0 to 1
+        opacity: difference of the share of opaque texels, 0 to 1
+        size: factor between areas in the world, at least 1
+        orientation: degrees between planes in the world, 0 to 90
+        mode: how the result joins the present selection
+        """
+    def select_floaters(self, *, node: Node | None = None, at_most: int = 100, tolerance: float = 0.0, gap: float = 0.0, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
+        """Selects small parts that hang together with nothing else, across opaque texels; look at the count, then delete.
+
+        node: only of this node and those inside it; left out: of all that is visible
+        at_most: triangles of a part that counts as floating
+        tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
+        gap: opaque texels at most this far apart hang together too, in the object's units
+        mode: how the result joins the present selection
+        """
+    def select_unneeded(self, *, node: Node | None = None, transparent: bool = False, duplicates: bool = False, unseen: int = 0, distance: float = 3.0, unseen_from: Sequence[str] | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
+        """Selects triangles that no picture needs, for cleaning: look at the count, then delete.
+
+        node: only of this node and those inside it; left out: of all that is visible
+        transparent: without an opaque texel
+        duplicates: same corners and same texels as a triangle drawn later
+        unseen: not seen from this many eyes on a sphere around the object; other objects hide nothing
+        distance: of the eyes, in half diagonals of the object's box
+        unseen_from: names of stored views: not seen from any of their eyes
+        mode: how the result joins the present selection
+        """
+    def grow(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> None:
+        """Adds the triangles that share a corner with the selection.
+
+        node: only of this node and those inside it; left out: of all that is visible
+        steps: how often
+        tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
+        """
+    def shrink(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> None:
+        """Takes away the selected triangles that share a corner with others.
+
+        node: only of this node and those inside it; left out: of all that is visible
+        steps: how often
+        tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
+        """
+    def fill(self, *, node: Node | None = None, at_most: int = 1000, tolerance: float = 0.0) -> None:
+        """Adds the islands inside the selection: unselected triangles, joined through edges, that border it.
+
+        node: only of this node and those inside it; left out: of all that is visible
+        at_most: triangles of an island that is filled
+        tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
+        """
+    def store_selection(self, *, name: str) -> None:
+        """Stores the present selection of all nodes under a name, for select's field saved; replaces what had the name.
+
+        name: name of the selection
+        """
+    def delete(self, *, node: Node | None = None) -> None:
+        """Removes the selected triangles; a node that loses all goes too.
+
+        node: only of this node; left out: of all nodes
+        """
+    def separate(self, *, node: Node, as_: str = "") -> None:
+        """Makes the selected triangles of a node a node of its own, after it.
+
+        node: node to separate from
+        as_: name of the new node; empty: the node's with a number
+        """
+    def merge(self, *, nodes: Sequence[Node], as_: str = "") -> None:
+        """Makes objects of one decoder one node, in place of the first; parts that were separated before fit together again as they were.
+
+        nodes: nodes to merge, in drawing order
+        as_: name of the result; empty: the first one's
+        """
+    def erase(self, *, node: Node | None = None, box: Box | None = None, sphere: Sphere | None = None, half_space: HalfSpace | None = None, frame: Literal["world", "node", "bounds"] = "world", polygon: Sequence[Sequence[float]] | None = None, brush: Brush | None = None, depth: Sequence[float] | None = None, view: str = "", camera: Camera | None = None, size: Sequence[int] = [800,800], through: bool = False) -> None:
+        """Clears the opacity of texels inside a region or in a picture, where an object's edge runs through triangles; all other texels stay bit for bit.
+
+        node: only of this node and those inside it; left out: of all that is visible
+        box: inside a box
+        sphere: inside a sphere; radius as for select
+        half_space: on the side that the normal points to
+        frame: of box, sphere and half_space, as for select
+        polygon: inside a polygon in the picture
+        brush: under a brush stroke in the picture
+        depth: only at these depths along the view axis
+        view: name of the stored view whose picture it is
+        camera: the camera whose picture it is
+        size: the picture's size, in whose pixels points are given
+        through: in a picture: hidden texels too
+        """

@@ -1,0 +1,173 @@
+#include "editor/python/stub.h"
+
+#include <fmt/format.h>
+
+#include "editor/edits/table.h"
+#include "editor/fields/variants.h"
+
+namespace rebake {
+
+namespace {
+
+// What a field's type is called in Python.
+std::string python_type(bool) { return "bool"; }
+std::string python_type(int) { return "int"; }
+std::string python_type(double) { return "float"; }
+std::string python_type(const std::string&) { return "str"; }
+std::string python_type(const Vec3&) { return "Vector"; }
+std::string python_type(const NodeRef&) { return "Node"; }
+std::string python_type(const std::vector<NodeRef>&) { return "Sequence[Node]"; }
+std::string python_type(const std::vector<std::string>&) { return "Sequence[str]"; }
+std::string python_type(const Rotation&) { return "Rotation"; }
+std::string python_type(const Scale&) { return "float | Vector"; }
+std::string python_type(const BoxRegion&) { return "Box"; }
+std::string python_type(const SphereRegion&) { return "Sphere"; }
+std::string python_type(const HalfSpaceRegion&) { return "HalfSpace"; }
+std::string python_type(const PixelPolygon&) { return "Sequence[Sequence[float]]"; }
+std::string python_type(const BrushStroke&) { return "Brush"; }
+std::string python_type(const Interval&) { return "Sequence[float]"; }
+std::string python_type(const PixelSize&) { return "Sequence[int]"; }
+std::string python_type(SelectMode) { return R"(Literal["set", "add", "remove", "intersect"])"; }
+std::string python_type(CoordinateFrame) { return R"(Literal["world", "node", "bounds"])"; }
+std::string python_type(Axes) { return R"(Literal["360", "forward"])"; }
+std::string python_type(const Camera&) { return "Camera"; }
+template <class T>
+std::string python_type(const std::optional<T>&) {
+  return python_type(T{}) + " | None";
+}
+
+std::string python_value(const nlohmann::json& value) {
+  if (value.is_null()) return "None";
+  if (value.is_boolean()) return value.get<bool>() ? "True" : "False";
+  return value.dump();
+}
+
+// Collects the parameters of one edit: required ones first, as Python wants them.
+struct Signature {
+  std::vector<std::string> required, optional, lines;
+  template <class T>
+  void operator()(const char* field, const T& value, Need need, const char* help) {
+    // A word of Python is written with an underscore.
+    const std::string name = std::string_view(field) == "as" ? "as_" : field;
+    if (need == Need::required)
+      required.push_back(fmt::format("{}: {}", name, python_type(value)));
+    else if (const auto initial = Codec<T>::write(value); initial.is_null() && !python_type(value).ends_with("None"))
+      optional.push_back(fmt::format("{}: {} | None = None", name, python_type(value)));
+    else
+      optional.push_back(fmt::format("{}: {} = {}", name, python_type(value), python_value(initial)));
+    lines.push_back(fmt::format("{}: {}", name, help));
+  }
+};
+
+constexpr const char* head = R"(# Written by rebake.python_stub(); the edits are those of the one table.
+"""Edit and compose baked NeRF scenes (MobileNeRF format).
+
+Lengths are in scene units, angles in degrees, colours display values from 0 to 1. Names and fields are those of scripts.
+"""
+from os import PathLike
+from typing import Any, Literal, Sequence, TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = Sequence[float] | NDArray[np.floating[Any]]
+Node = str | int
+class AxisAngle(TypedDict):
+    axis: Vector
+    degrees: float
+Rotation = AxisAngle | Sequence[float]
+class Box(TypedDict):
+    min: Vector
+    max: Vector
+class Sphere(TypedDict):
+    center: Vector
+    radius: float
+class HalfSpace(TypedDict):
+    point: Vector
+    normal: Vector
+class Brush(TypedDict):
+    points: Sequence[Sequence[float]]
+    radius: float
+class Camera(TypedDict, total=False):
+    eye: Vector
+    target: Vector
+    up: Vector
+    fov: float
+    near: float
+    far: float
+
+class Error(RuntimeError):
+    """Base of everything that Rebake raises on purpose."""
+class FileError(Error):
+    """Something is wrong with a file or folder; the message starts with its path."""
+class FieldError(Error):
+    """A field does not hold what it should; the message starts with its name."""
+class EditError(Error):
+    """An edit cannot be carried out on this scene."""
+class DeviceError(Error):
+    """The machine lacks something: no OpenGL, no memory on the GPU."""
+
+def open(path: str | PathLike[str], axes: Literal["360", "forward"] = "360") -> Document:
+    """A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project (.rebake)."""
+def recover(journal: str | PathLike[str]) -> Document:
+    """The work that a journal kept; goes on writing it."""
+def python_stub() -> str:
+    """This text."""
+
+class Document:
+    """A scene with its history. An edit that raises leaves everything as it was."""
+    def __init__(self) -> None: ...
+    @property
+    def nodes(self) -> list[dict[str, Any]]:
+        """Every node: id, name, parent, visible, locked, triangles, to_world (4×4)."""
+    def edit(self, edit: dict[str, Any]) -> None:
+        """Carries out one edit, given as a line of a script."""
+    def edits(self) -> list[dict[str, Any]]:
+        """What was done, as lines of a script; nodes by number."""
+    def undo(self) -> bool:
+        """False where there is nothing to undo."""
+    def redo(self) -> bool:
+        """False where there is nothing to redo."""
+    def keep_journal(self, path: str | PathLike[str]) -> None:
+        """From here on every edit is on the disk before it returns."""
+    def discard_journal(self) -> None: ...
+    def save(self, path: str | PathLike[str]) -> None:
+        """Writes a project (.rebake), or a scene folder that keeps every node."""
+    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None) -> list[str]:
+        """Writes the MobileNeRF format; returns what the result cannot hold or was converted."""
+    def render(self, width: int = 800, height: int = 800, samples: int = 4, camera: Camera | None = None,
+               view: str = "") -> NDArray[np.uint8]:
+        """A picture, height × width × 3; without camera and view, one that frames the scene."""
+    def selection(self, node: Node) -> NDArray[np.bool_]:
+        """Which of an object's triangles are selected, in the order of faces() set by set."""
+    def vertices(self, node: Node, texture_set: int = 0) -> NDArray[np.float64]:
+        """Positions in the object's own space, n × 3; a read-only view, nothing is copied."""
+    def uvs(self, node: Node, texture_set: int = 0) -> NDArray[np.float64]:
+        """Texture coordinates, n × 2, v up; a read-only view."""
+    def faces(self, node: Node, texture_set: int = 0) -> NDArray[np.uint32]:
+        """Vertex numbers, n × 3; a read-only view."""
+    def tiles(self, node: Node, texture_set: int = 0) -> list[list[NDArray[np.uint8]]]:
+        """The texels, 256 × 256 × 8 a tile (feat0 RGBA, feat1 RGBA), by row and column; read-only views."""
+    def texture(self, node: Node, texture_set: int = 0) -> NDArray[np.uint8]:
+        """The same in one piece, height × width × 8; a copy."""
+)";
+
+}  // namespace
+
+std::string python_stub() {
+  std::string out = head;
+  for_each_type<Edit>([&](const auto& edit) {
+    Signature signature;
+    edit.fields(edit, signature);
+    std::vector<std::string> parameters = signature.required;
+    parameters.insert(parameters.end(), signature.optional.begin(), signature.optional.end());
+    const bool selects = std::string_view(edit.op).starts_with("select");
+    out += fmt::format("    def {}(self{}{}) -> {}:\n        \"\"\"{}\n\n        {}\n        \"\"\"\n",
+                       std::string_view(edit.op) == "import" ? "import_" : edit.op, parameters.empty() ? "" : ", *, ",
+                       fmt::join(parameters, ", "), selects ? "dict[str, NDArray[np.bool_]]" : "None", edit.help,
+                       fmt::join(signature.lines, "\n        "));
+  });
+  return out;
+}
+
+}  // namespace rebake

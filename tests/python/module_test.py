@@ -1,0 +1,119 @@
+"""The Python module: the same edits, the same journal, the same errors as the program."""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import rebake
+
+ROOT = Path(__file__).resolve().parents[2]
+FICUS = ROOT / "samples/scenes/ficus"
+
+
+def files(folder):
+    return {p.relative_to(folder): p.read_bytes() for p in sorted(Path(folder).rglob("*")) if p.is_file()}
+
+
+class Module(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.at = Path(self.folder.name)
+        self.document = rebake.open(FICUS)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def test_arrays_are_views_that_outlive_the_document(self):
+        vertices = self.document.vertices("ficus")
+        faces = self.document.faces("ficus")
+        uvs = self.document.uvs("ficus")
+        self.assertEqual(vertices.shape, (uvs.shape[0], 3))
+        self.assertEqual(vertices.dtype, np.float64)
+        self.assertLess(faces.max(), len(vertices))
+        self.assertEqual(len(faces), self.document.nodes[0]["triangles"])
+        self.assertEqual(vertices.ctypes.data, self.document.vertices("ficus").ctypes.data, "nothing is copied")
+        with self.assertRaises(ValueError):
+            vertices[0] = 0
+        before = vertices.copy()
+        self.document.transform(node="ficus", translate=[1, 0, 0])
+        del self.document
+        np.testing.assert_array_equal(vertices, before)
+
+    def test_tiles_are_the_texture(self):
+        texture = self.document.texture("ficus")
+        tiles = self.document.tiles("ficus")
+        joined = np.concatenate([np.concatenate(row, axis=1) for row in tiles])
+        np.testing.assert_array_equal(joined[: texture.shape[0], : texture.shape[1]], texture)
+
+    def test_selecting_gives_masks(self):
+        masks = self.document.select(node="ficus", box={"min": np.array([0, 0.5, 0]), "max": [1, 1, 1]}, frame="bounds")
+        centres = self.document.vertices("ficus")[self.document.faces("ficus")].mean(axis=1)
+        low, high = (f(self.document.vertices("ficus")[np.unique(self.document.faces("ficus"))], axis=0) for f in (np.min, np.max))
+        height = (centres[:, 1] - low[1]) / (high[1] - low[1])
+        clear = np.abs(height - 0.5) > 1e-9
+        np.testing.assert_array_equal(masks["ficus"][clear], height[clear] > 0.5)
+        np.testing.assert_array_equal(self.document.selection("ficus"), masks["ficus"])
+
+    def test_the_same_bytes_as_a_script(self):
+        self.document.select(node="ficus", box={"min": [0, 0.5, 0], "max": [1, 1, 1]}, frame="bounds")
+        self.document.delete()
+        self.document.export(self.at / "module")
+        script = self.at / "s.jsonl"
+        script.write_text(
+            '{"op": "select", "node": "scene", "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds"}\n{"op": "delete"}\n'
+        )
+        subprocess.run(
+            [Path(rebake.__file__).parent / "rebake", "run", script, "--scene", FICUS, "--out", self.at / "program"],
+            check=True, stderr=subprocess.DEVNULL,
+        )
+        self.assertEqual(files(self.at / "module"), files(self.at / "program"))
+
+    def test_history_journal_and_project(self):
+        self.document.keep_journal(self.at / "j")
+        self.document.transform(node="ficus", translate=[0, 1, 0])
+        self.document.rename(node="ficus", name="tree")
+        self.assertTrue(self.document.undo())
+        self.assertEqual(self.document.nodes[0]["name"], "ficus")
+        edits = self.document.edits()
+        self.assertEqual([e["op"] for e in edits], ["import", "transform"])
+        self.document.save(self.at / "p.rebake")
+        del self.document
+        self.assertEqual(rebake.recover(self.at / "j").edits(), edits)
+        project = rebake.open(self.at / "p.rebake")
+        np.testing.assert_allclose(project.nodes[0]["to_world"][:3, 3], [0, 1, 0])
+
+    def test_render(self):
+        picture = self.document.render(64, 48)
+        self.assertEqual((picture.shape, picture.dtype), ((48, 64, 3), np.uint8))
+        self.assertGreater(np.ptp(picture), 50)
+        self.document.hide(node="ficus")
+        self.assertTrue((self.document.render(64, 48) == 255).all())
+
+    def test_errors(self):
+        with self.assertRaisesRegex(rebake.FieldError, 'did you mean "ficus"'):
+            self.document.remove(node="ficsu")
+        with self.assertRaisesRegex(rebake.FieldError, 'did you mean "box"'):
+            self.document.select(bx={})
+        with self.assertRaisesRegex(rebake.EditError, "no triangle is selected"):
+            self.document.delete()
+        with self.assertRaises(rebake.FileError):
+            rebake.open(self.at / "nothing")
+        with self.assertRaises(TypeError):
+            self.document.rename(node="ficus", name=object())
+        self.assertEqual(len(self.document.edits()), 1, "nothing was done")
+        self.assertTrue(issubclass(rebake.FileError, rebake.Error))
+
+    def test_every_edit_has_a_method_with_help_and_the_stub_is_current(self):
+        stub = (ROOT / "editor/python/rebake.pyi").read_text()
+        self.assertEqual(stub, rebake.python_stub(), "regenerate editor/python/rebake.pyi from rebake.python_stub()")
+        compile(stub, "rebake.pyi", "exec")
+        for name in ("import_", "select", "select_picture", "erase", "merge", "transform"):
+            self.assertIn("\n", getattr(rebake.Document, name).__doc__)
+
+
+if __name__ == "__main__":
+    unittest.main()
