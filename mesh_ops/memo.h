@@ -18,6 +18,12 @@ class Memo {
     return *this;
   }
 
+  /// Forgets the value; it is computed again when it is wanted.
+  void clear() const {
+    const std::scoped_lock lock(mutex_);
+    value_ = nullptr;
+  }
+
   template <class Make>
   std::shared_ptr<const T> get(Make make) const {
     const std::scoped_lock lock(mutex_);

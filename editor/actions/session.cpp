@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
-
 #include "render/picture.h"
 
 namespace rebake {
@@ -29,17 +27,37 @@ Numbers numbers_of(const Scene& scene, bool texels) {
   return numbers;
 }
 
+// Collects the hidden nodes that an edit's fields name: what it does to them will not be seen.
+struct HiddenNodes {
+  const Scene& scene;
+  std::vector<std::string> names;
+  void operator()(const char*, const NodeRef& node, Need, const char*) {
+    if (const auto placed = find_placed(scene, node.id); placed && !placed->visible)
+      names.push_back(placed->node->name);
+  }
+  void operator()(const char* name, const std::optional<NodeRef>& node, Need need, const char* help) {
+    if (node) (*this)(name, *node, need, help);
+  }
+  void operator()(const char* name, const std::vector<NodeRef>& nodes, Need need, const char* help) {
+    for (const NodeRef& node : nodes) (*this)(name, node, need, help);
+  }
+  template <class T>
+  void operator()(const char*, const T&, Need, const char*) {}
+};
+
 }  // namespace
 
 void Session::edit(const Edit& edit) {
   const bool erases = std::holds_alternative<Erase>(edit);
-  const bool selects = std::visit([](const auto& e) { return std::string_view(e.op).starts_with("select"); }, edit) ||
-                       std::holds_alternative<Grow>(edit) || std::holds_alternative<Shrink>(edit) ||
-                       std::holds_alternative<Fill>(edit);
+  const bool selects = std::visit([](const auto& e) { return changes_selection<std::decay_t<decltype(e)>>(); }, edit);
   const Numbers before = numbers_of(scene(), erases);
   document.edit(edit);
   const Numbers after = numbers_of(scene(), erases);
   const char* op = std::visit([](const auto& e) { return e.op; }, edit);
+  HiddenNodes hidden{scene(), {}};
+  std::visit([&](const auto& e) { e.fields(e, hidden); }, edit);
+  if (!std::holds_alternative<Hide>(edit))
+    for (const std::string& name : hidden.names) say(fmt::format("note: \"{}\" is hidden", name));
   if (selects) say(fmt::format("{}: {} of {} triangles selected", op, after.selected, after.triangles));
   if (erases)
     say(fmt::format("{}: {} texels cleared, {} opaque ones left", op, before.opaque_texels - after.opaque_texels,

@@ -116,24 +116,35 @@ const char* to_string(BatchResult::Status status) {
 
 std::vector<fs::path> batch_scenes(const BatchOptions& options) {
   std::map<std::string, fs::path> by_name;
+  const fs::path out = fs::weakly_canonical(options.out);
   for (const std::string& pattern : options.scenes) {
-    glob_t matches{};
-    const int error = ::glob(pattern.c_str(), GLOB_BRACE | GLOB_TILDE, nullptr, &matches);
+    std::vector<fs::path> found;
+    if (std::error_code error; fs::exists(pattern, error)) {
+      found.emplace_back(pattern);  // a name may hold what means something in a pattern
+    } else {
+      glob_t matches{};
+      if (::glob(pattern.c_str(), GLOB_BRACE | GLOB_TILDE, nullptr, &matches) == 0)
+        found.assign(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
+      ::globfree(&matches);
+    }
+    if (found.empty()) throw FieldError("--scenes", fmt::format("\"{}\" matches nothing", pattern));
     std::vector<fs::path> folders;
-    for (std::size_t k = 0; error == 0 && k < matches.gl_pathc; ++k)
-      if (fs::path path = matches.gl_pathv[k]; fs::is_directory(path)) {
-        if (!path.has_filename()) path = path.parent_path();
-        folders.push_back(path);
-      }
-    ::globfree(&matches);
-    if (folders.empty()) throw FieldError("--scenes", fmt::format("\"{}\" matches no folder", pattern));
+    for (fs::path& path : found) {
+      if (!path.has_filename()) path = path.parent_path();
+      // Files beside the scenes, and the results among them, are not scenes.
+      if (fs::is_directory(path) && fs::weakly_canonical(path) != out) folders.push_back(path);
+    }
     for (const fs::path& folder : folders) {
+      if (fs::weakly_canonical(out / folder_title(folder)) == fs::weakly_canonical(folder))
+        throw FieldError("--out", fmt::format("the result of {} would replace the scene itself; choose another folder",
+                                              folder.string()));
       const auto [other, added] = by_name.emplace(folder_title(folder), folder);
       if (!added && fs::weakly_canonical(other->second) != fs::weakly_canonical(folder))
         throw FieldError("--scenes", fmt::format("{} and {} have one name, and their results would too; run them apart",
                                                  other->second.string(), folder.string()));
     }
   }
+  if (by_name.empty()) throw FieldError("--scenes", "matches no folder");
   std::vector<fs::path> mine;
   int number = 0;
   for (const auto& [name, folder] : by_name)

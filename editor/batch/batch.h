@@ -33,7 +33,7 @@ struct BatchResult {
 const char* to_string(BatchResult::Status status);
 
 /// The folders that the patterns match and that are this shard's, by name. Throws FieldError when a pattern matches
-/// nothing and when two scenes have one name.
+/// nothing, when two scenes have one name, and when a result would replace its scene.
 std::vector<std::filesystem::path> batch_scenes(const BatchOptions& options);
 
 /// Runs all, and reports each as it ends. Results come in the order of the scenes. Throws FileError when the script or

@@ -9,6 +9,7 @@
 #include "editor/batch/batch.h"
 #include "editor/cli/commands.h"
 #include "editor/cli/terminal.h"
+#include "mesh_ops/formats/files.h"
 
 namespace rebake {
 
@@ -84,7 +85,12 @@ void add_batch(CLI::App& program) {
     batch.program = "/proc/self/exe";
     std::error_code error;
     if (const auto self = std::filesystem::read_symlink(batch.program, error); !error) batch.program = self;
-    batch_scenes(batch);  // what is wrong with the patterns is said before anything is made
+    for (const std::string& variable : batch.variables)
+      if (variable.find('=') == std::string::npos || variable.front() == '=')
+        throw FieldError("--var", fmt::format("\"{}\" must be name=value", variable));
+    // What is wrong with script and patterns is said before anything is made.
+    read_file(batch.script);
+    batch_scenes(batch);
     std::filesystem::create_directories(batch.out, error);
     const std::filesystem::path report =
         !options->report.empty() ? std::filesystem::path(options->report)
@@ -93,7 +99,8 @@ void add_batch(CLI::App& program) {
     std::ofstream lines(report);
     if (!lines) throw FileError(report, "cannot be written");
     const std::vector<BatchResult> results = run_batch(batch, progress_bar(), [&](const BatchResult& result) {
-      lines << to_json(result).dump() << std::endl;
+      // Names and messages may hold bytes that are no text.
+      lines << to_json(result).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
       if (!lines) throw FileError(report, "cannot be written");
     });
     clear_progress_bar();

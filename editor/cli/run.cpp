@@ -49,6 +49,7 @@ void add_run(CLI::App& program) {
       clear_progress_bar();
       fmt::print(stderr, "{}\n", line);
     };
+    const std::string script = read_file(options->script);
     if (!options->journal.empty()) session.document.keep_journal(options->journal);
     if (!options->scene.empty()) {
       variables["name"] = folder_title(options->scene);
@@ -59,7 +60,7 @@ void add_run(CLI::App& program) {
       session.edit(import);
     }
     try {
-      run_script(session, read_file(options->script), options->script, variables);
+      run_script(session, script, options->script, variables);
       if (!options->out.empty() && !session.exported) {
         ExportAction action;
         action.out = options->out;

@@ -22,7 +22,8 @@ Document Document::open(const fs::path& project, std::uint64_t memory_budget) {
 }
 
 Document::Recovered Document::recover(const fs::path& path) {
-  const Journal::Contents contents = Journal::read(path);
+  Journal::Contents contents;
+  Journal journal = Journal::resume(path, contents);
   Recovered result;
   result.torn = contents.torn;
   std::size_t number = 1;
@@ -33,6 +34,8 @@ Document::Recovered Document::recover(const fs::path& path) {
         Edit edit = read_edit(entry.at("edit"), result.document.scene());
         Scene scene = rebake::apply(result.document.scene(), edit);
         result.document.history_.add(std::move(edit), std::move(scene));
+      } else if (!entry.contains("undo") && !entry.contains("redo")) {
+        throw Error("is neither an edit nor undo or redo");
       } else if (entry.contains("undo") ? !result.document.history_.undo() : !result.document.history_.redo()) {
         throw Error("there is nothing to undo or redo");
       }
@@ -41,9 +44,7 @@ Document::Recovered Document::recover(const fs::path& path) {
     }
   }
   result.edits = result.document.history_.undo_count();
-  if (contents.good_bytes == 0) fs::remove(path);  // torn in its first line: nothing is in it
-  result.document.journal_ =
-      contents.good_bytes == 0 ? Journal::create(path, json::object()) : Journal::reopen(path, contents);
+  result.document.journal_ = std::move(journal);
   return result;
 }
 

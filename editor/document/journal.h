@@ -20,9 +20,10 @@ class Journal {
   /// `about` is kept in the first line; `entries` come behind it, all on the disk before this returns.
   static Journal create(const std::filesystem::path& path, nlohmann::json about,
                         std::vector<nlohmann::json> entries = {});
-  /// Opens a journal to go on where `contents` ends: what is torn behind that is cut off. Throws FileError.
+  /// Opens a journal to go on where it ends: what is torn behind the last whole line is cut off. No other process can
+  /// write it meanwhile. Throws FileError as read() does; the file is left as it was then.
   struct Contents;
-  static Journal reopen(const std::filesystem::path& path, const Contents& contents);
+  static Journal resume(const std::filesystem::path& path, Contents& contents);
 
   ~Journal();
   Journal(Journal&&) noexcept;
@@ -38,8 +39,7 @@ class Journal {
   struct Contents {
     nlohmann::json about;
     std::vector<nlohmann::json> entries;
-    std::uint64_t good_bytes = 0;  ///< where the last whole line ends
-    bool torn = false;             ///< something follows that was being written when the program ended
+    bool torn = false;  ///< something followed that was being written when the program ended
   };
   /// Throws FileError for a file that is no journal, is from a newer version, or is damaged before its last line.
   static Contents read(const std::filesystem::path& path);

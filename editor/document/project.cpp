@@ -82,6 +82,8 @@ ReadProject read_project(const fs::path& path) {
         if (line.is_object() && line.value("op", "") == Import::op)
           line["path"] = (folder / line.at("path").get<std::string>()).lexically_normal().string();
         project.edits.push_back(read_edit(line, scene));
+        if (const auto* import = std::get_if<Import>(&project.edits.back()); import && import->content.empty())
+          throw FieldError("content", "is missing: without it a changed source would not be noticed");
         scene = rebake::apply(scene, project.edits.back());
       } catch (const Error& error) {
         throw FileError(path, fmt::format("edit {}: {}", number, error.what()));

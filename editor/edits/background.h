@@ -7,7 +7,7 @@ namespace rebake {
 struct Background {
   static constexpr const char* op = "background";
   static constexpr const char* help = "Sets the colour behind everything.";
-  Vec3 color;
+  Vec3 color{1, 1, 1};
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -11,7 +11,7 @@ struct DeleteSelected {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("node", self.node, Need::optional, "only of this node; left out: of all nodes");
+    visit("node", self.node, Need::optional, "only of this node; left out: of all that are visible and not locked");
   }
 };
 

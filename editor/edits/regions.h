@@ -48,7 +48,7 @@ struct ObjectRegion {
 };
 
 inline ObjectRegion region_of(const FramePoints& points, const BoxRegion& box) {
-  const Affine from_object = points.from_object();
+  const Affine& from_object = points.from_object();
   const auto inside = [from_object, box](const Vec3& object_point) {
     const Vec3 p = from_object * object_point;
     return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
@@ -64,7 +64,7 @@ inline ObjectRegion region_of(const FramePoints& points, const BoxRegion& box) {
 inline ObjectRegion region_of(const FramePoints& points, const SphereRegion& sphere) {
   const Vec3 center = points.metric() * points.to_object(sphere.center);
   const double radius = sphere.radius * points.radius_scale();
-  const Affine metric = points.metric();
+  const Affine& metric = points.metric();
   const auto inside = [metric, center, radius](const Vec3& object_point) {
     return (metric * object_point - center).norm() <= radius;
   };

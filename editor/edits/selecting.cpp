@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 
 #include "mesh_ops/select/index.h"
@@ -109,6 +110,7 @@ NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const V
       }
     }
   }
+  if (!std::isfinite(least)) throw EditError("no object there shows anything: all its texels are transparent");
   return nearest;
 }
 

@@ -16,8 +16,16 @@ struct StoreSelection {
   }
 };
 
+/// Whether a triangle of the node or of one inside it is selected.
+inline bool any_selected(const Node& node) {
+  return node.selection != nullptr || std::any_of(node.children.begin(), node.children.end(),
+                                                  [](const NodePtr& child) { return any_selected(*child); });
+}
+
 inline Scene apply(const Scene& scene, const StoreSelection& edit) {
   if (edit.name.empty()) throw FieldError("name", "must not be empty");
+  if (std::none_of(scene.roots.begin(), scene.roots.end(), [](const NodePtr& root) { return any_selected(*root); }))
+    throw EditError("nothing is selected; select some triangles first");
   Scene result = scene;
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.node->object || (!placed.node->selection && !placed.node->saved_selections.contains(edit.name)))

@@ -37,6 +37,8 @@ std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<N
   for (PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.node->object || !placed.node->selection || (node && placed.node->id != node->id)) continue;
     if (count(*placed.node->selection) == 0) continue;
+    // What is hidden or locked is changed only where it is named, and then refused if it is locked.
+    if (!node && (placed.locked || !placed.visible)) continue;
     editable(scene, placed.node->id);
     result.push_back(std::move(placed));
   }

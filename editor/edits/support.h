@@ -15,7 +15,8 @@ PlacedNode editable_with_children(const Scene& scene, NodeId id);
 /// The node, locked or not. Throws EditError when it is absent.
 PlacedNode present(const Scene& scene, NodeId id);
 
-/// Editable objects with selected triangles: of one node, or of all nodes. Throws EditError when nothing is selected.
+/// Editable objects with selected triangles: of one node, or of all that are visible and not locked. Throws EditError
+/// when nothing is selected.
 std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<NodeRef>& node);
 
 /// A copy of the object with other sets; turns into null when no triangle is left.

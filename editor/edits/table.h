@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <variant>
 
 #include "editor/edits/background.h"
@@ -36,6 +37,13 @@ namespace rebake {
 using Edit = std::variant<Import, Remove, Rename, Duplicate, Group, Reorder, Show, Hide, Lock, Unlock, StoreView,
                           Background, Transform, Select, SelectPicture, SelectConnected, SelectLike, SelectFloaters,
                           SelectUnneeded, Grow, Shrink, Fill, StoreSelection, DeleteSelected, Separate, Merge, Erase>;
+
+/// Whether an edit does nothing but change the selection.
+template <class T>
+constexpr bool changes_selection() {
+  return std::string_view(T::op).starts_with("select") || std::is_same_v<T, Grow> || std::is_same_v<T, Shrink> ||
+         std::is_same_v<T, Fill>;
+}
 
 /// Pure and deterministic: the scene after the edit. Throws Error and leaves nothing changed.
 Scene apply(const Scene& scene, const Edit& edit);

@@ -81,6 +81,7 @@ py::array view_of(const T* data, std::vector<py::ssize_t> shape, Owner owner) {
   return array;
 }
 
+// Guarded by Python's own lock, which no method gives up: a document may be used from several threads in turn.
 class PyDocument {
  public:
   PyDocument() = default;
@@ -91,7 +92,6 @@ class PyDocument {
 
   void edit(const json& line) {
     const Edit edit = read_edit(line, scene());
-    const py::gil_scoped_release unlocked;
     session_.edit(edit);
   }
 
@@ -137,13 +137,8 @@ class PyDocument {
       view.camera = found->second;
     else
       throw FieldError("view", "there is no view \"" + view_name + "\"");
-    auto image = std::make_shared<Image>();
-    {
-      const py::gil_scoped_release unlocked;
-      *image = session_.renderer().render(scene(), view);
-    }
-    py::array_t<std::uint8_t> picture({image->height, image->width, 3}, image->rgb.data());
-    return picture;
+    const Image image = session_.renderer().render(scene(), view);
+    return py::array_t<std::uint8_t>({image.height, image.width, 3}, image.rgb.data());
   }
 
  private:
@@ -199,7 +194,7 @@ py::array texture_of(const PyDocument& document, const py::object& name, std::si
 
 template <class T>
 void define_edit(py::class_<PyDocument>& type, const T& edit) {
-  const bool selects = std::string_view(edit.op).starts_with("select");
+  const bool selects = changes_selection<T>();
   const std::string name = std::string_view(edit.op) == "import" ? "import_" : edit.op;
   std::vector<FieldLine> lines;
   FieldLister lister(lines);
@@ -237,6 +232,7 @@ std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, con
 }  // namespace
 
 PYBIND11_MODULE(rebake, module) {
+  py::module_::import("numpy");  // here, since two threads must not be the first to want it
   module.doc() = "Edit and compose baked NeRF scenes (MobileNeRF format).";
   const auto& error = py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
   py::register_exception<FileError>(module, "FileError", error);

@@ -239,21 +239,21 @@ class Document:
         unseen_from: names of stored views: not seen from any of their eyes
         mode: how the result joins the present selection
         """
-    def grow(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> None:
+    def grow(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> dict[str, NDArray[np.bool_]]:
         """Adds the triangles that share a corner with the selection.
 
         node: only of this node and those inside it; left out: of all that is visible
         steps: how often
         tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
         """
-    def shrink(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> None:
+    def shrink(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> dict[str, NDArray[np.bool_]]:
         """Takes away the selected triangles that share a corner with others.
 
         node: only of this node and those inside it; left out: of all that is visible
         steps: how often
         tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
         """
-    def fill(self, *, node: Node | None = None, at_most: int = 1000, tolerance: float = 0.0) -> None:
+    def fill(self, *, node: Node | None = None, at_most: int = 1000, tolerance: float = 0.0) -> dict[str, NDArray[np.bool_]]:
         """Adds the islands inside the selection: unselected triangles, joined through edges, that border it.
 
         node: only of this node and those inside it; left out: of all that is visible
@@ -268,7 +268,7 @@ class Document:
     def delete(self, *, node: Node | None = None) -> None:
         """Removes the selected triangles; a node that loses all goes too.
 
-        node: only of this node; left out: of all nodes
+        node: only of this node; left out: of all that are visible and not locked
         """
     def separate(self, *, node: Node, as_: str = "") -> None:
         """Makes the selected triangles of a node a node of its own, after it.

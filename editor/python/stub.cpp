@@ -161,7 +161,7 @@ std::string python_stub() {
     edit.fields(edit, signature);
     std::vector<std::string> parameters = signature.required;
     parameters.insert(parameters.end(), signature.optional.begin(), signature.optional.end());
-    const bool selects = std::string_view(edit.op).starts_with("select");
+    const bool selects = changes_selection<std::decay_t<decltype(edit)>>();
     out += fmt::format("    def {}(self{}{}) -> {}:\n        \"\"\"{}\n\n        {}\n        \"\"\"\n",
                        std::string_view(edit.op) == "import" ? "import_" : edit.op, parameters.empty() ? "" : ", *, ",
                        fmt::join(parameters, ", "), selects ? "dict[str, NDArray[np.bool_]]" : "None", edit.help,

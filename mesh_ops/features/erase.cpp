@@ -43,10 +43,11 @@ void for_each_opaque_texel_touched(const FeatureTexture& texels, const std::arra
       if (!texels.at(x, y).opaque()) continue;
       const Vec2 centre(x + 0.5, y + 0.5);
       const Vec3 w = nearest_weights(p, centre);
-      const Vec2 place = p[0] * w[0] + p[1] * w[1] + p[2] * w[2];
-      // The nearest point lies in the texel's square, but for UVs that are clamped at the picture's edge.
-      const bool at_edge = x == 0 || y == 0 || x == texels.width() - 1 || y == texels.height() - 1;
-      if (at_edge || (place - centre).cwiseAbs().maxCoeff() <= 0.5 + 1e-9) visit(x, y, w);
+      // The nearest point, clamped as sampling clamps it, must lie in the texel's square.
+      const Vec2 place = (p[0] * w[0] + p[1] * w[1] + p[2] * w[2])
+                             .cwiseMax(Vec2(0, 0))
+                             .cwiseMin(Vec2(texels.width(), texels.height()));
+      if ((place - centre).cwiseAbs().maxCoeff() <= 0.5 + 1e-9) visit(x, y, w);
     }
 }
 

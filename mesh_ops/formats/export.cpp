@@ -63,7 +63,8 @@ std::vector<TextureSet> world_sets(const BakedObject& object, const Mat3& turn, 
 
 }  // namespace
 
-std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout) {
+std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout, bool* reordered) {
+  if (reordered != nullptr) *reordered = false;
   struct Group {
     std::string name;
     BakedObject object;
@@ -101,8 +102,9 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
         group.object.origin = object.origin;
         groups.push_back(std::move(group));
         found = &groups.back();
-      } else if (found->object.origin != object.origin) {
-        found->object.origin = nullptr;
+      } else {
+        if (found->object.origin != object.origin) found->object.origin = nullptr;
+        if (reordered != nullptr && found != &groups.back()) *reordered = true;
       }
       for (TextureSet& set : sets) {
         const auto same = std::find_if(found->object.sets.begin(), found->object.sets.end(),
@@ -126,7 +128,8 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
 
 ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options,
                           const Progress& progress) {
-  const std::vector<Node> nodes = merged_for_export(scene, options.layout);
+  bool reordered = false;
+  const std::vector<Node> nodes = merged_for_export(scene, options.layout, &reordered);
   if (nodes.empty()) throw EditError("there is nothing to export: no visible node has triangles");
   ExportReport report;
   report.folders = nodes.size();
@@ -134,6 +137,11 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.node->object && !placed.visible)
       report.notes.push_back(fmt::format("the hidden node \"{}\" is left out; save keeps it", placed.node->name));
+  if (reordered)
+    report.notes.emplace_back(
+        "objects of one decoder are drawn together now: where surfaces of two objects coincide exactly, another of "
+        "them "
+        "may show");
   AtomicFolder out(folder);
   if (report.one_folder) {
     const BakedObject& object = *nodes.front().object;

@@ -151,6 +151,10 @@ Scene read_scene_folder(const fs::path& folder, const Progress& progress) {
 
 std::vector<std::string> save_scene_folder(const Scene& scene, const fs::path& folder, const Progress& progress) {
   std::vector<std::string> notes, taken;
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (!placed.node->saved_selections.empty())
+      notes.push_back(
+          fmt::format("the stored selections of \"{}\" are left out; a project keeps them", placed.node->name));
   std::map<const BakedObject*, std::string> folder_of;
   AtomicFolder out(folder);
   for (const PlacedNode& placed : placed_nodes(scene)) {

@@ -78,14 +78,17 @@ std::uint64_t hash_cell(const Cell& cell) {
 }
 Cell cell_of(const Vec3& p, const Vec3& origin, double size) {
   const Vec3 at = (p - origin) / size;
-  // Far beyond the object's own extent nothing is near anything: clamped cells only merge there.
-  const auto whole = [](double x) { return static_cast<std::int64_t>(std::floor(std::clamp(x, -1e15, 1e15))); };
+  const auto whole = [](double x) { return static_cast<std::int64_t>(std::floor(x)); };
   return {whole(at.x()), whole(at.y()), whole(at.z())};
 }
 
 // Joins points that are at most `reach` apart, by their numbers in `owner`.
 void join_near(UnionFind& parts, const std::vector<Vec3>& points, const std::vector<std::uint32_t>& owner, double reach,
                const Vec3& origin) {
+  // Below the rounding of the points themselves, a reach means nothing (and cells could not be counted).
+  double extent = 0;
+  for (const Vec3& p : points) extent = std::max(extent, (p - origin).cwiseAbs().maxCoeff());
+  if (!(reach > extent * 1e-15) || !std::isfinite(reach)) return;
   // Points of one cell are within reach of each other, so only neighbours need comparing.
   const double size = reach / std::sqrt(3.0);
   Numbering<Cell, decltype(&hash_cell)> cells(points.size(), &hash_cell);

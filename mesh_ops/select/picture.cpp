@@ -119,19 +119,28 @@ std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, 
   };
   std::vector<std::vector<Pick>> picks(static_cast<std::size_t>(mask.height));
   tbb::parallel_for(0, mask.height, [&](int y) {
-    for (int x = 0; x < mask.width; ++x) {
-      if (!mask.at(x, y)) continue;
-      const Vec3 ray = project.ray(x, y);
-      double far = project.camera().far_plane;
-      std::optional<Pick> pick;
-      for (std::uint32_t k = 0; k < trees.size(); ++k) {
-        const auto hit =
-            trees[k].rays->nearest(trees[k].eye, trees[k].to_object * ray, project.camera().near_plane, far);
-        if (!hit) continue;
-        far = hit->t;
-        pick = Pick{k, hit->triangle};
+    for (int first = 0; first < mask.width; first += 8) {
+      std::array<Vec3, 8> rays;
+      std::array<std::optional<Pick>, 8> picked;
+      RayTree::Bundle bundle;
+      bool any = false;
+      for (int i = 0; i < 8; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        rays[k] = project.ray(first + i, y);
+        bundle.far[k] = mask.at(first + i, y) ? project.camera().far_plane : -1;
+        any = any || mask.at(first + i, y);
       }
-      if (pick && far >= nearest && far <= farthest) picks[static_cast<std::size_t>(y)].push_back(*pick);
+      if (!any) continue;
+      for (std::uint32_t object = 0; object < trees.size(); ++object) {
+        bundle.origin = trees[object].eye;
+        for (std::size_t k = 0; k < 8; ++k) bundle.directions[k] = trees[object].to_object * rays[k];
+        trees[object].rays->nearest(bundle, project.camera().near_plane);
+        for (std::size_t k = 0; k < 8; ++k)
+          if (bundle.hit[k]) picked[k] = Pick{object, bundle.triangle[k]};
+      }
+      for (std::size_t k = 0; k < 8; ++k)
+        if (picked[k] && bundle.far[k] >= nearest && bundle.far[k] <= farthest)
+          picks[static_cast<std::size_t>(y)].push_back(*picked[k]);
     }
   });
   for (const auto& row : picks)

@@ -85,6 +85,34 @@ class RayTree::Impl {
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     return Hit{query.ray.tfar, surfaces_[query.hit.geomID].first_triangle + query.hit.primID};
   }
+  void nearest(Bundle& rays, double near) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCRayHit8 query{};
+    alignas(32) std::array<int, 8> valid{};
+    const Vec3 start = rays.origin - center_;
+    for (std::size_t i = 0; i < 8; ++i) {
+      valid[i] = rays.far[i] >= near ? -1 : 0;
+      query.ray.org_x[i] = static_cast<float>(start.x());
+      query.ray.org_y[i] = static_cast<float>(start.y());
+      query.ray.org_z[i] = static_cast<float>(start.z());
+      query.ray.dir_x[i] = static_cast<float>(rays.directions[i].x());
+      query.ray.dir_y[i] = static_cast<float>(rays.directions[i].y());
+      query.ray.dir_z[i] = static_cast<float>(rays.directions[i].z());
+      query.ray.tnear[i] = static_cast<float>(near);
+      query.ray.tfar[i] = static_cast<float>(rays.far[i]);
+      query.ray.mask[i] = ~0U;
+      query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect8(valid.data(), scene_, &context, &query);
+    for (std::size_t i = 0; i < 8; ++i) {
+      rays.hit[i] = valid[i] != 0 && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+      if (!rays.hit[i]) continue;
+      rays.far[i] = static_cast<double>(query.ray.tfar[i]);
+      rays.triangle[i] = surfaces_[query.hit.geomID[i]].first_triangle + query.hit.primID[i];
+    }
+  }
   bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -120,6 +148,7 @@ RayTree::~RayTree() = default;
 std::optional<RayTree::Hit> RayTree::nearest(const Vec3& origin, const Vec3& direction, double near, double far) const {
   return impl_->nearest(origin, direction, near, far);
 }
+void RayTree::nearest(Bundle& rays, double near) const { impl_->nearest(rays, near); }
 bool RayTree::blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
   return impl_->blocked(origin, direction, near, far);
 }

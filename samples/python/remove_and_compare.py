@@ -26,7 +26,7 @@ print("box:", vertices.min(axis=0), vertices.max(axis=0))
 before = document.render(400, 400)
 centres = vertices[faces].mean(axis=1)
 top = centres[centres[:, 1].argmax()]
-mask = document.select_like(point=top, color=0.25)["ficus"]
+mask = document.select_like(point=top, color=0.15)["ficus"]
 print(f"{mask.sum()} triangles are like the topmost one")
 
 # %% Remove them, and see how much of the picture changed.

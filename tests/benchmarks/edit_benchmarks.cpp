@@ -2,7 +2,7 @@
 // ../shared a made sphere stands in for the mic.
 #include <benchmark/benchmark.h>
 
-#include "editor/edits/table.h"
+#include "editor/document/document.h"
 #include "mesh_ops/select/index.h"
 #include "tests/support/made_scenes.h"
 
@@ -108,6 +108,30 @@ Edit erase_sphere(const Scene&) {
   edit.frame = CoordinateFrame::bounds;
   return edit;
 }
+
+// Back and forth over deleting half of everything.
+void undo_and_redo(benchmark::State& state) {
+  Document document(scene_at(state.range(0)));
+  Select half;
+  half.half_space = HalfSpaceRegion{Vec3(0.5, 0.5, 0.5), Vec3(1, 0.1, 0)};
+  half.frame = CoordinateFrame::bounds;
+  document.edit(half);
+  document.edit(DeleteSelected{});
+  for (auto _ : state) {
+    document.undo();
+    document.redo();
+  }
+}
+BENCHMARK(undo_and_redo)->Arg(1)->Arg(9)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// One edit with its journal line on the disk.
+void journal_append(benchmark::State& state) {
+  const TemporaryFolder folder;
+  Document document;
+  document.keep_journal(folder.path() / "journal");
+  for (auto _ : state) document.edit(Background{});
+}
+BENCHMARK(journal_append)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 #define REBAKE_BENCHMARK(...) \
   BENCHMARK_CAPTURE(__VA_ARGS__)->Arg(1)->Arg(9)->Unit(benchmark::kMillisecond)->UseRealTime()

@@ -94,6 +94,16 @@ TEST_F(Batch, AScriptMayExportItself) {
   EXPECT_FALSE(fs::exists(options.out / "a"));
 }
 
+TEST_F(Batch, AResultNeverReplacesItsScene) {
+  options.out = folder_.path() / "scenes";
+  EXPECT_THROW(batch_scenes(options), FieldError);
+  // A folder of results among the scenes is no scene, and neither is a file beside them.
+  options.out = folder_.path() / "scenes/results";
+  write_text(folder_.path() / "scenes/README.md", "scenes");
+  run();
+  EXPECT_EQ(run().size(), 3U);
+}
+
 TEST_F(Batch, PatternsThatMatchNothingAndNamesTwiceAreRefused) {
   options.scenes = {"/no/such/*"};
   EXPECT_THROW(batch_scenes(options), FieldError);

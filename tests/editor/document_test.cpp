@@ -246,6 +246,43 @@ TEST_F(DocumentTest, BadJournalsAreRefusedWithWhatIsWrong) {
   says(line(R"({"rebake_journal":1})") + line(R"({"n":1,"edit":{"op":"remove","node":7}})"), "no node number 7");
 }
 
+TEST_F(DocumentTest, WhatIsNoJournalIsLeftAlone) {
+  for (const std::string& bytes :
+       {std::string("my shopping list\n"), std::string("0123456789abcdef {\n"), std::string("x")}) {
+    write_text(path("notes.txt"), bytes);
+    EXPECT_NE(error_of([&] { Document::recover(path("notes.txt")); }).find("is not a journal"), std::string::npos);
+    EXPECT_EQ(read_file(path("notes.txt")), bytes);
+  }
+  EXPECT_NE(error_of([&] { Document::recover(path("sources")); }).find("not a file"), std::string::npos);
+  // Killed while the first line was being written, nothing was done yet, and the journal can be gone on with.
+  write_text(path("empty"), "");
+  Document::Recovered recovered = Document::recover(path("empty"));
+  act(recovered.document, R"({"op": "background", "color": [0, 0, 1]})");
+  recovered.document = Document();
+  EXPECT_EQ(Document::recover(path("empty")).edits, 1U);
+}
+
+TEST_F(DocumentTest, HiddenAndLockedNodesAreLeftOutWhereNoneIsNamed) {
+  Document document;
+  import(document);
+  act(document, R"({"op": "duplicate", "node": "ball", "as": "kept"})");
+  act(document, R"({"op": "select", "node": "kept", "all": true})");
+  for (const char* op : {"hide", "lock"}) {
+    act(document, json{{"op", op}, {"node", "kept"}});
+    act(document, R"({"op": "select", "half_space": {"point": [0, 0, 0], "normal": [0, 1, 0]}})");
+    act(document, R"({"op": "grow"})");
+    act(document, R"({"op": "delete"})");
+    EXPECT_EQ(find(document.scene(), "kept")->object->triangle_count(), 256U) << op;
+    document.undo();
+    document.undo();
+    document.undo();
+    document.undo();
+  }
+  act(document, R"({"op": "lock", "node": "kept"})");
+  EXPECT_NE(error_of([&] { act(document, R"({"op": "delete", "node": "kept"})"); }).find("is locked"),
+            std::string::npos);
+}
+
 TEST_F(DocumentTest, ProjectsMoveWithTheirSourcesAndReportWhatChanged) {
   Document document;
   work(document);

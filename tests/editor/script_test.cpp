@@ -203,6 +203,93 @@ TEST_F(Script, ErrorsNameLineAndField) {
                "/no/folder: is not a folder");
 }
 
+TEST_F(Script, SaysWhatSelectionsAndRemovalsCameTo) {
+  std::vector<std::string> said;
+  session.say = [&](const std::string& line) { said.push_back(line); };
+  run(import + R"({"op": "select", "sphere": {"center": [0, 9, 0], "radius": 1}}
+{"op": "select", "all": true}
+{"op": "select", "mode": "remove", "half_space": {"point": [0, 0, 0], "normal": [0, 1, 0]}}
+{"op": "delete"}
+{"op": "hide", "node": "ball"}
+{"op": "transform", "node": "ball", "translate": [0, 1, 0]})");
+  EXPECT_EQ(said,
+            (std::vector<std::string>{"select: 0 of 256 triangles selected", "select: 256 of 256 triangles selected",
+                                      "select: 128 of 256 triangles selected",
+                                      "delete: 128 triangles removed, 128 left", "note: \"ball\" is hidden"}));
+}
+
+TEST_F(Script, EveryWayToSelectAndErase) {
+  run(import +
+      R"({"op": "view", "name": "front", "camera": {"eye": [0, 0, 4], "target": [0, 0, 0], "near": 0.1, "far": 10}}
+{"op": "select_picture", "view": "front", "polygon": [[300, 300], [500, 300], [500, 500], [300, 500]]})");
+  const std::size_t seen = selected("ball");
+  EXPECT_GT(seen, 0U);
+  run(R"({"op": "select_picture", "view": "front", "polygon": [[300, 300], [500, 300], [500, 500], [300, 500]], "through": true})");
+  EXPECT_GT(selected("ball"), seen) << "the far side too";
+  run(R"({"op": "select_picture", "view": "front", "brush": {"points": [[400, 400]], "radius": 60}, "mode": "remove"})");
+  run(R"({"op": "store_selection", "name": "ring"})");
+  const std::size_t ring = selected("ball");
+  run(R"({"op": "grow"}
+{"op": "shrink"})");
+  EXPECT_GE(selected("ball"), ring);
+  run(R"({"op": "select", "saved": "ring"})");
+  EXPECT_EQ(selected("ball"), ring);
+  run(R"({"op": "select_picture", "view": "front", "depth": [3, 3.2]})");
+  EXPECT_GT(selected("ball"), 0U);
+  run(R"({"op": "select_like", "orientation": 20}
+{"op": "select_connected"}
+{"op": "select_floaters", "at_most": 5}
+{"op": "select_unneeded", "transparent": true, "duplicates": true, "unseen": 16}
+{"op": "select", "texture_set": 0})");
+  EXPECT_EQ(selected("ball"), 256U);
+  const std::uint64_t opaque = node("ball")->object->opaque_texel_count();
+  run(R"({"op": "erase", "view": "front", "brush": {"points": [[400, 400]], "radius": 40}})");
+  const std::uint64_t near_side = opaque - node("ball")->object->opaque_texel_count();
+  EXPECT_GT(near_side, 0U);
+  run(R"({"op": "erase", "view": "front", "brush": {"points": [[400, 400]], "radius": 40}, "through": true})");
+  EXPECT_GT(opaque - node("ball")->object->opaque_texel_count(), near_side) << "the far side too";
+  expect_error(R"({"op": "erase", "node": "ball", "sphere": {"center": [9, 9, 9], "radius": 1}})",
+               "nothing was erased");
+  expect_error(R"({"op": "select_picture", "view": "front"})", "at least one of polygon, brush and depth");
+  expect_error(R"({"op": "select_picture", "polygon": [[0, 0], [1, 0], [0, 1]]})", "exactly one of view and camera");
+  expect_error(R"({"op": "select_picture", "view": "back", "depth": [0, 1]})", "there is no view \"back\"");
+  expect_error(R"({"op": "select_picture", "view": "front", "polygon": [[0, 0], [1, 0]]})", "at least 3 points");
+  expect_error(R"({"op": "select_picture", "view": "front", "brush": {"points": [[0, 0]], "radius": 0}})", "positive");
+  expect_error(R"({"op": "select_like", "point": [0, 0, 0]})", "at least one of color");
+  expect_error(R"({"op": "select", "texture_set": 1})", "has 1 texture sets");
+  expect_error(R"({"op": "select", "saved": "none"})", "no selection is stored");
+  run(R"({"op": "lock", "node": "ball"})");
+  expect_error(R"({"op": "select_like", "node": "ball", "size": 2})", "is locked");
+  expect_error(R"({"op": "select", "all": true})", "no object that is visible and not locked");
+  run(R"({"op": "unlock", "node": "ball"}
+{"op": "hide", "node": "ball"})");
+  expect_error(R"({"op": "select_picture", "node": "ball", "view": "front", "depth": [0, 9]})", "is hidden");
+}
+
+TEST_F(Script, MergingSaysWhatDoesNotFit) {
+  run(import + R"({"op": "import", "path": "{here}/other", "as": "other"}
+{"op": "duplicate", "node": "ball", "as": "second"}
+{"op": "transform", "node": "second", "translate": [3, 0, 0]}
+{"op": "merge", "nodes": ["ball", "second"]})");
+  EXPECT_EQ(node("ball")->object->triangle_count(), 512U);
+  EXPECT_EQ(node("second"), nullptr);
+  EXPECT_NEAR(node("ball")->object->bounds().max().x(), 4, 1e-9);
+  expect_error(R"({"op": "merge", "nodes": ["ball", "other"]})", "different decoders or axes");
+  expect_error(R"({"op": "merge", "nodes": ["ball", "ball"]})", "named twice");
+  expect_error(R"({"op": "merge", "nodes": ["ball"]})", "at least two");
+}
+
+TEST_F(Script, UndoAndRedoInAScript) {
+  run(import + R"({"op": "remove", "node": "ball"}
+{"op": "undo"})");
+  EXPECT_NE(node("ball"), nullptr);
+  run(R"({"op": "redo"})");
+  EXPECT_EQ(node("ball"), nullptr);
+  expect_error(R"({"op": "redo"})", "0 edits can be redone");
+  expect_error(R"({"op": "undo", "steps": 9})", "2 edits can be undone");
+  expect_error(R"({"op": "save_project", "out": "{here}/p.json"})", "must end in .rebake");
+}
+
 TEST(ScriptReference, DocsHoldEveryField) {
   const std::string docs = read_file(std::filesystem::path(REBAKE_SOURCE) / "editor/script/COMMANDS.md");
   EXPECT_NE(docs.find(command_reference()), std::string::npos) << "regenerate: build/rebake run --fields";

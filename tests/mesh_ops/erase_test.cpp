@@ -43,6 +43,24 @@ TEST(Erase, OnlyOpacityOfTexelsInsideChanges) {
   EXPECT_EQ(after.opaque_count() + cleared, before.opaque_count());
 }
 
+TEST(Erase, TexelsAtThePicturesBorderAreNotTakenForOthers) {
+  // A triangle over the whole border of the picture touches few of the texels in its box.
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 2}));
+  TextureSet& set = object->sets[0];
+  set.soup = Soup({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {Vec2(0, 1), Vec2(1, 1), Vec2(0, 0)}, {Face{0, 1, 2}});
+  const Erased result = erase_texels(
+      *object, [](const Vec3&) { return true; }, [](const auto&) { return true; });
+  const FeatureTexture &before = *set.texels, &after = *result.sets[0].texels;
+  for (int y = 0; y < before.height(); ++y)
+    for (int x = 0; x < before.width(); ++x) {
+      // Distance beyond the diagonal, in texels along both sides together.
+      const double beyond = static_cast<double>(x) / before.width() + static_cast<double>(y) / before.height() - 1;
+      if (beyond > 0) {
+        EXPECT_EQ(before.at(x, y), after.at(x, y)) << x << " " << y;
+      }
+    }
+}
+
 TEST(Erase, TilesWithoutAClearedTexelStayShared) {
   const auto object = made_object({.columns = 64, .rows = 32});
   const Erased result = erase_texels(

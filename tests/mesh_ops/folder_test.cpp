@@ -356,6 +356,23 @@ TEST(Folder, TurnsOfAFewChunkedTrianglesSurvive) {
     EXPECT_EQ((*b.turns())[b.faces()[f][0]], (*a.turns())[a.faces()[f % 6][0]]) << f;
 }
 
+TEST(Export, ChangedDrawingOrderIsSaid) {
+  const auto notes_of = [](std::initializer_list<unsigned> seeds) {
+    Scene scene;
+    for (const unsigned seed : seeds) {
+      Node node;
+      node.object = made_object({.columns = 4, .rows = 2, .seed = seed});
+      scene = with_added(scene, node, NodeId::none, 99);
+    }
+    const TemporaryFolder out;
+    std::string all;
+    for (const std::string& note : export_scene(scene, out.path() / "out", {}).notes) all += note;
+    return all;
+  };
+  EXPECT_NE(notes_of({1, 2, 1}).find("drawn together"), std::string::npos);
+  EXPECT_EQ(notes_of({1, 1, 2}).find("drawn together"), std::string::npos);
+}
+
 TEST(Export, OntoItsOwnSourceIsSafe) {
   const TemporaryFolder temporary;
   export_scene(scene_of(made_object()), temporary.path() / "a", {});

@@ -98,6 +98,13 @@ TEST(Select, ToleranceAndGapJoinWhatIsApart) {
   EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = 0.13}), 1U);
 }
 
+TEST(Select, AVanishingToleranceOrGapJoinsNothing) {
+  for (const double tiny : {1e-9, 1e-15, 1e-17, 1e-30, 1e-300}) {
+    EXPECT_EQ(parts_of(strip(3, 0.01, everywhere), {.tolerance = tiny, .gap = 0}), 3U) << tiny;
+    EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = tiny}), 3U) << tiny;
+  }
+}
+
 TEST(Select, GrowShrinkAndFill) {
   const BakedObject object = strip(5, 0, everywhere);
   TriangleSet middle(10, 0);
