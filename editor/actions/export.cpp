@@ -8,7 +8,7 @@ namespace rebake {
 
 void run(Session& session, const ExportAction& action) {
   const ExportReport report = export_scene(session.scene(), action.out, {action.layout}, session.progress);
-  session.exported = true;
+  session.exports.push_back(action.out);
   for (const std::string& note : report.notes) session.say("note: " + note);
   session.say(fmt::format("exported {}", action.out));
 }

@@ -22,7 +22,7 @@ class Session {
   /// Carries an edit out and says in numbers what became of selections and triangles.
   void edit(const Edit& edit);
 
-  bool exported = false;  ///< an export was written
+  std::vector<std::string> exports;  ///< folders that export wrote
   Progress progress;
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< one line for people
 

@@ -37,14 +37,29 @@ std::string key_of(const BatchOptions& options, const std::string& script, const
   return fmt::format("{:016x}", content_hash(all));
 }
 
-// What marks a scene as done; differs once its result was taken away.
-std::string mark_of(const BatchOptions& options, const std::string& name, const std::string& key) {
-  return key + (fs::exists(options.out / name) ? " exported\n" : "\n");
+// The folders that a scene's script exported, from the list that its process wrote.
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
 }
 
-pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& log) {
+// Whether a scene was done under this key and all that it exported is still there. The mark holds both.
+bool still_done(const fs::path& mark, const std::string& key) {
+  if (!fs::exists(mark)) return false;
+  const std::vector<std::string> lines = lines_of(read_file(mark));
+  return !lines.empty() && lines[0] == key &&
+         std::all_of(lines.begin() + 1, lines.end(), [](const std::string& folder) { return fs::exists(folder); });
+}
+
+pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& log, const fs::path& exports) {
   std::vector<std::string> words{
-      options.program, "run", options.script, "--scene", scene.string(), "--out", options.out / folder_title(scene)};
+      options.program,  "run",  options.script, "--scene", scene.string(), "--out", options.out / folder_title(scene),
+      "--list-exports", exports};
   for (const std::string& variable : options.variables) words.insert(words.end(), {"--var", variable});
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -161,6 +176,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
   if (error) throw FileError(options.out, "cannot be made: " + error.message());
   Processes running;
   std::vector<BatchResult> results(scenes.size());
+  std::map<std::string, std::string> exported_by;
   std::size_t next = 0, over = 0;
   // Also where the wish to stop arrives.
   const auto report = [&](std::size_t more) {
@@ -181,13 +197,15 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
       const fs::path mark = state_folder(options) / (result.name + ".done");
       try {
         const std::string key = key_of(options, script, scenes[k]);
-        if (options.resume && fs::exists(mark) && read_file(mark) == mark_of(options, result.name, key)) {
+        if (options.resume && still_done(mark, key)) {
           result.status = BatchResult::Status::skipped;
           finish(k);
           continue;
         }
         fs::remove(mark);
-        running.add(start(options, scenes[k], state_folder(options) / (result.name + ".log")), {k, key, Clock::now()});
+        running.add(start(options, scenes[k], state_folder(options) / (result.name + ".log"),
+                          state_folder(options) / (result.name + ".exports")),
+                    {k, key, Clock::now()});
       } catch (const FileError& why) {
         result.message = why.what();
         finish(k);
@@ -204,8 +222,17 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
     BatchResult& result = results[job.scene];
     result.seconds = std::chrono::duration<double>(Clock::now() - job.since).count();
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+      const std::string exports = read_file(state_folder(options) / (result.name + ".exports"));
       result.status = BatchResult::Status::done;
-      write_file_atomically(state_folder(options) / (result.name + ".done"), mark_of(options, result.name, job.key));
+      for (const std::string& folder : lines_of(exports))
+        if (const auto [other, added] = exported_by.emplace(folder, result.name);
+            !added && other->second != result.name) {
+          result.status = BatchResult::Status::failed;
+          result.message =
+              fmt::format("{} is the export of {} too: put {{name}} into the script's path", folder, other->second);
+        }
+      if (result.status == BatchResult::Status::done)
+        write_file_atomically(state_folder(options) / (result.name + ".done"), job.key + '\n' + exports);
     } else {
       result.message = last_error(state_folder(options) / (result.name + ".log"), status);
     }

@@ -13,7 +13,7 @@ namespace rebake {
 
 void add_run(CLI::App& program) {
   struct Options {
-    std::string script, journal, scene, out;
+    std::string script, journal, scene, out, exports;
     std::vector<std::string> variables;
     bool fields = false;
   };
@@ -29,6 +29,8 @@ void add_run(CLI::App& program) {
       ->option_text("FOLDER");
   command->add_option("--out", options->out, "export there at the end, unless the script exports itself")
       ->option_text("FOLDER");
+  command->add_option("--list-exports", options->exports, "write the folders that were exported there, one a line")
+      ->option_text("FILE");
   command->add_flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
   command->callback([options] {
     if (options->fields) {
@@ -61,10 +63,16 @@ void add_run(CLI::App& program) {
     }
     try {
       run_script(session, script, options->script, variables);
-      if (!options->out.empty() && !session.exported) {
+      if (!options->out.empty() && session.exports.empty()) {
         ExportAction action;
         action.out = options->out;
         run(session, action);
+      }
+      if (!options->exports.empty()) {
+        std::string lines;
+        for (const std::string& folder : session.exports)
+          lines += std::filesystem::absolute(folder).lexically_normal().string() + '\n';
+        write_file_atomically(options->exports, lines);
       }
     } catch (const Error&) {
       if (!options->journal.empty())

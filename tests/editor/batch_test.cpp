@@ -92,6 +92,18 @@ TEST_F(Batch, AScriptMayExportItself) {
   run();
   EXPECT_TRUE(fs::exists(folder_.path() / "a-own/mlp.json"));
   EXPECT_FALSE(fs::exists(options.out / "a"));
+  options.resume = true;
+  EXPECT_EQ(run()["a"], Status::skipped);
+  fs::remove_all(folder_.path() / "a-own");
+  EXPECT_EQ(run()["a"], Status::done) << "its result is gone";
+  EXPECT_TRUE(fs::exists(folder_.path() / "a-own/mlp.json"));
+}
+
+TEST_F(Batch, TwoScenesCannotHaveOneResult) {
+  write_text(options.script, R"({"op": "export", "out": "{to}/same"})");
+  options.variables = {"to=" + folder_.path().string()};
+  EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::failed}, {"c", Status::failed}}));
+  EXPECT_NE(messages["b"].find("is the export of a too"), std::string::npos) << messages["b"];
 }
 
 TEST_F(Batch, AResultNeverReplacesItsScene) {
