@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -254,11 +255,24 @@ Components opaque_components(const BakedObject& object, const WeldedCorners& cor
     first += set.soup.triangle_count();
   }
   UnionFind parts(total);
-  for (std::size_t edge = 0; edge + 1 < edges.first_of.size(); ++edge)
-    for (std::uint32_t i = edges.first_of[edge]; i < edges.first_of[edge + 1]; ++i)
-      for (std::uint32_t j = i + 1; j < edges.first_of[edge + 1]; ++j)
-        if ((opaque[edges.half_edges[i]] & opaque[edges.half_edges[j]]) != 0)
-          parts.join(edges.half_edges[i] / 3, edges.half_edges[j] / 3);
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  for (std::size_t edge = 0; edge + 1 < edges.first_of.size(); ++edge) {
+    // Who is opaque at a place of the edge hangs together with the first that is. A wide tolerance can lay hundreds of
+    // triangles along one edge, so they are not compared in pairs.
+    std::array<std::uint32_t, 32> first_at;
+    first_at.fill(none);
+    for (std::uint32_t i = edges.first_of[edge]; i < edges.first_of[edge + 1]; ++i) {
+      const std::uint32_t triangle = edges.half_edges[i] / 3;
+      std::uint32_t joined = none;
+      for (std::uint32_t bits = opaque[edges.half_edges[i]]; bits != 0; bits &= bits - 1) {
+        std::uint32_t& here = first_at[static_cast<std::size_t>(std::countr_zero(bits))];
+        if (here == none)
+          here = triangle;
+        else if (here != joined)
+          parts.join(joined = here, triangle);
+      }
+    }
+  }
   if (gap > 0) {
     std::vector<Vec3> points;
     std::vector<std::uint32_t> owner;

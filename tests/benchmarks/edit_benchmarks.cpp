@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "editor/document/document.h"
+#include "mesh_ops/formats/export.h"
 #include "mesh_ops/select/index.h"
 #include "tests/support/made_scenes.h"
 
@@ -132,6 +133,17 @@ void journal_append(benchmark::State& state) {
   for (auto _ : state) document.edit(Background{});
 }
 BENCHMARK(journal_append)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// What is left after half of everything went, with its texels packed anew.
+void export_after_delete(benchmark::State& state) {
+  const TemporaryFolder folder;
+  Select half;
+  half.half_space = HalfSpaceRegion{Vec3(0.5, 0.5, 0.5), Vec3(1, 0.1, 0)};
+  half.frame = CoordinateFrame::bounds;
+  const Scene scene = rebake::apply(rebake::apply(scene_at(state.range(0)), half), DeleteSelected{});
+  for (auto _ : state) export_scene(scene, folder.path() / "out", {});
+}
+BENCHMARK(export_after_delete)->Arg(1)->Arg(9)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 #define REBAKE_BENCHMARK(...) \
   BENCHMARK_CAPTURE(__VA_ARGS__)->Arg(1)->Arg(9)->Unit(benchmark::kMillisecond)->UseRealTime()
