@@ -194,7 +194,6 @@ py::array texture_of(const PyDocument& document, const py::object& name, std::si
 
 template <class T>
 void define_edit(py::class_<PyDocument>& type, const T& edit) {
-  const bool selects = changes_selection<T>();
   const std::string name = std::string_view(edit.op) == "import" ? "import_" : edit.op;
   std::vector<FieldLine> lines;
   FieldLister lister(lines);
@@ -204,7 +203,7 @@ void define_edit(py::class_<PyDocument>& type, const T& edit) {
     help += fmt::format("\n{}: {}{}. {}", line.name, line.type, line.required ? ", required" : "", line.help);
   type.def(
       name.c_str(),
-      [selects](PyDocument& document, const py::kwargs& fields) -> py::object {
+      [](PyDocument& document, const py::kwargs& fields) -> py::object {
         // Names that are words of Python are written with an underscore: as_.
         json line = {{"op", T::op}};
         for (const auto& [key, value] : fields) {
@@ -213,7 +212,7 @@ void define_edit(py::class_<PyDocument>& type, const T& edit) {
           if (!value.is_none()) line[field] = to_json(value);
         }
         document.edit(line);
-        if (selects) return document.selections();
+        if constexpr (changes_selection<T>()) return document.selections();
         return py::none();
       },
       help.c_str());
