@@ -195,21 +195,23 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
       result.scene = scenes[k];
       result.name = folder_title(scenes[k]);
       const fs::path mark = state_folder(options) / (result.name + ".done");
+      bool started = false;
       try {
         const std::string key = key_of(options, script, scenes[k]);
         if (options.resume && still_done(mark, key)) {
           result.status = BatchResult::Status::skipped;
-          finish(k);
-          continue;
+        } else {
+          fs::remove(mark);
+          running.add(start(options, scenes[k], state_folder(options) / (result.name + ".log"),
+                            state_folder(options) / (result.name + ".exports")),
+                      {k, key, Clock::now()});
+          started = true;
         }
-        fs::remove(mark);
-        running.add(start(options, scenes[k], state_folder(options) / (result.name + ".log"),
-                          state_folder(options) / (result.name + ".exports")),
-                    {k, key, Clock::now()});
       } catch (const FileError& why) {
         result.message = why.what();
-        finish(k);
       }
+      // Outside: what goes wrong with the report itself ends the batch, and is not the scene's failure.
+      if (!started) finish(k);
     }
     if (running.size() == 0) continue;
     int status = 0;

@@ -15,9 +15,8 @@ int main(int argc, char** argv) {
   program.set_version_flag("--version", "rebake " REBAKE_VERSION);
   program.require_subcommand(1);
   program.footer(
-      "Exit codes: 0 done, 1 it could not be done (the message says why), 2 wrong use of the command line, 130 stopped "
-      "by Ctrl+C, 3 compared "
-      "pictures differ more than allowed.");
+      "Exit codes: 0 done, 1 it could not be done (the message says why), 2 wrong use of the command line, 3 compared "
+      "pictures differ more than allowed, 130 stopped by Ctrl+C.");
   for (const rebake::Subcommand& command : rebake::subcommand_table) command.add(program);
   // A full quota then fails a write, which is reported, instead of ending the program.
   std::signal(SIGXFSZ, SIG_IGN);

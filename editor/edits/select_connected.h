@@ -12,8 +12,7 @@ struct SelectConnected {
       "present selection.";
   std::optional<NodeRef> node;
   std::optional<Vec3> point;
-  double tolerance = 0;
-  double gap = 0;
+  JoiningFields joining;
   SelectMode mode = SelectMode::set;
 
   template <class Self, class Visitor>
@@ -21,17 +20,13 @@ struct SelectConnected {
     visit("node", self.node, Need::optional, "only of this node and those inside it; left out: of all that is visible");
     visit("point", self.point, Need::optional,
           "world point, near a triangle that shows something; left out: from the present selection");
-    visit("tolerance", self.tolerance, Need::optional,
-          "corners at most this far apart count as one, in the object's units; 0: only equal ones");
-    visit("gap", self.gap, Need::optional,
-          "opaque texels at most this far apart hang together too, in the object's units");
+    JoiningFields::fields(self.joining, visit);
     visit("mode", self.mode, Need::optional, "how the result joins the present selection");
   }
 };
 
 inline Scene apply(const Scene& scene, const SelectConnected& edit) {
-  if (edit.tolerance < 0) throw FieldError("tolerance", "must not be negative");
-  if (edit.gap < 0) throw FieldError("gap", "must not be negative");
+  const Joining joining = edit.joining.checked();
   std::vector<PlacedNode> targets = selectable(scene, edit.node);
   std::vector<TriangleSet> from;
   if (edit.point) {
@@ -46,7 +41,7 @@ inline Scene apply(const Scene& scene, const SelectConnected& edit) {
   return with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
     const TriangleSet& start = from[k++];
     if (count(start) == 0) return start;
-    const auto parts = components_of(*placed.node->object, {edit.tolerance, edit.gap});
+    const auto parts = components_of(*placed.node->object, joining);
     std::vector<std::uint8_t> wanted(parts->triangles_in.size(), 0);
     for (std::size_t f = 0; f < start.size(); ++f)
       if (start[f] != 0) wanted[parts->part_of[f]] = 1;

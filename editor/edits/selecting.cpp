@@ -114,6 +114,34 @@ NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const V
   return nearest;
 }
 
+void WeldingField::check() const {
+  if (tolerance < 0) throw FieldError("tolerance", "must not be negative");
+}
+
+Joining JoiningFields::checked() const {
+  welding.check();
+  if (gap < 0) throw FieldError("gap", "must not be negative");
+  return {welding.tolerance, gap};
+}
+
+Scene with_selection_stepped(const Scene& scene, const std::optional<NodeRef>& node, int steps,
+                             const WeldingField& welding,
+                             TriangleSet (*change)(const WeldedCorners&, const TriangleSet&)) {
+  if (steps < 1) throw FieldError("steps", "must be at least 1");
+  welding.check();
+  with_selection(scene, node);
+  return with_selected(scene, selectable(scene, node), SelectMode::set, [&](const PlacedNode& placed) {
+    const auto corners = corners_of(*placed.node->object, welding.tolerance);
+    TriangleSet flags = selection_of(placed);
+    for (int step = 0; step < steps; ++step) {
+      TriangleSet next = change(*corners, flags);
+      if (next == flags) break;
+      flags = std::move(next);
+    }
+    return flags;
+  });
+}
+
 PictureRegion::PictureRegion(const Scene& scene, const PictureFields& fields)
     : projector_(picture_of(scene, fields)),
       mask_(mask_of(fields)),

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "editor/edits/support.h"
+#include "mesh_ops/select/connection.h"
 #include "mesh_ops/select/picture.h"
 
 namespace rebake {
@@ -29,6 +30,39 @@ struct NearestTriangle {
   std::size_t triangle;
 };
 NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const Vec3& world, bool opaque);
+
+/// The field by which corners are welded, for edits that ask what lies beside what.
+struct WeldingField {
+  double tolerance = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("tolerance", self.tolerance, Need::optional,
+          "corners at most this far apart count as one, in the object's units; 0: only equal ones");
+  }
+  /// Throws FieldError.
+  void check() const;
+};
+
+/// Fields that say when triangles hang together.
+struct JoiningFields {
+  WeldingField welding;
+  double gap = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    WeldingField::fields(self.welding, visit);
+    visit("gap", self.gap, Need::optional,
+          "opaque texels at most this far apart hang together too, in the object's units");
+  }
+  /// Throws FieldError.
+  Joining checked() const;
+};
+
+/// The selection of each target changed `steps` times by `change`, which is given the object's welded corners.
+Scene with_selection_stepped(const Scene& scene, const std::optional<NodeRef>& node, int steps,
+                             const WeldingField& welding,
+                             TriangleSet (*change)(const WeldedCorners&, const TriangleSet&));
 
 /// Fields of edits that work in a camera's picture.
 struct PictureFields {

@@ -99,6 +99,18 @@ TEST_F(Batch, AScriptMayExportItself) {
   EXPECT_TRUE(fs::exists(folder_.path() / "a-own/mlp.json"));
 }
 
+TEST_F(Batch, AReportThatCannotBeWrittenEndsTheBatch) {
+  run();
+  options.resume = true;
+  std::size_t reports = 0;
+  const auto refuse = [&](const BatchResult&) {
+    ++reports;
+    throw FileError("report.jsonl", "cannot be written");
+  };
+  EXPECT_THROW(run_batch(options, {}, refuse), FileError);
+  EXPECT_EQ(reports, 1U);
+}
+
 TEST_F(Batch, TwoScenesCannotHaveOneResult) {
   write_text(options.script, R"({"op": "export", "out": "{to}/same"})");
   options.variables = {"to=" + folder_.path().string()};
