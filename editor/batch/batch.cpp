@@ -5,6 +5,7 @@
 #include <glob.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -32,7 +33,7 @@ fs::path state_folder(const BatchOptions& options) { return options.out / ".reba
 
 // What a result depends on. A scene that was done under the same key need not be done again.
 std::string key_of(const BatchOptions& options, const std::string& script, const fs::path& scene) {
-  std::string all = fmt::format("{:016x} {:016x}", content_hash(script), folder_hash(scene));
+  std::string all = fmt::format("{} {:016x} {:016x}", REBAKE_VERSION, content_hash(script), folder_hash(scene));
   for (const std::string& variable : options.variables) all += '\n' + variable;
   return fmt::format("{:016x}", content_hash(all));
 }
@@ -56,10 +57,23 @@ bool still_done(const fs::path& mark, const std::string& key) {
          std::all_of(lines.begin() + 1, lines.end(), [](const std::string& folder) { return fs::exists(folder); });
 }
 
+// So that all processes together have a thread a core.
+int threads_of_each(int jobs) { return std::max(1, tbb::this_task_arena::max_concurrency() / jobs); }
+
 pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& log, const fs::path& exports) {
-  std::vector<std::string> words{
-      options.program,  "run",  options.script, "--scene", scene.string(), "--out", options.out / folder_title(scene),
-      "--list-exports", exports};
+  std::vector<std::string> words{options.program,
+                                 "run",
+                                 options.script,
+                                 "--scene",
+                                 scene.string(),
+                                 "--out",
+                                 options.out / folder_title(scene),
+                                 "--list-exports",
+                                 exports,
+                                 "--threads",
+                                 std::to_string(threads_of_each(options.jobs)),
+                                 "--parent",
+                                 std::to_string(::getpid())};
   for (const std::string& variable : options.variables) words.insert(words.end(), {"--var", variable});
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

@@ -1,7 +1,12 @@
 #include <fmt/format.h>
+#include <sys/prctl.h>
+#include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <memory>
+#include <optional>
 
 #include "editor/cli/commands.h"
 #include "editor/cli/terminal.h"
@@ -16,6 +21,7 @@ void add_run(CLI::App& program) {
     std::string script, journal, scene, out, exports;
     std::vector<std::string> variables;
     bool fields = false;
+    int threads = 0, parent = 0;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("run", "runs a script of edits and actions, one JSON object a line");
@@ -31,6 +37,10 @@ void add_run(CLI::App& program) {
       ->option_text("FOLDER");
   command->add_option("--list-exports", options->exports, "write the folders that were exported there, one a line")
       ->option_text("FILE");
+  command->add_option("--threads", options->threads, "use at most so many threads")
+      ->check(CLI::Range(1, 4096))
+      ->option_text("N [one a core]");
+  command->add_option("--parent", options->parent, "end when the process with this number does")->option_text("PID");
   command->add_flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
   command->callback([options] {
     if (options->fields) {
@@ -38,6 +48,13 @@ void add_run(CLI::App& program) {
       return;
     }
     if (options->script.empty()) throw CLI::RequiredError("script");
+    if (options->parent != 0) {
+      ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+      if (::getppid() != options->parent) throw Error("the process that started this one has ended");
+    }
+    std::optional<tbb::global_control> threads;
+    if (options->threads > 0)
+      threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options->threads));
     std::map<std::string, std::string> variables;
     for (const std::string& pair : options->variables) {
       const std::size_t equals = pair.find('=');

@@ -22,6 +22,7 @@
 #include "editor/edits/select_floaters.h"
 #include "editor/edits/select_like.h"
 #include "editor/edits/select_picture.h"
+#include "editor/edits/select_triangles.h"
 #include "editor/edits/select_unneeded.h"
 #include "editor/edits/separate.h"
 #include "editor/edits/show.h"
@@ -34,9 +35,10 @@
 namespace rebake {
 
 /// The one table of edits: everything that changes a scene.
-using Edit = std::variant<Import, Remove, Rename, Duplicate, Group, Reorder, Show, Hide, Lock, Unlock, StoreView,
-                          Background, Transform, Select, SelectPicture, SelectConnected, SelectLike, SelectFloaters,
-                          SelectUnneeded, Grow, Shrink, Fill, StoreSelection, DeleteSelected, Separate, Merge, Erase>;
+using Edit =
+    std::variant<Import, Remove, Rename, Duplicate, Group, Reorder, Show, Hide, Lock, Unlock, StoreView, Background,
+                 Transform, Select, SelectPicture, SelectConnected, SelectLike, SelectFloaters, SelectUnneeded,
+                 SelectTriangles, Grow, Shrink, Fill, StoreSelection, DeleteSelected, Separate, Merge, Erase>;
 
 /// Whether an edit does nothing but change the selection.
 template <class T>

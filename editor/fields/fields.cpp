@@ -211,6 +211,27 @@ Interval Codec<Interval>::read(const json& value, const Scene&) {
 }
 json Codec<Interval>::write(const Interval& value) { return json::array({value.min, value.max}); }
 
+const char* Codec<NumberRanges>::type() { return "list of whole numbers and of ranges [first, last]"; }
+NumberRanges Codec<NumberRanges>::read(const json& value, const Scene&) {
+  constexpr const char* expected = "must be a list of whole numbers from 0 on, or of ranges [first, last] of them";
+  if (!value.is_array()) throw Error(expected);
+  NumberRanges result;
+  for (const json& entry : value) {
+    const bool range = entry.is_array() && entry.size() == 2;
+    const json& first = range ? entry[0] : entry;
+    const json& last = range ? entry[1] : entry;
+    if (!first.is_number_unsigned() || !last.is_number_unsigned() || first > last) throw Error(expected);
+    result.ranges.emplace_back(first.get<std::uint64_t>(), last.get<std::uint64_t>());
+  }
+  return result;
+}
+json Codec<NumberRanges>::write(const NumberRanges& value) {
+  json list = json::array();
+  for (const auto& [first, last] : value.ranges)
+    list.push_back(first == last ? json(first) : json::array({first, last}));
+  return list;
+}
+
 const char* Codec<PixelSize>::type() { return "[width, height] in pixels"; }
 PixelSize Codec<PixelSize>::read(const json& value, const Scene& scene) {
   if (!value.is_array() || value.size() != 2) throw Error("must be a list of two whole numbers: width and height");

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh_ops/error.h"
@@ -50,6 +51,10 @@ struct BrushStroke {
 struct Interval {
   double min = 0, max = 0;
 };
+/// Whole numbers from 0 on, as ranges that include both ends.
+struct NumberRanges {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;
+};
 struct PixelSize {
   int width = 800, height = 800;
 };
@@ -85,6 +90,7 @@ REBAKE_CODEC(HalfSpaceRegion);
 REBAKE_CODEC(PixelPolygon);
 REBAKE_CODEC(BrushStroke);
 REBAKE_CODEC(Interval);
+REBAKE_CODEC(NumberRanges);
 REBAKE_CODEC(PixelSize);
 REBAKE_CODEC(std::vector<std::string>);
 REBAKE_CODEC(SelectMode);

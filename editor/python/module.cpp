@@ -1,5 +1,6 @@
 // The Python module: a document, its edits as methods, and its arrays as NumPy views.
 #include <fmt/format.h>
+#include <pybind11/eval.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -90,9 +91,10 @@ class PyDocument {
   Session& session() { return session_; }
   const Scene& scene() const { return session_.scene(); }
 
-  void edit(const json& line) {
-    const Edit edit = read_edit(line, scene());
+  Edit edit(const json& line) {
+    Edit edit = read_edit(line, scene());
     session_.edit(edit);
+    return edit;
   }
 
   PlacedNode node(const py::object& name) const {
@@ -192,30 +194,35 @@ py::array texture_of(const PyDocument& document, const py::object& name, std::si
   return result;
 }
 
-template <class T>
-void define_edit(py::class_<PyDocument>& type, const T& edit) {
-  const std::string name = std::string_view(edit.op) == "import" ? "import_" : edit.op;
-  std::vector<FieldLine> lines;
-  FieldLister lister(lines);
-  edit.fields(edit, lister);
-  std::string help = std::string(edit.help) + "\n";
-  for (const FieldLine& line : lines)
-    help += fmt::format("\n{}: {}{}. {}", line.name, line.type, line.required ? ", required" : "", line.help);
-  type.def(
-      name.c_str(),
-      [](PyDocument& document, const py::kwargs& fields) -> py::object {
-        // Names that are words of Python are written with an underscore: as_.
-        json line = {{"op", T::op}};
-        for (const auto& [key, value] : fields) {
-          auto field = py::cast<std::string>(key);
-          if (field.ends_with('_')) field.pop_back();
-          if (!value.is_none()) line[field] = to_json(value);
-        }
-        document.edit(line);
-        if constexpr (changes_selection<T>()) return document.selections();
-        return py::none();
-      },
-      help.c_str());
+// Carries out the edit `op`; fields that are None are left out. Returns the selections where it changes them.
+py::object edit_with(PyDocument& document, const std::string& op, const py::dict& fields) {
+  json line = to_json(fields);
+  line["op"] = op;
+  const Edit edit = document.edit(line);
+  const bool selects =
+      std::visit([](const auto& one) { return changes_selection<std::decay_t<decltype(one)>>(); }, edit);
+  return selects ? py::object(document.selections()) : py::none();
+}
+
+py::object select_mask(PyDocument& document, const py::object& node, const py::array_t<bool>& mask,
+                       const std::string& mode) {
+  const PlacedNode placed = document.node(node);
+  const std::size_t count = placed.node->object->triangle_count();
+  if (mask.ndim() != 1 || static_cast<std::size_t>(mask.size()) != count)
+    throw FieldError("mask",
+                     fmt::format("must be one row of {} values, one a triangle of \"{}\"", count, placed.node->name));
+  SelectTriangles edit{{placed.node->id}, {}, Codec<SelectMode>::read(mode, document.scene())};
+  const auto flags = mask.unchecked<1>();
+  for (std::uint64_t f = 0; f < count; ++f) {
+    if (!flags(static_cast<py::ssize_t>(f))) continue;
+    auto& ranges = edit.triangles.ranges;
+    if (!ranges.empty() && ranges.back().second + 1 == f)
+      ranges.back().second = f;
+    else
+      ranges.emplace_back(f, f);
+  }
+  document.session().edit(edit);
+  return document.selections();
 }
 
 std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, const std::string& axes) {
@@ -315,7 +322,19 @@ PYBIND11_MODULE(rebake, module) {
            "The texels, 256 × 256 × 8 a tile, by row and column; read-only views.");
   type.def("texture", &texture_of, py::arg("node"), py::arg("texture_set") = 0,
            "The texels in one piece, height × width × 8; a copy.");
-  for_each_type<Edit>([&](const auto& edit) { define_edit(type, edit); });
+  type.def("select_mask", &select_mask, py::arg("node"), py::arg("mask"), py::arg("mode") = "set",
+           "Selects an object's triangles by a mask, as selection() gives one; recorded as select_triangles.");
+  type.def("_edit", &edit_with);
+  // The edits as methods with names, types and defaults that help() and inspect show.
+  py::dict scope;
+  scope["__builtins__"] = py::module_::import("builtins");
+  scope["__name__"] = "rebake";
+  py::exec(python_methods(), scope);
+  const py::object edits = scope["Edits"];
+  for_each_type<Edit>([&](const auto& edit) {
+    const std::string name = python_name(edit.op);
+    type.attr(name.c_str()) = edits.attr(name.c_str());
+  });
 
   module.def("open", &open_document, py::arg("path"), py::arg("axes") = "360",
              "A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project.");

@@ -79,6 +79,9 @@ class Document:
         """A picture, height × width × 3; without camera and view, one that frames the scene."""
     def selection(self, node: Node) -> NDArray[np.bool_]:
         """Which of an object's triangles are selected, in the order of faces() set by set."""
+    def select_mask(self, node: Node, mask: NDArray[np.bool_],
+                    mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
+        """Selects an object's triangles by a mask, as selection() gives one; recorded as select_triangles."""
     def vertices(self, node: Node, texture_set: int = 0) -> NDArray[np.float64]:
         """Positions in the object's own space, n × 3; a read-only view, nothing is copied."""
     def uvs(self, node: Node, texture_set: int = 0) -> NDArray[np.float64]:
@@ -237,6 +240,13 @@ class Document:
         unseen: not seen from this many eyes on a sphere around the object; other objects hide nothing
         distance: of the eyes, in half diagonals of the object's box
         unseen_from: names of stored views: not seen from any of their eyes
+        mode: how the result joins the present selection
+        """
+    def select_triangles(self, *, node: Node, triangles: Sequence[int | Sequence[int]], mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
+        """Selects triangles of an object by their numbers, set after set as in its files.
+
+        node: the object
+        triangles: which ones, counted from 0
         mode: how the result joins the present selection
         """
     def grow(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> dict[str, NDArray[np.bool_]]:

@@ -7,6 +7,10 @@
 
 namespace rebake {
 
+std::string python_name(std::string_view name) {
+  return name == "as" || name == "import" ? fmt::format("{}_", name) : std::string(name);
+}
+
 namespace {
 
 // What a field's type is called in Python.
@@ -26,6 +30,7 @@ std::string python_type(const HalfSpaceRegion&) { return "HalfSpace"; }
 std::string python_type(const PixelPolygon&) { return "Sequence[Sequence[float]]"; }
 std::string python_type(const BrushStroke&) { return "Brush"; }
 std::string python_type(const Interval&) { return "Sequence[float]"; }
+std::string python_type(const NumberRanges&) { return "Sequence[int | Sequence[int]]"; }
 std::string python_type(const PixelSize&) { return "Sequence[int]"; }
 std::string python_type(SelectMode) { return R"(Literal["set", "add", "remove", "intersect"])"; }
 std::string python_type(CoordinateFrame) { return R"(Literal["world", "node", "bounds"])"; }
@@ -44,11 +49,11 @@ std::string python_value(const nlohmann::json& value) {
 
 // Collects the parameters of one edit: required ones first, as Python wants them.
 struct Signature {
-  std::vector<std::string> required, optional, lines;
+  std::vector<std::string> required, optional, lines, fields;
   template <class T>
   void operator()(const char* field, const T& value, Need need, const char* help) {
-    // A word of Python is written with an underscore.
-    const std::string name = std::string_view(field) == "as" ? "as_" : field;
+    const std::string name = python_name(field);
+    fields.emplace_back(field);
     if (need == Need::required)
       required.push_back(fmt::format("{}: {}", name, python_type(value)));
     else if (const auto initial = Codec<T>::write(value); initial.is_null() && !python_type(value).ends_with("None"))
@@ -140,6 +145,9 @@ class Document:
         """A picture, height × width × 3; without camera and view, one that frames the scene."""
     def selection(self, node: Node) -> NDArray[np.bool_]:
         """Which of an object's triangles are selected, in the order of faces() set by set."""
+    def select_mask(self, node: Node, mask: NDArray[np.bool_],
+                    mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
+        """Selects an object's triangles by a mask, as selection() gives one; recorded as select_triangles."""
     def vertices(self, node: Node, texture_set: int = 0) -> NDArray[np.float64]:
         """Positions in the object's own space, n × 3; a read-only view, nothing is copied."""
     def uvs(self, node: Node, texture_set: int = 0) -> NDArray[np.float64]:
@@ -152,20 +160,38 @@ class Document:
         """The same in one piece, height × width × 8; a copy."""
 )";
 
+// One edit as a typed method, with further parameters last; indented as inside a class.
+template <class T>
+std::string method(const T& edit, const char* last = nullptr) {
+  Signature signature;
+  edit.fields(edit, signature);
+  std::vector<std::string> parameters = signature.required;
+  parameters.insert(parameters.end(), signature.optional.begin(), signature.optional.end());
+  std::string list = parameters.empty() ? "" : fmt::format(", *, {}", fmt::join(parameters, ", "));
+  if (last != nullptr) list += fmt::format(", {}", last);
+  return fmt::format("    def {}(self{}) -> {}:\n        \"\"\"{}\n\n        {}\n        \"\"\"\n",
+                     python_name(edit.op), list, changes_selection<T>() ? "dict[str, NDArray[np.bool_]]" : "None",
+                     edit.help, fmt::join(signature.lines, "\n        "));
+}
+
 }  // namespace
 
 std::string python_stub() {
   std::string out = head;
+  for_each_type<Edit>([&](const auto& edit) { out += method(edit); });
+  return out;
+}
+
+std::string python_methods() {
+  std::string out = "from __future__ import annotations\nclass Edits:\n";
   for_each_type<Edit>([&](const auto& edit) {
     Signature signature;
     edit.fields(edit, signature);
-    std::vector<std::string> parameters = signature.required;
-    parameters.insert(parameters.end(), signature.optional.begin(), signature.optional.end());
-    const bool selects = changes_selection<std::decay_t<decltype(edit)>>();
-    out += fmt::format("    def {}(self{}{}) -> {}:\n        \"\"\"{}\n\n        {}\n        \"\"\"\n",
-                       std::string_view(edit.op) == "import" ? "import_" : edit.op, parameters.empty() ? "" : ", *, ",
-                       fmt::join(parameters, ", "), selects ? "dict[str, NDArray[np.bool_]]" : "None", edit.help,
-                       fmt::join(signature.lines, "\n        "));
+    std::string fields;
+    for (const std::string& field : signature.fields) fields += fmt::format("\"{}\": {}, ", field, python_name(field));
+    // Fields that it does not know go along, so that the error can suggest what was meant.
+    out += method(edit, "**unknown") +
+           fmt::format("        return self._edit(\"{}\", {{{}**unknown}})\n", edit.op, fields);
   });
   return out;
 }

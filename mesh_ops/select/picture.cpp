@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "mesh_ops/error.h"
@@ -43,20 +44,47 @@ PixelMask polygon_mask(const std::vector<Vec2>& corners, int width, int height) 
 PixelMask brush_mask(const std::vector<Vec2>& points, double radius, int width, int height) {
   PixelMask mask = full_mask(width, height);
   std::fill(mask.flags.begin(), mask.flags.end(), std::uint8_t{0});
-  const auto pixel = [](double v, int size) { return static_cast<int>(std::clamp(std::floor(v), 0.0, size - 1.0)); };
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const Vec2 &a = points[k], &b = points[std::min(k + 1, points.size() - 1)];
-    const Vec2 low = a.cwiseMin(b).array() - radius - 1, high = a.cwiseMax(b).array() + radius + 1;
-    if (high.minCoeff() < 0 || low.x() > width || low.y() > height) continue;
-    const Vec2 along = b - a;
-    for (int y = pixel(low.y(), height); y <= pixel(high.y(), height); ++y)
-      for (int x = pixel(low.x(), width); x <= pixel(high.x(), width); ++x) {
-        const Vec2 p = Vec2(x + 0.5, y + 0.5) - a;
-        const double t = along.isZero(0) ? 0 : std::clamp(p.dot(along) / along.squaredNorm(), 0.0, 1.0);
-        if ((p - along * t).norm() <= radius)
-          mask.flags[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = 1;
+  tbb::parallel_for(0, height, [&](int y) {
+    const double row = y + 0.5;
+    // Where the stroke around each piece begins and ends in this row: a capsule is convex, so it is one interval.
+    std::vector<int> starts(static_cast<std::size_t>(width) + 1, 0);  // less those that end
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Vec2 &a = points[k], &b = points[std::min(k + 1, points.size() - 1)];
+      if (std::min(a.y(), b.y()) - radius > row || std::max(a.y(), b.y()) + radius < row) continue;
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      const auto extend = [&](double x) {
+        low = std::min(low, x);
+        high = std::max(high, x);
+      };
+      for (const Vec2& end : {a, b}) {
+        const double half = radius * radius - (row - end.y()) * (row - end.y());
+        if (half < 0) continue;
+        extend(end.x() - std::sqrt(half));
+        extend(end.x() + std::sqrt(half));
       }
-  }
+      const Vec2 along = b - a;
+      if (const double length = along.norm(); length > 0 && along.y() != 0) {
+        const Vec2 side = Vec2(-along.y(), along.x()) * (radius / length);
+        for (const Vec2& start : {Vec2(a + side), Vec2(a - side)})
+          if (const double t = (row - start.y()) / along.y(); t >= 0 && t <= 1) extend(start.x() + t * along.x());
+      }
+      const auto column = [&](double x) {
+        return static_cast<std::size_t>(std::ceil(std::clamp(x - 0.5, 0.0, static_cast<double>(width))));
+      };
+      if (low > high) continue;
+      // Up to and with a centre that the edge just touches.
+      const std::size_t end =
+          static_cast<std::size_t>(std::floor(std::clamp(high + 0.5, 0.0, static_cast<double>(width))));
+      if (column(low) >= end) continue;
+      ++starts[column(low)];
+      --starts[end];
+    }
+    int open = 0;
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
+      open += starts[x];
+      mask.flags[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + x] = open > 0 ? 1 : 0;
+    }
+  });
   return mask;
 }
 

@@ -266,6 +266,19 @@ TEST_F(Script, EveryWayToSelectAndErase) {
   expect_error(R"({"op": "select_picture", "node": "ball", "view": "front", "depth": [0, 9]})", "is hidden");
 }
 
+TEST_F(Script, TrianglesAreSelectedByNumber) {
+  run(import + R"({"op": "select_triangles", "node": "ball", "triangles": [3, [10, 19], 255]})");
+  EXPECT_EQ(selected("ball"), 12U);
+  EXPECT_EQ((*node("ball")->selection)[255], 1);
+  run(R"({"op": "select_triangles", "node": "ball", "triangles": [[0, 10]], "mode": "remove"})");
+  EXPECT_EQ(selected("ball"), 10U);
+  expect_error(R"({"op": "select_triangles", "node": "ball", "triangles": [256]})", "256 is too high");
+  expect_error(R"({"op": "select_triangles", "node": "ball", "triangles": [[9, 3]]})", "ranges [first, last]");
+  expect_error(R"({"op": "select_triangles", "node": "ball", "triangles": [-1]})", "whole numbers from 0");
+  run(R"({"op": "group", "nodes": ["ball"], "as": "set"})");
+  expect_error(R"({"op": "select_triangles", "node": "set", "triangles": []})", "is a group");
+}
+
 TEST_F(Script, MergingSaysWhatDoesNotFit) {
   run(import + R"({"op": "import", "path": "{here}/other", "as": "other"}
 {"op": "duplicate", "node": "ball", "as": "second"}

@@ -181,6 +181,18 @@ TEST(Select, PolygonAndBrushFlagThePixelsWhoseCentresAreInside) {
   EXPECT_FALSE(polygon.at(-1, 4));
 }
 
+TEST(Select, AStrokeOfManyPointsCoversWhatItsPiecesCover) {
+  std::vector<Vec2> points;
+  for (int k = 0; k < 40; ++k) points.emplace_back(30 + 28 * std::cos(k * 0.7), 30 + 35 * std::sin(k * 1.1));
+  points.push_back(points.back());
+  PixelMask pieces = brush_mask({points[0]}, 2.25, 60, 60);
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    const PixelMask piece = brush_mask({points[k], points[k + 1]}, 2.25, 60, 60);
+    for (std::size_t i = 0; i < piece.flags.size(); ++i) pieces.flags[i] |= piece.flags[i];
+  }
+  EXPECT_EQ(brush_mask(points, 2.25, 60, 60).flags, pieces.flags);
+}
+
 Picture front_picture() {
   Picture picture;
   picture.camera.eye = {0, 0, 4};

@@ -1,4 +1,5 @@
 """The Python module: the same edits, the same journal, the same errors as the program."""
+import inspect
 import os
 import subprocess
 import sys
@@ -57,6 +58,23 @@ class Module(unittest.TestCase):
         clear = np.abs(height - 0.5) > 1e-9
         np.testing.assert_array_equal(masks["ficus"][clear], height[clear] > 0.5)
         np.testing.assert_array_equal(self.document.selection("ficus"), masks["ficus"])
+
+    def test_a_mask_becomes_the_selection(self):
+        mask = np.zeros(self.document.nodes[0]["triangles"], bool)
+        mask[[0, 1, 2, 7]] = True
+        np.testing.assert_array_equal(self.document.select_mask("ficus", mask)["ficus"], mask)
+        self.assertEqual(self.document.edits()[-1]["triangles"], [[0, 2], 7])
+        self.document.select_mask("ficus", ~mask, mode="add")
+        self.assertTrue(self.document.selection("ficus").all())
+        with self.assertRaisesRegex(rebake.FieldError, "one a triangle"):
+            self.document.select_mask("ficus", mask[1:])
+
+    def test_edits_have_typed_parameters(self):
+        parameters = inspect.signature(rebake.Document.grow).parameters
+        self.assertEqual(parameters["steps"].default, 1)
+        self.assertEqual(parameters["steps"].annotation, "int")
+        with self.assertRaisesRegex(rebake.FieldError, 'did you mean "steps"'):
+            self.document.grow(stepps=2)
 
     def test_the_same_bytes_as_a_script(self):
         self.document.select(node="ficus", box={"min": [0, 0.5, 0], "max": [1, 1, 1]}, frame="bounds")
