@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh_ops/deform/deform_object.h"
 #include "render/picture.h"
 
 namespace rebake {
@@ -45,12 +46,25 @@ struct HiddenNodes {
   void operator()(const char*, const T&, Need, const char*) {}
 };
 
+std::string in_words(const std::string& name, const DeformationReport& report) {
+  std::string line =
+      fmt::format("{} points of \"{}\" deformed, least det J {:.3g}", report.points, name, report.least_determinant);
+  if (report.folded > 0)
+    line += fmt::format("; {} lie where it folds or collapses (det J ≤ 0): select_folded selects their triangles",
+                        report.folded);
+  if (report.undefined > 0)
+    line += fmt::format("; {} have no rotation of their own and got a neighbour's", report.undefined);
+  if (report.not_finite > 0) line += fmt::format("; {} are no numbers and stay", report.not_finite);
+  return line;
+}
+
 }  // namespace
 
 void Session::edit(const Edit& edit) {
   const bool erases = std::holds_alternative<Erase>(edit);
   const bool selects = std::visit([](const auto& e) { return changes_selection<std::decay_t<decltype(e)>>(); }, edit);
   const Numbers before = numbers_of(scene(), erases);
+  const Scene earlier = scene();
   document.edit(edit);
   const Numbers after = numbers_of(scene(), erases);
   const char* op = std::visit([](const auto& e) { return e.op; }, edit);
@@ -62,6 +76,12 @@ void Session::edit(const Edit& edit) {
   if (erases)
     say(fmt::format("{}: {} texels cleared, {} opaque ones left", op, before.opaque_texels - after.opaque_texels,
                     after.opaque_texels));
+  for (const PlacedNode& placed : placed_nodes(scene())) {
+    if (!placed.node->object || !placed.node->object->deformation) continue;
+    const NodePtr old = find(earlier, placed.node->id);
+    if (old && old->object && old->object->deformation == placed.node->object->deformation) continue;
+    say(fmt::format("{}: {}", op, in_words(placed.node->name, *placed.node->object->deformation)));
+  }
   if (std::holds_alternative<DeleteSelected>(edit))
     say(fmt::format("{}: {} triangles removed, {} left", op, before.triangles - after.triangles, after.triangles));
 }

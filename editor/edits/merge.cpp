@@ -56,6 +56,7 @@ Scene apply(const Scene& scene, const Merge& edit) {
   if (!edit.as.empty() && edit.as != first.node->name && find(scene, edit.as) != nullptr)
     throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
   auto merged = std::make_shared<BakedObject>(*first.node->object);
+  merged->deformation = nullptr;  // it numbers triangles
   merged->sets.clear();
   for (const PlacedNode& part : parts) {
     if (part.node->object->origin != merged->origin) merged->origin = nullptr;

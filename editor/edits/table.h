@@ -4,12 +4,15 @@
 #include <variant>
 
 #include "editor/edits/background.h"
+#include "editor/edits/bend.h"
+#include "editor/edits/cage.h"
 #include "editor/edits/delete_selected.h"
 #include "editor/edits/duplicate.h"
 #include "editor/edits/erase.h"
 #include "editor/edits/fill.h"
 #include "editor/edits/group.h"
 #include "editor/edits/grow.h"
+#include "editor/edits/handles.h"
 #include "editor/edits/hide.h"
 #include "editor/edits/import.h"
 #include "editor/edits/lock.h"
@@ -20,6 +23,7 @@
 #include "editor/edits/select.h"
 #include "editor/edits/select_connected.h"
 #include "editor/edits/select_floaters.h"
+#include "editor/edits/select_folded.h"
 #include "editor/edits/select_like.h"
 #include "editor/edits/select_picture.h"
 #include "editor/edits/select_triangles.h"
@@ -28,7 +32,10 @@
 #include "editor/edits/show.h"
 #include "editor/edits/shrink.h"
 #include "editor/edits/store_selection.h"
+#include "editor/edits/stretch.h"
+#include "editor/edits/taper.h"
 #include "editor/edits/transform.h"
+#include "editor/edits/twist.h"
 #include "editor/edits/unlock.h"
 #include "editor/edits/view.h"
 
@@ -38,7 +45,8 @@ namespace rebake {
 using Edit =
     std::variant<Import, Remove, Rename, Duplicate, Group, Reorder, Show, Hide, Lock, Unlock, StoreView, Background,
                  Transform, Select, SelectPicture, SelectConnected, SelectLike, SelectFloaters, SelectUnneeded,
-                 SelectTriangles, Grow, Shrink, Fill, StoreSelection, DeleteSelected, Separate, Merge, Erase>;
+                 SelectTriangles, SelectFolded, Grow, Shrink, Fill, StoreSelection, DeleteSelected, Separate, Merge,
+                 Erase, CageDeform, HandlesDeform, Bend, Twist, Taper, Stretch>;
 
 /// Whether an edit does nothing but change the selection.
 template <class T>

@@ -249,6 +249,12 @@ class Document:
         triangles: which ones, counted from 0
         mode: how the result joins the present selection
         """
+    def select_folded(self, *, node: Node | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
+        """Selects triangles that the last deformation of their object folded or collapsed (det J ≤ 0 at a corner).
+
+        node: only of this node and those inside it; left out: of all that is visible
+        mode: how the result joins the present selection
+        """
     def grow(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> dict[str, NDArray[np.bool_]]:
         """Adds the triangles that share a corner with the selection.
 
@@ -307,4 +313,91 @@ class Document:
         camera: the camera whose picture it is
         size: the picture's size, in whose pixels points are given
         through: in a picture: hidden texels too
+        """
+    def cage(self, *, moves: Sequence[dict[str, Any]], node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, lattice: Sequence[int] | None = None, wrap: float | None = None, mesh: str | dict[str, Any] | None = None, coordinates: Literal["mean_value", "green", "harmonic"] = "mean_value", resolution: int = 32) -> None:
+        """Deforms triangles by a cage around them: its points move, what is inside follows, colours turn along.
+
+        node: with those inside it; left out: all that have selected triangles
+        selection: only its selected triangles
+        box: only triangles whose centre lies inside
+        frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
+        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
+        lattice: a box around the triangles, of so many cells along x, y and z
+        wrap: a wrap of the triangles that show something; its coarseness as a share of their size, 0.005 to 0.5
+        mesh: a closed triangle mesh in world space: a file (.obj, .off, .ply), or its vertices and faces
+        moves: what moves, one after the other; boxes and spheres in world units, with frame bounds in shares of the cage's box
+        coordinates: mean_value: anywhere; green: keeps shapes, inside only; harmonic: never negative, inside only, on a grid
+        resolution: harmonic: cells of the grid along the cage's longest side, 8 to 256; finer is nearer and slower
+        """
+    def handles(self, *, moves: Sequence[dict[str, Any]], node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, lattice: Sequence[int] | None = None, wrap: float | None = None, mesh: str | dict[str, Any] | None = None, fixed: Sequence[dict[str, Any]] = [], iterations: int = 10) -> None:
+        """Deforms triangles as rigidly as possible: some points of a wrap around them are held or moved, the rest follows.
+
+        node: with those inside it; left out: all that have selected triangles
+        selection: only its selected triangles
+        box: only triangles whose centre lies inside
+        frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
+        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
+        lattice: a box around the triangles, of so many cells along x, y and z
+        wrap: a wrap of the triangles that show something; its coarseness as a share of their size, 0.005 to 0.5
+        mesh: a closed triangle mesh in world space: a file (.obj, .off, .ply), or its vertices and faces
+        moves: points of the cage that are moved; boxes and spheres in world units, with frame bounds in shares of the cage's box
+        fixed: points of the cage that are held where they are
+        iterations: 1 to 1000; more come nearer to rigid, and take longer
+        """
+    def bend(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None, direction: Vector = [1.0,0.0,0.0]) -> None:
+        """Bends triangles along an axis into an arc: the axis keeps its length, what lies beyond the limits follows.
+
+        node: with those inside it; left out: all that have selected triangles
+        selection: only its selected triangles
+        box: only triangles whose centre lies inside
+        frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
+        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
+        degrees: in all, from one limit to the other
+        axis: direction of the axis, in world axes
+        origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
+        from_: where it begins, in scene units along the axis from the origin; left out: where the triangles begin
+        to: where it ends; left out: where the triangles end
+        direction: where the far end goes; its part across the axis counts
+        """
+    def twist(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None) -> None:
+        """Twists triangles about an axis, more and more between the limits.
+
+        node: with those inside it; left out: all that have selected triangles
+        selection: only its selected triangles
+        box: only triangles whose centre lies inside
+        frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
+        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
+        degrees: in all, from one limit to the other
+        axis: direction of the axis, in world axes
+        origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
+        from_: where it begins, in scene units along the axis from the origin; left out: where the triangles begin
+        to: where it ends; left out: where the triangles end
+        """
+    def taper(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None) -> None:
+        """Makes triangles thinner or thicker across an axis, more and more between the limits.
+
+        node: with those inside it; left out: all that have selected triangles
+        selection: only its selected triangles
+        box: only triangles whose centre lies inside
+        frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
+        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
+        factor: size at the upper limit, as a share of now
+        axis: direction of the axis, in world axes
+        origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
+        from_: where it begins, in scene units along the axis from the origin; left out: where the triangles begin
+        to: where it ends; left out: where the triangles end
+        """
+    def stretch(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None) -> None:
+        """Makes triangles longer or shorter along an axis, between the limits.
+
+        node: with those inside it; left out: all that have selected triangles
+        selection: only its selected triangles
+        box: only triangles whose centre lies inside
+        frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
+        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
+        factor: length between the limits, as a share of now
+        axis: direction of the axis, in world axes
+        origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
+        from_: where it begins, in scene units along the axis from the origin; left out: where the triangles begin
+        to: where it ends; left out: where the triangles end
         """

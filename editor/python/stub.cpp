@@ -8,7 +8,7 @@
 namespace rebake {
 
 std::string python_name(std::string_view name) {
-  return name == "as" || name == "import" ? fmt::format("{}_", name) : std::string(name);
+  return name == "as" || name == "from" || name == "import" ? fmt::format("{}_", name) : std::string(name);
 }
 
 namespace {
@@ -32,6 +32,10 @@ std::string python_type(const BrushStroke&) { return "Brush"; }
 std::string python_type(const Interval&) { return "Sequence[float]"; }
 std::string python_type(const NumberRanges&) { return "Sequence[int | Sequence[int]]"; }
 std::string python_type(const PixelSize&) { return "Sequence[int]"; }
+std::string python_type(const std::vector<int>&) { return "Sequence[int]"; }
+std::string python_type(const CageMoves&) { return "Sequence[dict[str, Any]]"; }
+std::string python_type(const Cage&) { return "str | dict[str, Any]"; }
+std::string python_type(CageCoordinates) { return R"(Literal["mean_value", "green", "harmonic"])"; }
 std::string python_type(SelectMode) { return R"(Literal["set", "add", "remove", "intersect"])"; }
 std::string python_type(CoordinateFrame) { return R"(Literal["world", "node", "bounds"])"; }
 std::string python_type(Axes) { return R"(Literal["360", "forward"])"; }

@@ -1,6 +1,7 @@
 #include "mesh_ops/mesh/soup.h"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -116,12 +117,13 @@ Soup united(const Soup& a, const Soup& b) {
   return Soup(positions, uvs, faces, turns);
 }
 
-Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,
-                const Mat3& turn) {
-  std::vector<std::uint8_t> by_moved(soup.positions().size(), 0);
-  std::vector<std::uint8_t> by_unmoved(soup.positions().size(), 0);
+Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag,
+                     const std::function<void(std::uint32_t, Vec3&, Mat3&)>& change) {
+  std::vector<std::uint8_t> by_changed(soup.positions().size(), 0);
+  std::vector<std::uint8_t> by_others(soup.positions().size(), 0);
   for (std::size_t f = 0; f < soup.faces().size(); ++f)
-    for (const std::uint32_t vertex : soup.faces()[f]) (flags[first_flag + f] != 0 ? by_moved : by_unmoved)[vertex] = 1;
+    for (const std::uint32_t vertex : soup.faces()[f])
+      (flags[first_flag + f] != 0 ? by_changed : by_others)[vertex] = 1;
 
   auto positions = std::make_shared<std::vector<Vec3>>(soup.positions());
   auto uvs = std::make_shared<std::vector<Vec2>>(soup.uvs());
@@ -131,29 +133,47 @@ Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::s
   else
     turns->assign(positions->size(), Mat3::Identity());
 
-  std::vector<std::uint32_t> moved_vertex(soup.positions().size(), unused);
-  for (std::uint32_t v = 0; v < by_moved.size(); ++v) {
-    if (by_moved[v] == 0) continue;
-    moved_vertex[v] = v;
-    if (by_unmoved[v] != 0) {
-      moved_vertex[v] = static_cast<std::uint32_t>(positions->size());
-      positions->push_back(soup.positions()[v]);
+  bool any_position = false, any_change_of_turn = false;
+  std::vector<std::uint32_t> changed_vertex(soup.positions().size(), unused);
+  for (std::uint32_t v = 0; v < by_changed.size(); ++v) {
+    if (by_changed[v] == 0) continue;
+    changed_vertex[v] = v;
+    Vec3 position = soup.positions()[v];
+    Mat3 turn = (*turns)[v];
+    change(v, position, turn);
+    const bool moves = position != soup.positions()[v], rotates = turn != (*turns)[v];
+    if (!moves && !rotates) continue;
+    any_position = any_position || moves;
+    any_change_of_turn = any_change_of_turn || rotates;
+    if (by_others[v] != 0) {
+      changed_vertex[v] = static_cast<std::uint32_t>(positions->size());
+      positions->push_back(position);
       uvs->push_back(soup.uvs()[v]);
-      turns->push_back(Mat3((*turns)[v]));
+      turns->push_back(turn);
+    } else {
+      (*positions)[v] = position;
+      (*turns)[v] = turn;
     }
-    (*positions)[moved_vertex[v]] = motion * soup.positions()[v];
-    (*turns)[moved_vertex[v]] = orthogonal_factor(turn * (*turns)[moved_vertex[v]]);
   }
-  auto faces = std::make_shared<std::vector<Face>>(soup.faces());
-  for (std::size_t f = 0; f < faces->size(); ++f)
-    if (flags[first_flag + f] != 0)
-      for (std::uint32_t& vertex : (*faces)[f]) vertex = moved_vertex[vertex];
-
-  bool any_turn = false;
-  for (const Mat3& t : *turns) any_turn = any_turn || !t.isIdentity(0);
+  if (!any_position && !any_change_of_turn) return soup;
   const bool split = positions->size() != soup.positions().size();
-  return Soup(positions, split ? Soup::Uvs(uvs) : soup.shared_uvs(), split ? Soup::Faces(faces) : soup.shared_faces(),
+  auto faces = std::make_shared<std::vector<Face>>(soup.faces());
+  if (split)
+    for (std::size_t f = 0; f < faces->size(); ++f)
+      if (flags[first_flag + f] != 0)
+        for (std::uint32_t& vertex : (*faces)[f]) vertex = changed_vertex[vertex];
+  const bool any_turn = std::any_of(turns->begin(), turns->end(), [](const Mat3& t) { return !t.isIdentity(0); });
+  return Soup(any_position || split ? Soup::Positions(positions) : soup.shared_positions(),
+              split ? Soup::Uvs(uvs) : soup.shared_uvs(), split ? Soup::Faces(faces) : soup.shared_faces(),
               any_turn ? Soup::Turns(turns) : nullptr);
+}
+
+Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,
+                const Mat3& turn) {
+  return change_vertices(soup, flags, first_flag, [&](std::uint32_t, Vec3& position, Mat3& vertex_turn) {
+    position = motion * position;
+    vertex_turn = orthogonal_factor(turn * vertex_turn);
+  });
 }
 
 Mat3 orthogonal_factor(const Mat3& linear) {

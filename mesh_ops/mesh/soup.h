@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -66,6 +67,11 @@ Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t
 /// Both soups as one. Parts of one soup without a common face become its subset again (the soup itself when all faces
 /// are there, bit for bit); others are put one after the other.
 Soup united(const Soup& a, const Soup& b);
+
+/// Gives the flagged faces' vertices other positions and turns: `change` is called once for each. Vertices that change
+/// and are shared with other faces are split; where nothing changes, nothing does.
+Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag,
+                     const std::function<void(std::uint32_t vertex, Vec3& position, Mat3& turn)>& change);
 
 /// Moves the flagged faces by `motion`, recording `turn` (orthogonal, in object space) in their vertices' turns.
 /// Vertices shared by moved and unmoved faces are split.

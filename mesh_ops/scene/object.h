@@ -48,6 +48,7 @@ struct Origin {
 };
 
 class ObjectIndex;
+struct DeformationReport;
 
 /// One baked scene: texture sets that share a decoder. Immutable once made; nodes share it.
 struct BakedObject {
@@ -57,6 +58,8 @@ struct BakedObject {
   Layout layout = Layout::split;
   std::shared_ptr<const Origin> origin;  ///< null for objects that were not read from a folder
   Memo<ObjectIndex> index;               ///< see select/index.h
+  /// What the last deformation did, until other triangles come or go; null before. See deform/deform_object.h.
+  std::shared_ptr<const DeformationReport> deformation;
 
   std::size_t triangle_count() const;
   std::size_t vertex_count() const;

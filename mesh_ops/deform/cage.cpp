@@ -1,0 +1,104 @@
+#include "mesh_ops/deform/cage.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+
+#include "mesh_ops/error.h"
+
+namespace rebake {
+
+Cage lattice_cage(const Box& box, int n, int m, int k) {
+  if (std::min({n, m, k}) < 1) throw Error("a lattice needs at least one cell along each axis");
+  const std::array<std::int64_t, 3> cells{n, m, k};
+  const double surface = 2.0 * ((n + 1.0) * (m + 1.0) + (m + 1.0) * (k + 1.0) + (n + 1.0) * (k + 1.0));
+  if (surface > 100000) throw Error("the lattice is too fine: at most 100,000 points on its surface");
+  Cage cage;
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> numbers;
+  for (std::int64_t z = 0; z <= k; ++z)
+    for (std::int64_t y = 0; y <= m; ++y) {
+      const bool side = z == 0 || z == k || y == 0 || y == m;
+      for (std::int64_t x = 0; x <= n; x += side ? 1 : n) {
+        numbers[{x, y, z}] = static_cast<std::uint32_t>(cage.vertices.size());
+        Vec3 p;
+        const std::array<std::int64_t, 3> at{x, y, z};
+        for (int axis = 0; axis < 3; ++axis) {
+          const auto a = static_cast<std::size_t>(axis);
+          const double share = static_cast<double>(at[a]) / static_cast<double>(cells[a]);
+          p[axis] = (1 - share) * box.min()[axis] + share * box.max()[axis];
+        }
+        cage.vertices.push_back(p);
+      }
+    }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+    for (const bool high : {false, true})
+      for (std::int64_t i = 0; i < cells[u]; ++i)
+        for (std::int64_t j = 0; j < cells[v]; ++j) {
+          const auto corner = [&](std::int64_t du, std::int64_t dv) {
+            std::array<std::int64_t, 3> at{};
+            at[axis] = high ? cells[axis] : 0;
+            at[u] = i + du;
+            at[v] = j + dv;
+            return numbers.at(at);
+          };
+          const std::uint32_t a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
+          if (high) {
+            cage.faces.push_back({a, b, c});
+            cage.faces.push_back({a, c, d});
+          } else {
+            cage.faces.push_back({a, c, b});
+            cage.faces.push_back({a, d, c});
+          }
+        }
+  }
+  return cage;
+}
+
+double volume(const Cage& cage) {
+  Box box;
+  for (const Vec3& v : cage.vertices) box.extend(v);
+  if (box.isEmpty()) return 0;
+  const Vec3 origin = box.center();
+  double sum = 0;
+  for (const Face& face : cage.faces) {
+    const Vec3 a = cage.vertices[face[0]] - origin, b = cage.vertices[face[1]] - origin,
+               c = cage.vertices[face[2]] - origin;
+    sum += a.dot(b.cross(c)) / 6;
+  }
+  return sum;
+}
+
+Cage checked_cage(Cage cage) {
+  if (cage.faces.size() < 4) throw Error("the cage has fewer than four triangles: it cannot be closed");
+  for (std::size_t v = 0; v < cage.vertices.size(); ++v)
+    if (!cage.vertices[v].allFinite()) throw Error(fmt::format("cage point {} is not finite", v));
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> directed;
+  for (std::size_t f = 0; f < cage.faces.size(); ++f) {
+    const Face& face = cage.faces[f];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (face[k] >= cage.vertices.size())
+        throw Error(fmt::format("cage triangle {} names point {}, which is not there", f, face[k]));
+      if (face[k] == face[(k + 1) % 3]) throw Error(fmt::format("cage triangle {} names point {} twice", f, face[k]));
+      ++directed[{face[k], face[(k + 1) % 3]}];
+    }
+  }
+  std::size_t open = 0;
+  for (const auto& [edge, count] : directed) {
+    if (count > 1)
+      throw Error(fmt::format(
+          "the cage edge from point {} to point {} belongs to several triangles the same way round: the surface is "
+          "non-manifold or not turned consistently there",
+          edge.first, edge.second));
+    if (!directed.contains({edge.second, edge.first})) ++open;
+  }
+  if (open > 0)
+    throw Error(fmt::format("the cage is open: {} of its edges belong to one triangle only; close the holes", open));
+  if (volume(cage) < 0)
+    for (Face& face : cage.faces) std::swap(face[1], face[2]);
+  return cage;
+}
+
+}  // namespace rebake

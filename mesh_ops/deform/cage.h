@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/scene/types.h"
+
+namespace rebake {
+
+/// A closed triangle mesh around what it deforms; faces are counter-clockwise seen from outside.
+struct Cage {
+  std::vector<Vec3> vertices;
+  std::vector<Face> faces;
+
+  bool operator==(const Cage&) const = default;
+};
+
+/// The box divided into n × m × k cells, as a closed surface. Corners are numbered with x running fastest, then y,
+/// then z, over those on the surface. Throws Error when a count is below 1 or the surface would exceed 100,000
+/// vertices.
+Cage lattice_cage(const Box& box, int n, int m, int k);
+
+/// The cage, its faces turned outwards when they all point inwards. Throws Error, saying what and where, when it is not
+/// finite, has faces that name missing vertices or one vertex twice, or is open, non-manifold along an edge or
+/// inconsistently oriented. Faces without area are allowed: they weigh nothing.
+Cage checked_cage(Cage cage);
+
+/// Signed volume: positive when the faces point outwards.
+double volume(const Cage& cage);
+
+/// Pairs of faces that cut through each other.
+std::size_t self_intersections(const Cage& cage);
+
+}  // namespace rebake

@@ -1,0 +1,178 @@
+#include "mesh_ops/deform/deform_object.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "mesh_ops/deform/rotation.h"
+#include "mesh_ops/select/index.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+// Points in cubes of a given size, for the nearest within that distance.
+class NearGrid {
+ public:
+  NearGrid(const std::vector<Vec3>& points, double size) : points_(points), size_(size) {
+    for (std::uint32_t i = 0; i < points.size(); ++i) cells_[key(cell(points[i]))].push_back(i);
+  }
+  // Null where none is nearer than the size.
+  const Vec3* nearest(const Vec3& p) const {
+    const Vec3* found = nullptr;
+    double least = size_ * size_;
+    const Vec3 at = cell(p);
+    for (int k = 0; k < 27; ++k) {
+      const auto here = cells_.find(key(at + Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
+      if (here == cells_.end()) continue;
+      for (const std::uint32_t i : here->second)
+        if (const double square = (points_[i] - p).squaredNorm(); square < least) {
+          least = square;
+          found = &points_[i];
+        }
+    }
+    return found;
+  }
+
+ private:
+  Vec3 cell(const Vec3& p) const { return (p / size_).array().floor(); }
+  // Cells of one key may differ: distances are compared anyway.
+  static std::uint64_t key(const Vec3& cell) {
+    std::uint64_t hash = 0;
+    for (int axis = 0; axis < 3; ++axis) hash = (hash ^ std::hash<double>()(cell[axis] + 0.0)) * 0x9E3779B97F4A7C15ULL;
+    return hash;
+  }
+  const std::vector<Vec3>& points_;
+  double size_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+};
+
+// Fades the deformation out towards the border.
+void fade(const std::vector<Vec3>& rest, const std::vector<Vec3>& border, double falloff, DeformedPoints& deformed) {
+  if (border.empty()) return;
+  const NearGrid grid(border, falloff);
+  tbb::parallel_for(std::size_t{0}, rest.size(), [&](std::size_t i) {
+    const Vec3* nearest = grid.nearest(rest[i]);
+    if (nearest == nullptr) return;
+    const Vec3 away = rest[i] - *nearest;
+    const double distance = away.norm(), t = distance / falloff;
+    const double share = t * t * (3 - 2 * t);
+    // The slope is zero where the distance is, so that its direction need not exist there.
+    const Vec3 slope = distance > 0 ? Vec3(away * (6 * t * (1 - t) / falloff / distance)) : Vec3(0, 0, 0);
+    const Vec3 motion = deformed.points[i] - rest[i];
+    deformed.points[i] = share > 0 ? Vec3(rest[i] + share * motion) : rest[i];
+    deformed.jacobians[i] =
+        Mat3::Identity() + share * (deformed.jacobians[i] - Mat3::Identity()) + motion * slope.transpose();
+  });
+}
+
+}  // namespace
+
+DeformedObject deformed(const BakedObject& object, const Affine& to_world, const TriangleSet& flags, double falloff,
+                        const SpaceDeformation& deformation) {
+  const auto corners = corners_of(object);
+  // Places of flagged triangles, numbered anew; and which of them others share.
+  std::vector<std::uint32_t> number(corners->place_count, none);
+  std::vector<std::uint8_t> shared(corners->place_count, 0);
+  std::vector<Vec3> rest;
+  std::size_t triangle = 0;
+  for (const TextureSet& set : object.sets)
+    for (const Face& face : set.soup.faces()) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t place = corners->places[triangle * 3 + k];
+        if (flags[triangle] == 0) {
+          shared[place] = 1;
+        } else if (number[place] == none) {
+          number[place] = static_cast<std::uint32_t>(rest.size());
+          rest.push_back(set.soup.positions()[face[k]]);
+        }
+      }
+      ++triangle;
+    }
+  std::vector<Vec3> world(rest.size());
+  std::transform(rest.begin(), rest.end(), world.begin(), [&](const Vec3& p) { return to_world * p; });
+  DeformedPoints moved = deformation(world);
+  if (falloff > 0) {
+    std::vector<Vec3> border;
+    for (std::uint32_t place = 0; place < corners->place_count; ++place)
+      if (number[place] != none && shared[place] != 0 && world[number[place]].allFinite())
+        border.push_back(world[number[place]]);
+    fade(world, border, falloff, moved);
+  }
+
+  DeformedObject result;
+  DeformationReport& report = result.report;
+  report.points = rest.size();
+  const Affine to_object = to_world.inverse();
+  // Turns live in the object's own frame: orthogonal, whatever its transform scales.
+  const Mat3 frame = orthogonal_factor(to_world.linear());
+  const Mat3 scales = to_world.linear() * frame.transpose();
+  std::vector<Mat3> turns(rest.size(), Mat3::Identity());
+  std::vector<double> determinants(rest.size(), 1);
+  std::vector<std::uint8_t> defined(rest.size(), 1);
+  tbb::parallel_for(std::size_t{0}, rest.size(), [&](std::size_t i) {
+    if (!world[i].allFinite() || !moved.points[i].allFinite() || !moved.jacobians[i].allFinite()) {
+      moved.points[i] = world[i];
+      return;
+    }
+    determinants[i] = moved.jacobians[i].determinant();
+    if (moved.points[i] == world[i] && moved.jacobians[i].isIdentity(0)) return;
+    const LocalRotation local = local_rotation(moved.jacobians[i] * scales);
+    defined[i] = local.defined ? 1 : 0;
+    turns[i] = frame.transpose() * local.rotation * frame;
+  });
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    report.not_finite += world[i].allFinite() ? 0 : 1;
+    report.outside += !moved.outside.empty() && moved.outside[i] != 0 ? 1 : 0;
+    report.folded += determinants[i] <= 0 ? 1 : 0;
+    report.undefined += defined[i] == 0 ? 1 : 0;
+    report.least_determinant = std::min(report.least_determinant, determinants[i]);
+  }
+  // Where two rotations are equally near, that of a corner beside it.
+  for (bool changed = report.undefined > 0; changed;) {
+    changed = false;
+    const std::vector<std::uint8_t> before = defined;
+    for (std::size_t t = 0; t < flags.size(); ++t) {
+      if (flags[t] == 0) continue;
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t other = 1; other < 3; ++other) {
+          const std::uint32_t here = number[corners->places[t * 3 + k]],
+                              beside = number[corners->places[t * 3 + (k + other) % 3]];
+          if (defined[here] != 0 || before[beside] == 0) continue;
+          turns[here] = turns[beside];
+          defined[here] = 1;
+          changed = true;
+        }
+    }
+  }
+
+  auto made = std::make_shared<BakedObject>(object);
+  report.folded_triangles.assign(flags.size(), 0);
+  std::size_t first = 0;
+  for (TextureSet& set : made->sets) {
+    const std::size_t total = set.soup.triangle_count();
+    std::vector<std::uint32_t> place_of(set.soup.positions().size(), none);
+    for (std::size_t f = 0; f < total; ++f)
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (flags[first + f] == 0) continue;
+        const std::uint32_t i = number[corners->places[(first + f) * 3 + k]];
+        place_of[set.soup.faces()[f][k]] = i;
+        if (determinants[i] <= 0) report.folded_triangles[first + f] = 1;
+      }
+    set.soup = change_vertices(set.soup, flags, first, [&](std::uint32_t v, Vec3& position, Mat3& turn) {
+      const std::uint32_t i = place_of[v];
+      if (moved.points[i] != world[i]) position = to_object * moved.points[i];
+      if (!turns[i].isIdentity(0)) turn = orthogonal_factor(turns[i] * turn);
+    });
+    first += total;
+  }
+  made->deformation = std::make_shared<const DeformationReport>(report);
+  result.object = std::move(made);
+  return result;
+}
+
+}  // namespace rebake

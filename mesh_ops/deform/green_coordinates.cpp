@@ -1,0 +1,74 @@
+#include "mesh_ops/deform/coordinates.h"
+
+namespace rebake {
+
+namespace {
+
+class Green final : public Coordinates {
+ public:
+  explicit Green(const Cage& cage)
+      : Coordinates(cage.vertices.size() + cage.faces.size()), frame_(frame_of(cage)), face_count_(cage.faces.size()) {}
+
+  void weigh(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
+             std::uint8_t* outside) const override {
+    const std::size_t vertex_count = frame_.vertices.size();
+    for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
+      const Vec3 p = frame_.to_local(points[lane]);
+      if (gradients == nullptr) {
+        thread_local std::vector<double> phi, psi;
+        outside[lane] = green_weights(frame_, p, face_count_, phi, psi) ? 0 : 1;
+        for (std::size_t row = 0; row < rows(); ++row)
+          weights[row * batch_lanes + lane] = outside[lane] != 0   ? 0
+                                              : row < vertex_count ? phi[row]
+                                                                   : psi[row - vertex_count];
+      } else {
+        thread_local std::vector<Dual> phi, psi;
+        outside[lane] = green_weights(frame_, p, face_count_, phi, psi) ? 0 : 1;
+        for (std::size_t row = 0; row < rows(); ++row) {
+          const Dual w = outside[lane] != 0 ? Dual() : row < vertex_count ? phi[row] : psi[row - vertex_count];
+          weights[row * batch_lanes + lane] = w.v;
+          double* slope = gradients + row * 3 * batch_lanes + lane;
+          slope[0] = w.x * frame_.scale;
+          slope[batch_lanes] = w.y * frame_.scale;
+          slope[2 * batch_lanes] = w.z * frame_.scale;
+        }
+      }
+    }
+  }
+
+  std::vector<Vec3> row_motions(const Cage& rest, const std::vector<Vec3>& moved) const override {
+    std::vector<Vec3> motions = Coordinates::row_motions(rest, moved);
+    for (std::size_t k = 0; k < frame_.faces.size(); ++k) {
+      const std::uint32_t f = frame_.face_numbers[k];
+      const Face& face = rest.faces[f];
+      if (moved[face[0]] == rest.vertices[face[0]] && moved[face[1]] == rest.vertices[face[1]] &&
+          moved[face[2]] == rest.vertices[face[2]])
+        continue;
+      // In local units, so that no product of lengths overflows.
+      const Vec3 u = (rest.vertices[face[1]] - rest.vertices[face[0]]) * frame_.scale,
+                 v = (rest.vertices[face[2]] - rest.vertices[face[0]]) * frame_.scale,
+                 u2 = (moved[face[1]] - moved[face[0]]) * frame_.scale,
+                 v2 = (moved[face[2]] - moved[face[0]]) * frame_.scale;
+      const double area = frame_.faces[k].length * frame_.faces[k].height / 2;
+      const double square =
+          u2.squaredNorm() * v.squaredNorm() - 2 * u2.dot(v2) * u.dot(v) + v2.squaredNorm() * u.squaredNorm();
+      const double stretch = std::sqrt(std::max(0.0, square)) / (std::sqrt(8.0) * area);
+      const Vec3 n(frame_.faces[k].normal[0], frame_.faces[k].normal[1], frame_.faces[k].normal[2]);
+      const Vec3 turned = u2.cross(v2);
+      // A face that collapsed has no normal: its share vanishes with its area.
+      const Vec3 normal = turned.stableNorm() > 0 ? Vec3(turned.stableNormalized()) : Vec3(0, 0, 0);
+      motions[rest.vertices.size() + f] = (stretch * normal - n) / frame_.scale;
+    }
+    return motions;
+  }
+
+ private:
+  CageFrame frame_;
+  std::size_t face_count_;
+};
+
+}  // namespace
+
+std::unique_ptr<Coordinates> green_coordinates(const Cage& cage) { return std::make_unique<Green>(cage); }
+
+}  // namespace rebake

@@ -1,0 +1,261 @@
+// Mean value coordinates of many points at once: the forms of plane_local.h, without branches, as loops over lanes that
+// the compiler turns into vectors (this file alone is built with -ffast-math, for the vector library's atan2), with
+// gradients worked out by hand. What all faces of an edge share is computed once. Points so near a face that rounding
+// decides are left to plane_local.h.
+#include "mesh_ops/deform/mean_value_batch.h"
+
+#include <math.h>
+
+#ifndef REBAKE_BATCH_NAME
+#define REBAKE_BATCH_NAME mean_value_batch_baseline
+#endif
+#define REBAKE_INLINE [[gnu::always_inline]] inline
+
+namespace rebake {
+
+namespace {
+
+constexpr int lanes = static_cast<int>(batch_lanes);
+// Below this distance (local units) from a face, plane_local weighs a point.
+constexpr double delicate_distance = 1e-6;
+// Where the point's projection lies beside the triangle by this many times its height, the sum over the edges cancels;
+// the other form takes over. It would hold nearer too, but costs three more arctangents.
+constexpr double grazing_ratio = 16;
+// Keeps divisions by zero out of lanes whose result is not used.
+constexpr double tiny = 1e-60;
+
+// One edge's part of the form that holds beside a triangle, by distance a ≥ 0 of the projection from the edge's line,
+// squared height, and the edge's ends: (φ − a θ / c) / h², φ and θ the angles under which projection and point see the
+// edge; and its derivatives.
+struct Part {
+  double v, by_a, by_square, by_ends;
+};
+REBAKE_INLINE double part_value(double a, double square, double c, double begin, double end, double theta) {
+  const double both = c + a;
+  const double upper = square * end / (both * (a * c + end * end)),
+               lower = square * begin / (both * (a * c + begin * begin));
+  // Both are small here: one arctangent of their difference.
+  return theta / (c * both) + atan2(upper - lower, 1 + upper * lower) / square;
+}
+REBAKE_INLINE Part part(double a, double square, double c, double begin, double end, double theta) {
+  const double v = part_value(a, square, c, begin, end, theta);
+  const double aa = a * a, cc = c * c;
+  const double end_a = 1 / (aa + end * end), end_c = 1 / (cc + end * end), begin_a = 1 / (aa + begin * begin),
+               begin_c = 1 / (cc + begin * begin);
+  const double by_c = begin * begin_c - end * end_c;
+  return {v,
+          (begin * (cc + aa + begin * begin) * begin_a * begin_c - end * (cc + aa + end * end) * end_a * end_c -
+           theta / c) /
+              cc,
+          -(v + a / (2 * cc) * (by_c - theta / c)) / square, a * (end_a * end_c - begin_a * begin_c)};
+}
+
+REBAKE_INLINE double least(double a, double b) { return a < b ? a : b; }
+REBAKE_INLINE double greatest(double a, double b) { return a > b ? a : b; }
+
+template <bool gradients>
+void weigh(const BatchCage& cage, const double* points, double* workspace, double* weights, double* slopes,
+           std::uint8_t* delicate) {
+  constexpr int row = (gradients ? 4 : 1) * lanes;
+  const double *px = points, *py = points + lanes, *pz = points + 2 * lanes;
+  double* const angles = workspace;                     // θ / c of each edge, then its gradient: rows of lanes
+  double* const sums = angles + cage.edge_count * row;  // weights before they are normalised, likewise
+  for (std::size_t i = 0; i < cage.vertex_count * row; ++i) sums[i] = 0;
+
+  for (std::size_t e = 0; e < cage.edge_count; ++e) {
+    const double* frame = cage.edge_frames + 4 * e;
+    const double* first = cage.vertices + 3 * static_cast<std::size_t>(cage.edges[2 * e]);
+    const double tx = frame[0], ty = frame[1], tz = frame[2], length = frame[3];
+    const double fx = first[0], fy = first[1], fz = first[2];
+    double* q = angles + e * row;
+#pragma omp simd
+    for (int lane = 0; lane < lanes; ++lane) {
+      const double ex = fx - px[lane], ey = fy - py[lane], ez = fz - pz[lane];
+      const double begin = tx * ex + ty * ey + tz * ez, end = begin + length;
+      // The distance from the line as a cross product: no difference of squares.
+      const double cx = ey * tz - ez * ty, cy = ez * tx - ex * tz, cz = ex * ty - ey * tx;
+      const double cc = cx * cx + cy * cy + cz * cz + tiny, c = sqrt(cc);
+      const double theta = atan2(c * length, cc + begin * end);
+      const double by_c = 1 / c, value = theta * by_c;
+      q[lane] = value;
+      if constexpr (gradients) {
+        const double near = 1 / (cc + begin * begin), far = 1 / (cc + end * end);
+        // ∇θ = ∂θ/∂c ∇c + ∂θ/∂begin ∇begin, where ∇c = −(e − begin t) / c and ∇begin = −t.
+        const double across = -(begin * near - end * far - value) * by_c * by_c;
+        const double along = -(far - near) - across * begin;
+        q[lanes + lane] = across * ex + along * tx;
+        q[2 * lanes + lane] = across * ey + along * ty;
+        q[3 * lanes + lane] = across * ez + along * tz;
+      }
+    }
+  }
+
+  for (int lane = 0; lane < lanes; ++lane) delicate[lane] = 0;
+  for (std::size_t f = 0; f < cage.face_count; ++f) {
+    const std::uint32_t* corners = cage.faces + 6 * f;
+    const double *q0 = angles + static_cast<std::size_t>(corners[3]) * row,
+                 *q1 = angles + static_cast<std::size_t>(corners[4]) * row,
+                 *q2 = angles + static_cast<std::size_t>(corners[5]) * row;
+    double *w0 = sums + static_cast<std::size_t>(corners[0]) * row,
+           *w1 = sums + static_cast<std::size_t>(corners[1]) * row,
+           *w2 = sums + static_cast<std::size_t>(corners[2]) * row;
+    const double* v1 = cage.vertices + 3 * static_cast<std::size_t>(corners[1]);
+    const double v1x = v1[0], v1y = v1[1], v1z = v1[2];
+    const double* frame = cage.face_frames + batch_face_numbers * f;
+    const double nx = frame[0], ny = frame[1], nz = frame[2], tx = frame[3], ty = frame[4], tz = frame[5],
+                 ox = frame[6], oy = frame[7], oz = frame[8];
+    const double length = frame[9], apex = frame[11], by_height = 1 / frame[10], by_length = 1 / length;
+    const double et1 = frame[13], et2 = frame[14], eo1 = frame[16], eo2 = frame[17];
+    const double nt1 = frame[19], nt2 = frame[20], no1 = frame[22], no2 = frame[23];
+    const double length1 = frame[25], length2 = frame[26];
+    const double beside_ratio = grazing_ratio * frame[27];
+    double grazing[lanes];
+    double nearest = 1, grazing_lanes = 0;
+#pragma omp simd reduction(min : nearest) reduction(+ : grazing_lanes)
+    for (int lane = 0; lane < lanes; ++lane) {
+      const double ex = v1x - px[lane], ey = v1y - py[lane], ez = v1z - pz[lane];
+      const double h = nx * ex + ny * ey + nz * ez, along = tx * ex + ty * ey + tz * ez,
+                   out = ox * ex + oy * ey + oz * ez;
+      const double a1 = (along + length) * nt1 + out * no1, a2 = along * nt2 + out * no2;
+      const double beside = -least(out, least(a1, a2));
+      const double height = fabs(h);
+      const double grazes = beside >= beside_ratio * height ? 1.0 : 0.0;
+      grazing[lane] = grazes;
+      grazing_lanes += grazes;
+      nearest = least(nearest, greatest(height, beside));
+      // Σ a θ / c / 2h², for lanes that do not graze.
+      const double half = (1 - grazes) * 0.5 / (h * h + tiny);
+      const double k0 = q0[lane], k1 = q1[lane], k2 = q2[lane];
+      const double whole = (out * k0 + a1 * k1 + a2 * k2) * half;
+      const double lambda0 = out * by_height;
+      const double lambda2 = -((1 - lambda0) * along + lambda0 * (along + apex)) * by_length;
+      const double lambda1 = 1 - lambda0 - lambda2;
+      // ∇λ · Σ ν θ / c; edge 0's normal is `outward` itself.
+      const double gt = k1 * nt1 + k2 * nt2, go = k0 + k1 * no1 + k2 * no2;
+      const double slope0 = -go * by_height, slope2 = (gt - slope0 * apex) * by_length;
+      const double slope1 = -(slope0 + slope2);
+      const double part0 = lambda0 * whole - 0.5 * slope0, part1 = lambda1 * whole - 0.5 * slope1,
+                   part2 = lambda2 * whole - 0.5 * slope2;
+      // In its plane, and beside it, a face weighs nothing (but what it weighs changes there).
+      const double below = height <= 1e-15 ? 0.0 : h;
+      w0[lane] += below * part0;
+      w1[lane] += below * part1;
+      w2[lane] += below * part2;
+      if constexpr (gradients) {
+        const double by_h = 2 * whole * h / (h * h + tiny);
+        const auto axis = [&](int n, double normal, double tangent, double outward) __attribute__((always_inline)) {
+          const double g0 = q0[n * lanes + lane], g1 = q1[n * lanes + lane], g2 = q2[n * lanes + lane];
+          const double d1 = -(tangent * nt1 + outward * no1), d2 = -(tangent * nt2 + outward * no2);
+          const double d_whole =
+              (-outward * k0 + d1 * k1 + d2 * k2 + out * g0 + a1 * g1 + a2 * g2) * half + by_h * normal;
+          const double d_lambda0 = -outward * by_height;
+          const double d_lambda2 = (tangent - d_lambda0 * apex) * by_length, d_lambda1 = -(d_lambda0 + d_lambda2);
+          const double dt = g1 * nt1 + g2 * nt2, d_o = g0 + g1 * no1 + g2 * no2;
+          const double d_slope0 = -d_o * by_height, d_slope2 = (dt - d_slope0 * apex) * by_length;
+          const double d_slope1 = -(d_slope0 + d_slope2);
+          w0[n * lanes + lane] += h * (d_lambda0 * whole + lambda0 * d_whole - 0.5 * d_slope0) - normal * part0;
+          w1[n * lanes + lane] += h * (d_lambda1 * whole + lambda1 * d_whole - 0.5 * d_slope1) - normal * part1;
+          w2[n * lanes + lane] += h * (d_lambda2 * whole + lambda2 * d_whole - 0.5 * d_slope2) - normal * part2;
+        };
+        axis(1, nx, tx, ox);
+        axis(2, ny, ty, oy);
+        axis(3, nz, tz, oz);
+      }
+    }
+    if (nearest < delicate_distance)
+      for (int lane = 0; lane < lanes; ++lane) {
+        const double ex = v1x - px[lane], ey = v1y - py[lane], ez = v1z - pz[lane];
+        const double h = nx * ex + ny * ey + nz * ez, along = tx * ex + ty * ey + tz * ez,
+                     out = ox * ex + oy * ey + oz * ez;
+        const double beside = -least(out, least((along + length) * nt1 + out * no1, along * nt2 + out * no2));
+        if (greatest(fabs(h), beside) < delicate_distance) delicate[lane] = 1;
+      }
+    if (grazing_lanes > 0) {
+#pragma omp simd
+      for (int lane = 0; lane < lanes; ++lane) {
+        const double ex = v1x - px[lane], ey = v1y - py[lane], ez = v1z - pz[lane];
+        const double h = nx * ex + ny * ey + nz * ez, along = tx * ex + ty * ey + tz * ez,
+                     out = ox * ex + oy * ey + oz * ez;
+        const double far = along + length;
+        const double a1 = far * nt1 + out * no1, a2 = along * nt2 + out * no2;
+        // Edge 0 begins at corner 1, edge 1 at corner 2; edge 2 ends at corner 1.
+        const double begin1 = far * et1 + out * eo1, end2 = along * et2 + out * eo2;
+        const double square = h * h + tiny;
+        const double k0 = q0[lane], k1 = q1[lane], k2 = q2[lane];
+        const double sign0 = copysign(1.0, out), sign1 = copysign(1.0, a1), sign2 = copysign(1.0, a2);
+        const double c0 = sqrt(out * out + square), c1 = sqrt(a1 * a1 + square), c2 = sqrt(a2 * a2 + square);
+        const double lambda0 = out * by_height;
+        const double lambda2 = -((1 - lambda0) * along + lambda0 * (along + apex)) * by_length;
+        const double lambda1 = 1 - lambda0 - lambda2;
+        const double below = fabs(h) <= 1e-15 ? 0.0 : h;
+        if constexpr (!gradients) {
+          const double whole = -0.5 * grazing[lane] *
+                               (sign0 * part_value(sign0 * out, square, c0, along, far, k0 * c0) +
+                                sign1 * part_value(sign1 * a1, square, c1, begin1, begin1 + length1, k1 * c1) +
+                                sign2 * part_value(sign2 * a2, square, c2, end2 - length2, end2, k2 * c2));
+          w0[lane] += below * lambda0 * whole;
+          w1[lane] += below * lambda1 * whole;
+          w2[lane] += below * lambda2 * whole;
+        } else {
+          const Part p0 = part(sign0 * out, square, c0, along, far, k0 * c0),
+                     p1 = part(sign1 * a1, square, c1, begin1, begin1 + length1, k1 * c1),
+                     p2 = part(sign2 * a2, square, c2, end2 - length2, end2, k2 * c2);
+          const double half = -0.5 * grazing[lane];
+          const double whole = half * (sign0 * p0.v + sign1 * p1.v + sign2 * p2.v);
+          w0[lane] += below * lambda0 * whole;
+          w1[lane] += below * lambda1 * whole;
+          w2[lane] += below * lambda2 * whole;
+          const double by_height_of_point =
+              -2 * h * half * (sign0 * p0.by_square + sign1 * p1.by_square + sign2 * p2.by_square);
+          const auto axis = [&](int n, double normal, double tangent, double outward) __attribute__((always_inline)) {
+            const double d1 = -(tangent * nt1 + outward * no1), d2 = -(tangent * nt2 + outward * no2);
+            const double e1 = -(tangent * et1 + outward * eo1), e2 = -(tangent * et2 + outward * eo2);
+            const double d_whole =
+                by_height_of_point * normal +
+                half * (-outward * p0.by_a + d1 * p1.by_a + d2 * p2.by_a - sign0 * tangent * p0.by_ends +
+                        sign1 * e1 * p1.by_ends + sign2 * e2 * p2.by_ends);
+            const double d_lambda0 = -outward * by_height;
+            const double d_lambda2 = (tangent - d_lambda0 * apex) * by_length, d_lambda1 = -(d_lambda0 + d_lambda2);
+            w0[n * lanes + lane] += h * (d_lambda0 * whole + lambda0 * d_whole) - normal * lambda0 * whole;
+            w1[n * lanes + lane] += h * (d_lambda1 * whole + lambda1 * d_whole) - normal * lambda1 * whole;
+            w2[n * lanes + lane] += h * (d_lambda2 * whole + lambda2 * d_whole) - normal * lambda2 * whole;
+          };
+          axis(1, nx, tx, ox);
+          axis(2, ny, ty, oy);
+          axis(3, nz, tz, oz);
+        }
+      }
+    }
+  }
+
+  double total[row];
+  for (int i = 0; i < row; ++i) total[i] = 0;
+  for (std::size_t v = 0; v < cage.vertex_count; ++v)
+    for (int i = 0; i < row; ++i) total[i] += sums[v * row + static_cast<std::size_t>(i)];
+  for (std::size_t v = 0; v < cage.vertex_count; ++v) {
+    const double* sum = sums + v * row;
+    double* weight = weights + v * batch_lanes;
+#pragma omp simd
+    for (int lane = 0; lane < lanes; ++lane) weight[lane] = sum[lane] / total[lane];
+    if constexpr (gradients) {
+      double* slope = slopes + v * 3 * batch_lanes;
+      for (int n = 1; n < 4; ++n)
+#pragma omp simd
+        for (int lane = 0; lane < lanes; ++lane)
+          slope[(n - 1) * lanes + lane] =
+              (sum[n * lanes + lane] - weight[lane] * total[n * lanes + lane]) / total[lane];
+    }
+  }
+}
+
+}  // namespace
+
+void REBAKE_BATCH_NAME(const BatchCage& cage, const double* points, double* workspace, double* weights,
+                       double* gradients, std::uint8_t* delicate) {
+  if (gradients != nullptr)
+    weigh<true>(cage, points, workspace, weights, gradients, delicate);
+  else
+    weigh<false>(cage, points, workspace, weights, gradients, delicate);
+}
+
+}  // namespace rebake

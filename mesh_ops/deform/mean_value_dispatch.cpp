@@ -1,0 +1,16 @@
+#include "mesh_ops/deform/mean_value_batch.h"
+
+namespace rebake {
+
+std::size_t batch_workspace(const BatchCage& cage, bool gradients) {
+  return (gradients ? 4U : 1U) * batch_lanes * (cage.edge_count + cage.vertex_count);
+}
+
+MeanValueBatch mean_value_batch() {
+#ifdef REBAKE_WIDE_VECTORS
+  if (__builtin_cpu_supports("x86-64-v3")) return mean_value_batch_wide;
+#endif
+  return mean_value_batch_baseline;
+}
+
+}  // namespace rebake

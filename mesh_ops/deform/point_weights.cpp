@@ -1,0 +1,108 @@
+#include "mesh_ops/deform/coordinates.h"
+
+#include <numbers>
+#include <type_traits>
+
+#include "mesh_ops/deform/plane_local.h"
+
+namespace rebake {
+
+namespace pl = plane_local;
+
+template <class T>
+void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>& weights) {
+  weights.assign(cage.vertices.size(), pl::constant<T>(0));
+  const pl::Point<T> x = pl::local_point(local, T());
+  T total = pl::constant<T>(0);
+  for (const FaceFrame& face : cage.faces) {
+    const pl::Seen<T> s = pl::seen(cage, face, x);
+    const pl::Place place = pl::place(s);
+    // Without this rule coplanar neighbours could get heights of opposite signs, and weights of ±9.
+    if (place == pl::Place::in_plane && !std::is_same_v<T, Dual>) continue;
+    if (place == pl::Place::on_face) {
+      weights.assign(cage.vertices.size(), pl::constant<T>(0));
+      const auto lambda = pl::barycentric(face, s);
+      for (std::size_t k = 0; k < 3; ++k) weights[face.vertices[k]] = lambda[k];
+      return;
+    }
+    auto terms = pl::mean_value(face, s);
+    // It weighs nothing there, but what it weighs changes.
+    if (place == pl::Place::in_plane)
+      for (T& term : terms) term = term - pl::constant<T>(value_of(term));
+    for (std::size_t k = 0; k < 3; ++k) {
+      weights[face.vertices[k]] += terms[k];
+      total += terms[k];
+    }
+  }
+  for (T& weight : weights) weight = weight / total;
+}
+
+namespace {
+
+/// The nearest point of a face to what `s` sees, as barycentric coordinates.
+template <class T>
+std::array<T, 3> nearest_coordinates(const FaceFrame& face, const pl::Seen<T>& s) {
+  const bool inside = value_of(s.a[0]) >= 0 && value_of(s.a[1]) >= 0 && value_of(s.a[2]) >= 0;
+  if (inside) return pl::barycentric(face, s);
+  double least = std::numeric_limits<double>::infinity();
+  std::array<T, 3> result;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double begin = value_of(s.begin[k]), end = value_of(s.end[k]);
+    const double distance = std::hypot(value_of(s.c[k]), std::max({0.0, begin, -end}));
+    if (distance >= least) continue;
+    least = distance;
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    result[k] = pl::constant<T>(0);
+    result[j] = begin >= 0 ? pl::constant<T>(0)
+                : end <= 0 ? pl::constant<T>(1)
+                           : T(-s.begin[k] / pl::constant<T>(face.lengths[k]));
+    result[i] = pl::constant<T>(1) - result[j];
+  }
+  return result;
+}
+
+}  // namespace
+
+template <class T>
+bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_count, std::vector<T>& phi,
+                   std::vector<T>& psi) {
+  phi.assign(cage.vertices.size(), pl::constant<T>(0));
+  psi.assign(face_count, pl::constant<T>(0));
+  const pl::Point<T> x = pl::local_point(local, T());
+  const T share = pl::constant<T>(1 / (4 * std::numbers::pi));
+  T sum = pl::constant<T>(0);
+  double nearest = std::numeric_limits<double>::infinity(), extent = 0;
+  std::size_t nearest_face = 0;
+  for (std::size_t f = 0; f < cage.faces.size(); ++f) {
+    const FaceFrame& face = cage.faces[f];
+    const pl::Seen<T> s = pl::seen(cage, face, x);
+    const auto terms = pl::green(face, s);
+    for (std::size_t k = 0; k < 3; ++k) {
+      phi[face.vertices[k]] += terms.corners[k] * share;
+      sum += terms.corners[k] * share;
+    }
+    psi[cage.face_numbers[f]] = terms.face * share;
+    const double distance = std::hypot(value_of(s.h), pl::distance_in_plane(s));
+    extent = std::max(extent, s.far);
+    if (distance < nearest) {
+      nearest = distance;
+      nearest_face = f;
+    }
+  }
+  // Outside the sum is 0, inside 1; between them only on the surface.
+  if (!(value_of(sum) > 0.125 || nearest <= 4 * pl::epsilon<T> * extent)) return false;
+  const FaceFrame& face = cage.faces[nearest_face];
+  const auto lambda = nearest_coordinates(face, pl::seen(cage, face, x));
+  const T missing = pl::constant<T>(1) - sum;
+  for (std::size_t k = 0; k < 3; ++k) phi[face.vertices[k]] += missing * lambda[k];
+  return true;
+}
+
+template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<double>&);
+template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<float>&);
+template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<Dual>&);
+template bool green_weights(const CageFrame&, const Vec3&, std::size_t, std::vector<double>&, std::vector<double>&);
+template bool green_weights(const CageFrame&, const Vec3&, std::size_t, std::vector<float>&, std::vector<float>&);
+template bool green_weights(const CageFrame&, const Vec3&, std::size_t, std::vector<Dual>&, std::vector<Dual>&);
+
+}  // namespace rebake

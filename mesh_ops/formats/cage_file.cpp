@@ -1,0 +1,78 @@
+#include "mesh_ops/formats/cage_file.h"
+
+#include <OpenMesh/Core/IO/MeshIO.hh>
+#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+#include "mesh_ops/error.h"
+#include "mesh_ops/formats/files.h"
+
+namespace rebake {
+
+namespace {
+
+struct Traits : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+};
+using Mesh = OpenMesh::PolyMesh_ArrayKernelT<Traits>;
+
+std::string format_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending != ".obj" && ending != ".off" && ending != ".ply")
+    throw FileError(path, "is no cage that can be read: its name must end in .obj, .off or .ply");
+  return ending;
+}
+
+}  // namespace
+
+Cage read_cage(const std::filesystem::path& path) {
+  const std::string format = format_of(path);
+  std::istringstream text(read_file(path));
+  Mesh mesh;
+  OpenMesh::IO::Options options;
+  // OpenMesh leaves out, without a word that could be passed on, the faces that make a mesh non-manifold.
+  std::ostringstream complaints;
+  omerr().connect(complaints);
+  omerr().disconnect(std::cerr);
+  const bool read = OpenMesh::IO::read_mesh(mesh, text, format, options);
+  omerr().disconnect(complaints);
+  omerr().connect(std::cerr);
+  if (!read || mesh.n_faces() == 0) throw FileError(path, "holds no mesh that can be read");
+  if (!complaints.str().empty())
+    throw FileError(path, "is non-manifold: a cage's edges belong to two triangles each, and its points to one fan");
+  Cage cage;
+  for (const auto v : mesh.vertices()) {
+    const auto& p = mesh.point(v);
+    cage.vertices.emplace_back(p[0], p[1], p[2]);
+  }
+  for (const auto f : mesh.faces()) {
+    if (mesh.valence(f) != 3) throw FileError(path, "has faces of other than three corners; triangulate it first");
+    Face face{};
+    std::size_t k = 0;
+    for (const auto v : mesh.fv_range(f)) face[k++] = static_cast<std::uint32_t>(v.idx());
+    cage.faces.push_back(face);
+  }
+  try {
+    return checked_cage(std::move(cage));
+  } catch (const Error& error) {
+    throw FileError(path, error.what());
+  }
+}
+
+void write_cage(const Cage& cage, const std::filesystem::path& path) {
+  const std::string format = format_of(path);
+  Mesh mesh;
+  std::vector<Mesh::VertexHandle> handles;
+  for (const Vec3& v : cage.vertices) handles.push_back(mesh.add_vertex({v.x(), v.y(), v.z()}));
+  for (const Face& face : cage.faces) mesh.add_face({handles[face[0]], handles[face[1]], handles[face[2]]});
+  std::ostringstream text;
+  if (!OpenMesh::IO::write_mesh(mesh, text, format, OpenMesh::IO::Options::Default, 17))
+    throw FileError(path, "the cage cannot be written");
+  write_file_atomically(path, text.str());
+}
+
+}  // namespace rebake
