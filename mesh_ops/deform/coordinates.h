@@ -16,7 +16,7 @@ namespace rebake {
 enum class CageCoordinates {
   mean_value,  ///< anywhere; smooth, but may reach across a concave cage's gaps (Ju, Schaefer, Warren 2005)
   green,       ///< inside only; keeps shapes, may leave the cage (Lipman, Levin, Cohen-Or 2008)
-  harmonic     ///< inside only; never negative, follows the inside of concave cages; on a grid (Joshi et al. 2007)
+  harmonic     ///< inside only; reaches around corners of concave cages, not across; on a grid (Joshi et al. 2007)
 };
 
 /// Mean value weights of one point in the cage frame, one a vertex. Sum and linear precision hold to a few rounding

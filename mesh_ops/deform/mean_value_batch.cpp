@@ -21,7 +21,7 @@ constexpr double delicate_distance = 1e-6;
 // Where the point's projection lies beside the triangle by this many times its height, the sum over the edges cancels;
 // the other form takes over. It would hold nearer too, but costs three more arctangents.
 constexpr double grazing_ratio = 16;
-// Keeps divisions by zero out of lanes whose result is not used.
+// Keeps divisions by zero out of lanes whose result is not used: it is multiplied by zero.
 constexpr double tiny = 1e-60;
 
 // One edge's part of the form that holds beside a triangle, by distance a ≥ 0 of the projection from the edge's line,
@@ -32,14 +32,14 @@ struct Part {
 };
 REBAKE_INLINE double part_value(double a, double square, double c, double begin, double end, double theta) {
   const double both = c + a;
-  const double upper = square * end / (both * (a * c + end * end)),
-               lower = square * begin / (both * (a * c + begin * begin));
+  const double upper = square * end / (both * (a * c + end * end + tiny)),
+               lower = square * begin / (both * (a * c + begin * begin + tiny));
   // Both are small here: one arctangent of their difference.
   return theta / (c * both) + atan2(upper - lower, 1 + upper * lower) / square;
 }
 REBAKE_INLINE Part part(double a, double square, double c, double begin, double end, double theta) {
   const double v = part_value(a, square, c, begin, end, theta);
-  const double aa = a * a, cc = c * c;
+  const double aa = a * a + tiny, cc = c * c;
   const double end_a = 1 / (aa + end * end), end_c = 1 / (cc + end * end), begin_a = 1 / (aa + begin * begin),
                begin_c = 1 / (cc + begin * begin);
   const double by_c = begin * begin_c - end * end_c;
@@ -50,6 +50,7 @@ REBAKE_INLINE Part part(double a, double square, double c, double begin, double 
           -(v + a / (2 * cc) * (by_c - theta / c)) / square, a * (end_a * end_c - begin_a * begin_c)};
 }
 
+REBAKE_INLINE double sign_of(double a) { return a > 0 ? 1.0 : a < 0 ? -1.0 : 0.0; }
 REBAKE_INLINE double least(double a, double b) { return a < b ? a : b; }
 REBAKE_INLINE double greatest(double a, double b) { return a > b ? a : b; }
 
@@ -119,7 +120,7 @@ void weigh(const BatchCage& cage, const double* points, double* workspace, doubl
       const double a1 = (along + length) * nt1 + out * no1, a2 = along * nt2 + out * no2;
       const double beside = -least(out, least(a1, a2));
       const double height = fabs(h);
-      const double grazes = beside >= beside_ratio * height ? 1.0 : 0.0;
+      const double grazes = beside > beside_ratio * height ? 1.0 : 0.0;
       grazing[lane] = grazes;
       grazing_lanes += grazes;
       nearest = least(nearest, greatest(height, beside));
@@ -182,7 +183,8 @@ void weigh(const BatchCage& cage, const double* points, double* workspace, doubl
         const double begin1 = far * et1 + out * eo1, end2 = along * et2 + out * eo2;
         const double square = h * h + tiny;
         const double k0 = q0[lane], k1 = q1[lane], k2 = q2[lane];
-        const double sign0 = copysign(1.0, out), sign1 = copysign(1.0, a1), sign2 = copysign(1.0, a2);
+        // On an edge's line its part vanishes.
+        const double sign0 = sign_of(out), sign1 = sign_of(a1), sign2 = sign_of(a2);
         const double c0 = sqrt(out * out + square), c1 = sqrt(a1 * a1 + square), c2 = sqrt(a2 * a2 + square);
         const double lambda0 = out * by_height;
         const double lambda2 = -((1 - lambda0) * along + lambda0 * (along + apex)) * by_length;

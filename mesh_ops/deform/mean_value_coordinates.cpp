@@ -28,12 +28,14 @@ class MeanValue final : public Coordinates {
       append(face.normal_t);
       append(face.normal_o);
       append(face.lengths);
-      double cosine = -1;  // of the smallest angle
+      double half = 1;  // sine of half the smallest angle
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-        cosine = std::max(cosine, -(face.edge_t[i] * face.edge_t[j] + face.edge_o[i] * face.edge_o[j]));
+        const double sine = std::abs(face.edge_t[i] * face.edge_o[j] - face.edge_o[i] * face.edge_t[j]),
+                     cosine = -(face.edge_t[i] * face.edge_t[j] + face.edge_o[i] * face.edge_o[j]);
+        half = std::min(half, std::sin(std::atan2(sine, cosine) / 2));
       }
-      face_frames_.push_back(std::sqrt(std::max(0.0, (1 - cosine) / 2)));
+      face_frames_.push_back(half);
     }
     batch_ = {frame_.vertices.size(), frame_.edges.size(), frame_.faces.size(), vertices_.data(),
               edges_.data(),          edge_frames_.data(), faces_.data(),       face_frames_.data()};

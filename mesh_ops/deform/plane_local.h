@@ -86,6 +86,8 @@ Seen<T> seen(const CageFrame& cage, const FaceFrame& face, const Point<T>& x) {
     const T et = constant<T>(face.edge_t[k]), eo = constant<T>(face.edge_o[k]);
     s.a[k] = s.along[m] * nt + s.out[m] * no;
     s.c[k] = sqrt(s.a[k] * s.a[k] + s.h * s.h);
+    // On an edge's line what is divided by c has a limit, which this reaches.
+    if (value_of(s.c[k]) == 0) s.c[k] = constant<T>(std::sqrt(least_square<T>));
     s.begin[k] = s.along[i] * et + s.out[i] * eo;
     s.end[k] = s.along[j] * et + s.out[j] * eo;
   }
@@ -158,6 +160,7 @@ std::array<T, 3> mean_value(const FaceFrame& face, const Seen<T>& s) {
   } else {
     for (std::size_t k = 0; k < 3; ++k) {
       const bool negative = value_of(s.a[k]) < 0;
+      if (value_of(s.a[k]) == 0) continue;  // on the edge's line its part vanishes
       const T a = negative ? -s.a[k] : s.a[k];
       const T sum = s.c[k] + a;
       const auto part = [&](const T& end) { return atan(square * (end / (sum * (a * s.c[k] + end * end)))); };

@@ -1,0 +1,446 @@
+// Cage coordinates against 120 digits, on the hard cases: points on, beside and beyond faces, edges and vertices;
+// needles, caps and flat cages; very small, very large and very far cages.
+#include "mesh_ops/deform/coordinates.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "mesh_ops/deform/cage_deformation.h"
+#include "tests/support/gold.h"
+
+namespace rebake::test {
+namespace {
+
+// All have a diagonal of about 1.
+Cage cube(int cells = 1) {
+  const double half = 0.5 / std::sqrt(3.0);
+  return lattice_cage(Box(Vec3::Constant(-half), Vec3::Constant(half)), cells, cells, cells);
+}
+// A subdivided cube, dented: concave, in general position.
+Cage dented() {
+  Cage cage = cube(3);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> shift(-0.06, 0.06);
+  for (Vec3& v : cage.vertices) {
+    v = v.normalized() * 0.4 + Vec3(shift(random), shift(random), shift(random));
+    if (v.x() > 0.2) v.x() = 0.35 - v.x();
+  }
+  return checked_cage(cage);
+}
+// A tetrahedron with a face split at a point that lies `thin` from an edge: needles of that height.
+Cage needles(double thin) {
+  Cage cage;
+  cage.vertices = {{0, 0, 0}, {0.6, 0, 0}, {0, 0.6, 0}, {0, 0, 0.6}, {0.25, thin, 0}};
+  cage.faces = {{0, 3, 2}, {1, 2, 3}, {0, 1, 3}, {0, 4, 1}, {1, 4, 2}, {2, 4, 0}};
+  return checked_cage(cage);
+}
+// A tetrahedron with an edge split in two: exact for halves; and `lift` above the edge's middle otherwise.
+Cage cap(double lift) {
+  Cage cage;
+  cage.vertices = {{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}, {0.25, 0, lift}};
+  cage.faces = {{0, 2, 4}, {4, 2, 1}, {0, 4, 3}, {4, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return checked_cage(cage);
+}
+Cage flat(double thickness) {
+  return lattice_cage(Box(Vec3(-0.35, -0.35, -thickness / 2), Vec3(0.35, 0.35, thickness / 2)), 2, 2, 1);
+}
+Cage scaled(Cage cage, double scale, const Vec3& offset = Vec3(0, 0, 0)) {
+  for (Vec3& v : cage.vertices) v = v * scale + offset;
+  return cage;
+}
+
+// Points on each face, edge and vertex, at distances on both sides, along their planes and lines, and on corners'
+// projections.
+std::vector<Vec3> hard_points(const Cage& cage) {
+  std::vector<Vec3> points;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(0.05, 0.9);
+  for (const Face& face : cage.faces) {
+    const Vec3 &a = cage.vertices[face[0]], &b = cage.vertices[face[1]], &c = cage.vertices[face[2]];
+    const Vec3 normal = (b - a).cross(c - a).stableNormalized();
+    if (!normal.allFinite()) continue;
+    const double s = any(random), t = any(random) * (1 - s);
+    const std::vector<Vec3> places = {(a + b + c) / 3, a + s * (b - a) + t * (c - a), (a + b) / 2, a + s * (b - a), a};
+    for (const double d : {0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1e-1})
+      for (const Vec3& place : places) {
+        points.push_back(place - d * normal);
+        points.push_back(place + d * normal);
+        points.push_back(place + d * Vec3(0.3, -0.5, 0.8));
+      }
+    // In the plane outside, on the edge's extension, and above a corner of the plane.
+    for (const double d : {1e-12, 1e-6, 0.3}) {
+      points.push_back(a + (a - b) * d + (a - c) * d);
+      points.push_back(a + (a - b) * d);
+      points.push_back(b + (b - c) * d + 1e-12 * normal);
+    }
+  }
+  return points;
+}
+
+struct Errors {
+  double sum = 0, linear = 0;
+};
+
+// Sums of weights and of weighted vertices, in units of the cage's diagonal.
+Errors errors_of(const Coordinates& coordinates, const Cage& cage, const std::vector<Vec3>& points) {
+  Box box;
+  for (const Vec3& v : cage.vertices) box.extend(v);
+  const double size = box.diagonal().stableNorm();
+  Errors errors;
+  const std::size_t rows = coordinates.rows();
+  const double unit = frame_of(cage).scale * size;  // that ψ is measured in
+  std::vector<double> weights(rows * batch_lanes);
+  for (std::size_t first = 0; first < points.size(); first += batch_lanes) {
+    std::array<Vec3, batch_lanes> block;
+    for (std::size_t lane = 0; lane < batch_lanes; ++lane) block[lane] = points[std::min(first + lane, points.size() - 1)];
+    std::array<std::uint8_t, batch_lanes> outside;
+    coordinates.weigh(block, weights.data(), nullptr, outside.data());
+    for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
+      if (outside[lane] != 0) continue;
+      double sum = 0;
+      Vec3 place(0, 0, 0);
+      for (std::size_t v = 0; v < cage.vertices.size(); ++v) {
+        const double w = weights[v * batch_lanes + lane];
+        EXPECT_TRUE(std::isfinite(w)) << "weight of point " << v << " at " << block[lane].transpose();
+        sum += w;
+        place += w * ((cage.vertices[v] - block[lane]) / size);
+      }
+      if (rows > cage.vertices.size())
+        for (std::size_t f = 0; f < cage.faces.size(); ++f) {
+          const Face& face = cage.faces[f];
+          const Vec3 u = (cage.vertices[face[1]] - cage.vertices[face[0]]) / size,
+                     v = (cage.vertices[face[2]] - cage.vertices[face[0]]) / size;
+          const Vec3 normal = u.cross(v);
+          if (normal.norm() > 0)
+            place += weights[(cage.vertices.size() + f) * batch_lanes + lane] / unit * normal.normalized();
+        }
+      errors.sum = std::max(errors.sum, std::abs(sum - 1));
+      errors.linear = std::max(errors.linear, place.norm());
+    }
+  }
+  return errors;
+}
+
+std::vector<std::pair<std::string, Cage>> hard_cages() {
+  std::vector<std::pair<std::string, Cage>> cages = {{"cube", cube()}, {"lattice", cube(2)}, {"dented", dented()}};
+  for (const double thin : {1e-3, 1e-6, 1e-9, 1e-12}) cages.emplace_back("needles " + std::to_string(thin), needles(thin));
+  cages.emplace_back("cap 1e-12", cap(1e-12));
+  cages.emplace_back("cap of no area", cap(0));
+  Cage doubled = needles(0.1);
+  doubled.vertices[4] = doubled.vertices[0];
+  cages.emplace_back("doubled point", doubled);
+  Cage floater = cube();
+  const Cage other = scaled(cube(), 0.1, Vec3(0.5, 0.1, 0));
+  for (const Face& face : other.faces)
+    floater.faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8});
+  floater.vertices.insert(floater.vertices.end(), other.vertices.begin(), other.vertices.end());
+  cages.emplace_back("two components", floater);
+  return cages;
+}
+
+TEST(MeanValue, SumsAndLinearFunctionsAreExactEverywhere) {
+  for (const auto& [name, cage] : hard_cages()) {
+    SCOPED_TRACE(name);
+    const Errors errors = errors_of(*mean_value_coordinates(cage), cage, hard_points(cage));
+    EXPECT_LE(errors.sum, 1e-14) << name;
+    EXPECT_LE(errors.linear, 2e-14) << name;
+  }
+}
+
+TEST(MeanValue, TheSameAtAnyScaleAndFarFromTheOrigin) {
+  for (const double scale : {1e-30, 1e-12, 1e12, 1e30}) {
+    const Cage cage = scaled(dented(), scale);
+    std::vector<Vec3> points = hard_points(dented());
+    for (Vec3& point : points) point *= scale;
+    const Errors errors = errors_of(*mean_value_coordinates(cage), cage, points);
+    EXPECT_LE(errors.sum, 1e-14) << scale;
+    EXPECT_LE(errors.linear, 2e-14) << scale;
+  }
+  const Cage cage = scaled(dented(), 1, Vec3(1e6, -1e6, 1e6));
+  const Errors errors = errors_of(*mean_value_coordinates(cage), cage, hard_points(cage));
+  EXPECT_LE(errors.sum, 1e-14);
+  EXPECT_LE(errors.linear, 2e-14);
+}
+
+TEST(MeanValue, InsideACageOfNoThicknessToSpeakOf) {
+  const Cage cage = flat(1e-8);
+  std::vector<Vec3> points;
+  for (const double height : {-5e-9, -4.9e-9, 0.0, 1e-12, 5e-9})
+    for (int k = 0; k < 40; ++k) points.emplace_back(-0.34 + 0.017 * k, 0.3 * std::sin(k), height);
+  const Errors errors = errors_of(*mean_value_coordinates(cage), cage, points);
+  EXPECT_LE(errors.sum, 1e-14);
+  EXPECT_LE(errors.linear, 2e-14);
+}
+
+TEST(MeanValue, TenDiagonalsAwayWeightsAreLargeAndErrorsGrowWithThem) {
+  for (const auto& [name, cage] : hard_cages()) {
+    const Errors errors = errors_of(*mean_value_coordinates(cage), cage, {Vec3(7, 5, 6)});
+    EXPECT_LE(errors.linear, 1e-10) << name;
+  }
+}
+
+// Weights of single points through the batch, which passes delicate ones on.
+std::vector<double> weights_at(const Coordinates& coordinates, const Vec3& point, std::vector<Vec3>* gradients = nullptr) {
+  std::array<Vec3, batch_lanes> block;
+  block.fill(point);
+  std::vector<double> weights(coordinates.rows() * batch_lanes), slopes(coordinates.rows() * 3 * batch_lanes);
+  std::array<std::uint8_t, batch_lanes> outside;
+  coordinates.weigh(block, weights.data(), gradients != nullptr ? slopes.data() : nullptr, outside.data());
+  std::vector<double> result;
+  for (std::size_t row = 0; row < coordinates.rows(); ++row) {
+    result.push_back(weights[row * batch_lanes]);
+    if (gradients != nullptr)
+      gradients->emplace_back(slopes[row * 3 * batch_lanes], slopes[(row * 3 + 1) * batch_lanes],
+                              slopes[(row * 3 + 2) * batch_lanes]);
+  }
+  return result;
+}
+
+TEST(MeanValue, WeightsAgreeWith120Digits) {
+  for (const Cage& cage : {cube(), dented()}) {
+    const auto coordinates = mean_value_coordinates(cage);
+    const std::vector<Vec3> points = hard_points(cage);
+    double worst = 0;
+    for (std::size_t k = 0; k < points.size(); k += cage.faces.size() > 20 ? 61 : 5) {
+      const std::vector<double> weights = weights_at(*coordinates, points[k]);
+      const std::vector<Gold> exact = gold_mean_value(cage, gold(points[k]));
+      for (std::size_t v = 0; v < weights.size(); ++v)
+        worst = std::max(worst, std::abs(static_cast<double>(exact[v] - weights[v])));
+    }
+    EXPECT_LE(worst, 1e-14);
+  }
+}
+
+TEST(MeanValue, TwoVectorWidthsAndSinglePointsAgree) {
+  const Cage cage = dented();
+  const CageFrame frame = frame_of(cage);
+  const auto coordinates = mean_value_coordinates(cage);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-0.2, 0.2);
+  double worst = 0;
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 point(any(random), any(random), any(random));
+    std::vector<double> one;
+    mean_value_weights(frame, frame.to_local(point), one);
+    const std::vector<double> many = weights_at(*coordinates, point);
+    for (std::size_t v = 0; v < one.size(); ++v) worst = std::max(worst, std::abs(one[v] - many[v]));
+  }
+  EXPECT_LE(worst, 1e-14);
+}
+
+// Those of the hard points that are inside by far more than rounding, by the solid angle of the cage (van Oosterom).
+std::vector<Vec3> inside_points(const Cage& cage) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : hard_points(cage)) {
+    double sum = 0;
+    for (const Face& face : cage.faces) {
+      const Vec3 a = cage.vertices[face[0]] - p, b = cage.vertices[face[1]] - p, c = cage.vertices[face[2]] - p;
+      sum += 2 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                                   b.dot(c) * a.norm() + c.dot(a) * b.norm());
+    }
+    if (std::abs(sum / (4 * std::acos(-1.0)) - 1) < 1e-3) points.push_back(p);
+  }
+  return points;
+}
+
+TEST(Green, SumsAndLinearFunctionsAreExactInside) {
+  for (const auto& [name, cage] : hard_cages()) {
+    const Errors errors = errors_of(*green_coordinates(cage), cage, inside_points(cage));
+    EXPECT_LE(errors.sum, 1e-14) << name;
+    EXPECT_LE(errors.linear, 1e-14) << name;
+  }
+}
+
+TEST(Green, WeightsAgreeWith120DigitsAndStayFiniteOnTheSurface) {
+  const Cage cage = dented();
+  const auto coordinates = green_coordinates(cage);
+  const double unit = frame_of(cage).scale;
+  double worst = 0;
+  std::vector<Vec3> points = inside_points(cage);
+  ASSERT_GT(points.size(), 100U);
+  for (std::size_t k = 0; k < points.size(); k += 29) {
+    const std::vector<double> weights = weights_at(*coordinates, points[k]);
+    const std::vector<Gold> exact = gold_green(cage, gold(points[k]));
+    for (std::size_t v = 0; v < weights.size(); ++v)
+      worst = std::max(worst, std::abs(static_cast<double>(exact[v] - weights[v] / (v < cage.vertices.size() ? 1 : unit))));
+  }
+  EXPECT_LE(worst, 1e-14);
+  for (const Vec3& point : hard_points(cage))
+    for (const double weight : weights_at(*coordinates, point)) EXPECT_TRUE(std::isfinite(weight));
+}
+
+// The Jacobian of a given motion of the cage's rows.
+Mat3 jacobian_of(const std::vector<Vec3>& gradients, const std::vector<Vec3>& motions) {
+  Mat3 jacobian = Mat3::Identity();
+  for (std::size_t row = 0; row < gradients.size(); ++row) jacobian += motions[row] * gradients[row].transpose();
+  return jacobian;
+}
+
+void expect_gradients(const Cage& cage, const Coordinates& coordinates,
+                      std::vector<Gold> (*exact)(const Cage&, const Gold3&), double unit, bool corners) {
+  std::vector<Vec3> motions;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-0.3, 0.3);
+  for (std::size_t row = 0; row < coordinates.rows(); ++row) motions.emplace_back(any(random), any(random), any(random));
+  std::vector<Vec3> in_cage_units = motions;
+  for (std::size_t row = cage.vertices.size(); row < motions.size(); ++row) in_cage_units[row] *= unit;
+  for (const auto& [distance, bar] : {std::pair(1e-1, 1e-12), std::pair(1e-3, 1e-11), std::pair(1e-6, 1e-8), std::pair(1e-9, 1e-5)})
+    for (std::size_t f = 0; f < cage.faces.size(); f += 17) {
+      const Face& face = cage.faces[f];
+      const Vec3 &a = cage.vertices[face[0]], &b = cage.vertices[face[1]], &c = cage.vertices[face[2]];
+      const Vec3 inwards = -(b - a).cross(c - a).normalized();
+      const std::vector<Vec3> places = {(a + b + c) / 3, (a + b) / 2 + 0.3 * distance * (c - a), a};
+      for (const Vec3& place : places) {
+        const Vec3 point = place + distance * inwards;
+        // At corners it may lie on another face, where Green's coordinates have no gradient.
+        if (!corners && &place != &places.front()) continue;
+        std::vector<Vec3> gradients;
+        weights_at(coordinates, point, &gradients);
+        const Mat3 got = jacobian_of(gradients, motions),
+                   want = jacobian_of(gold_gradients(exact, cage, point), in_cage_units);
+        EXPECT_LE((got - want).norm(), bar * std::max(1.0, want.norm())) << "at " << distance << " from face " << f;
+      }
+    }
+}
+
+TEST(MeanValue, JacobiansAgreeWith120Digits) {
+  const Cage cage = dented();
+  expect_gradients(cage, *mean_value_coordinates(cage), gold_mean_value, 1, true);
+  // On the planes of other faces too, where they weigh nothing.
+  const Cage lattice = cube(2);
+  const auto coordinates = mean_value_coordinates(lattice);
+  const Vec3 point(0, 0, 0.1);
+  std::vector<Vec3> gradients;
+  weights_at(*coordinates, point, &gradients);
+  const std::vector<Vec3> exact = gold_gradients(gold_mean_value, lattice, point);
+  for (std::size_t v = 0; v < exact.size(); ++v) EXPECT_LE((exact[v] - gradients[v]).norm(), 1e-13);
+}
+
+TEST(Green, JacobiansAgreeWith120Digits) {
+  const Cage cage = dented();
+  expect_gradients(cage, *green_coordinates(cage), gold_green, frame_of(cage).scale, false);
+}
+
+TEST(MeanValue, AMillionAdversarialPointsGiveNumbers) {
+  const Cage cage = needles(1e-6);
+  const auto coordinates = mean_value_coordinates(cage);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(-0.2, 1.2);
+  std::uniform_int_distribution<std::size_t> face_of(0, cage.faces.size() - 1);
+  std::uniform_int_distribution<int> exponent(-18, -1);
+  std::vector<Vec3> points;
+  for (int k = 0; k < 1000000; ++k) {
+    const Face& face = cage.faces[face_of(random)];
+    const double s = k % 3 == 0 ? 0 : any(random), t = k % 5 == 0 ? 0 : any(random);
+    const double d = std::pow(10.0, exponent(random));
+    points.push_back(cage.vertices[face[0]] * (1 - s - t) + cage.vertices[face[1]] * s + cage.vertices[face[2]] * t +
+                     d * Vec3(any(random) - 0.5, any(random) - 0.5, any(random) - 0.5));
+  }
+  std::vector<Vec3> moved = cage.vertices;
+  moved[4] += Vec3(0.1, 0.2, -0.1);
+  const DeformedPoints result = deform_points(*coordinates, cage, moved, points, true);
+  std::size_t bad = 0;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    bad += result.points[k].allFinite() && result.jacobians[k].allFinite() ? 0 : 1;
+  EXPECT_EQ(bad, 0U);
+}
+
+TEST(MeanValue, FlippedFacesAreTurnedAndOpenCagesRefused) {
+  Cage cage = cube();
+  for (Face& face : cage.faces) std::swap(face[0], face[1]);
+  EXPECT_EQ(volume(checked_cage(cage)), volume(cube()));
+  cage = cube();
+  cage.faces.pop_back();
+  EXPECT_THROW(checked_cage(cage), Error);
+  cage = cube();
+  std::swap(cage.faces[0][0], cage.faces[0][1]);
+  EXPECT_THROW(checked_cage(cage), Error);
+  cage = cube();
+  cage.vertices[0].x() = std::nan("");
+  EXPECT_THROW(checked_cage(cage), Error);
+}
+
+TEST(Harmonic, LinearFunctionsAreExact) {
+  const Cage cage = dented();
+  const auto coordinates = harmonic_coordinates(cage, 24);
+  std::vector<Vec3> points;
+  for (const Vec3& p : inside_points(cage)) points.push_back(p);
+  const Errors errors = errors_of(*coordinates, cage, points);
+  EXPECT_LE(errors.sum, 1e-10);
+  EXPECT_LE(errors.linear, 1e-10);
+  EXPECT_THROW(harmonic_coordinates(cage, 4), FieldError);
+}
+
+TEST(Harmonic, FinerGridsComeNearerToEachOther) {
+  const Cage cage = dented();
+  const std::vector<double> finest = weights_at(*harmonic_coordinates(cage, 48), Vec3(-0.1, 0.05, 0.02));
+  double before = 1;
+  for (const int resolution : {8, 12, 24}) {
+    const std::vector<double> weights = weights_at(*harmonic_coordinates(cage, resolution), Vec3(-0.1, 0.05, 0.02));
+    double worst = 0;
+    for (std::size_t v = 0; v < weights.size(); ++v) worst = std::max(worst, std::abs(weights[v] - finest[v]));
+    EXPECT_LT(worst, before);
+    before = worst;
+  }
+  EXPECT_LT(before, 0.02);
+}
+
+TEST(CageDeformation, TheIdentityChangesNoBitAndEqualPointsMoveAlike) {
+  const Cage cage = dented();
+  std::vector<Vec3> points = hard_points(cage);
+  points.insert(points.end(), points.begin(), points.end());  // corners that are not welded
+  for (const CageCoordinates kind : {CageCoordinates::mean_value, CageCoordinates::green, CageCoordinates::harmonic}) {
+    const auto coordinates = coordinates_of(cage, kind, 16);
+    EXPECT_EQ(deform_points(*coordinates, cage, cage.vertices, points, true).points, points);
+    std::vector<Vec3> moved = cage.vertices;
+    for (Vec3& v : moved) v = Eigen::AngleAxisd(v.y() * 3, Vec3::UnitY()) * v;
+    const DeformedPoints result = deform_points(*coordinates, cage, moved, points, false);
+    for (std::size_t k = 0; k < points.size() / 2; ++k)
+      ASSERT_EQ(result.points[k], result.points[k + points.size() / 2]);
+  }
+}
+
+TEST(CageDeformation, RigidMotionsOfTheCageAreRigidMotions) {
+  const Cage cage = dented();
+  const Affine motion = Eigen::Translation3d(0.2, -3, 1) * Eigen::AngleAxisd(3.141592653589793, Vec3(1, 2, 3).normalized());
+  std::vector<Vec3> moved;
+  for (const Vec3& v : cage.vertices) moved.push_back(motion * v);
+  std::vector<Vec3> points;
+  for (const Vec3& p : inside_points(cage)) points.push_back(p);
+  for (const CageCoordinates kind : {CageCoordinates::mean_value, CageCoordinates::green, CageCoordinates::harmonic}) {
+    const DeformedPoints result = deform_points(*coordinates_of(cage, kind, 16), cage, moved, points, true);
+    double worst = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (result.outside[k] != 0) continue;
+      worst = std::max(worst, (result.points[k] - motion * points[k]).norm());
+    }
+    EXPECT_LE(worst, kind == CageCoordinates::harmonic ? 1e-9 : 1e-13) << static_cast<int>(kind);
+  }
+}
+
+TEST(CageDeformation, BoundPointsFollowToAMillionth) {
+  const Cage cage = dented();
+  const auto coordinates = mean_value_coordinates(cage);
+  const std::vector<Vec3> points = hard_points(cage);
+  const CageBinding binding(*coordinates, cage, points, true);
+  std::vector<Vec3> moved = cage.vertices;
+  moved[3] += Vec3(0.3, 0.1, 0);
+  moved[9] += Vec3(0, -0.4, 0.2);
+  const DeformedPoints exact = deform_points(*coordinates, cage, moved, points, true);
+  std::vector<Vec3> bound;
+  binding.positions(moved, bound);
+  for (std::size_t k = 0; k < points.size(); ++k) ASSERT_LE((bound[k] - exact.points[k]).norm(), 1e-6);
+  binding.positions(cage.vertices, bound);
+  EXPECT_EQ(bound, points);
+  std::vector<Mat3> all, some;
+  binding.rotations(moved, all);
+  binding.rotations(moved, some, 4);
+  std::size_t same = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) same += all[k] == some[k] ? 1 : 0;
+  EXPECT_GE(same, all.size() / 4);
+  EXPECT_LT(same, all.size());
+}
+
+}  // namespace
+}  // namespace rebake::test

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <boost/multiprecision/mpfr.hpp>
+#include <vector>
+
+#include "mesh_ops/deform/cage.h"
+
+namespace rebake::test {
+
+/// 120 decimal digits: what cage coordinates are held to.
+using Gold = boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<120>,
+                                           boost::multiprecision::et_off>;
+using Gold3 = std::array<Gold, 3>;
+
+Gold3 gold(const Vec3& v);
+
+/// Mean value weights by the textbook's vectors (Ju, Schaefer, Warren 2005), normalised.
+std::vector<Gold> gold_mean_value(const Cage& cage, const Gold3& point);
+
+/// Green's coordinates by the textbook's solid angle and logarithms (Urago 2000; Lipman et al. 2008): one φ a vertex,
+/// then one ψ a face, for a point inside.
+std::vector<Gold> gold_green(const Cage& cage, const Gold3& point);
+
+/// Gradient of each weight at a point, by central differences with a step of 1e-40.
+std::vector<Vec3> gold_gradients(std::vector<Gold> (*weights)(const Cage&, const Gold3&), const Cage& cage,
+                                 const Vec3& point);
+
+}  // namespace rebake::test
