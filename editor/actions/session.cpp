@@ -54,6 +54,7 @@ std::string in_words(const std::string& name, const DeformationReport& report) {
                         report.folded);
   if (report.undefined > 0)
     line += fmt::format("; {} have no rotation of their own and got a neighbour's", report.undefined);
+  if (report.outside > 0) line += fmt::format("; {} that show nothing lie outside the cage and stay", report.outside);
   if (report.not_finite > 0) line += fmt::format("; {} are no numbers and stay", report.not_finite);
   return line;
 }

@@ -85,12 +85,12 @@ Scene with_deformed(const Scene& scene, const DeformSet& set, double falloff, co
   for (std::size_t k = 0; k < set.nodes.size(); ++k) {
     DeformedObject made =
         deformed(*set.nodes[k].node->object, set.nodes[k].to_world, set.flags[k], falloff, deformation);
-    if (made.report.outside > 0)
+    if (made.report.opaque_outside > 0)
       throw EditError(
           fmt::format("{} of the {} points of \"{}\" lie outside the cage, where these coordinates hold nothing; use "
                       "mean_value, or "
                       "a coarser wrap or a larger cage",
-                      made.report.outside, made.report.points, set.nodes[k].node->name));
+                      made.report.opaque_outside, made.report.points, set.nodes[k].node->name));
     result = with_changed(result, set.nodes[k].node->id, [&](Node& node) { node.object = std::move(made.object); });
     check_subtree(result, set.nodes[k].node->id);
   }

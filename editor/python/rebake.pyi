@@ -326,7 +326,7 @@ class Document:
         wrap: a wrap of the triangles that show something; its coarseness as a share of their size, 0.005 to 0.5
         mesh: a closed triangle mesh in world space: a file (.obj, .off, .ply), or its vertices and faces
         moves: what moves, one after the other; boxes and spheres in world units, with frame bounds in shares of the cage's box
-        coordinates: mean_value: anywhere; green: keeps shapes, inside only; harmonic: never negative, inside only, on a grid
+        coordinates: mean_value: anywhere; green: keeps shapes, inside only; harmonic: around corners, not across, inside only, on a grid
         resolution: harmonic: cells of the grid along the cage's longest side, 8 to 256; finer is nearer and slower
         """
     def handles(self, *, moves: Sequence[dict[str, Any]], node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, lattice: Sequence[int] | None = None, wrap: float | None = None, mesh: str | dict[str, Any] | None = None, fixed: Sequence[dict[str, Any]] = [], iterations: int = 10) -> None:

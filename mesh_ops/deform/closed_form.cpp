@@ -42,51 +42,41 @@ Deformed deform(const ClosedForm& form, const Vec3& point) {
   const double inside = std::clamp(p.z(), form.from, form.to);
   const double slope = p.z() > form.from && p.z() < form.to ? 1 : 0;  // of `inside` by z
   const double share = (inside - form.from) / length, beyond = p.z() - inside;
-  Vec3 q = p;
-  Mat3 j = Mat3::Identity();
+  // The motion and the Jacobian less the identity, so that what does not move loses no bit and small angles none
+  // either: cos a − 1 = −2 sin²(a/2).
+  Vec3 motion(0, 0, 0);
+  Mat3 j = Mat3::Zero();
+  const double angle = form.radians * share, s = std::sin(angle), half = std::sin(angle / 2), c1 = -2 * half * half;
   switch (form.kind) {
     case ClosedForm::Kind::twist: {
-      const double angle = form.radians * share, c = std::cos(angle), s = std::sin(angle);
       const double rate = slope * form.radians / length;
-      q.x() = c * p.x() - s * p.y();
-      q.y() = s * p.x() + c * p.y();
-      j << c, -s, -rate * q.y(), s, c, rate * q.x(), 0, 0, 1;
+      motion = {c1 * p.x() - s * p.y(), s * p.x() + c1 * p.y(), 0};
+      j << c1, -s, -rate * (p.y() + motion.y()), s, c1, rate * (p.x() + motion.x()), 0, 0, 0;
       break;
     }
     case ClosedForm::Kind::taper: {
-      const double r = 1 + (form.factor - 1) * share, rate = slope * (form.factor - 1) / length;
-      q.x() = r * p.x();
-      q.y() = r * p.y();
-      j << r, 0, rate * p.x(), 0, r, rate * p.y(), 0, 0, 1;
+      const double r1 = (form.factor - 1) * share, rate = slope * (form.factor - 1) / length;
+      motion = {r1 * p.x(), r1 * p.y(), 0};
+      j << r1, 0, rate * p.x(), 0, r1, rate * p.y(), 0, 0, 0;
       break;
     }
     case ClosedForm::Kind::stretch: {
-      const double extra = (form.factor - 1) * length;
-      q.z() = p.z() + extra * share;
-      j(2, 2) = slope > 0 ? form.factor : 1;
+      motion.z() = (form.factor - 1) * length * share;
+      j(2, 2) = slope * (form.factor - 1);
       break;
     }
     case ClosedForm::Kind::bend: {
-      // The axis becomes an arc of the same length; chords by sin(a/2) so that small angles lose nothing.
-      const double angle = form.radians * share, kappa = form.radians / length;
-      const double c = std::cos(angle), s = std::sin(angle), half = std::sin(angle / 2);
-      const double arc = inside - form.from;
-      // Where the axis is at this angle: chord and sagitta of the arc.
-      const double along = kappa != 0 ? s / kappa : arc, aside = kappa != 0 ? 2 * half * half / kappa : 0;
-      q.x() = aside + c * p.x() + s * beyond;
-      q.z() = form.from + along - s * p.x() + c * beyond;
-      if (p.z() < form.from) {
-        q = p;
-        break;
-      }
+      if (share == 0) break;
+      // The axis becomes an arc of its own length: there it runs (1 − cos a)/κ aside and sin a / κ along.
+      const double kappa = form.radians / length, arc = inside - form.from;
+      const double aside = kappa != 0 ? -c1 / kappa : 0, shortened = kappa != 0 ? s / kappa - arc : 0;
+      motion = {aside + c1 * p.x() + s * beyond, 0, shortened - s * p.x() + c1 * beyond};
       const double stretched = slope > 0 ? 1 - kappa * p.x() : 1;
-      j << c, 0, s * stretched, 0, 1, 0, -s, 0, c * stretched;
+      j << c1, 0, s * stretched, 0, 0, 0, -s, 0, c1 * stretched + (stretched - 1);
       break;
     }
   }
-  // What the formula leaves alone stays bit for bit.
-  if (q == p) return {point, frame.transpose() * j * frame};
-  return {point + frame.transpose() * (q - p), frame.transpose() * j * frame};
+  return {point + frame.transpose() * motion, Mat3::Identity() + frame.transpose() * j * frame};
 }
 
 }  // namespace rebake

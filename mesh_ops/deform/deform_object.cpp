@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
@@ -125,6 +126,14 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
     defined[i] = local.defined ? 1 : 0;
     turns[i] = frame.transpose() * local.rotation * frame;
   });
+  if (std::any_of(moved.outside.begin(), moved.outside.end(), [](auto flag) { return flag != 0; })) {
+    const auto traits = traits_of(object);
+    std::vector<std::uint8_t> shows(rest.size(), 0);
+    for (std::size_t t = 0; t < flags.size(); ++t)
+      if (flags[t] != 0 && (*traits)[t].opacity > 0)
+        for (std::size_t k = 0; k < 3; ++k) shows[number[corners->places[t * 3 + k]]] = 1;
+    for (std::size_t i = 0; i < rest.size(); ++i) report.opaque_outside += shows[i] & moved.outside[i];
+  }
   for (std::size_t i = 0; i < rest.size(); ++i) {
     report.not_finite += world[i].allFinite() ? 0 : 1;
     report.outside += !moved.outside.empty() && moved.outside[i] != 0 ? 1 : 0;
@@ -165,7 +174,7 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
       }
     set.soup = change_vertices(set.soup, flags, first, [&](std::uint32_t v, Vec3& position, Mat3& turn) {
       const std::uint32_t i = place_of[v];
-      if (moved.points[i] != world[i]) position = to_object * moved.points[i];
+      if (world[i].allFinite() && moved.points[i] != world[i]) position = to_object * moved.points[i];
       if (!turns[i].isIdentity(0)) turn = orthogonal_factor(turns[i] * turn);
     });
     first += total;

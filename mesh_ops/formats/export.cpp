@@ -17,18 +17,28 @@ bool same_turn(const Soup& soup, std::size_t face, const Mat3& turn) {
   return soup.turns() == nullptr ? turn.isIdentity(0) : (*soup.turns())[soup.faces()[face][0]] == turn;
 }
 
+// Of an object without bent faces.
 std::vector<Mat3> distinct_turns(const BakedObject& object) {
   std::vector<Mat3> turns;
   for (const TextureSet& set : object.sets)
     for (const Face& face : set.soup.faces()) {
       const Mat3 turn = set.soup.turns() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.turns())[face[0]];
-      if (set.soup.turns() != nullptr && ((*set.soup.turns())[face[1]] != turn || (*set.soup.turns())[face[2]] != turn))
-        throw EditError("a bent part has no exact form in the published format; save it as a scene instead");
       if (turns.empty() || turns.back() != turn)
         if (std::find(turns.begin(), turns.end(), turn) == turns.end()) turns.push_back(turn);
       if (set.soup.turns() == nullptr) break;
     }
   return turns;
+}
+
+// Whether a face's corners are turned differently.
+bool any_bent(const BakedObject& object) {
+  for (const TextureSet& set : object.sets) {
+    if (set.soup.turns() == nullptr) continue;
+    const std::vector<Mat3>& turns = *set.soup.turns();
+    for (const Face& face : set.soup.faces())
+      if (turns[face[0]] != turns[face[1]] || turns[face[0]] != turns[face[2]]) return true;
+  }
+  return false;
 }
 
 // Equal but for the rounding of a folded rotation.
@@ -62,6 +72,19 @@ std::vector<TextureSet> world_sets(const BakedObject& object, const Mat3& turn, 
 }
 
 }  // namespace
+
+Scene without_bends(const Scene& scene, std::vector<std::string>* bent) {
+  Scene result = scene;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.visible || !placed.node->object || !any_bent(*placed.node->object)) continue;
+    if (bent != nullptr) bent->push_back(placed.node->name);
+    auto object = std::make_shared<BakedObject>(*placed.node->object);
+    for (TextureSet& set : object->sets)
+      set.soup = Soup(set.soup.shared_positions(), set.soup.shared_uvs(), set.soup.shared_faces());
+    result = with_changed(result, placed.node->id, [&](Node& node) { node.object = object; });
+  }
+  return result;
+}
 
 std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout, bool* reordered) {
   if (reordered != nullptr) *reordered = false;
@@ -129,7 +152,8 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
 ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options,
                           const Progress& progress) {
   bool reordered = false;
-  const std::vector<Node> nodes = merged_for_export(scene, options.layout, &reordered);
+  std::vector<std::string> bent;
+  const std::vector<Node> nodes = merged_for_export(without_bends(scene, &bent), options.layout, &reordered);
   if (nodes.empty()) throw EditError("there is nothing to export: no visible node has triangles");
   ExportReport report;
   report.folders = nodes.size();
@@ -137,6 +161,10 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.node->object && !placed.visible)
       report.notes.push_back(fmt::format("the hidden node \"{}\" is left out; save keeps it", placed.node->name));
+  if (!bent.empty())
+    report.notes.push_back(
+        fmt::format("the format has no place for how bends turn colours: {} shows those from before; save keeps them",
+                    fmt::join(bent, ", ")));
   if (reordered)
     report.notes.emplace_back(
         "objects of one decoder are drawn together now: where surfaces of two objects coincide exactly, another of "

@@ -1,0 +1,154 @@
+// Deforming edits: what scripts can do, what they are told, and that pictures and files agree.
+#include <gtest/gtest.h>
+
+#include "editor/script/script.h"
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/files.h"
+#include "render/compare.h"
+#include "render/frame/plan.h"
+#include "render/picture.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+class DeformScript : public ::testing::Test {
+ protected:
+  DeformScript() {
+    session.say = [this](const std::string& line) { said += line + "\n"; };
+    export_scene(scene_of(made_object({.columns = 32, .rows = 16})), folder_.path() / "ball", {});
+    run(R"({"op": "import", "path": "{here}/ball", "as": "ball"})");
+  }
+  void run(const std::string& text) { run_script(session, text, "s.jsonl", {{"here", folder_.path().string()}}); }
+  void expect_error(const std::string& text, const std::string& says) {
+    const Scene before = session.scene();
+    try {
+      run(text);
+      ADD_FAILURE() << "was done: " << text;
+    } catch (const ScriptError& error) {
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(session.scene().roots, before.roots) << "nothing is lost";
+  }
+  Image picture() {
+    View view;
+    view.width = view.height = 200;
+    view.camera.eye = {0.4, 0.7, 4};
+    view.camera.near_plane = 0.1;
+    return session.renderer().render(session.scene(), view);
+  }
+  const BakedObject& ball() const { return *find(session.scene(), "ball")->object; }
+
+  Session session;
+  std::string said;
+  TemporaryFolder folder_;
+};
+
+TEST_F(DeformScript, ARigidMotionByACageIsThatOfTheNode) {
+  const char* const moves = R"("moves": [{"box": {"min": [-9, -9, -9], "max": [9, 9, 9]}, "translate": [0.2, 0.1, -0.3], )"
+                            R"("rotate": {"axis": [1, 2, 0.5], "degrees": 70}, "pivot": [0, 0, 0]}]})";
+  run(R"({"op": "transform", "node": "ball", "translate": [0.2, 0.1, -0.3], "rotate": {"axis": [1, 2, 0.5], "degrees": 70}, "pivot": [0, 0, 0]})");
+  const Image by_node = picture();
+  run(R"({"op": "undo"})");
+  const Image before = picture();
+  EXPECT_LT(compare(by_node, before, 2).psnr_db, 30) << "the motion shows";
+  for (const char* cage : {R"("lattice": [2, 2, 2])", R"("wrap": 0.2)", R"("lattice": [1, 1, 1], "coordinates": "green")",
+                           R"("wrap": 0.2, "coordinates": "harmonic", "resolution": 16)"}) {
+    run(R"({"op": "cage", "node": "ball", )" + std::string(cage) + ", " + moves);
+    EXPECT_GE(compare(picture(), by_node, 2).psnr_db, 48) << cage;
+    run(R"({"op": "undo"})");
+    EXPECT_TRUE(picture().rgb == before.rgb) << "undo restores every bit";
+  }
+}
+
+TEST_F(DeformScript, OnlyBentObjectsPayForTheirTurnsAndThePlanSaysSo) {
+  View view;
+  view.camera.eye = {0, 0, 4};
+  const std::string before = describe(plan(session.scene(), view));
+  run(R"({"op": "twist", "node": "ball", "degrees": 90})");
+  EXPECT_NE(describe(plan(session.scene(), view)), before);
+  run(R"({"op": "undo"})");
+  EXPECT_EQ(describe(plan(session.scene(), view)), before);
+}
+
+TEST_F(DeformScript, EveryDeformationIsOneLine) {
+  for (const char* line :
+       {R"({"op": "bend", "node": "ball", "degrees": 40})", R"({"op": "bend", "node": "ball", "degrees": 40, "direction": [0, 0, 1], "from": 0.5, "to": 1.5})",
+        R"({"op": "twist", "node": "ball", "degrees": 90, "axis": [1, 0, 0]})", R"({"op": "taper", "node": "ball", "factor": 0.5})",
+        R"({"op": "stretch", "node": "ball", "factor": 2})",
+        R"({"op": "bend", "node": "ball", "degrees": 40, "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds", "falloff": 0.3})",
+        R"({"op": "cage", "node": "ball", "moves": [{"points": [0, [3, 5]], "translate": [0.1, 0, 0]}]})",
+        R"({"op": "handles", "node": "ball", "wrap": 0.2, "frame": "bounds", "fixed": [{"box": {"min": [0, 0, 0], "max": [1, 0.2, 1]}}], "moves": [{"sphere": {"center": [0.5, 1, 0.5], "radius": 0.2}, "translate": [0.5, 0, 0]}]})"}) {
+    const auto before = find(session.scene(), "ball")->object;
+    said.clear();
+    run(line);
+    EXPECT_NE(find(session.scene(), "ball")->object, before) << line;
+    EXPECT_NE(said.find("deformed, least det J"), std::string::npos) << said;
+    run(R"({"op": "undo"})");
+    EXPECT_EQ(find(session.scene(), "ball")->object, before);
+  }
+}
+
+TEST_F(DeformScript, AFoldIsReportedAndCanBeSelected) {
+  run(R"({"op": "bend", "node": "ball", "degrees": 300})");
+  EXPECT_NE(said.find("folds or collapses"), std::string::npos) << said;
+  run(R"({"op": "select_folded"})");
+  const std::size_t folded = count(*find(session.scene(), "ball")->selection);
+  EXPECT_GT(folded, 10U);
+  EXPECT_LT(folded, 1000U);
+}
+
+TEST_F(DeformScript, AJournaledCageNeedsNoFile) {
+  write_text(folder_.path() / "cage.obj",
+             "v -2 -2 -2\nv 4 -2 -2\nv -2 4 -2\nv -2 -2 4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  run(R"({"op": "cage", "node": "ball", "mesh": "{here}/cage.obj", "moves": [{"points": [3], "translate": [0, 0, 3]}]})");
+  const auto after = ball().sets[0].soup.positions();
+  const nlohmann::json line = to_json(session.document.history().edits().back());
+  std::filesystem::remove(folder_.path() / "cage.obj");
+  run(R"({"op": "undo"})");
+  session.edit(read_edit(line, session.scene()));
+  EXPECT_EQ(ball().sets[0].soup.positions(), after);
+}
+
+TEST_F(DeformScript, ScenesKeepTurnsAndPlainFoldersSayWhatTheyLose) {
+  run(R"({"op": "twist", "node": "ball", "degrees": 120})");
+  const Image bent = picture();
+  said.clear();
+  run(R"({"op": "export", "out": "{here}/plain"}
+{"op": "save", "out": "{here}/scene"})");
+  EXPECT_NE(said.find("how bends turn colours: ball"), std::string::npos) << said;
+  EXPECT_NE(said.find("dB PSNR over four sides"), std::string::npos) << said;
+  run(R"({"op": "remove", "node": "ball"}
+{"op": "import", "path": "{here}/scene", "as": "ball"})");
+  EXPECT_GE(compare(picture(), bent, 2).psnr_db, 60) << "positions are written as decimal numbers";
+  run(R"({"op": "remove", "node": "ball"}
+{"op": "import", "path": "{here}/plain", "as": "ball"})");
+  EXPECT_LT(compare(picture(), bent, 2).psnr_db, 45);
+  EXPECT_EQ(ball().sets[0].soup.turns(), nullptr);
+}
+
+TEST_F(DeformScript, BadInputSaysWhatToDo) {
+  expect_error(R"({"op": "cage", "node": "ball", "moves": []})", "at least one move");
+  expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1], "moves": [{"points": [0]}]})", "three whole numbers");
+  expect_error(R"({"op": "cage", "node": "ball", "lattice": [0, 1, 1], "moves": [{"points": [0]}]})", "at least one cell");
+  expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "wrap": 0.1, "moves": [{"points": [0]}]})", "at most one of");
+  expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [8]}]})", "the cage has 8 points");
+  expect_error(R"({"op": "cage", "node": "ball", "moves": [{"box": {"min": [5, 5, 5], "max": [6, 6, 6]}}]})", "no cage point lies inside");
+  expect_error(R"({"op": "cage", "node": "ball", "moves": [{"translate": [1, 0, 0]}]})", "exactly one of points, box and sphere");
+  expect_error(R"({"op": "cage", "node": "ball", "wrap": 3, "moves": [{"points": [0]}]})", "between 0.005 and 0.5");
+  expect_error(R"({"op": "cage", "node": "ball", "mesh": "{here}/none.obj", "moves": [{"points": [0]}]})", "none.obj");
+  const std::string small = R"("mesh": {"vertices": [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]], "faces": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]}, )";
+  expect_error(R"({"op": "cage", "node": "ball", "coordinates": "green", )" + small + R"("moves": [{"points": [0]}]})", "lie outside the cage");
+  expect_error(R"({"op": "cage", "node": "ball", "coordinates": "bary", "moves": [{"points": [0]}]})", "must be mean_value");
+  expect_error(R"({"op": "bend", "degrees": 10})", "no triangle is selected");
+  expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "axis": [0, 0, 0]})", "must have a length");
+  expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "from": 2, "to": 1})", "must lie below to");
+  expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "falloff": -1})", "must not be negative");
+  expect_error(R"({"op": "taper", "node": "ball", "factor": -1})", "not negative");
+  expect_error(R"({"op": "handles", "node": "ball", "moves": [{"points": [0]}], "iterations": 0})", "between 1 and 1000");
+  run(R"({"op": "lock", "node": "ball"})");
+  expect_error(R"({"op": "bend", "node": "ball", "degrees": 10})", "is locked");
+}
+
+}  // namespace
+}  // namespace rebake::test

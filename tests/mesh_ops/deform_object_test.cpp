@@ -1,0 +1,221 @@
+// Deforming objects: no cracks, no needless change, soft borders, folds that are counted, handles, wraps.
+#include "mesh_ops/deform/deform_object.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "mesh_ops/deform/closed_form.h"
+#include "mesh_ops/deform/handles.h"
+#include "mesh_ops/deform/wrap.h"
+#include "mesh_ops/error.h"
+#include "mesh_ops/formats/cage_file.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+SpaceDeformation closed(const ClosedForm& form) {
+  return [form](const std::vector<Vec3>& points) {
+    DeformedPoints result;
+    for (const Vec3& p : points) {
+      const Deformed one = deform(form, p);
+      result.points.push_back(one.point);
+      result.jacobians.push_back(one.jacobian);
+    }
+    return result;
+  };
+}
+SpaceDeformation bend(double radians) {
+  ClosedForm form;
+  form.from = -1;
+  form.radians = radians;
+  return closed(form);
+}
+SpaceDeformation affine(const Mat3& linear) {
+  return [linear](const std::vector<Vec3>& points) {
+    DeformedPoints result;
+    for (const Vec3& p : points) result.points.push_back(linear * p);
+    result.jacobians.assign(points.size(), linear);
+    return result;
+  };
+}
+
+TriangleSet all(const BakedObject& object) { return TriangleSet(object.triangle_count(), 1); }
+TriangleSet upper_half(const BakedObject& object) {
+  TriangleSet flags;
+  for (const TextureSet& set : object.sets)
+    for (const Face& face : set.soup.faces()) {
+      const auto& p = set.soup.positions();
+      flags.push_back((p[face[0]] + p[face[1]] + p[face[2]]).y() > 0 ? 1 : 0);
+    }
+  return flags;
+}
+
+// Every corner's place before → where corners there are now. One for each when nothing is torn.
+std::map<std::array<double, 3>, std::vector<Vec3>> places(const BakedObject& before, const BakedObject& after) {
+  std::map<std::array<double, 3>, std::vector<Vec3>> result;
+  for (std::size_t s = 0; s < before.sets.size(); ++s)
+    for (std::size_t f = 0; f < before.sets[s].soup.triangle_count(); ++f)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& p = before.sets[s].soup.positions()[before.sets[s].soup.faces()[f][k]];
+        const Vec3& q = after.sets[s].soup.positions()[after.sets[s].soup.faces()[f][k]];
+        auto& found = result[{p.x(), p.y(), p.z()}];
+        if (std::find(found.begin(), found.end(), q) == found.end()) found.push_back(q);
+      }
+  return result;
+}
+
+TEST(Deform, UnweldedCornersMoveAlikeBitForBit) {
+  const auto object = made_object();
+  const DeformedObject result = deformed(*object, Affine::Identity(), all(*object), 0, bend(1));
+  for (const auto& [place, now] : places(*object, *result.object)) EXPECT_EQ(now.size(), 1U);
+  EXPECT_NE(result.object->sets[0].soup.shared_positions(), object->sets[0].soup.shared_positions());
+  EXPECT_EQ(result.object->sets[0].soup.shared_uvs(), object->sets[0].soup.shared_uvs()) << "features stay attached";
+  EXPECT_EQ(result.object->sets[0].texels, object->sets[0].texels);
+}
+
+TEST(Deform, TheIdentityChangesNothing) {
+  const auto object = made_object();
+  // A transform whose inverse rounds.
+  const Affine placed = Eigen::Translation3d(0.1, 0.2, 0.3) * Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()) * Eigen::Scaling(0.7);
+  const DeformedObject result = deformed(*object, placed, all(*object), 0, bend(0));
+  EXPECT_EQ(result.object->sets[0].soup.shared_positions(), object->sets[0].soup.shared_positions());
+  EXPECT_EQ(result.object->sets[0].soup.turns(), nullptr);
+}
+
+TEST(Deform, ASoftBorderLeavesNoCrackAndAHardOneSplits) {
+  const auto object = made_object({.columns = 32, .rows = 16});
+  const TriangleSet flags = upper_half(*object);
+  const DeformedObject soft = deformed(*object, Affine::Identity(), flags, 0.5, affine(Eigen::Scaling(1.5) * Mat3::Identity()));
+  for (const auto& [place, now] : places(*object, *soft.object)) EXPECT_EQ(now.size(), 1U);
+  const DeformedObject hard = deformed(*object, Affine::Identity(), flags, 0, affine(Eigen::Scaling(1.5) * Mat3::Identity()));
+  std::size_t split = 0;
+  for (const auto& [place, now] : places(*object, *hard.object)) split += now.size() > 1 ? 1 : 0;
+  EXPECT_EQ(split, 32U) << "the equator's corners";
+  // The falloff's Jacobian is that of the faded map: a scaling still turns nothing along its own axis.
+  EXPECT_EQ(soft.report.folded, 0U);
+}
+
+TEST(Deform, FoldsAreCountedAndNothingBecomesNaN) {
+  const auto object = made_object();
+  // κ = 2: folds beyond x = 0.5.
+  ClosedForm form;
+  form.from = -1;
+  form.to = 1;
+  form.radians = 4;
+  const DeformedObject bent = deformed(*object, Affine::Identity(), all(*object), 0, closed(form));
+  EXPECT_GT(bent.report.folded, 0U);
+  EXPECT_LT(bent.report.least_determinant, 0);
+  EXPECT_GT(count(bent.report.folded_triangles), 0U);
+  EXPECT_LT(count(bent.report.folded_triangles), object->triangle_count());
+  // Collapsed to a plane, a line, a point; mirrored.
+  for (const Vec3& scale : {Vec3(1, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(-1, 1, 1)}) {
+    const DeformedObject flat = deformed(*object, Affine::Identity(), all(*object), 0, affine(scale.asDiagonal()));
+    EXPECT_EQ(flat.report.folded, flat.report.points) << scale.transpose();
+    for (const TextureSet& set : flat.object->sets) {
+      for (const Vec3& p : set.soup.positions()) EXPECT_TRUE(p.allFinite());
+      if (set.soup.turns() == nullptr) continue;
+      for (const Mat3& turn : *set.soup.turns()) {
+        EXPECT_TRUE(turn.isUnitary(1e-12));
+        EXPECT_GT(turn.determinant(), 0);
+      }
+    }
+  }
+}
+
+TEST(Deform, PointsThatAreNoNumbersStay) {
+  auto object = std::make_shared<BakedObject>(*made_object());
+  auto positions = object->sets[0].soup.positions();
+  positions[0].x() = std::nan("");
+  positions[5].y() = std::numeric_limits<double>::infinity();
+  object->sets[0].soup = Soup(positions, object->sets[0].soup.uvs(), object->sets[0].soup.faces());
+  const DeformedObject result = deformed(*object, Affine::Identity(), all(*object), 0, bend(1));
+  EXPECT_EQ(result.report.not_finite, 2U);
+  EXPECT_TRUE(std::isnan(result.object->sets[0].soup.positions()[0].x()));
+  EXPECT_EQ(result.object->sets[0].soup.positions()[5].y(), positions[5].y());
+  const Cage cage = wrap({positions, object->sets[0].soup.faces()}, 0.2);
+  EXPECT_GT(cage.faces.size(), 10U);
+}
+
+TEST(Deform, RotationsAccumulateOverSeveralBends) {
+  const auto object = made_object();
+  const Mat3 quarter = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
+  const DeformedObject once = deformed(*object, Affine::Identity(), all(*object), 0, affine(quarter));
+  const DeformedObject twice = deformed(*once.object, Affine::Identity(), all(*object), 0, affine(quarter));
+  for (const Mat3& turn : *twice.object->sets[0].soup.turns()) EXPECT_LE((turn - quarter * quarter).norm(), 1e-14);
+  // Seen from the object's own frame, in a node that is turned and scaled unevenly.
+  const Affine placed = Eigen::AngleAxisd(1.1, Vec3(1, 1, 0).normalized()) * Eigen::Scaling(1.0, 3.0, 0.5);
+  const DeformedObject turned = deformed(*object, placed, all(*object), 0, affine(quarter));
+  const Mat3 frame = orthogonal_factor(placed.linear());
+  for (const Mat3& turn : *turned.object->sets[0].soup.turns())
+    EXPECT_LE((turn - frame.transpose() * quarter * frame).norm(), 1e-12);
+}
+
+TEST(Wrap, EnclosesEveryTriangleAndIsClosed) {
+  const auto object = made_object();
+  const Soup& soup = object->sets[0].soup;
+  for (const double coarseness : {0.3, 0.1, 0.05}) {
+    const Cage cage = wrap({soup.positions(), soup.faces()}, coarseness);
+    EXPECT_GT(volume(cage), 0);
+    EXPECT_EQ(self_intersections(cage), 0U);
+    EXPECT_EQ(deform_points(*green_coordinates(cage), cage, cage.vertices, soup.positions(), false).outside,
+              std::vector<std::uint8_t>(soup.positions().size(), 0)) << "Green's coordinates know the inside";
+  }
+  EXPECT_THROW(wrap({soup.positions(), soup.faces()}, 0.9), FieldError);
+  EXPECT_THROW(wrap({}, 0.1), Error);
+}
+
+TEST(Handles, HeldPointsAreHeldAndTheRestIsRigid) {
+  const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
+  std::vector<HandledVertex> held;
+  const Affine lifted = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.7, Vec3::UnitZ());
+  for (std::uint32_t v = 0; v < cage.vertices.size(); ++v)
+    if (cage.vertices[v].y() < 0.1) held.push_back({v, lifted * cage.vertices[v]});
+  const HandledCage moved = as_rigid_as_possible(cage, held, 500);
+  EXPECT_EQ(moved.free_components, 0U);
+  for (const HandledVertex& h : held) EXPECT_EQ(moved.vertices[h.vertex], h.place);
+  // With one end moved rigidly and the other free, rigid motion is the minimum.
+  double worst = 0;
+  for (std::size_t v = 0; v < cage.vertices.size(); ++v)
+    worst = std::max(worst, (moved.vertices[v] - lifted * cage.vertices[v]).norm());
+  EXPECT_LE(worst, 0.01);
+  EXPECT_THROW(as_rigid_as_possible(cage, {}, 5), Error);
+}
+
+TEST(Handles, AComponentThatNothingHoldsStays) {
+  Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 1, 1, 1);
+  const Cage other = lattice_cage(Box(Vec3(3, 0, 0), Vec3(4, 1, 1)), 1, 1, 1);
+  for (const Face& face : other.faces) cage.faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8});
+  cage.vertices.insert(cage.vertices.end(), other.vertices.begin(), other.vertices.end());
+  const HandledCage moved = as_rigid_as_possible(cage, {{0, Vec3(-1, 0, 0)}, {7, Vec3(1, 1, 1)}}, 5);
+  EXPECT_EQ(moved.free_components, 1U);
+  for (std::size_t v = 8; v < 16; ++v) EXPECT_EQ(moved.vertices[v], cage.vertices[v]);
+}
+
+TEST(CageFile, IsReadAsItWasWrittenAndBadOnesAreRefused) {
+  TemporaryFolder folder;
+  const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 0.3, 2)), 2, 1, 2);
+  for (const char* name : {"cage.obj", "cage.off", "cage.ply"}) {
+    write_cage(cage, folder.path() / name);
+    EXPECT_EQ(read_cage(folder.path() / name).faces, cage.faces) << name;
+  }
+  const auto refused = [&](const std::string& name, const std::string& text, const std::string& says) {
+    write_text(folder.path() / name, text);
+    try {
+      read_cage(folder.path() / name);
+      ADD_FAILURE() << name << " was read";
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+  };
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\n";
+  refused("open.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 5 4 2\n", "open");
+  refused("quads.obj", corners + "f 1 2 3 4\n", "three corners");
+  refused("fan.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 1 2 5\n", "manifold");
+  refused("cage.stl", "solid\n", "must end in");
+  refused("none.ply", "ply\n", "no mesh");
+}
+
+}  // namespace
+}  // namespace rebake::test
