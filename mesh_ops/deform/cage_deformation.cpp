@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "mesh_ops/deform/rotation.h"
+#include "mesh_ops/deform/row_sums.h"
 
 namespace rebake {
 
@@ -128,39 +129,36 @@ std::uint64_t CageBinding::memory() const {
 namespace {
 
 // Rows that move, and how far.
-struct MovingRow {
-  std::size_t row;
-  std::array<float, 3> motion;
+struct MovingRows {
+  std::vector<std::uint32_t> rows;
+  std::vector<float> motions;
 };
-std::vector<MovingRow> moving_rows(const std::vector<Vec3>& motions) {
-  std::vector<MovingRow> rows;
-  for (std::size_t row = 0; row < motions.size(); ++row)
-    if (!motions[row].isZero(0)) {
-      const Eigen::Vector3f m = motions[row].cast<float>();
-      rows.push_back({row, {m.x(), m.y(), m.z()}});
-    }
-  return rows;
+MovingRows moving_rows(const std::vector<Vec3>& motions) {
+  MovingRows moving;
+  for (std::uint32_t row = 0; row < motions.size(); ++row) {
+    if (motions[row].isZero(0)) continue;
+    moving.rows.push_back(row);
+    for (int axis = 0; axis < 3; ++axis) moving.motions.push_back(static_cast<float>(motions[row][axis]));
+  }
+  return moving;
 }
 
 }  // namespace
 
 void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& out) const {
   out.resize(points_.size());
-  const std::vector<MovingRow> rows = moving_rows(coordinates_.row_motions(rest_, moved));
+  const MovingRows moving = moving_rows(coordinates_.row_motions(rest_, moved));
   const std::size_t block_size = coordinates_.rows() * batch_lanes;
+  const RowSums sum_rows = row_sums();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_of(points_.size()), 64), [&](const auto& range) {
+    std::array<float, 3 * batch_lanes> sums;
     for (std::size_t block = range.begin(); block < range.end(); ++block) {
-      const float* const weights = weights_.data() + block * block_size;
-      std::array<std::array<float, batch_lanes>, 3> sum{};
-      for (const MovingRow& moving : rows) {
-        const float* const row = weights + moving.row * batch_lanes;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          for (std::size_t lane = 0; lane < batch_lanes; ++lane) sum[axis][lane] += row[lane] * moving.motion[axis];
-      }
+      sum_rows(weights_.data() + block * block_size, moving.rows.data(), moving.motions.data(), moving.rows.size(), 1,
+               sums.data());
       for (std::size_t lane = 0; lane < batch_lanes && block * batch_lanes + lane < order_.size(); ++lane) {
         const std::uint32_t point = order_[block * batch_lanes + lane];
-        out[point] = points_[point] + Vec3(static_cast<double>(sum[0][lane]), static_cast<double>(sum[1][lane]),
-                                           static_cast<double>(sum[2][lane]));
+        out[point] = points_[point] + Vec3(static_cast<double>(sums[lane]), static_cast<double>(sums[batch_lanes + lane]),
+                                           static_cast<double>(sums[2 * batch_lanes + lane]));
       }
     }
   });
@@ -169,7 +167,8 @@ void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& o
 void CageBinding::rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& out, std::size_t stride) const {
   if (gradients_.empty() && !points_.empty()) throw std::logic_error("bound without gradients");
   out.assign(points_.size(), Mat3::Identity());
-  const std::vector<MovingRow> rows = moving_rows(coordinates_.row_motions(rest_, moved));
+  const MovingRows moving = moving_rows(coordinates_.row_motions(rest_, moved));
+  const RowSums sum_rows = row_sums();
   const std::size_t block_size = coordinates_.rows() * 3 * batch_lanes;
   const std::size_t step = std::max<std::size_t>(stride, 1);
   const std::size_t samples = (order_.size() + step - 1) / step;
@@ -179,20 +178,14 @@ void CageBinding::rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& o
       const std::size_t first = block * batch_lanes, last = std::min(first + batch_lanes, order_.size());
       const std::size_t sample = (first + step - 1) / step * step;
       if (sample >= last) continue;
-      const float* const gradients = gradients_.data() + block * block_size;
-      std::array<std::array<float, batch_lanes>, 9> sum{};
-      for (const MovingRow& moving : rows) {
-        const float* const row = gradients + moving.row * 3 * batch_lanes;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          for (std::size_t to = 0; to < 3; ++to)
-            for (std::size_t lane = 0; lane < batch_lanes; ++lane)
-              sum[to * 3 + axis][lane] += moving.motion[to] * row[axis * batch_lanes + lane];
-      }
+      std::array<float, 9 * batch_lanes> sums;
+      sum_rows(gradients_.data() + block * block_size, moving.rows.data(), moving.motions.data(), moving.rows.size(), 3,
+               sums.data());
       for (std::size_t at = sample; at < last; at += step) {
         Mat3 jacobian = Mat3::Identity();
         for (int to = 0; to < 3; ++to)
           for (int axis = 0; axis < 3; ++axis)
-            jacobian(to, axis) += static_cast<double>(sum[static_cast<std::size_t>(to * 3 + axis)][at - first]);
+            jacobian(to, axis) += static_cast<double>(sums[static_cast<std::size_t>(to * 3 + axis) * batch_lanes + at - first]);
         out[order_[at]] = local_rotation(jacobian).rotation;
       }
     }

@@ -38,8 +38,10 @@ MeanValueBatch mean_value_batch();
 void mean_value_batch_baseline(const BatchCage& cage, const double* points, double* workspace, double* weights,
                                double* gradients, std::uint8_t* delicate);
 #ifdef REBAKE_WIDE_VECTORS
-void mean_value_batch_wide(const BatchCage& cage, const double* points, double* workspace, double* weights,
-                           double* gradients, std::uint8_t* delicate);
+void mean_value_batch_v3(const BatchCage& cage, const double* points, double* workspace, double* weights,
+                         double* gradients, std::uint8_t* delicate);
+void mean_value_batch_v4(const BatchCage& cage, const double* points, double* workspace, double* weights,
+                         double* gradients, std::uint8_t* delicate);
 #endif
 
 }  // namespace rebake
