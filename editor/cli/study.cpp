@@ -42,12 +42,26 @@ void add_study(CLI::App& program) {
       if (options->scenes.empty()) options->scenes.push_back(default_study_scene().string());
       Scene scene = read_all(options->scenes, options->axes, progress_bar());
       options->view.set_background(scene);
-      Renderer renderer;
-      const auto rows = study.run({renderer, scene, options->view.view(scene), options->frames});
-      fmt::print("{:<22} {:>10} {:>10} {:>8}\n", "choice", "ms", "PSNR, dB", "largest");
-      for (const StudyRow& row : rows)
-        fmt::print("{:<22} {:>10.2f} {:>10.2f} {:>8}\n", row.choice, row.milliseconds, row.psnr_db, row.largest);
-      write_study(study, rows, options->out);
+      std::unique_ptr<Renderer> renderer;
+      const auto on_demand = [&]() -> Renderer& {
+        if (!renderer) renderer = std::make_unique<Renderer>();
+        return *renderer;
+      };
+      const StudyTable table =
+          study.run({on_demand, scene, options->view.view(scene), options->frames, progress_bar()});
+      clear_progress_bar();
+      std::size_t width = 6;
+      for (const StudyTable::Row& row : table.rows) width = std::max(width, row.choice.size());
+      fmt::print("{:<{}}", "choice", width);
+      for (const std::string& column : table.columns) fmt::print("  {}", column);
+      fmt::print("\n");
+      for (const StudyTable::Row& row : table.rows) {
+        fmt::print("{:<{}}", row.choice, width);
+        for (std::size_t k = 0; k < row.values.size(); ++k)
+          fmt::print("  {:>{}.4g}", row.values[k], table.columns[k].size());
+        fmt::print("\n");
+      }
+      write_study(study, table, options->out);
       return;
     }
     throw FieldError("name", fmt::format("there is no study \"{}\"; rebake study --help lists them", options->name));

@@ -10,6 +10,8 @@
 #include "editor/document/project.h"
 #include "editor/fields/variants.h"
 #include "editor/python/stub.h"
+#include "mesh_ops/deform/cage_deformation.h"
+#include "mesh_ops/deform/wrap.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "render/picture.h"
@@ -225,6 +227,54 @@ py::object select_mask(PyDocument& document, const py::object& node, const py::a
   return document.selections();
 }
 
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+std::vector<Vec3> points_from(const Array& array, const char* name) {
+  if (array.ndim() != 2 || array.shape(1) != 3) throw FieldError(name, "must be an array of n × 3 numbers");
+  std::vector<Vec3> points;
+  const auto rows = array.unchecked<2>();
+  for (py::ssize_t k = 0; k < rows.shape(0); ++k) points.emplace_back(rows(k, 0), rows(k, 1), rows(k, 2));
+  return points;
+}
+std::vector<Face> faces_from(const py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>& array) {
+  if (array.ndim() != 2 || array.shape(1) != 3) throw FieldError("faces", "must be an array of n × 3 whole numbers");
+  std::vector<Face> faces;
+  const auto rows = array.unchecked<2>();
+  for (py::ssize_t k = 0; k < rows.shape(0); ++k) faces.push_back({rows(k, 0), rows(k, 1), rows(k, 2)});
+  return faces;
+}
+py::array_t<double> array_of(const std::vector<Vec3>& points) {
+  py::array_t<double> array({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}});
+  auto rows = array.mutable_unchecked<2>();
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (int axis = 0; axis < 3; ++axis) rows(static_cast<py::ssize_t>(k), axis) = points[k][axis];
+  return array;
+}
+
+py::array_t<double> move_by_cage(const Array& points, const Array& vertices,
+                                 const py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>& faces,
+                                 const Array& moved, const std::string& kind, int resolution) {
+  const std::vector<Vec3> places = points_from(points, "points"), targets = points_from(moved, "moved");
+  Cage cage = checked_cage({points_from(vertices, "vertices"), faces_from(faces)});
+  if (targets.size() != cage.vertices.size()) throw FieldError("moved", "must hold as many points as vertices");
+  const CageCoordinates coordinates = Codec<CageCoordinates>::read(kind, {});
+  return array_of(deform_points(*coordinates_of(cage, coordinates, resolution), cage, targets, places, false).points);
+}
+
+py::tuple wrap_triangles(const Array& points,
+                         const py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>& faces,
+                         double coarseness) {
+  const TriangleList triangles{points_from(points, "points"), faces_from(faces)};
+  for (const Face& face : triangles.faces)
+    if (std::max({face[0], face[1], face[2]}) >= triangles.points.size())
+      throw FieldError("faces", "must name points by number, from 0");
+  const Cage cage = wrap(triangles, coarseness);
+  py::array_t<std::uint32_t> numbers({static_cast<py::ssize_t>(cage.faces.size()), py::ssize_t{3}});
+  if (!cage.faces.empty())
+    std::memcpy(numbers.mutable_data(), cage.faces.data(), cage.faces.size() * sizeof(Face));
+  return py::make_tuple(array_of(cage.vertices), numbers);
+}
+
 std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, const std::string& axes) {
   if (is_project_file(path)) return std::make_unique<PyDocument>(Document::open(path));
   Document document;
@@ -344,6 +394,11 @@ PYBIND11_MODULE(rebake, module) {
         return std::make_unique<PyDocument>(std::move(Document::recover(journal).document));
       },
       py::arg("journal"), "The work that a journal kept; goes on writing it.");
+  module.def("move_by_cage", &move_by_cage, py::arg("points"), py::arg("vertices"), py::arg("faces"), py::arg("moved"),
+             py::arg("coordinates") = "mean_value", py::arg("resolution") = 32,
+             "Where points go when a closed cage's vertices move.");
+  module.def("wrap", &wrap_triangles, py::arg("points"), py::arg("faces"), py::arg("coarseness") = 0.1,
+             "A closed cage around triangles: its vertices and faces.");
   module.def("python_stub", &python_stub, "The module's type stub.");
 }
 

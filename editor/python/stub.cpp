@@ -120,6 +120,13 @@ def open(path: str | PathLike[str], axes: Literal["360", "forward"] = "360") -> 
     """A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project (.rebake)."""
 def recover(journal: str | PathLike[str]) -> Document:
     """The work that a journal kept; goes on writing it."""
+def move_by_cage(points: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.uint32],
+                 moved: NDArray[np.float64], coordinates: Literal["mean_value", "green", "harmonic"] = "mean_value",
+                 resolution: int = 32) -> NDArray[np.float64]:
+    """Where points (n × 3) go when a closed cage's vertices move to `moved`."""
+def wrap(points: NDArray[np.float64], faces: NDArray[np.uint32],
+         coarseness: float = 0.1) -> tuple[NDArray[np.float64], NDArray[np.uint32]]:
+    """A closed cage around triangles: its vertices and faces. Coarseness is a share of their size, 0.005 to 0.5."""
 def python_stub() -> str:
     """This text."""
 

@@ -2,7 +2,7 @@
 
 namespace rebake {
 
-std::vector<StudyRow> study_decoder(const StudyInput& input) {
+StudyTable study_decoder(const StudyInput& input) {
   using Weights = RenderOptions::Weights;
   using Shading = RenderOptions::Shading;
   using Precision = RenderOptions::Precision;
@@ -10,7 +10,7 @@ std::vector<StudyRow> study_decoder(const StudyInput& input) {
   View view = input.view;
   view.samples = 1;
   const Image reference =
-      input.renderer.render(input.scene, view, {Weights::constants, Shading::deferred, Precision::full});
+      input.renderer().render(input.scene, view, {Weights::constants, Shading::deferred, Precision::full});
   struct Choice {
     const char* name;
     RenderOptions options;
@@ -23,9 +23,9 @@ std::vector<StudyRow> study_decoder(const StudyInput& input) {
       {"forward, constants", {Weights::constants, Shading::forward, Precision::full}},
       {"forward, buffer", {Weights::buffer, Shading::forward, Precision::full}},
   };
-  std::vector<StudyRow> rows;
-  for (const Choice& choice : choices) rows.push_back(measured(input, choice.name, view, choice.options, reference));
-  return rows;
+  StudyTable table = picture_table();
+  for (const Choice& choice : choices) table.rows.push_back(measured(input, choice.name, view, choice.options, reference));
+  return table;
 }
 
 }  // namespace rebake

@@ -2,17 +2,17 @@
 
 namespace rebake {
 
-std::vector<StudyRow> study_samples(const StudyInput& input) {
+StudyTable study_samples(const StudyInput& input) {
   View view = input.view;
   view.samples = 64;
-  const Image reference = input.renderer.render(input.scene, view);
-  std::vector<StudyRow> rows;
+  const Image reference = input.renderer().render(input.scene, view);
+  StudyTable table = picture_table();
   for (const int samples : {1, 4, 16}) {
     view.samples = samples;
-    rows.push_back(
+    table.rows.push_back(
         measured(input, std::to_string(samples) + (samples == 1 ? " sample" : " samples"), view, {}, reference));
   }
-  return rows;
+  return table;
 }
 
 }  // namespace rebake

@@ -1,8 +1,10 @@
 #include "editor/studies/study.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -13,42 +15,60 @@
 
 namespace rebake {
 
-StudyRow measured(const StudyInput& input, const std::string& choice, const View& view, const RenderOptions& options,
-                  const Image& reference) {
-  const Image picture = input.renderer.render(input.scene, view, options);
+StudyTable picture_table() { return {{"milliseconds a frame", "PSNR dB (100: equal)", "largest of 255"}, {}, 0, 1, false, false}; }
+
+StudyTable::Row measured(const StudyInput& input, const std::string& choice, const View& view,
+                         const RenderOptions& options, const Image& reference) {
+  Renderer& renderer = input.renderer();
+  const Image picture = renderer.render(input.scene, view, options);
   std::vector<double> times;
   for (int i = 0; i < input.frames; ++i)
-    times.push_back(input.renderer.time_frame(input.scene, view, options, false).frame_ms);
+    times.push_back(renderer.time_frame(input.scene, view, options, false).frame_ms);
   std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
   const Difference difference = compare(picture, reference, 2);
-  return {choice, times[times.size() / 2], std::min(difference.psnr_db, 100.0), difference.largest};
+  return {choice,
+          {times[times.size() / 2], std::min(difference.psnr_db, 100.0), static_cast<double>(difference.largest)}};
 }
 
-void write_study(const Study& study, const std::vector<StudyRow>& rows, const std::filesystem::path& folder) {
+double median_milliseconds(int repeats, const std::function<void()>& run) {
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+  return times[times.size() / 2];
+}
+
+void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder, "cannot be created: " + error.message());
-  std::string csv = "choice,milliseconds,psnr_db,largest_difference\n";
-  std::string data;
-  for (const StudyRow& row : rows) {
-    csv += fmt::format("{},{:.3f},{:.2f},{}\n", row.choice, row.milliseconds, row.psnr_db, row.largest);
-    data += fmt::format("\"{}\" {} {}\n", row.choice, row.milliseconds, row.psnr_db);
+  std::string csv = fmt::format("choice,{}\n", fmt::join(table.columns, ","));
+  std::string data, points;
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    const StudyTable::Row& row = table.rows[k];
+    csv += fmt::format("\"{}\",{:.6g}\n", row.choice, fmt::join(row.values, ","));
+    // A logarithm has no zero: what is exact is drawn at the bottom.
+    const auto drawn = [](double value, bool log) { return log ? std::max(value, 1e-17) : value; };
+    data += fmt::format("{} {}\n", drawn(row.values[table.x], table.log_x), drawn(row.values[table.y], table.log_y));
+    points += fmt::format("{}$rows every ::{}::{} using 1:2 with points pt {} ps 1.4 title \"{}\"", k == 0 ? "" : ", ", k, k,
+                          4 + k, row.choice);
   }
   const std::string base = (folder / study.name).string();
   std::string quoted;  // for gnuplot, which doubles single quotes
   for (const char c : base) quoted += c == '\'' ? std::string("''") : std::string(1, c);
   write_file_atomically(base + ".csv", csv);
   std::string plot = fmt::format(
-      "$rows << EOD\n{}EOD\nset title \"{}\"\nset xlabel \"milliseconds a frame (median)\"\nset ylabel \"PSNR, dB "
-      "(100: equal)\"\n"
-      "set grid\nset key off\nset offsets graph 0.15, graph 0.25, graph 0.15, graph 0.1\n",
-      data, study.help);
+      "$rows << EOD\n{}EOD\nset title \"{}\"\nset xlabel \"{}\"\nset ylabel \"{}\"\n{}{}"
+      "set grid\nset key outside right top\nset offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n",
+      data, study.help, table.columns[table.x], table.columns[table.y],
+      table.log_x ? "set logscale x\nset format x '10^{%L}'\n" : "", table.log_y ? "set logscale y\nset format y '10^{%L}'\n" : "");
   for (const auto& [terminal, extension] :
-       {std::pair{"svg size 720,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 720,440", "png"}})
+       {std::pair{"svg size 860,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 860,440", "png"}})
     plot += fmt::format(
-        "set terminal {}\nset output '{}.{}'\nplot $rows using 2:3 with points pt 7 ps 1.2, $rows using 2:3:1 with "
-        "labels offset 0,1\n",
-        terminal, quoted, extension);
+        "set terminal {}\nset output '{}.{}'\nplot {}\n", terminal, quoted, extension, points);
   std::signal(SIGPIPE, SIG_IGN);  // gnuplot may be missing; its exit status says so
   FILE* pipe = popen("gnuplot", "w");
   if (pipe == nullptr) throw Error("gnuplot cannot be started; install gnuplot-nox for the plots");

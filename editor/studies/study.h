@@ -1,50 +1,70 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "mesh_ops/progress.h"
 #include "mesh_ops/scene/scene.h"
 #include "render/picture.h"
 
 namespace rebake {
 
-/// One way of doing a thing: what it costs and how far off it is.
-struct StudyRow {
-  std::string choice;
-  double milliseconds;  ///< median of the frames timed
-  double psnr_db;       ///< against the reference, capped at 100
-  int largest;          ///< largest difference of a channel, in 1/255
+/// What a study measures: choices, a row each, and what each costs and gives.
+struct StudyTable {
+  struct Row {
+    std::string choice;
+    std::vector<double> values;  ///< as many as columns
+  };
+  std::vector<std::string> columns;  ///< names with units
+  std::vector<Row> rows;
+  /// Columns that the plot shows. Accuracy stands upright, time lies; errors and times that span decades are plotted by
+  /// their logarithms.
+  std::size_t x = 0, y = 1;
+  bool log_x = false, log_y = false;
 };
 
 /// What a study is made on.
 struct StudyInput {
-  Renderer& renderer;
+  std::function<Renderer&()> renderer;  ///< made when it is first wanted; throws DeviceError without OpenGL
   const Scene& scene;
   View view;
-  int frames;  ///< timed for each choice
+  int frames;  ///< timed for each choice; the median counts
+  Progress progress;
 };
 
 struct Study {
   const char* name;
   const char* help;
-  std::vector<StudyRow> (*run)(const StudyInput& input);
+  StudyTable (*run)(const StudyInput& input);
 };
 
-std::vector<StudyRow> study_samples(const StudyInput& input);
-std::vector<StudyRow> study_decoder(const StudyInput& input);
+StudyTable study_samples(const StudyInput& input);
+StudyTable study_decoder(const StudyInput& input);
+StudyTable study_cage(const StudyInput& input);
+StudyTable study_rotation(const StudyInput& input);
+StudyTable study_wrap(const StudyInput& input);
 
 /// The one table of studies.
 inline constexpr Study study_table[] = {
     {"samples", "samples a pixel, against 64 samples", study_samples},
     {"decoder", "precision and place of the decoder's weights, against 32-bit constants", study_decoder},
+    {"cage", "cage coordinates, their precision and resolution, on a twisted wrap", study_cage},
+    {"rotation", "local rotations of a twisted wrap, against dual numbers and singular values", study_rotation},
+    {"wrap", "coarseness of the wrap around what shows something", study_wrap},
 };
 
+/// Table of a study of pictures: milliseconds a frame, PSNR and the largest difference of a channel in 1/255.
+StudyTable picture_table();
 /// Times a choice and compares its picture with the reference.
-StudyRow measured(const StudyInput& input, const std::string& choice, const View& view, const RenderOptions& options,
-                  const Image& reference);
+StudyTable::Row measured(const StudyInput& input, const std::string& choice, const View& view,
+                         const RenderOptions& options, const Image& reference);
+
+/// Median milliseconds of `repeats` runs.
+double median_milliseconds(int repeats, const std::function<void()>& run);
 
 /// Writes NAME.csv, NAME.svg and NAME.png (plots need gnuplot; throws Error without it).
-void write_study(const Study& study, const std::vector<StudyRow>& rows, const std::filesystem::path& folder);
+void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder);
 
 }  // namespace rebake

@@ -164,7 +164,8 @@ void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& o
   });
 }
 
-void CageBinding::rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& out, std::size_t stride) const {
+void CageBinding::rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& out, std::size_t stride,
+                            bool interpolated) const {
   if (gradients_.empty() && !points_.empty()) throw std::logic_error("bound without gradients");
   out.assign(points_.size(), Mat3::Identity());
   const MovingRows moving = moving_rows(coordinates_.row_motions(rest_, moved));
@@ -191,16 +192,18 @@ void CageBinding::rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& o
     }
   });
   if (step == 1) return;
-  for (std::size_t at = 0; at < order_.size(); ++at) {
-    if (at % step == 0) continue;
-    const std::size_t below = at / step, above = below + 1;
-    const std::size_t nearest =
-        above < samples && (points_[order_[at]] - points_[order_[above * step]]).squaredNorm() <
-                               (points_[order_[at]] - points_[order_[below * step]]).squaredNorm()
-            ? above
-            : below;
-    out[order_[at]] = out[order_[nearest * step]];
-  }
+  tbb::parallel_for(std::size_t{0}, order_.size(), [&](std::size_t at) {
+    if (at % step == 0) return;
+    const std::size_t below = at / step * step, above = below + step < samples * step ? below + step : below;
+    const Vec3& here = points_[order_[at]];
+    const double to_below = (points_[order_[below]] - here).norm(), to_above = (points_[order_[above]] - here).norm();
+    if (!interpolated || to_below + to_above == 0) {
+      out[order_[at]] = out[order_[to_above < to_below ? above : below]];
+      return;
+    }
+    const double share = to_below / (to_below + to_above);
+    out[order_[at]] = local_rotation((1 - share) * out[order_[below]] + share * out[order_[above]]).rotation;
+  });
 }
 
 }  // namespace rebake

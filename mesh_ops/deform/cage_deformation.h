@@ -30,8 +30,10 @@ class CageBinding {
   /// Where the points are when the cage's vertices are at `moved`. Costs as many rows as move.
   void positions(const std::vector<Vec3>& moved, std::vector<Vec3>& out) const;
   /// Local rotations there; of every `stride`-th point in an order in which neighbours lie side by side, and for those
-  /// between the nearest of them. Throws std::logic_error when bound without gradients.
-  void rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& out, std::size_t stride = 1) const;
+  /// between the nearest of them, or with `interpolated` between their two neighbours by distance. What either costs in
+  /// degrees: `rebake study rotation`. Throws std::logic_error when bound without gradients.
+  void rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& out, std::size_t stride = 1,
+                 bool interpolated = false) const;
 
   std::size_t point_count() const { return order_.size(); }
   std::uint64_t memory() const;

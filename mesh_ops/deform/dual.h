@@ -48,6 +48,7 @@ inline Dual atan2(const Dual& y, const Dual& x) {
 
 inline double value_of(const Dual& a) { return a.v; }
 inline double value_of(double a) { return a; }
+inline double value_of(long double a) { return static_cast<double>(a); }
 inline double value_of(float a) { return static_cast<double>(a); }
 
 }  // namespace rebake

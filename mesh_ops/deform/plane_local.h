@@ -42,6 +42,7 @@ inline Point<double> local_point(const Vec3& p, double /*tag*/) { return {p.x(),
 inline Point<float> local_point(const Vec3& p, float /*tag*/) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
+inline Point<long double> local_point(const Vec3& p, long double /*tag*/) { return {p.x(), p.y(), p.z()}; }
 inline Point<Dual> local_point(const Vec3& p, const Dual& /*tag*/) {
   return {Dual(p.x(), 1, 0, 0), Dual(p.y(), 0, 1, 0), Dual(p.z(), 0, 0, 1)};
 }

@@ -101,8 +101,11 @@ bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_co
 template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<double>&);
 template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<float>&);
 template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<Dual>&);
+template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<long double>&);
 template bool green_weights(const CageFrame&, const Vec3&, std::size_t, std::vector<double>&, std::vector<double>&);
 template bool green_weights(const CageFrame&, const Vec3&, std::size_t, std::vector<float>&, std::vector<float>&);
 template bool green_weights(const CageFrame&, const Vec3&, std::size_t, std::vector<Dual>&, std::vector<Dual>&);
+template bool green_weights(const CageFrame&, const Vec3&, std::size_t, std::vector<long double>&,
+                            std::vector<long double>&);
 
 }  // namespace rebake

@@ -69,6 +69,17 @@ class Module(unittest.TestCase):
         with self.assertRaisesRegex(rebake.FieldError, "one a triangle"):
             self.document.select_mask("ficus", mask[1:])
 
+    def test_cages_move_arrays(self):
+        points, faces = self.document.vertices("ficus"), self.document.faces("ficus")
+        vertices, triangles = rebake.wrap(points, faces, 0.2)
+        turned = vertices[:, [1, 2, 0]] * 2 + [1, 2, 3]
+        moved = rebake.move_by_cage(points, vertices, triangles, turned)
+        np.testing.assert_allclose(moved, points[:, [1, 2, 0]] * 2 + [1, 2, 3], atol=1e-12)
+        with self.assertRaisesRegex(rebake.Error, "open"):
+            rebake.move_by_cage(points, vertices, triangles[:-1], turned)
+        with self.assertRaisesRegex(rebake.FieldError, "as many points"):
+            rebake.move_by_cage(points, vertices, triangles, turned[:-1])
+
     def test_edits_have_typed_parameters(self):
         parameters = inspect.signature(rebake.Document.grow).parameters
         self.assertEqual(parameters["steps"].default, 1)

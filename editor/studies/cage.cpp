@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+
+#include "editor/studies/deforming.h"
+#include "editor/studies/study.h"
+#include "mesh_ops/deform/cage_deformation.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr std::size_t judged_points = 1000;  ///< that errors are taken over
+
+// Every so-many-th place.
+std::vector<Vec3> judged(const std::vector<Vec3>& places) {
+  std::vector<Vec3> points;
+  const std::size_t count = std::min(judged_points, places.size());
+  for (std::size_t k = 0; k < count; ++k) points.push_back(places[k * places.size() / count]);
+  return points;
+}
+
+struct Errors {
+  double reproduction = 0, difference = 0;
+};
+
+struct Setting {
+  const StudySoup& soup;
+  const Cage& cage;
+  std::vector<Vec3> moved;
+  std::vector<Vec3> points;  ///< judged
+};
+
+double largest(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double unit) {
+  double worst = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) worst = std::max(worst, (a[k] - b[k]).norm() / unit);
+  return worst;
+}
+
+// Where weights of single points, in any precision, say that points go.
+template <class T>
+std::vector<Vec3> moved_by(const Setting& setting, const Coordinates& coordinates, bool green) {
+  const CageFrame frame = frame_of(setting.cage);
+  const std::vector<Vec3> motions = coordinates.row_motions(setting.cage, setting.moved);
+  std::vector<Vec3> result(setting.points.size());
+  tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t k) {
+    std::vector<T> weights, faces;
+    if (green) {
+      green_weights(frame, frame.to_local(setting.points[k]), setting.cage.faces.size(), weights, faces);
+      weights.insert(weights.end(), faces.begin(), faces.end());
+    } else {
+      mean_value_weights(frame, frame.to_local(setting.points[k]), weights);
+    }
+    std::array<T, 3> sum{};
+    for (std::size_t row = 0; row < weights.size(); ++row)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        sum[axis] += weights[row] * static_cast<T>(motions[row][static_cast<int>(axis)]);
+    result[k] = setting.points[k] + Vec3(static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2]));
+  });
+  return result;
+}
+
+// How far weights are from reproducing the points themselves: the cage shrunk to nothing must take all points along.
+double reproduction(const Setting& setting, const Coordinates& coordinates) {
+  const std::vector<Vec3> nowhere(setting.cage.vertices.size(), Vec3(0, 0, 0));
+  const std::vector<Vec3> motions = coordinates.row_motions(setting.cage, nowhere);
+  const DeformedPoints result = deform_points(coordinates, setting.cage, nowhere, setting.points, false);
+  double worst = 0;
+  for (std::size_t k = 0; k < setting.points.size(); ++k)
+    if (result.outside[k] == 0) worst = std::max(worst, result.points[k].norm() / setting.soup.diagonal);
+  return worst;
+}
+
+template <class T>
+double single_reproduction(const Setting& setting, const Coordinates& coordinates, bool green) {
+  Setting shrunk = setting;
+  shrunk.moved.assign(setting.cage.vertices.size(), Vec3(0, 0, 0));
+  double worst = 0;
+  for (const Vec3& p : moved_by<T>(shrunk, coordinates, green)) worst = std::max(worst, p.norm() / setting.soup.diagonal);
+  return worst;
+}
+
+}  // namespace
+
+StudyTable study_cage(const StudyInput& input) {
+  const StudySoup soup = study_soup(input.scene);
+  const Cage cage = wrap(soup.opaque, 0.1);
+  const Setting setting{soup, cage, twisted(cage), judged(soup.places)};
+  StudyTable table{{"bind ms", "drag ms", "MB", "reproduction error", "error of the drag"}, {}, 0, 4, true, true};
+  const auto add = [&](const std::string& name, CageCoordinates kind, int resolution, const std::vector<Vec3>& reference) {
+    input.progress.at(name, static_cast<double>(table.rows.size()) / 9);
+    std::unique_ptr<Coordinates> coordinates;
+    std::unique_ptr<CageBinding> binding;
+    const double bind = median_milliseconds(kind == CageCoordinates::mean_value ? std::min(input.frames, 3) : 1, [&] {
+      coordinates = coordinates_of(cage, kind, resolution);
+      binding = std::make_unique<CageBinding>(*coordinates, cage, soup.places, false);
+    });
+    std::vector<Vec3> out;
+    const double drag = median_milliseconds(input.frames, [&] { binding->positions(setting.moved, out); });
+    const DeformedPoints exact = deform_points(*coordinates, cage, setting.moved, setting.points, false);
+    table.rows.push_back({name + ", double",
+                          {bind, drag, static_cast<double>(binding->memory()) / 1e6, reproduction(setting, *coordinates),
+                           largest(exact.points, reference, soup.diagonal)}});
+    if (kind == CageCoordinates::harmonic) return;
+    // The same, as dragging keeps it.
+    const CageBinding kept(*coordinates, cage, setting.points, false);
+    kept.positions(setting.moved, out);
+    std::vector<Vec3> nowhere;
+    kept.positions(std::vector<Vec3>(cage.vertices.size(), Vec3(0, 0, 0)), nowhere);
+    double lost = 0;
+    for (const Vec3& p : nowhere) lost = std::max(lost, p.norm() / soup.diagonal);
+    table.rows.push_back({name + ", kept as float",
+                          {bind, drag, static_cast<double>(binding->memory()) / 1e6, lost, largest(out, reference, soup.diagonal)}});
+    // And computed in float, which is not safe.
+    const bool green = kind == CageCoordinates::green;
+    const double single = median_milliseconds(1, [&] { moved_by<float>(setting, *coordinates, green); }) *
+                          static_cast<double>(soup.places.size()) / static_cast<double>(setting.points.size());
+    table.rows.push_back({name + ", computed in float",
+                          {single, drag, static_cast<double>(binding->memory()) / 1e6,
+                           single_reproduction<float>(setting, *coordinates, green),
+                           largest(moved_by<float>(setting, *coordinates, green), reference, soup.diagonal)}});
+  };
+  add("mean value", CageCoordinates::mean_value, 0, moved_by<long double>(setting, *mean_value_coordinates(cage), false));
+  add("Green", CageCoordinates::green, 0, moved_by<long double>(setting, *green_coordinates(cage), true));
+  const auto finest = harmonic_coordinates(cage, 96, input.progress);
+  const std::vector<Vec3> reference = deform_points(*finest, cage, setting.moved, setting.points, false).points;
+  for (const int resolution : {16, 32, 64})
+    add(fmt::format("harmonic {}", resolution), CageCoordinates::harmonic, resolution, reference);
+  return table;
+}
+
+}  // namespace rebake
