@@ -23,7 +23,8 @@ struct CageDeform {
         "what moves, one after the other; boxes and spheres in world units, with frame bounds in shares of the cage's "
         "box");
     visit("coordinates", self.coordinates, Need::optional,
-          "mean_value: anywhere; green: keeps shapes, inside only; harmonic: around corners, not across, inside only, on a grid");
+          "mean_value: anywhere; green: keeps shapes, inside only; harmonic: around corners, not across, inside only, "
+          "on a grid");
     visit("resolution", self.resolution, Need::optional,
           "harmonic: cells of the grid along the cage's longest side, 8 to 256; finer is nearer and slower");
   }

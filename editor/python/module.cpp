@@ -270,8 +270,7 @@ py::tuple wrap_triangles(const Array& points,
       throw FieldError("faces", "must name points by number, from 0");
   const Cage cage = wrap(triangles, coarseness);
   py::array_t<std::uint32_t> numbers({static_cast<py::ssize_t>(cage.faces.size()), py::ssize_t{3}});
-  if (!cage.faces.empty())
-    std::memcpy(numbers.mutable_data(), cage.faces.data(), cage.faces.size() * sizeof(Face));
+  if (!cage.faces.empty()) std::memcpy(numbers.mutable_data(), cage.faces.data(), cage.faces.size() * sizeof(Face));
   return py::make_tuple(array_of(cage.vertices), numbers);
 }
 

@@ -56,7 +56,8 @@ std::vector<Vec3> moved_by(const Setting& setting, const Coordinates& coordinate
     for (std::size_t row = 0; row < weights.size(); ++row)
       for (std::size_t axis = 0; axis < 3; ++axis)
         sum[axis] += weights[row] * static_cast<T>(motions[row][static_cast<int>(axis)]);
-    result[k] = setting.points[k] + Vec3(static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2]));
+    result[k] =
+        setting.points[k] + Vec3(static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2]));
   });
   return result;
 }
@@ -77,7 +78,8 @@ double single_reproduction(const Setting& setting, const Coordinates& coordinate
   Setting shrunk = setting;
   shrunk.moved.assign(setting.cage.vertices.size(), Vec3(0, 0, 0));
   double worst = 0;
-  for (const Vec3& p : moved_by<T>(shrunk, coordinates, green)) worst = std::max(worst, p.norm() / setting.soup.diagonal);
+  for (const Vec3& p : moved_by<T>(shrunk, coordinates, green))
+    worst = std::max(worst, p.norm() / setting.soup.diagonal);
   return worst;
 }
 
@@ -88,7 +90,8 @@ StudyTable study_cage(const StudyInput& input) {
   const Cage cage = wrap(soup.opaque, 0.1);
   const Setting setting{soup, cage, twisted(cage), judged(soup.places)};
   StudyTable table{{"bind ms", "drag ms", "MB", "reproduction error", "error of the drag"}, {}, 0, 4, true, true};
-  const auto add = [&](const std::string& name, CageCoordinates kind, int resolution, const std::vector<Vec3>& reference) {
+  const auto add = [&](const std::string& name, CageCoordinates kind, int resolution,
+                       const std::vector<Vec3>& reference) {
     input.progress.at(name, static_cast<double>(table.rows.size()) / 9);
     std::unique_ptr<Coordinates> coordinates;
     std::unique_ptr<CageBinding> binding;
@@ -100,8 +103,8 @@ StudyTable study_cage(const StudyInput& input) {
     const double drag = median_milliseconds(input.frames, [&] { binding->positions(setting.moved, out); });
     const DeformedPoints exact = deform_points(*coordinates, cage, setting.moved, setting.points, false);
     table.rows.push_back({name + ", double",
-                          {bind, drag, static_cast<double>(binding->memory()) / 1e6, reproduction(setting, *coordinates),
-                           largest(exact.points, reference, soup.diagonal)}});
+                          {bind, drag, static_cast<double>(binding->memory()) / 1e6,
+                           reproduction(setting, *coordinates), largest(exact.points, reference, soup.diagonal)}});
     if (kind == CageCoordinates::harmonic) return;
     // The same, as dragging keeps it.
     const CageBinding kept(*coordinates, cage, setting.points, false);
@@ -110,8 +113,9 @@ StudyTable study_cage(const StudyInput& input) {
     kept.positions(std::vector<Vec3>(cage.vertices.size(), Vec3(0, 0, 0)), nowhere);
     double lost = 0;
     for (const Vec3& p : nowhere) lost = std::max(lost, p.norm() / soup.diagonal);
-    table.rows.push_back({name + ", kept as float",
-                          {bind, drag, static_cast<double>(binding->memory()) / 1e6, lost, largest(out, reference, soup.diagonal)}});
+    table.rows.push_back(
+        {name + ", kept as float",
+         {bind, drag, static_cast<double>(binding->memory()) / 1e6, lost, largest(out, reference, soup.diagonal)}});
     // And computed in float, which is not safe.
     const bool green = kind == CageCoordinates::green;
     const double single = median_milliseconds(1, [&] { moved_by<float>(setting, *coordinates, green); }) *
@@ -121,7 +125,8 @@ StudyTable study_cage(const StudyInput& input) {
                            single_reproduction<float>(setting, *coordinates, green),
                            largest(moved_by<float>(setting, *coordinates, green), reference, soup.diagonal)}});
   };
-  add("mean value", CageCoordinates::mean_value, 0, moved_by<long double>(setting, *mean_value_coordinates(cage), false));
+  add("mean value", CageCoordinates::mean_value, 0,
+      moved_by<long double>(setting, *mean_value_coordinates(cage), false));
   add("Green", CageCoordinates::green, 0, moved_by<long double>(setting, *green_coordinates(cage), true));
   const auto finest = harmonic_coordinates(cage, 96, input.progress);
   const std::vector<Vec3> reference = deform_points(*finest, cage, setting.moved, setting.points, false).points;

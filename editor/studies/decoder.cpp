@@ -24,7 +24,8 @@ StudyTable study_decoder(const StudyInput& input) {
       {"forward, buffer", {Weights::buffer, Shading::forward, Precision::full}},
   };
   StudyTable table = picture_table();
-  for (const Choice& choice : choices) table.rows.push_back(measured(input, choice.name, view, choice.options, reference));
+  for (const Choice& choice : choices)
+    table.rows.push_back(measured(input, choice.name, view, choice.options, reference));
   return table;
 }
 

@@ -79,7 +79,8 @@ StudyTable study_rotation(const StudyInput& input) {
     for (const bool interpolated : {false, true}) {
       if (stride == 1 && interpolated) continue;
       time = median_milliseconds(input.frames, [&] { binding.rotations(moved, rotations, stride, interpolated); });
-      add(stride == 1 ? std::string("kept gradients") : fmt::format("1 in {}, {}", stride, interpolated ? "interpolated" : "the nearest"),
+      add(stride == 1 ? std::string("kept gradients")
+                      : fmt::format("1 in {}, {}", stride, interpolated ? "interpolated" : "the nearest"),
           time, rotations);
     }
   return table;

@@ -15,7 +15,9 @@
 
 namespace rebake {
 
-StudyTable picture_table() { return {{"milliseconds a frame", "PSNR dB (100: equal)", "largest of 255"}, {}, 0, 1, false, false}; }
+StudyTable picture_table() {
+  return {{"milliseconds a frame", "PSNR dB (100: equal)", "largest of 255"}, {}, 0, 1, false, false};
+}
 
 StudyTable::Row measured(const StudyInput& input, const std::string& choice, const View& view,
                          const RenderOptions& options, const Image& reference) {
@@ -53,8 +55,8 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
     // A logarithm has no zero: what is exact is drawn at the bottom.
     const auto drawn = [](double value, bool log) { return log ? std::max(value, 1e-17) : value; };
     data += fmt::format("{} {}\n", drawn(row.values[table.x], table.log_x), drawn(row.values[table.y], table.log_y));
-    points += fmt::format("{}$rows every ::{}::{} using 1:2 with points pt {} ps 1.4 title \"{}\"", k == 0 ? "" : ", ", k, k,
-                          4 + k, row.choice);
+    points += fmt::format("{}$rows every ::{}::{} using 1:2 with points pt {} ps 1.4 title \"{}\"", k == 0 ? "" : ", ",
+                          k, k, 4 + k, row.choice);
   }
   const std::string base = (folder / study.name).string();
   std::string quoted;  // for gnuplot, which doubles single quotes
@@ -64,11 +66,11 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
       "$rows << EOD\n{}EOD\nset title \"{}\"\nset xlabel \"{}\"\nset ylabel \"{}\"\n{}{}"
       "set grid\nset key outside right top\nset offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n",
       data, study.help, table.columns[table.x], table.columns[table.y],
-      table.log_x ? "set logscale x\nset format x '10^{%L}'\n" : "", table.log_y ? "set logscale y\nset format y '10^{%L}'\n" : "");
+      table.log_x ? "set logscale x\nset format x '10^{%L}'\n" : "",
+      table.log_y ? "set logscale y\nset format y '10^{%L}'\n" : "");
   for (const auto& [terminal, extension] :
        {std::pair{"svg size 860,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 860,440", "png"}})
-    plot += fmt::format(
-        "set terminal {}\nset output '{}.{}'\nplot {}\n", terminal, quoted, extension, points);
+    plot += fmt::format("set terminal {}\nset output '{}.{}'\nplot {}\n", terminal, quoted, extension, points);
   std::signal(SIGPIPE, SIG_IGN);  // gnuplot may be missing; its exit status says so
   FILE* pipe = popen("gnuplot", "w");
   if (pipe == nullptr) throw Error("gnuplot cannot be started; install gnuplot-nox for the plots");

@@ -42,9 +42,10 @@ StudyTable study_wrap(const StudyInput& input) {
       const auto coordinates = mean_value_coordinates(cage);
       deform_points(*coordinates, cage, cage.vertices, soup.places, false);
     });
-    table.rows.push_back({fmt::format("{}", coarseness),
-                          {time, bind, static_cast<double>(cage.vertices.size()), static_cast<double>(cage.faces.size()),
-                           static_cast<double>(components(cage)), volume(cage) / box.volume()}});
+    table.rows.push_back(
+        {fmt::format("{}", coarseness),
+         {time, bind, static_cast<double>(cage.vertices.size()), static_cast<double>(cage.faces.size()),
+          static_cast<double>(components(cage)), volume(cage) / box.volume()}});
   }
   return table;
 }

@@ -157,8 +157,9 @@ void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& o
                sums.data());
       for (std::size_t lane = 0; lane < batch_lanes && block * batch_lanes + lane < order_.size(); ++lane) {
         const std::uint32_t point = order_[block * batch_lanes + lane];
-        out[point] = points_[point] + Vec3(static_cast<double>(sums[lane]), static_cast<double>(sums[batch_lanes + lane]),
-                                           static_cast<double>(sums[2 * batch_lanes + lane]));
+        out[point] =
+            points_[point] + Vec3(static_cast<double>(sums[lane]), static_cast<double>(sums[batch_lanes + lane]),
+                                  static_cast<double>(sums[2 * batch_lanes + lane]));
       }
     }
   });
@@ -186,7 +187,8 @@ void CageBinding::rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& o
         Mat3 jacobian = Mat3::Identity();
         for (int to = 0; to < 3; ++to)
           for (int axis = 0; axis < 3; ++axis)
-            jacobian(to, axis) += static_cast<double>(sums[static_cast<std::size_t>(to * 3 + axis) * batch_lanes + at - first]);
+            jacobian(to, axis) +=
+                static_cast<double>(sums[static_cast<std::size_t>(to * 3 + axis) * batch_lanes + at - first]);
         out[order_[at]] = local_rotation(jacobian).rotation;
       }
     }

@@ -20,8 +20,8 @@ enum class CageCoordinates {
 };
 
 /// Mean value weights of one point in the cage frame, one a vertex. Sum and linear precision hold to a few rounding
-/// errors wherever the point lies. With T = float or long double that is their rounding; with Dual each weight carries its gradient
-/// in local units.
+/// errors wherever the point lies. With T = float or long double that is their rounding; with Dual each weight carries
+/// its gradient in local units.
 template <class T>
 void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>& weights);
 

@@ -11,14 +11,14 @@ namespace rebake {
 
 /// What a deformation did to an object.
 struct DeformationReport {
-  std::size_t points = 0;        ///< places that corners of deformed triangles lie at
-  std::size_t folded = 0;        ///< of them, those where det J ≤ 0: turned inside out or collapsed
-  std::size_t undefined = 0;     ///< those with no local rotation of their own, which got a neighbour's
-  std::size_t outside = 0;       ///< those that the coordinates do not reach; they stay
+  std::size_t points = 0;          ///< places that corners of deformed triangles lie at
+  std::size_t folded = 0;          ///< of them, those where det J ≤ 0: turned inside out or collapsed
+  std::size_t undefined = 0;       ///< those with no local rotation of their own, which got a neighbour's
+  std::size_t outside = 0;         ///< those that the coordinates do not reach; they stay
   std::size_t opaque_outside = 0;  ///< of them, corners of triangles that show something
-  std::size_t not_finite = 0;    ///< those whose position is no number; they stay
-  double least_determinant = 1;  ///< of J, over all points
-  TriangleSet folded_triangles;  ///< of the object: a corner lies at a folded place
+  std::size_t not_finite = 0;      ///< those whose position is no number; they stay
+  double least_determinant = 1;    ///< of J, over all points
+  TriangleSet folded_triangles;    ///< of the object: a corner lies at a folded place
 };
 
 /// A deformation of space: where points go, and its Jacobian there.

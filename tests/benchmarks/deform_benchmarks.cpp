@@ -56,7 +56,8 @@ std::vector<Vec3> bent(const Cage& cage, std::size_t moving) {
 
 void bind(benchmark::State& state, bool gradients) {
   const Case& mic = mic_case();
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(state.range(0)));
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) {
     const auto coordinates = mean_value_coordinates(mic.cage);
     const CageBinding binding(*coordinates, mic.cage, mic.points, gradients);
@@ -68,7 +69,8 @@ void bind(benchmark::State& state, bool gradients) {
 // Weights alone, without keeping them: what the time per point is.
 void weigh(benchmark::State& state, bool gradients) {
   const Case& mic = mic_case();
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(state.range(0)));
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
   const std::vector<Vec3> moved = bent(mic.cage, 1000000);
   for (auto _ : state) {
     const auto coordinates = mean_value_coordinates(mic.cage);
@@ -78,7 +80,8 @@ void weigh(benchmark::State& state, bool gradients) {
 
 void green(benchmark::State& state) {
   const Case& mic = mic_case();
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(state.range(0)));
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
   const std::vector<Vec3> moved = bent(mic.cage, 1000000);
   for (auto _ : state) {
     const auto coordinates = green_coordinates(mic.cage);
@@ -96,7 +99,8 @@ const Bound& bound() {
 }
 
 void drag_positions(benchmark::State& state) {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(state.range(0)));
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
   const std::vector<Vec3> moved = bent(mic_case().cage, static_cast<std::size_t>(state.range(1)));
   std::vector<Vec3> out;
   bound();
@@ -104,7 +108,8 @@ void drag_positions(benchmark::State& state) {
 }
 
 void drag_rotations(benchmark::State& state) {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(state.range(0)));
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
   const std::vector<Vec3> moved = bent(mic_case().cage, 1000000);
   std::vector<Mat3> out;
   bound();
@@ -114,7 +119,8 @@ void drag_rotations(benchmark::State& state) {
 // As the real soup is: corners that coincide are bound once, and written to every corner.
 void drag_corners(benchmark::State& state) {
   const Case& mic = mic_case();
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(state.range(0)));
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
   struct Welded {
     std::vector<Vec3> points;
     std::vector<std::uint32_t> place_of;

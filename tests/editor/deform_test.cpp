@@ -45,15 +45,17 @@ class DeformScript : public ::testing::Test {
 };
 
 TEST_F(DeformScript, ARigidMotionByACageIsThatOfTheNode) {
-  const char* const moves = R"("moves": [{"box": {"min": [-9, -9, -9], "max": [9, 9, 9]}, "translate": [0.2, 0.1, -0.3], )"
-                            R"("rotate": {"axis": [1, 2, 0.5], "degrees": 70}, "pivot": [0, 0, 0]}]})";
+  const char* const moves =
+      R"("moves": [{"box": {"min": [-9, -9, -9], "max": [9, 9, 9]}, "translate": [0.2, 0.1, -0.3], )"
+      R"("rotate": {"axis": [1, 2, 0.5], "degrees": 70}, "pivot": [0, 0, 0]}]})";
   run(R"({"op": "transform", "node": "ball", "translate": [0.2, 0.1, -0.3], "rotate": {"axis": [1, 2, 0.5], "degrees": 70}, "pivot": [0, 0, 0]})");
   const Image by_node = picture();
   run(R"({"op": "undo"})");
   const Image before = picture();
   EXPECT_LT(compare(by_node, before, 2).psnr_db, 30) << "the motion shows";
-  for (const char* cage : {R"("lattice": [2, 2, 2])", R"("wrap": 0.2)", R"("lattice": [1, 1, 1], "coordinates": "green")",
-                           R"("wrap": 0.2, "coordinates": "harmonic", "resolution": 16)"}) {
+  for (const char* cage :
+       {R"("lattice": [2, 2, 2])", R"("wrap": 0.2)", R"("lattice": [1, 1, 1], "coordinates": "green")",
+        R"("wrap": 0.2, "coordinates": "harmonic", "resolution": 16)"}) {
     run(R"({"op": "cage", "node": "ball", )" + std::string(cage) + ", " + moves);
     EXPECT_GE(compare(picture(), by_node, 2).psnr_db, 48) << cage;
     run(R"({"op": "undo"})");
@@ -72,13 +74,15 @@ TEST_F(DeformScript, OnlyBentObjectsPayForTheirTurnsAndThePlanSaysSo) {
 }
 
 TEST_F(DeformScript, EveryDeformationIsOneLine) {
-  for (const char* line :
-       {R"({"op": "bend", "node": "ball", "degrees": 40})", R"({"op": "bend", "node": "ball", "degrees": 40, "direction": [0, 0, 1], "from": 0.5, "to": 1.5})",
-        R"({"op": "twist", "node": "ball", "degrees": 90, "axis": [1, 0, 0]})", R"({"op": "taper", "node": "ball", "factor": 0.5})",
-        R"({"op": "stretch", "node": "ball", "factor": 2})",
-        R"({"op": "bend", "node": "ball", "degrees": 40, "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds", "falloff": 0.3})",
-        R"({"op": "cage", "node": "ball", "moves": [{"points": [0, [3, 5]], "translate": [0.1, 0, 0]}]})",
-        R"({"op": "handles", "node": "ball", "wrap": 0.2, "frame": "bounds", "fixed": [{"box": {"min": [0, 0, 0], "max": [1, 0.2, 1]}}], "moves": [{"sphere": {"center": [0.5, 1, 0.5], "radius": 0.2}, "translate": [0.5, 0, 0]}]})"}) {
+  for (
+      const char* line :
+      {R"({"op": "bend", "node": "ball", "degrees": 40})",
+       R"({"op": "bend", "node": "ball", "degrees": 40, "direction": [0, 0, 1], "from": 0.5, "to": 1.5})",
+       R"({"op": "twist", "node": "ball", "degrees": 90, "axis": [1, 0, 0]})",
+       R"({"op": "taper", "node": "ball", "factor": 0.5})", R"({"op": "stretch", "node": "ball", "factor": 2})",
+       R"({"op": "bend", "node": "ball", "degrees": 40, "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds", "falloff": 0.3})",
+       R"({"op": "cage", "node": "ball", "moves": [{"points": [0, [3, 5]], "translate": [0.1, 0, 0]}]})",
+       R"({"op": "handles", "node": "ball", "wrap": 0.2, "frame": "bounds", "fixed": [{"box": {"min": [0, 0, 0], "max": [1, 0.2, 1]}}], "moves": [{"sphere": {"center": [0.5, 1, 0.5], "radius": 0.2}, "translate": [0.5, 0, 0]}]})"}) {
     const auto before = find(session.scene(), "ball")->object;
     said.clear();
     run(line);
@@ -129,23 +133,33 @@ TEST_F(DeformScript, ScenesKeepTurnsAndPlainFoldersSayWhatTheyLose) {
 
 TEST_F(DeformScript, BadInputSaysWhatToDo) {
   expect_error(R"({"op": "cage", "node": "ball", "moves": []})", "at least one move");
-  expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1], "moves": [{"points": [0]}]})", "three whole numbers");
-  expect_error(R"({"op": "cage", "node": "ball", "lattice": [0, 1, 1], "moves": [{"points": [0]}]})", "at least one cell");
-  expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "wrap": 0.1, "moves": [{"points": [0]}]})", "at most one of");
-  expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [8]}]})", "the cage has 8 points");
-  expect_error(R"({"op": "cage", "node": "ball", "moves": [{"box": {"min": [5, 5, 5], "max": [6, 6, 6]}}]})", "no cage point lies inside");
-  expect_error(R"({"op": "cage", "node": "ball", "moves": [{"translate": [1, 0, 0]}]})", "exactly one of points, box and sphere");
+  expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1], "moves": [{"points": [0]}]})",
+               "three whole numbers");
+  expect_error(R"({"op": "cage", "node": "ball", "lattice": [0, 1, 1], "moves": [{"points": [0]}]})",
+               "at least one cell");
+  expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "wrap": 0.1, "moves": [{"points": [0]}]})",
+               "at most one of");
+  expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [8]}]})",
+               "the cage has 8 points");
+  expect_error(R"({"op": "cage", "node": "ball", "moves": [{"box": {"min": [5, 5, 5], "max": [6, 6, 6]}}]})",
+               "no cage point lies inside");
+  expect_error(R"({"op": "cage", "node": "ball", "moves": [{"translate": [1, 0, 0]}]})",
+               "exactly one of points, box and sphere");
   expect_error(R"({"op": "cage", "node": "ball", "wrap": 3, "moves": [{"points": [0]}]})", "between 0.005 and 0.5");
   expect_error(R"({"op": "cage", "node": "ball", "mesh": "{here}/none.obj", "moves": [{"points": [0]}]})", "none.obj");
-  const std::string small = R"("mesh": {"vertices": [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]], "faces": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]}, )";
-  expect_error(R"({"op": "cage", "node": "ball", "coordinates": "green", )" + small + R"("moves": [{"points": [0]}]})", "lie outside the cage");
-  expect_error(R"({"op": "cage", "node": "ball", "coordinates": "bary", "moves": [{"points": [0]}]})", "must be mean_value");
+  const std::string small =
+      R"("mesh": {"vertices": [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]], "faces": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]}, )";
+  expect_error(R"({"op": "cage", "node": "ball", "coordinates": "green", )" + small + R"("moves": [{"points": [0]}]})",
+               "lie outside the cage");
+  expect_error(R"({"op": "cage", "node": "ball", "coordinates": "bary", "moves": [{"points": [0]}]})",
+               "must be mean_value");
   expect_error(R"({"op": "bend", "degrees": 10})", "no triangle is selected");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "axis": [0, 0, 0]})", "must have a length");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "from": 2, "to": 1})", "must lie below to");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "falloff": -1})", "must not be negative");
   expect_error(R"({"op": "taper", "node": "ball", "factor": -1})", "not negative");
-  expect_error(R"({"op": "handles", "node": "ball", "moves": [{"points": [0]}], "iterations": 0})", "between 1 and 1000");
+  expect_error(R"({"op": "handles", "node": "ball", "moves": [{"points": [0]}], "iterations": 0})",
+               "between 1 and 1000");
   run(R"({"op": "lock", "node": "ball"})");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10})", "is locked");
 }

@@ -93,7 +93,8 @@ Errors errors_of(const Coordinates& coordinates, const Cage& cage, const std::ve
   std::vector<double> weights(rows * batch_lanes);
   for (std::size_t first = 0; first < points.size(); first += batch_lanes) {
     std::array<Vec3, batch_lanes> block;
-    for (std::size_t lane = 0; lane < batch_lanes; ++lane) block[lane] = points[std::min(first + lane, points.size() - 1)];
+    for (std::size_t lane = 0; lane < batch_lanes; ++lane)
+      block[lane] = points[std::min(first + lane, points.size() - 1)];
     std::array<std::uint8_t, batch_lanes> outside;
     coordinates.weigh(block, weights.data(), nullptr, outside.data());
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
@@ -124,7 +125,8 @@ Errors errors_of(const Coordinates& coordinates, const Cage& cage, const std::ve
 
 std::vector<std::pair<std::string, Cage>> hard_cages() {
   std::vector<std::pair<std::string, Cage>> cages = {{"cube", cube()}, {"lattice", cube(2)}, {"dented", dented()}};
-  for (const double thin : {1e-3, 1e-6, 1e-9, 1e-12}) cages.emplace_back("needles " + std::to_string(thin), needles(thin));
+  for (const double thin : {1e-3, 1e-6, 1e-9, 1e-12})
+    cages.emplace_back("needles " + std::to_string(thin), needles(thin));
   cages.emplace_back("cap 1e-12", cap(1e-12));
   cages.emplace_back("cap of no area", cap(0));
   Cage doubled = needles(0.1);
@@ -132,8 +134,7 @@ std::vector<std::pair<std::string, Cage>> hard_cages() {
   cages.emplace_back("doubled point", doubled);
   Cage floater = cube();
   const Cage other = scaled(cube(), 0.1, Vec3(0.5, 0.1, 0));
-  for (const Face& face : other.faces)
-    floater.faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8});
+  for (const Face& face : other.faces) floater.faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8});
   floater.vertices.insert(floater.vertices.end(), other.vertices.begin(), other.vertices.end());
   cages.emplace_back("two components", floater);
   return cages;
@@ -181,7 +182,8 @@ TEST(MeanValue, TenDiagonalsAwayWeightsAreLargeAndErrorsGrowWithThem) {
 }
 
 // Weights of single points through the batch, which passes delicate ones on.
-std::vector<double> weights_at(const Coordinates& coordinates, const Vec3& point, std::vector<Vec3>* gradients = nullptr) {
+std::vector<double> weights_at(const Coordinates& coordinates, const Vec3& point,
+                               std::vector<Vec3>* gradients = nullptr) {
   std::array<Vec3, batch_lanes> block;
   block.fill(point);
   std::vector<double> weights(coordinates.rows() * batch_lanes), slopes(coordinates.rows() * 3 * batch_lanes);
@@ -202,7 +204,7 @@ TEST(MeanValue, WeightsAgreeWith120Digits) {
     const auto coordinates = mean_value_coordinates(cage);
     const std::vector<Vec3> points = hard_points(cage);
     double worst = 0;
-    for (std::size_t k = 0; k < points.size(); k += cage.faces.size() > 20 ? 61 : 5) {
+    for (std::size_t k = 0; k<points.size(); k += cage.faces.size()> 20 ? 61 : 5) {
       const std::vector<double> weights = weights_at(*coordinates, points[k]);
       const std::vector<Gold> exact = gold_mean_value(cage, gold(points[k]));
       for (std::size_t v = 0; v < weights.size(); ++v)
@@ -263,7 +265,8 @@ TEST(Green, WeightsAgreeWith120DigitsAndStayFiniteOnTheSurface) {
     const std::vector<double> weights = weights_at(*coordinates, points[k]);
     const std::vector<Gold> exact = gold_green(cage, gold(points[k]));
     for (std::size_t v = 0; v < weights.size(); ++v)
-      worst = std::max(worst, std::abs(static_cast<double>(exact[v] - weights[v] / (v < cage.vertices.size() ? 1 : unit))));
+      worst =
+          std::max(worst, std::abs(static_cast<double>(exact[v] - weights[v] / (v < cage.vertices.size() ? 1 : unit))));
   }
   EXPECT_LE(worst, 1e-14);
   for (const Vec3& point : hard_points(cage))
@@ -282,10 +285,12 @@ void expect_gradients(const Cage& cage, const Coordinates& coordinates,
   std::vector<Vec3> motions;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-0.3, 0.3);
-  for (std::size_t row = 0; row < coordinates.rows(); ++row) motions.emplace_back(any(random), any(random), any(random));
+  for (std::size_t row = 0; row < coordinates.rows(); ++row)
+    motions.emplace_back(any(random), any(random), any(random));
   std::vector<Vec3> in_cage_units = motions;
   for (std::size_t row = cage.vertices.size(); row < motions.size(); ++row) in_cage_units[row] *= unit;
-  for (const auto& [distance, bar] : {std::pair(1e-1, 1e-12), std::pair(1e-3, 1e-11), std::pair(1e-6, 1e-8), std::pair(1e-9, 1e-5)})
+  for (const auto& [distance, bar] :
+       {std::pair(1e-1, 1e-12), std::pair(1e-3, 1e-11), std::pair(1e-6, 1e-8), std::pair(1e-9, 1e-5)})
     for (std::size_t f = 0; f < cage.faces.size(); f += 17) {
       const Face& face = cage.faces[f];
       const Vec3 &a = cage.vertices[face[0]], &b = cage.vertices[face[1]], &c = cage.vertices[face[2]];
@@ -403,7 +408,8 @@ TEST(CageDeformation, TheIdentityChangesNoBitAndEqualPointsMoveAlike) {
 
 TEST(CageDeformation, RigidMotionsOfTheCageAreRigidMotions) {
   const Cage cage = dented();
-  const Affine motion = Eigen::Translation3d(0.2, -3, 1) * Eigen::AngleAxisd(3.141592653589793, Vec3(1, 2, 3).normalized());
+  const Affine motion =
+      Eigen::Translation3d(0.2, -3, 1) * Eigen::AngleAxisd(3.141592653589793, Vec3(1, 2, 3).normalized());
   std::vector<Vec3> moved;
   for (const Vec3& v : cage.vertices) moved.push_back(motion * v);
   std::vector<Vec3> points;

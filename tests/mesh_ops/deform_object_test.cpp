@@ -78,7 +78,8 @@ TEST(Deform, UnweldedCornersMoveAlikeBitForBit) {
 TEST(Deform, TheIdentityChangesNothing) {
   const auto object = made_object();
   // A transform whose inverse rounds.
-  const Affine placed = Eigen::Translation3d(0.1, 0.2, 0.3) * Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()) * Eigen::Scaling(0.7);
+  const Affine placed =
+      Eigen::Translation3d(0.1, 0.2, 0.3) * Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()) * Eigen::Scaling(0.7);
   const DeformedObject result = deformed(*object, placed, all(*object), 0, bend(0));
   EXPECT_EQ(result.object->sets[0].soup.shared_positions(), object->sets[0].soup.shared_positions());
   EXPECT_EQ(result.object->sets[0].soup.turns(), nullptr);
@@ -87,9 +88,11 @@ TEST(Deform, TheIdentityChangesNothing) {
 TEST(Deform, ASoftBorderLeavesNoCrackAndAHardOneSplits) {
   const auto object = made_object({.columns = 32, .rows = 16});
   const TriangleSet flags = upper_half(*object);
-  const DeformedObject soft = deformed(*object, Affine::Identity(), flags, 0.5, affine(Eigen::Scaling(1.5) * Mat3::Identity()));
+  const DeformedObject soft =
+      deformed(*object, Affine::Identity(), flags, 0.5, affine(Eigen::Scaling(1.5) * Mat3::Identity()));
   for (const auto& [place, now] : places(*object, *soft.object)) EXPECT_EQ(now.size(), 1U);
-  const DeformedObject hard = deformed(*object, Affine::Identity(), flags, 0, affine(Eigen::Scaling(1.5) * Mat3::Identity()));
+  const DeformedObject hard =
+      deformed(*object, Affine::Identity(), flags, 0, affine(Eigen::Scaling(1.5) * Mat3::Identity()));
   std::size_t split = 0;
   for (const auto& [place, now] : places(*object, *hard.object)) split += now.size() > 1 ? 1 : 0;
   EXPECT_EQ(split, 32U) << "the equator's corners";
@@ -160,7 +163,8 @@ TEST(Wrap, EnclosesEveryTriangleAndIsClosed) {
     EXPECT_GT(volume(cage), 0);
     EXPECT_EQ(self_intersections(cage), 0U);
     EXPECT_EQ(deform_points(*green_coordinates(cage), cage, cage.vertices, soup.positions(), false).outside,
-              std::vector<std::uint8_t>(soup.positions().size(), 0)) << "Green's coordinates know the inside";
+              std::vector<std::uint8_t>(soup.positions().size(), 0))
+        << "Green's coordinates know the inside";
   }
   EXPECT_THROW(wrap({soup.positions(), soup.faces()}, 0.9), FieldError);
   EXPECT_THROW(wrap({}, 0.1), Error);

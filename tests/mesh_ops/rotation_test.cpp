@@ -27,8 +27,8 @@ TEST(LocalRotation, IsARotationForEveryMatrix) {
   std::mt19937 random(1);
   for (int k = 0; k < 2000; ++k) {
     Mat3 m = random_matrix(random);
-    if (k % 4 == 1) m.col(0) = m.col(1) * 2 - m.col(2);                   // rank 2
-    if (k % 4 == 2) m = m.col(0) * m.row(0);                              // rank 1
+    if (k % 4 == 1) m.col(0) = m.col(1) * 2 - m.col(2);                              // rank 2
+    if (k % 4 == 2) m = m.col(0) * m.row(0);                                         // rank 1
     if (k % 4 == 3) m.col(2) = -m.col(0).cross(m.col(1)) * std::pow(10.0, -k % 20);  // mirrored, and nearly flat
     for (const double scale : {1.0, 1e-150, 1e150}) expect_rotation(local_rotation(m * scale).rotation);
   }
@@ -87,7 +87,8 @@ TEST(ClosedForms, JacobiansAreThoseOfTheMap) {
       Mat3 want;
       for (int axis = 0; axis < 3; ++axis)
         want.col(axis) = (deform(form, point + step * Vec3::Unit(axis)).point -
-                          deform(form, point - step * Vec3::Unit(axis)).point) / (2 * step);
+                          deform(form, point - step * Vec3::Unit(axis)).point) /
+                         (2 * step);
       EXPECT_LE((deform(form, point).jacobian - want).norm(), 1e-8);
     }
   }

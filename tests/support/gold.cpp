@@ -68,8 +68,8 @@ std::vector<Gold> gold_green(const Cage& cage, const Gold3& point) {
     if (area == 0) continue;
     normal = normal * (1 / area);
     const Gold h = dot(e[0], normal);
-    const Gold angle = 2 * atan2(dot(e[0], cross(e[1], e[2])),
-                                 r[0] * r[1] * r[2] + dot(e[0], e[1]) * r[2] + dot(e[1], e[2]) * r[0] + dot(e[2], e[0]) * r[1]);
+    const Gold angle = 2 * atan2(dot(e[0], cross(e[1], e[2])), r[0] * r[1] * r[2] + dot(e[0], e[1]) * r[2] +
+                                                                   dot(e[1], e[2]) * r[0] + dot(e[2], e[0]) * r[1]);
     Gold sum = 0;
     Gold3 logs{Gold(0), Gold(0), Gold(0)};
     std::array<Gold, 3> lambda;

@@ -8,8 +8,8 @@
 namespace rebake::test {
 
 /// 120 decimal digits: what cage coordinates are held to.
-using Gold = boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<120>,
-                                           boost::multiprecision::et_off>;
+using Gold =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<120>, boost::multiprecision::et_off>;
 using Gold3 = std::array<Gold, 3>;
 
 Gold3 gold(const Vec3& v);
