@@ -32,7 +32,7 @@ std::string cost_of_bends(Session& session, const Scene& flat) {
     }
     return fmt::format("that costs {:.1f} dB PSNR over four sides, {:.1f} dB at the worst", -10 * std::log10(squares),
                        worst);
-  } catch (const DeviceError& error) {
+  } catch (const Error& error) {
     return fmt::format("what that costs cannot be measured here: {}", error.what());
   }
 }

@@ -55,7 +55,9 @@ std::string in_words(const std::string& name, const DeformationReport& report) {
   if (report.undefined > 0)
     line += fmt::format("; {} have no rotation of their own and got a neighbour's", report.undefined);
   if (report.outside > 0) line += fmt::format("; {} that show nothing lie outside the cage and stay", report.outside);
-  if (report.not_finite > 0) line += fmt::format("; {} are no numbers and stay", report.not_finite);
+  if (report.not_finite > 0)
+    line += fmt::format("; {} are no numbers, or would become none, and stay", report.not_finite);
+  for (const std::string& note : report.notes) line += "; " + note;
   return line;
 }
 
@@ -80,7 +82,7 @@ void Session::edit(const Edit& edit) {
   for (const PlacedNode& placed : placed_nodes(scene())) {
     if (!placed.node->object || !placed.node->object->deformation) continue;
     const NodePtr old = find(earlier, placed.node->id);
-    if (old && old->object && old->object->deformation == placed.node->object->deformation) continue;
+    if (!old || !old->object || old->object->deformation == placed.node->object->deformation) continue;
     say(fmt::format("{}: {}", op, in_words(placed.node->name, *placed.node->object->deformation)));
   }
   if (std::holds_alternative<DeleteSelected>(edit))

@@ -16,7 +16,7 @@ struct BatchOptions {
   std::filesystem::path out;           ///< a scene's result goes to out/NAME, unless the script exports
   std::vector<std::string> variables;  ///< name=value, for the script
   int jobs = 1;
-  bool resume = false;            ///< leave out what was done before with the same program, script, variables and scene
+  bool resume = false;            ///< leave out what was done before with the same version, script, variables and scene
   int shard = 1, shards = 1;      ///< of all scenes in order, every shards-th from the shard-th on
   std::filesystem::path program;  ///< that is run for each scene: rebake itself
 };

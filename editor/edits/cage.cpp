@@ -23,9 +23,10 @@ Scene apply(const Scene& scene, const CageDeform& edit) {
   const Cage cage = cage_of(edit.cage, set);
   const std::vector<Vec3> moved = moved_points(edit.moves, cage, edit.target.frame == CoordinateFrame::bounds);
   const auto coordinates = coordinates_of(cage, edit.coordinates, edit.resolution);
-  return with_deformed(scene, set, edit.target.falloff, [&](const std::vector<Vec3>& points) {
-    return deform_points(*coordinates, cage, moved, points, true);
-  });
+  return with_deformed(
+      scene, set, edit.target.falloff,
+      [&](const std::vector<Vec3>& points) { return deform_points(*coordinates, cage, moved, points, true); },
+      notes_on(cage, moved));
 }
 
 }  // namespace rebake

@@ -80,17 +80,23 @@ DeformSet deform_set(const Scene& scene, const DeformTarget& target) {
   return set;
 }
 
-Scene with_deformed(const Scene& scene, const DeformSet& set, double falloff, const SpaceDeformation& deformation) {
+Scene with_deformed(const Scene& scene, const DeformSet& set, double falloff, const SpaceDeformation& deformation,
+                    const std::vector<std::string>& notes) {
   Scene result = scene;
   for (std::size_t k = 0; k < set.nodes.size(); ++k) {
     DeformedObject made =
-        deformed(*set.nodes[k].node->object, set.nodes[k].to_world, set.flags[k], falloff, deformation);
+        deformed(*set.nodes[k].node->object, set.nodes[k].to_world, set.flags[k], falloff, deformation, notes);
     if (made.report.opaque_outside > 0)
       throw EditError(
           fmt::format("{} of the {} points of \"{}\" lie outside the cage, where these coordinates hold nothing; use "
                       "mean_value, or "
                       "a coarser wrap or a larger cage",
                       made.report.opaque_outside, made.report.points, set.nodes[k].node->name));
+    // Pictures and files hold positions as float.
+    constexpr double farthest = 1e30;
+    if (const Box box = transformed(made.object->bounds(), set.nodes[k].to_world);
+        !box.isEmpty() && !(box.min().cwiseAbs().maxCoeff() < farthest && box.max().cwiseAbs().maxCoeff() < farthest))
+      throw EditError(fmt::format("\"{}\" would lie beyond what numbers can hold", set.nodes[k].node->name));
     result = with_changed(result, set.nodes[k].node->id, [&](Node& node) { node.object = std::move(made.object); });
     check_subtree(result, set.nodes[k].node->id);
   }
@@ -169,11 +175,15 @@ nlohmann::json Codec<std::vector<int>>::write(const std::vector<int>& value) {
 
 std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, bool shares) {
   std::vector<std::uint32_t> result;
+  std::vector<std::uint8_t> taken(cage.vertices.size(), 0);
   for (const auto& [first, last] : move.points.ranges) {
     if (last >= cage.vertices.size())
       throw FieldError("points", fmt::format("{} is not there: the cage has {} points", last, cage.vertices.size()));
-    for (std::uint64_t v = first; v <= last; ++v) result.push_back(static_cast<std::uint32_t>(v));
+    std::fill(taken.begin() + static_cast<std::ptrdiff_t>(first), taken.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+              std::uint8_t{1});
   }
+  for (std::uint32_t v = 0; v < taken.size(); ++v)
+    if (taken[v] != 0) result.push_back(v);
   if (move.points.ranges.empty()) {
     Box box;
     for (const Vec3& v : cage.vertices) box.extend(v);
@@ -211,6 +221,15 @@ std::vector<Vec3> moved_points(const CageMoves& moves, const Cage& cage, bool sh
     }
   }
   return points;
+}
+
+std::vector<std::string> notes_on(const Cage& cage, const std::vector<Vec3>& moved) {
+  std::vector<std::string> notes;
+  if (const std::size_t pairs = self_intersections(cage); pairs > 0)
+    notes.push_back(fmt::format("the cage cuts through itself ({} pairs of triangles)", pairs));
+  else if (const std::size_t after = self_intersections({moved, cage.faces}); after > 0)
+    notes.push_back(fmt::format("the moved cage cuts through itself ({} pairs of triangles)", after));
+  return notes;
 }
 
 Cage cage_of(const CageSource& source, const DeformSet& set) {

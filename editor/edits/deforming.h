@@ -45,7 +45,9 @@ DeformSet deform_set(const Scene& scene, const DeformTarget& target);
 
 /// The scene with them deformed. Throws EditError when what shows something would stay behind because the deformation
 /// does not reach it.
-Scene with_deformed(const Scene& scene, const DeformSet& set, double falloff, const SpaceDeformation& deformation);
+/// `notes` go into the objects' reports.
+Scene with_deformed(const Scene& scene, const DeformSet& set, double falloff, const SpaceDeformation& deformation,
+                    const std::vector<std::string>& notes = {});
 
 /// Some points of a cage, and how they move.
 struct CageMove {
@@ -112,6 +114,9 @@ struct Codec<std::vector<int>> {
   static std::vector<int> read(const nlohmann::json& value, const Scene& scene);
   static nlohmann::json write(const std::vector<int>& value);
 };
+
+/// What people should know of a cage that is about to move: places where it cuts through itself, before or after.
+std::vector<std::string> notes_on(const Cage& cage, const std::vector<Vec3>& moved);
 
 /// The cage around what is deformed, in world space. With no way given, a wrap of coarseness 0.1.
 Cage cage_of(const CageSource& source, const DeformSet& set);

@@ -1,5 +1,7 @@
 #include "editor/edits/handles.h"
 
+#include <fmt/format.h>
+
 #include <map>
 
 #include "mesh_ops/deform/handles.h"
@@ -21,10 +23,14 @@ Scene apply(const Scene& scene, const HandlesDeform& edit) {
   std::vector<HandledVertex> places;
   for (const auto& [vertex, place] : held) places.push_back({vertex, place});
   const HandledCage moved = as_rigid_as_possible(cage, places, edit.iterations);
+  std::vector<std::string> notes = notes_on(cage, moved.vertices);
+  if (moved.free_components > 0)
+    notes.push_back(fmt::format("{} parts of the cage hold no point and stay", moved.free_components));
   const auto coordinates = mean_value_coordinates(cage);
-  return with_deformed(scene, set, edit.target.falloff, [&](const std::vector<Vec3>& points) {
-    return deform_points(*coordinates, cage, moved.vertices, points, true);
-  });
+  return with_deformed(
+      scene, set, edit.target.falloff,
+      [&](const std::vector<Vec3>& points) { return deform_points(*coordinates, cage, moved.vertices, points, true); },
+      notes);
 }
 
 }  // namespace rebake

@@ -3,22 +3,38 @@
 
 namespace rebake {
 
+#ifdef REBAKE_WIDE_VECTORS
+namespace {
+
+// What the levels of the x86-64 psABI add; the few features not asked for come with these.
+bool has_v3() {
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+         __builtin_cpu_supports("bmi2");
+}
+bool has_v4() {
+  return has_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+}
+
+}  // namespace
+#endif
+
 std::size_t batch_workspace(const BatchCage& cage, bool gradients) {
   return (gradients ? 4U : 1U) * batch_lanes * (cage.edge_count + cage.vertex_count);
 }
 
 MeanValueBatch mean_value_batch() {
 #ifdef REBAKE_WIDE_VECTORS
-  if (__builtin_cpu_supports("x86-64-v4")) return mean_value_batch_v4;
-  if (__builtin_cpu_supports("x86-64-v3")) return mean_value_batch_v3;
+  if (has_v4()) return mean_value_batch_v4;
+  if (has_v3()) return mean_value_batch_v3;
 #endif
   return mean_value_batch_baseline;
 }
 
 RowSums row_sums() {
 #ifdef REBAKE_WIDE_VECTORS
-  if (__builtin_cpu_supports("x86-64-v4")) return row_sums_v4;
-  if (__builtin_cpu_supports("x86-64-v3")) return row_sums_v3;
+  if (has_v4()) return row_sums_v4;
+  if (has_v3()) return row_sums_v3;
 #endif
   return row_sums_baseline;
 }

@@ -96,7 +96,17 @@ Cage checked_cage(Cage cage) {
   }
   if (open > 0)
     throw Error(fmt::format("the cage is open: {} of its edges belong to one triangle only; close the holes", open));
-  if (volume(cage) < 0)
+  // By the box's size: a cage may be thin, but not nothing.
+  Box box;
+  for (const Vec3& v : cage.vertices) box.extend(v);
+  const double extent = box.sizes().maxCoeff();
+  if (!(extent > 0) || !std::isfinite(extent) || extent < 1e-150)
+    throw Error("the cage has no extent that numbers can hold");
+  Cage scaled = cage;
+  for (Vec3& v : scaled.vertices) v = (v - box.center()) / extent;
+  const double inside = volume(scaled);
+  if (std::abs(inside) < 1e-14) throw Error("the cage encloses nothing: its volume is zero");
+  if (inside < 0)
     for (Face& face : cage.faces) std::swap(face[1], face[2]);
   return cage;
 }

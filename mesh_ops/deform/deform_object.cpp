@@ -28,7 +28,8 @@ class NearGrid {
     double least = size_ * size_;
     const Vec3 at = cell(p);
     for (int k = 0; k < 27; ++k) {
-      const auto here = cells_.find(key(at + Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
+      const std::array<int, 3> beside{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+      const auto here = cells_.find(key(at + Vec3(beside[0], beside[1], beside[2])));
       if (here == cells_.end()) continue;
       for (const std::uint32_t i : here->second)
         if (const double square = (points_[i] - p).squaredNorm(); square < least) {
@@ -74,7 +75,7 @@ void fade(const std::vector<Vec3>& rest, const std::vector<Vec3>& border, double
 }  // namespace
 
 DeformedObject deformed(const BakedObject& object, const Affine& to_world, const TriangleSet& flags, double falloff,
-                        const SpaceDeformation& deformation) {
+                        const SpaceDeformation& deformation, std::vector<std::string> notes) {
   const auto corners = corners_of(object);
   // Places of flagged triangles, numbered anew; and which of them others share.
   std::vector<std::uint32_t> number(corners->place_count, none);
@@ -108,16 +109,18 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
   DeformedObject result;
   DeformationReport& report = result.report;
   report.points = rest.size();
+  report.notes = std::move(notes);
   const Affine to_object = to_world.inverse();
   // Turns live in the object's own frame: orthogonal, whatever its transform scales.
   const Mat3 frame = orthogonal_factor(to_world.linear());
   const Mat3 scales = to_world.linear() * frame.transpose();
   std::vector<Mat3> turns(rest.size(), Mat3::Identity());
   std::vector<double> determinants(rest.size(), 1);
-  std::vector<std::uint8_t> defined(rest.size(), 1);
+  std::vector<std::uint8_t> defined(rest.size(), 1), is_number(rest.size(), 1);
   tbb::parallel_for(std::size_t{0}, rest.size(), [&](std::size_t i) {
     if (!world[i].allFinite() || !moved.points[i].allFinite() || !moved.jacobians[i].allFinite()) {
       moved.points[i] = world[i];
+      is_number[i] = 0;
       return;
     }
     determinants[i] = moved.jacobians[i].determinant();
@@ -135,28 +138,35 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
     for (std::size_t i = 0; i < rest.size(); ++i) report.opaque_outside += shows[i] & moved.outside[i];
   }
   for (std::size_t i = 0; i < rest.size(); ++i) {
-    report.not_finite += world[i].allFinite() ? 0 : 1;
+    report.not_finite += is_number[i] != 0 ? 0 : 1;
     report.outside += !moved.outside.empty() && moved.outside[i] != 0 ? 1 : 0;
     report.folded += determinants[i] <= 0 ? 1 : 0;
     report.undefined += defined[i] == 0 ? 1 : 0;
-    report.least_determinant = std::min(report.least_determinant, determinants[i]);
+    if (is_number[i] != 0)
+      report.least_determinant = i == 0 ? determinants[i] : std::min(report.least_determinant, determinants[i]);
   }
-  // Where two rotations are equally near, that of a corner beside it.
-  for (bool changed = report.undefined > 0; changed;) {
-    changed = false;
-    const std::vector<std::uint8_t> before = defined;
+  // Where two rotations are equally near, that of a place beside it: from those that have one outwards.
+  if (report.undefined > 0) {
+    std::vector<std::vector<std::uint32_t>> beside(rest.size());
     for (std::size_t t = 0; t < flags.size(); ++t) {
       if (flags[t] == 0) continue;
-      for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t other = 1; other < 3; ++other) {
-          const std::uint32_t here = number[corners->places[t * 3 + k]],
-                              beside = number[corners->places[t * 3 + (k + other) % 3]];
-          if (defined[here] != 0 || before[beside] == 0) continue;
-          turns[here] = turns[beside];
-          defined[here] = 1;
-          changed = true;
-        }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = number[corners->places[t * 3 + k]], b = number[corners->places[t * 3 + (k + 1) % 3]];
+        if (defined[a] != 0 && defined[b] != 0) continue;
+        beside[a].push_back(b);
+        beside[b].push_back(a);
+      }
     }
+    std::vector<std::uint32_t> next;
+    for (std::uint32_t i = 0; i < rest.size(); ++i)
+      if (defined[i] != 0 && !beside[i].empty()) next.push_back(i);
+    for (std::size_t at = 0; at < next.size(); ++at)
+      for (const std::uint32_t i : beside[next[at]]) {
+        if (defined[i] != 0) continue;
+        turns[i] = turns[next[at]];
+        defined[i] = 1;
+        next.push_back(i);
+      }
   }
 
   auto made = std::make_shared<BakedObject>(object);

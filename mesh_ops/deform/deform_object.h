@@ -16,8 +16,9 @@ struct DeformationReport {
   std::size_t undefined = 0;       ///< those with no local rotation of their own, which got a neighbour's
   std::size_t outside = 0;         ///< those that the coordinates do not reach; they stay
   std::size_t opaque_outside = 0;  ///< of them, corners of triangles that show something
-  std::size_t not_finite = 0;      ///< those whose position is no number; they stay
-  double least_determinant = 1;    ///< of J, over all points
+  std::size_t not_finite = 0;      ///< those whose position is no number, or would be none; they stay
+  double least_determinant = 1;    ///< of J, over all points that have one
+  std::vector<std::string> notes;  ///< what else people should know of the deformation
   TriangleSet folded_triangles;    ///< of the object: a corner lies at a folded place
 };
 
@@ -33,6 +34,6 @@ struct DeformedObject {
   DeformationReport report;
 };
 DeformedObject deformed(const BakedObject& object, const Affine& to_world, const TriangleSet& flags, double falloff,
-                        const SpaceDeformation& deformation);
+                        const SpaceDeformation& deformation, std::vector<std::string> notes = {});
 
 }  // namespace rebake

@@ -4,6 +4,7 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_deformation.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "mesh_ops/error.h"
@@ -51,6 +52,8 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
   std::vector<Mesh::Vertex_index> number(cage.vertices.size());
   for (const Face& face : cage.faces)
     for (const std::uint32_t v : face) used[v] = 1;
+  if (std::none_of(held.begin(), held.end(), [&](const HandledVertex& h) { return used[h.vertex] != 0; }))
+    throw Error("none of the held points belongs to a triangle of the cage; fix some that do");
   for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
     if (used[v] == 0) continue;
     if (component[v] == v && has_held[v] == 0) ++result.free_components;
@@ -62,9 +65,12 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
       throw Error("two parts of the cage meet in a single point: handles need a cage without such places");
   CGAL::Surface_mesh_deformation<Mesh> deformation(mesh);
   for (const auto v : mesh.vertices()) deformation.insert_roi_vertex(v);
-  for (const HandledVertex& h : held) deformation.insert_control_vertex(number[h.vertex]);
+  // A point of no face is held where it is asked to be, and moves nothing else.
+  for (const HandledVertex& h : held)
+    if (used[h.vertex] != 0) deformation.insert_control_vertex(number[h.vertex]);
   if (!deformation.preprocess()) throw Error("the handles do not determine the cage; fix some more points");
-  for (const HandledVertex& h : held) deformation.set_target_position(number[h.vertex], in(h.place));
+  for (const HandledVertex& h : held)
+    if (used[h.vertex] != 0) deformation.set_target_position(number[h.vertex], in(h.place));
   deformation.deform(static_cast<unsigned>(iterations), 0);
   for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
     if (used[v] == 0 || has_held[component[v]] == 0) continue;

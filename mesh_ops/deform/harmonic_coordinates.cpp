@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -77,6 +78,13 @@ class Harmonic final : public Coordinates {
         row_of_[node] = static_cast<std::uint32_t>(given.size() + inside.size());
         inside.push_back(node);
       }
+    // Every node inside keeps a weight for every cage point.
+    constexpr std::size_t most_bytes = std::size_t{2} << 30U;
+    if ((given.size() + inside.size()) * rows() > most_bytes / sizeof(double))
+      throw FieldError(
+          "resolution",
+          fmt::format("{} would need {:.1f} GB for this cage, 2 at most; choose a lower one or a coarser cage",
+                      resolution, static_cast<double>((given.size() + inside.size()) * rows()) * 8e-9));
     values_.resize((given.size() + inside.size()) * rows());
     tbb::parallel_for(std::size_t{0}, given.size(), [&](std::size_t k) {
       std::vector<double> weights;
@@ -126,8 +134,8 @@ class Harmonic final : public Coordinates {
   }
   Vec3 place_of(std::size_t node) const {
     const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]);
-    return origin_ + step_ * Vec3(static_cast<double>(node % nx), static_cast<double>(node / nx % ny),
-                                  static_cast<double>(node / nx / ny));
+    const std::array<std::size_t, 3> at{node % nx, node / nx % ny, node / nx / ny};
+    return origin_ + step_ * Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2]));
   }
   template <class Visit>
   void for_neighbours(std::size_t node, Visit visit) const {

@@ -102,6 +102,21 @@ TEST_F(DeformScript, AFoldIsReportedAndCanBeSelected) {
   EXPECT_LT(folded, 1000U);
 }
 
+TEST_F(DeformScript, APointNamedTwiceMovesOnceAndGrowthIsReported) {
+  run(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [7], "translate": [0.5, 0, 0]}]})");
+  const auto once = ball().sets[0].soup.positions();
+  run(R"({"op": "undo"})");
+  run(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [7, 7, [7, 7]], "translate": [0.5, 0, 0]}]})");
+  EXPECT_EQ(ball().sets[0].soup.positions(), once);
+  said.clear();
+  run(R"({"op": "duplicate", "node": "ball", "as": "second"})");
+  EXPECT_EQ(said.find("deformed"), std::string::npos) << "nothing was";
+  run(R"({"op": "cage", "node": "second", "lattice": [1, 1, 1], "moves": [{"points": [[0, 7]], "scale": 2}]})");
+  EXPECT_NE(said.find("least det J 8"), std::string::npos) << said;
+  run(R"({"op": "cage", "node": "second", "lattice": [1, 1, 1], "moves": [{"points": [0], "translate": [10, 1, 1]}]})");
+  EXPECT_NE(said.find("the moved cage cuts through itself"), std::string::npos) << said;
+}
+
 TEST_F(DeformScript, AJournaledCageNeedsNoFile) {
   write_text(folder_.path() / "cage.obj",
              "v -2 -2 -2\nv 4 -2 -2\nv -2 4 -2\nv -2 -2 4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
@@ -153,6 +168,15 @@ TEST_F(DeformScript, BadInputSaysWhatToDo) {
                "lie outside the cage");
   expect_error(R"({"op": "cage", "node": "ball", "coordinates": "bary", "moves": [{"points": [0]}]})",
                "must be mean_value");
+  expect_error(
+      R"({"op": "cage", "node": "ball", "mesh": {"vertices": [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]], "faces": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]}, "moves": [{"points": [0]}]})",
+      "encloses nothing");
+  expect_error(
+      R"({"op": "cage", "node": "ball", "lattice": [40, 40, 40], "coordinates": "harmonic", "resolution": 256, "moves": [{"points": [0]}]})",
+      "2 at most");
+  expect_error(
+      R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [[0, 7]], "translate": [1e308, 0, 0]}]})",
+      "beyond what numbers can hold");
   expect_error(R"({"op": "bend", "degrees": 10})", "no triangle is selected");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "axis": [0, 0, 0]})", "must have a length");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "from": 2, "to": 1})", "must lie below to");

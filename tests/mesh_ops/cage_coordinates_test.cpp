@@ -98,7 +98,7 @@ Errors errors_of(const Coordinates& coordinates, const Cage& cage, const std::ve
     std::array<std::uint8_t, batch_lanes> outside;
     coordinates.weigh(block, weights.data(), nullptr, outside.data());
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
-      if (outside[lane] != 0) continue;
+      EXPECT_EQ(outside[lane], 0) << block[lane].transpose();
       double sum = 0;
       Vec3 place(0, 0, 0);
       for (std::size_t v = 0; v < cage.vertices.size(); ++v) {
@@ -243,6 +243,7 @@ std::vector<Vec3> inside_points(const Cage& cage) {
     }
     if (std::abs(sum / (4 * std::acos(-1.0)) - 1) < 1e-3) points.push_back(p);
   }
+  EXPECT_GE(points.size(), 20U);
   return points;
 }
 
@@ -418,7 +419,7 @@ TEST(CageDeformation, RigidMotionsOfTheCageAreRigidMotions) {
     const DeformedPoints result = deform_points(*coordinates_of(cage, kind, 16), cage, moved, points, true);
     double worst = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
-      if (result.outside[k] != 0) continue;
+      ASSERT_EQ(result.outside[k], 0) << points[k].transpose();
       worst = std::max(worst, (result.points[k] - motion * points[k]).norm());
     }
     EXPECT_LE(worst, kind == CageCoordinates::harmonic ? 1e-9 : 1e-13) << static_cast<int>(kind);

@@ -187,6 +187,15 @@ TEST(Handles, HeldPointsAreHeldAndTheRestIsRigid) {
   EXPECT_THROW(as_rigid_as_possible(cage, {}, 5), Error);
 }
 
+TEST(Handles, APointOfNoTriangleMovesNothing) {
+  Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 1, 1, 1);
+  cage.vertices.emplace_back(5, 5, 5);
+  EXPECT_THROW(as_rigid_as_possible(cage, {{8, Vec3(6, 6, 6)}}, 5), Error);
+  const HandledCage moved = as_rigid_as_possible(cage, {{0, cage.vertices[0]}, {8, Vec3(6, 6, 6)}}, 5);
+  EXPECT_EQ(moved.vertices[8], Vec3(6, 6, 6));
+  EXPECT_LE((moved.vertices[7] - cage.vertices[7]).norm(), 1e-6);
+}
+
 TEST(Handles, AComponentThatNothingHoldsStays) {
   Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 1, 1, 1);
   const Cage other = lattice_cage(Box(Vec3(3, 0, 0), Vec3(4, 1, 1)), 1, 1, 1);
