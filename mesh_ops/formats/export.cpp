@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
+#include "mesh_ops/deform/rotation.h"
 #include "mesh_ops/error.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "mesh_ops/formats/write_baked_folder.h"
@@ -30,15 +32,63 @@ std::vector<Mat3> distinct_turns(const BakedObject& object) {
   return turns;
 }
 
-// Whether a face's corners are turned differently.
-bool any_bent(const BakedObject& object) {
-  for (const TextureSet& set : object.sets) {
-    if (set.soup.turns() == nullptr) continue;
-    const std::vector<Mat3>& turns = *set.soup.turns();
-    for (const Face& face : set.soup.faces())
-      if (turns[face[0]] != turns[face[1]] || turns[face[0]] != turns[face[2]]) return true;
-  }
-  return false;
+// Turns that differ by less show the same colours to the last bit.
+constexpr double same_to_the_eye = 1e-9;
+
+// An object's faces by the turn that all their corners have.
+struct TurnGroups {
+  struct Group {
+    Mat3 turn;
+    std::size_t faces = 0;
+  };
+  static constexpr std::uint32_t bent = 0xffffffff;
+  std::vector<Group> groups;
+  std::vector<std::uint32_t> group_of;  ///< a face; bent where its corners are turned differently
+  bool any_bent = false;
+};
+TurnGroups turn_groups(const BakedObject& object) {
+  TurnGroups result;
+  std::uint32_t last = 0;
+  for (const TextureSet& set : object.sets)
+    for (const Face& face : set.soup.faces()) {
+      const auto turn = [&](std::size_t k) {
+        return set.soup.turns() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.turns())[face[k]];
+      };
+      const Mat3 first = turn(0);
+      if ((turn(1) - first).norm() > same_to_the_eye || (turn(2) - first).norm() > same_to_the_eye) {
+        result.group_of.push_back(TurnGroups::bent);
+        result.any_bent = true;
+        continue;
+      }
+      const auto fits = [&](std::uint32_t g) { return (result.groups[g].turn - first).norm() <= same_to_the_eye; };
+      if (last >= result.groups.size() || !fits(last)) {
+        for (last = 0; last < result.groups.size() && !fits(last);) ++last;
+        if (last == result.groups.size()) result.groups.push_back({first, 0});
+      }
+      ++result.groups[last].faces;
+      result.group_of.push_back(last);
+    }
+  // Beside bent faces a few that happen to be turned alike are no part of their own.
+  if (result.any_bent)
+    for (std::uint32_t& group : result.group_of)
+      if (group != TurnGroups::bent && result.groups[group].faces * 100 < result.group_of.size())
+        group = TurnGroups::bent;
+  return result;
+}
+
+// What bent faces are shown with: the commonest turn of the others, else their own mean.
+Mat3 stand_in(const BakedObject& object, const TurnGroups& groups) {
+  const TurnGroups::Group* commonest = nullptr;
+  for (std::uint32_t g = 0; g < groups.groups.size(); ++g)
+    if (std::find(groups.group_of.begin(), groups.group_of.end(), g) != groups.group_of.end() &&
+        (commonest == nullptr || groups.groups[g].faces > commonest->faces))
+      commonest = &groups.groups[g];
+  if (commonest != nullptr) return commonest->turn;
+  Mat3 sum = Mat3::Zero();
+  for (const TextureSet& set : object.sets)
+    if (set.soup.turns() != nullptr)
+      for (const Mat3& turn : *set.soup.turns()) sum += turn;
+  return local_rotation(sum).rotation;
 }
 
 // Equal but for the rounding of a folded rotation.
@@ -76,11 +126,25 @@ std::vector<TextureSet> world_sets(const BakedObject& object, const Mat3& turn, 
 Scene without_bends(const Scene& scene, std::vector<std::string>* bent) {
   Scene result = scene;
   for (const PlacedNode& placed : placed_nodes(scene)) {
-    if (!placed.visible || !placed.node->object || !any_bent(*placed.node->object)) continue;
-    if (bent != nullptr) bent->push_back(placed.node->name);
+    if (!placed.visible || !placed.node->object || !placed.node->object->any_turns()) continue;
+    const TurnGroups groups = turn_groups(*placed.node->object);
+    if (groups.any_bent && bent != nullptr) bent->push_back(placed.node->name);
+    const Mat3 other = groups.any_bent ? stand_in(*placed.node->object, groups) : Mat3(Mat3::Identity());
     auto object = std::make_shared<BakedObject>(*placed.node->object);
-    for (TextureSet& set : object->sets)
-      set.soup = Soup(set.soup.shared_positions(), set.soup.shared_uvs(), set.soup.shared_faces());
+    std::size_t first = 0;
+    for (TextureSet& set : object->sets) {
+      const auto give = [&](std::uint32_t group, const Mat3& turn) {
+        TriangleSet flags(groups.group_of.size());
+        for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = groups.group_of[f] == group ? 1 : 0;
+        set.soup = change_vertices(set.soup, flags, first, [&](std::uint32_t, Vec3&, Mat3& old) { old = turn; });
+      };
+      const std::size_t last = first + set.soup.triangle_count();
+      std::set<std::uint32_t> present(groups.group_of.begin() + static_cast<std::ptrdiff_t>(first),
+                                      groups.group_of.begin() + static_cast<std::ptrdiff_t>(last));
+      for (const std::uint32_t group : present)
+        give(group, group == TurnGroups::bent ? other : groups.groups[group].turn);
+      first = last;
+    }
     result = with_changed(result, placed.node->id, [&](Node& node) { node.object = object; });
   }
   return result;

@@ -22,12 +22,13 @@ struct ExportReport {
 
 /// The objects of a scene merged as far as the format stays exact: positions in world space, rotations folded into
 /// decoder weights. Nodes whose folded decoders are equal share an object; triangles turned apart from their object go
-/// with those of the same turn. There must be no bent object (see without_bends).
+/// with those of the same turn. There must be no bent triangle (see without_bends).
 /// `reordered`, where given, says whether objects are drawn in another order now.
 std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout, bool* reordered = nullptr);
 
-/// The scene without the turns of objects that were bent (a triangle's corners turn differently): what the published
-/// format can hold of them. Adds their names to `bent`, where given.
+/// The scene as far as the published format can show it: triangles whose corners are turned differently (bent) get the
+/// turn that most of their object has, or their mean where all are bent. Adds the names of objects that have such to
+/// `bent`, where given. Turns of whole triangles stay, equal ones made the same bit for bit.
 Scene without_bends(const Scene& scene, std::vector<std::string>* bent = nullptr);
 
 /// Writes the scene in the published format: one folder where that is exact, else scene.json with as few folders as

@@ -146,6 +146,26 @@ TEST_F(DeformScript, ScenesKeepTurnsAndPlainFoldersSayWhatTheyLose) {
   EXPECT_EQ(ball().sets[0].soup.turns(), nullptr);
 }
 
+TEST_F(DeformScript, ExportKeepsWhatItCanOfTurns) {
+  // A rigid motion by a cage is no bend: the decoder takes it, as it takes a node's.
+  run(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [[0, 7]], "rotate": {"axis": [0, 1, 0], "degrees": 90}}]})");
+  const Image turned = picture();
+  run(R"({"op": "export", "out": "{here}/turned"})");
+  EXPECT_EQ(said.find("how bends turn"), std::string::npos) << said;
+  run(R"({"op": "import", "path": "{here}/turned", "as": "read"}
+{"op": "remove", "node": "ball"})");
+  EXPECT_GE(compare(picture(), turned, 2).psnr_db, 50);
+  // Beside a bend, a half that was turned exactly keeps its turn.
+  run(R"({"op": "select", "node": "read", "half_space": {"point": [0, 0, 0], "normal": [0, 1, 0]}}
+{"op": "transform", "node": "read", "selection": true, "rotate": {"axis": [0, 1, 0], "degrees": 90}, "pivot": [0, 0, 0]}
+{"op": "bend", "node": "read", "degrees": 5, "box": {"min": [0, 0, 0], "max": [1, 0.1, 1]}, "frame": "bounds"})");
+  const Scene flat = without_bends(session.scene());
+  std::size_t quarter = 0;
+  for (const Mat3& turn : *find(flat, "read")->object->sets[0].soup.turns())
+    quarter += std::abs(turn(0, 2)) > 0.99 ? 1 : 0;
+  EXPECT_GT(quarter, 500U);
+}
+
 TEST_F(DeformScript, BadInputSaysWhatToDo) {
   expect_error(R"({"op": "cage", "node": "ball", "moves": []})", "at least one move");
   expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1], "moves": [{"points": [0]}]})",
