@@ -50,8 +50,8 @@ StudyTable study_wrap(const StudyInput& input);
 inline constexpr Study study_table[] = {
     {"samples", "samples a pixel, against 64 samples", study_samples},
     {"decoder", "precision and place of the decoder's weights, against 32-bit constants", study_decoder},
-    {"cage", "cage coordinates, their precision and resolution, on a twisted wrap", study_cage},
-    {"rotation", "local rotations of a twisted wrap, against dual numbers and singular values", study_rotation},
+    {"cage", "cage coordinates, their precision and resolution", study_cage},
+    {"rotation", "local rotations, against exact gradients and SVD", study_rotation},
     {"wrap", "coarseness of the wrap around what shows something", study_wrap},
 };
 
