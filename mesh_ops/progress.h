@@ -19,8 +19,8 @@ class Progress {
 
   /// Says that `share_done` (0 … 1) of `what` is done. Throws Cancelled if stopping was asked for.
   void at(std::string_view what, double share_done) const {
-    if (cancel_ != nullptr && cancel_->load()) throw Cancelled();
     if (report_) report_(what, share_done);
+    if (cancel_ != nullptr && cancel_->load()) throw Cancelled();
   }
 
  private:

@@ -68,7 +68,7 @@ void Session::edit(const Edit& edit) {
   const bool selects = std::visit([](const auto& e) { return changes_selection<std::decay_t<decltype(e)>>(); }, edit);
   const Numbers before = numbers_of(scene(), erases);
   const Scene earlier = scene();
-  document.edit(edit);
+  document.edit(edit, progress);
   const Numbers after = numbers_of(scene(), erases);
   const char* op = std::visit([](const auto& e) { return e.op; }, edit);
   HiddenNodes hidden{scene(), {}};

@@ -55,9 +55,9 @@ void Document::keep_journal(const fs::path& path) {
   journal_ = Journal::create(fs::absolute(path).lexically_normal(), json::object(), std::move(entries));
 }
 
-void Document::edit(const Edit& edit) {
+void Document::edit(const Edit& edit, const Progress& progress) {
   const Edit whole = completed(edit);
-  Scene after = rebake::apply(scene(), whole);
+  Scene after = rebake::apply(scene(), whole, progress);
   if (journal_) journal_->append({{"edit", to_json(whole)}});
   history_.add(whole, std::move(after));
 }

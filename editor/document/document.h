@@ -28,7 +28,7 @@ class Document {
   /// from an empty scene: its start could not be got back.
   void keep_journal(const std::filesystem::path& path);
 
-  void edit(const Edit& edit);
+  void edit(const Edit& edit, const Progress& progress = {});
   bool undo();
   bool redo();
 

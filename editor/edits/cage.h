@@ -37,6 +37,6 @@ struct Codec<CageCoordinates> {
   static nlohmann::json write(CageCoordinates value);
 };
 
-Scene apply(const Scene& scene, const CageDeform& edit);
+Scene apply(const Scene& scene, const CageDeform& edit, const Progress& progress = {});
 
 }  // namespace rebake

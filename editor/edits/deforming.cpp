@@ -232,14 +232,14 @@ std::vector<std::string> notes_on(const Cage& cage, const std::vector<Vec3>& mov
   return notes;
 }
 
-Cage cage_of(const CageSource& source, const DeformSet& set) {
+Cage cage_of(const CageSource& source, const DeformSet& set, const Progress& progress) {
   if (int{!source.lattice.empty()} + int{source.wrap.has_value()} + int{!source.mesh.faces.empty()} > 1)
     throw FieldError("wrap", "at most one of lattice, wrap and mesh can be given");
   if (!source.mesh.faces.empty()) return source.mesh;
   if (source.lattice.empty()) {
     const TriangleList opaque = set.opaque_triangles();
     if (opaque.faces.empty()) throw EditError("no triangle shows anything, so there is nothing to wrap; use a lattice");
-    return wrap(opaque, source.wrap.value_or(0.1));
+    return wrap(opaque, source.wrap.value_or(0.1), progress);
   }
   if (source.lattice.size() != 3) throw FieldError("lattice", "must be three whole numbers: cells along x, y and z");
   // A little larger, so that no point lies on the surface.

@@ -119,6 +119,6 @@ struct Codec<std::vector<int>> {
 std::vector<std::string> notes_on(const Cage& cage, const std::vector<Vec3>& moved);
 
 /// The cage around what is deformed, in world space. With no way given, a wrap of coarseness 0.1.
-Cage cage_of(const CageSource& source, const DeformSet& set);
+Cage cage_of(const CageSource& source, const DeformSet& set, const Progress& progress = {});
 
 }  // namespace rebake

@@ -8,11 +8,11 @@
 
 namespace rebake {
 
-Scene apply(const Scene& scene, const HandlesDeform& edit) {
+Scene apply(const Scene& scene, const HandlesDeform& edit, const Progress& progress) {
   if (edit.iterations < 1 || edit.iterations > 1000) throw FieldError("iterations", "must lie between 1 and 1000");
   if (edit.moves.empty()) throw FieldError("moves", "must hold at least one move");
   const DeformSet set = deform_set(scene, edit.target);
-  const Cage cage = cage_of(edit.cage, set);
+  const Cage cage = cage_of(edit.cage, set, progress);
   const bool shares = edit.target.frame == CoordinateFrame::bounds;
   const std::vector<Vec3> asked = moved_points(edit.moves, cage, shares);
   std::map<std::uint32_t, Vec3> held;
@@ -29,7 +29,9 @@ Scene apply(const Scene& scene, const HandlesDeform& edit) {
   const auto coordinates = mean_value_coordinates(cage);
   return with_deformed(
       scene, set, edit.target.falloff,
-      [&](const std::vector<Vec3>& points) { return deform_points(*coordinates, cage, moved.vertices, points, true); },
+      [&](const std::vector<Vec3>& points) {
+        return deform_points(*coordinates, cage, moved.vertices, points, true, progress);
+      },
       notes);
 }
 

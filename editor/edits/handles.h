@@ -27,6 +27,6 @@ struct HandlesDeform {
   }
 };
 
-Scene apply(const Scene& scene, const HandlesDeform& edit);
+Scene apply(const Scene& scene, const HandlesDeform& edit, const Progress& progress = {});
 
 }  // namespace rebake

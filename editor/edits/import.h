@@ -26,10 +26,10 @@ struct Import {
   }
 };
 
-inline Scene apply(const Scene& scene, const Import& edit) {
+inline Scene apply(const Scene& scene, const Import& edit, const Progress& progress = {}) {
   if (!edit.content.empty() && fmt::format("{:016x}", folder_hash(edit.path)) != edit.content)
     throw EditError(edit.path + ": has changed since it was imported; put the files back as they were");
-  const Scene read = read_any(edit.path, edit.axes);
+  const Scene read = read_any(edit.path, edit.axes, progress);
   if (read.roots.empty()) throw EditError(edit.path + ": holds no objects");
   Node node;
   if (read.roots.size() == 1) {

@@ -12,8 +12,16 @@ Edit read_edit(const nlohmann::json& object, const Scene& scene) {
   throw FieldError("op", "\"" + object.at("op").get<std::string>() + "\" is no edit");
 }
 
-Scene apply(const Scene& scene, const Edit& edit) {
-  return std::visit([&](const auto& one) { return apply(scene, one); }, edit);
+Scene apply(const Scene& scene, const Edit& edit, const Progress& progress) {
+  return std::visit(
+      [&]<class T>(const T& one) {
+        // By its exact type: any edit would do as an Edit too.
+        if constexpr (requires { static_cast<Scene (*)(const Scene&, const T&, const Progress&)>(apply); })
+          return apply(scene, one, progress);
+        else
+          return apply(scene, one);
+      },
+      edit);
 }
 
 nlohmann::json to_json(const Edit& edit) {

@@ -38,6 +38,7 @@
 #include "editor/edits/twist.h"
 #include "editor/edits/unlock.h"
 #include "editor/edits/view.h"
+#include "mesh_ops/progress.h"
 
 namespace rebake {
 
@@ -55,8 +56,9 @@ constexpr bool changes_selection() {
          std::is_same_v<T, Fill>;
 }
 
-/// Pure and deterministic: the scene after the edit. Throws Error and leaves nothing changed.
-Scene apply(const Scene& scene, const Edit& edit);
+/// Pure and deterministic: the scene after the edit. Throws Error and leaves nothing changed. Edits that can take long
+/// take a Progress themselves, and throw Cancelled when it says so.
+Scene apply(const Scene& scene, const Edit& edit, const Progress& progress = {});
 
 /// Reads an edit from its JSON object. Names of nodes are looked up in `scene`. Throws FieldError.
 Edit read_edit(const nlohmann::json& object, const Scene& scene);

@@ -116,7 +116,7 @@ StudyTable study_cage(const StudyInput& input) {
     table.rows.push_back(
         {name + ", kept as float",
          {bind, drag, static_cast<double>(binding->memory()) / 1e6, lost, largest(out, reference, soup.diagonal)}});
-    // And computed in float, which is not safe.
+    // And computed in float, point by point.
     const bool green = kind == CageCoordinates::green;
     const double single = median_milliseconds(1, [&] { moved_by<float>(setting, *coordinates, green); }) *
                           static_cast<double>(soup.places.size()) / static_cast<double>(setting.points.size());

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <numbers>
@@ -25,6 +26,24 @@ std::pair<double, double> angles(const std::vector<Mat3>& a, const std::vector<M
   return {worst, sum / static_cast<double>(a.size())};
 }
 
+// Jacobians of the cage's motion, by weights that carry their gradients.
+template <class T>
+std::vector<Mat3> jacobians_by(const std::vector<Vec3>& points, const Cage& cage, const std::vector<Vec3>& moved) {
+  const CageFrame frame = frame_of(cage);
+  std::vector<Mat3> result(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t k) {
+    std::vector<T> weights;
+    mean_value_weights(frame, frame.to_local(points[k]), weights);
+    using Real = decltype(T().v);
+    Eigen::Matrix<Real, 3, 3> jacobian = Eigen::Matrix<Real, 3, 3>::Identity();
+    for (std::size_t v = 0; v < weights.size(); ++v)
+      jacobian += (moved[v] - cage.vertices[v]).template cast<Real>() *
+                  Eigen::Matrix<Real, 1, 3>(weights[v].x, weights[v].y, weights[v].z) * static_cast<Real>(frame.scale);
+    result[k] = jacobian.template cast<double>();
+  });
+  return result;
+}
+
 }  // namespace
 
 StudyTable study_rotation(const StudyInput& input) {
@@ -34,23 +53,29 @@ StudyTable study_rotation(const StudyInput& input) {
   const auto coordinates = mean_value_coordinates(cage);
   StudyTable table{{"milliseconds", "worst, degrees", "mean, degrees"}, {}, 0, 1, true, true};
 
+  // What all are compared with: dual numbers in long double, and their singular value decomposition.
+  std::vector<Mat3> reference = jacobians_by<LongDual>(soup.places, cage, moved);
+  for (Mat3& jacobian : reference) jacobian = svd_rotation(jacobian).rotation;
   const DeformedPoints exact = deform_points(*coordinates, cage, moved, soup.places, true);
-  std::vector<Mat3> reference;
-  for (const Mat3& jacobian : exact.jacobians) reference.push_back(svd_rotation(jacobian).rotation);
   const auto add = [&](const std::string& name, double time, const std::vector<Mat3>& rotations) {
     const auto [worst, mean] = angles(rotations, reference);
     table.rows.push_back({name, {time, worst, mean}});
-    input.progress.at(name, static_cast<double>(table.rows.size()) / 11);
+    input.progress.at(name, static_cast<double>(table.rows.size()) / 14);
   };
 
   std::vector<Mat3> rotations(soup.places.size());
+  double time = median_milliseconds(1, [&] {
+    const std::vector<Mat3> jacobians = jacobians_by<Dual>(soup.places, cage, moved);
+    for (std::size_t k = 0; k < rotations.size(); ++k) rotations[k] = local_rotation(jacobians[k]).rotation;
+  });
+  add("dual numbers, point by point", time, rotations);
   const double weigh = median_milliseconds(1, [&] { deform_points(*coordinates, cage, moved, soup.places, true); });
   const auto polar = [&](LocalRotation (*factor)(const Mat3&)) {
     return median_milliseconds(input.frames, [&] {
       for (std::size_t k = 0; k < rotations.size(); ++k) rotations[k] = factor(exact.jacobians[k]).rotation;
     });
   };
-  double time = polar([](const Mat3& j) { return LocalRotation{newton_polar_factor(j), true}; });
+  time = polar([](const Mat3& j) { return LocalRotation{newton_polar_factor(j), true}; });
   add("gradients, Newton", weigh + time, rotations);
   time = polar(svd_rotation);
   add("gradients, SVD", weigh + time, rotations);

@@ -1,33 +1,12 @@
 #include <fmt/format.h>
 
-#include <numeric>
+#include <set>
 
 #include "editor/studies/deforming.h"
 #include "editor/studies/study.h"
 #include "mesh_ops/deform/cage_deformation.h"
 
 namespace rebake {
-
-namespace {
-
-std::size_t components(const Cage& cage) {
-  std::vector<std::uint32_t> parent(cage.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  std::size_t count = parent.size();
-  for (const Face& face : cage.faces)
-    for (std::size_t k = 1; k < 3; ++k)
-      if (const std::uint32_t a = root(face[0]), b = root(face[k]); a != b) {
-        parent[b] = a;
-        --count;
-      }
-  return count;
-}
-
-}  // namespace
 
 StudyTable study_wrap(const StudyInput& input) {
   const StudySoup soup = study_soup(input.scene);
@@ -42,10 +21,11 @@ StudyTable study_wrap(const StudyInput& input) {
       const auto coordinates = mean_value_coordinates(cage);
       deform_points(*coordinates, cage, cage.vertices, soup.places, false);
     });
+    const std::vector<std::uint32_t> component = components(cage);
     table.rows.push_back(
         {fmt::format("{}", coarseness),
          {time, bind, static_cast<double>(cage.vertices.size()), static_cast<double>(cage.faces.size()),
-          static_cast<double>(components(cage)), volume(cage) / box.volume()}});
+          static_cast<double>(std::set(component.begin(), component.end()).size()), volume(cage) / box.volume()}});
   }
   return table;
 }

@@ -1,4 +1,4 @@
-#include "mesh_ops/deform/mean_value_batch.h"
+#include "mesh_ops/deform/coordinates.h"
 #include "mesh_ops/deform/row_sums.h"
 
 namespace rebake {
@@ -23,12 +23,14 @@ std::size_t batch_workspace(const BatchCage& cage, bool gradients) {
   return (gradients ? 4U : 1U) * batch_lanes * (cage.edge_count + cage.vertex_count);
 }
 
-MeanValueBatch mean_value_batch() {
+std::vector<MeanValueBatch> mean_value_batches() {
+  std::vector<MeanValueBatch> batches;
 #ifdef REBAKE_WIDE_VECTORS
-  if (has_v4()) return mean_value_batch_v4;
-  if (has_v3()) return mean_value_batch_v3;
+  if (has_v4()) batches.push_back(mean_value_batch_v4);
+  if (has_v3()) batches.push_back(mean_value_batch_v3);
 #endif
-  return mean_value_batch_baseline;
+  batches.push_back(mean_value_batch_baseline);
+  return batches;
 }
 
 RowSums row_sums() {

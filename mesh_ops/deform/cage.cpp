@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 
 #include "mesh_ops/error.h"
 
@@ -69,6 +70,22 @@ double volume(const Cage& cage) {
     sum += a.dot(b.cross(c)) / 6;
   }
   return sum;
+}
+
+std::vector<std::uint32_t> components(const Cage& cage) {
+  std::vector<std::uint32_t> parent(cage.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Face& face : cage.faces)
+    for (std::size_t k = 1; k < 3; ++k) {
+      const std::uint32_t a = root(face[0]), b = root(face[k]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root(v);
+  return parent;
 }
 
 Cage checked_cage(Cage cage) {

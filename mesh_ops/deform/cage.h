@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ Cage checked_cage(Cage cage);
 
 /// Signed volume: positive when the faces point outwards.
 double volume(const Cage& cage);
+
+/// For each vertex the lowest vertex that it hangs together with through faces.
+std::vector<std::uint32_t> components(const Cage& cage);
 
 /// Pairs of faces that cut through each other.
 std::size_t self_intersections(const Cage& cage);

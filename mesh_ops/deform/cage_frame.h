@@ -41,7 +41,7 @@ struct CageFrame {
   Vec3 to_local(const Vec3& point) const { return (point - center) * scale; }
 };
 
-/// Throws Error when the cage has no volume to speak of a frame: fewer than two different points.
+/// Throws Error when the cage has no extent: fewer than two different points.
 CageFrame frame_of(const Cage& cage);
 
 }  // namespace rebake

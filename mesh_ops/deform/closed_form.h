@@ -1,8 +1,5 @@
 #pragma once
 
-#include <limits>
-#include <vector>
-
 #include "mesh_ops/scene/types.h"
 
 namespace rebake {

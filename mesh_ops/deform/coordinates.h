@@ -20,8 +20,8 @@ enum class CageCoordinates {
 };
 
 /// Mean value weights of one point in the cage frame, one a vertex. Sum and linear precision hold to a few rounding
-/// errors wherever the point lies. With T = float or long double that is their rounding; with Dual each weight carries
-/// its gradient in local units.
+/// errors wherever the point lies. With T = float or long double that is their rounding; with DualOf them each
+/// weight carries its gradient in local units.
 template <class T>
 void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>& weights);
 
@@ -53,10 +53,14 @@ class Coordinates {
   std::size_t rows_;
 };
 
-std::unique_ptr<Coordinates> mean_value_coordinates(const Cage& cage);
+/// The implementations of mean value weights that this machine's processor can run, the fastest first.
+std::vector<MeanValueBatch> mean_value_batches();
+
+/// `batch`: another implementation than the one for this machine's processor, to compare them.
+std::unique_ptr<Coordinates> mean_value_coordinates(const Cage& cage, MeanValueBatch batch = mean_value_batches()[0]);
 std::unique_ptr<Coordinates> green_coordinates(const Cage& cage);
-/// Solved on a grid of `resolution` cells along the cage's longest side (8 … 256). Then corrected so that sums and
-/// linear functions are exact; the rest of the error is the grid's.
+/// Solved on a grid of `resolution` cells along the cage's longest side (8 … 256). Sums and linear functions
+/// are exact up to the solver's 1e-13; the rest of the error is the grid's.
 std::unique_ptr<Coordinates> harmonic_coordinates(const Cage& cage, int resolution, const Progress& progress = {});
 
 std::unique_ptr<Coordinates> coordinates_of(const Cage& cage, CageCoordinates kind, int resolution,

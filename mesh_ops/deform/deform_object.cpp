@@ -3,9 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 #include "mesh_ops/deform/rotation.h"
 #include "mesh_ops/select/index.h"
@@ -14,54 +15,33 @@ namespace rebake {
 
 namespace {
 
+namespace bgi = boost::geometry::index;
+using TreePoint = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
+
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-// Points in cubes of a given size, for the nearest within that distance.
-class NearGrid {
- public:
-  NearGrid(const std::vector<Vec3>& points, double size) : points_(points), size_(size) {
-    for (std::uint32_t i = 0; i < points.size(); ++i) cells_[key(cell(points[i]))].push_back(i);
-  }
-  // Null where none is nearer than the size.
-  const Vec3* nearest(const Vec3& p) const {
-    const Vec3* found = nullptr;
-    double least = size_ * size_;
-    const Vec3 at = cell(p);
-    for (int k = 0; k < 27; ++k) {
-      const std::array<int, 3> beside{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
-      const auto here = cells_.find(key(at + Vec3(beside[0], beside[1], beside[2])));
-      if (here == cells_.end()) continue;
-      for (const std::uint32_t i : here->second)
-        if (const double square = (points_[i] - p).squaredNorm(); square < least) {
-          least = square;
-          found = &points_[i];
-        }
-    }
-    return found;
-  }
-
- private:
-  Vec3 cell(const Vec3& p) const { return (p / size_).array().floor(); }
-  // Cells of one key may differ: distances are compared anyway.
-  static std::uint64_t key(const Vec3& cell) {
-    std::uint64_t hash = 0;
-    for (int axis = 0; axis < 3; ++axis) hash = (hash ^ std::hash<double>()(cell[axis] + 0.0)) * 0x9E3779B97F4A7C15ULL;
-    return hash;
-  }
-  const std::vector<Vec3>& points_;
-  double size_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
-};
 
 // Fades the deformation out towards the border.
 void fade(const std::vector<Vec3>& rest, const std::vector<Vec3>& border, double falloff, DeformedPoints& deformed) {
   if (border.empty()) return;
-  const NearGrid grid(border, falloff);
+  // In a box of size 1, so that no square of a distance overflows.
+  Box box;
+  for (const Vec3& p : border) box.extend(p);
+  for (const Vec3& p : rest)
+    if (p.allFinite()) box.extend(p);
+  const double size = box.sizes().maxCoeff() > 0 ? box.sizes().maxCoeff() : 1;
+  const auto point = [&](const Vec3& p) {
+    const Vec3 q = (p - box.min()) / size;
+    return TreePoint(q.x(), q.y(), q.z());
+  };
+  std::vector<std::pair<TreePoint, std::uint32_t>> entries;
+  for (std::uint32_t i = 0; i < border.size(); ++i) entries.emplace_back(point(border[i]), i);
+  const bgi::rtree<std::pair<TreePoint, std::uint32_t>, bgi::linear<16>> tree(entries);
   tbb::parallel_for(std::size_t{0}, rest.size(), [&](std::size_t i) {
-    const Vec3* nearest = grid.nearest(rest[i]);
-    if (nearest == nullptr) return;
-    const Vec3 away = rest[i] - *nearest;
-    const double distance = away.norm(), t = distance / falloff;
+    if (!rest[i].allFinite()) return;
+    const auto found = tree.qbegin(bgi::nearest(point(rest[i]), 1));
+    const Vec3 away = rest[i] - border[found->second];
+    const double distance = away.stableNorm(), t = distance / falloff;
+    if (t >= 1) return;
     const double share = t * t * (3 - 2 * t);
     // The slope is zero where the distance is, so that its direction need not exist there.
     const Vec3 slope = distance > 0 ? Vec3(away * (6 * t * (1 - t) / falloff / distance)) : Vec3(0, 0, 0);

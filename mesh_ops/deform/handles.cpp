@@ -5,32 +5,10 @@
 #include <CGAL/Surface_mesh_deformation.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "mesh_ops/error.h"
 
 namespace rebake {
-
-namespace {
-
-// The component of each vertex, by its lowest vertex.
-std::vector<std::uint32_t> components_of(const Cage& cage) {
-  std::vector<std::uint32_t> parent(cage.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const Face& face : cage.faces)
-    for (std::size_t k = 1; k < 3; ++k) {
-      const std::uint32_t a = root(face[0]), b = root(face[k]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root(v);
-  return parent;
-}
-
-}  // namespace
 
 HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVertex>& held, int iterations) {
   using Kernel = CGAL::Simple_cartesian<double>;
@@ -44,7 +22,7 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
     const Vec3 p = (v - box.center()) / size;
     return Kernel::Point_3(p.x(), p.y(), p.z());
   };
-  const std::vector<std::uint32_t> component = components_of(cage);
+  const std::vector<std::uint32_t> component = components(cage);
   std::vector<std::uint8_t> has_held(cage.vertices.size(), 0), used(cage.vertices.size(), 0);
   for (const HandledVertex& h : held) has_held[component[h.vertex]] = 1;
   HandledCage result{cage.vertices, 0};

@@ -55,13 +55,13 @@ REBAKE_INLINE double least(double a, double b) { return a < b ? a : b; }
 REBAKE_INLINE double greatest(double a, double b) { return a > b ? a : b; }
 
 template <bool gradients>
-void weigh(const BatchCage& cage, const double* points, double* workspace, double* weights, double* slopes,
-           std::uint8_t* delicate) {
+void weigh(const BatchCage& cage, const double* points, const double* start, double* workspace, double* weights,
+           double* slopes, std::uint8_t* delicate) {
   constexpr int row = (gradients ? 4 : 1) * lanes;
   const double *px = points, *py = points + lanes, *pz = points + 2 * lanes;
   double* const angles = workspace;                     // θ / c of each edge, then its gradient: rows of lanes
   double* const sums = angles + cage.edge_count * row;  // weights before they are normalised, likewise
-  for (std::size_t i = 0; i < cage.vertex_count * row; ++i) sums[i] = 0;
+  for (std::size_t i = 0; i < cage.vertex_count * row; ++i) sums[i] = start != nullptr ? start[i] : 0;
 
   for (std::size_t e = 0; e < cage.edge_count; ++e) {
     const double* frame = cage.edge_frames + 4 * e;
@@ -252,12 +252,12 @@ void weigh(const BatchCage& cage, const double* points, double* workspace, doubl
 
 }  // namespace
 
-void REBAKE_BATCH_NAME(const BatchCage& cage, const double* points, double* workspace, double* weights,
-                       double* gradients, std::uint8_t* delicate) {
+void REBAKE_BATCH_NAME(const BatchCage& cage, const double* points, const double* start, double* workspace,
+                       double* weights, double* gradients, std::uint8_t* delicate) {
   if (gradients != nullptr)
-    weigh<true>(cage, points, workspace, weights, gradients, delicate);
+    weigh<true>(cage, points, start, workspace, weights, gradients, delicate);
   else
-    weigh<false>(cage, points, workspace, weights, gradients, delicate);
+    weigh<false>(cage, points, start, workspace, weights, gradients, delicate);
 }
 
 }  // namespace rebake

@@ -27,21 +27,20 @@ std::size_t batch_workspace(const BatchCage& cage, bool gradients);
 
 /// Normalised mean value weights of batch_lanes points (local; all x, then all y, then all z) into
 /// weights[vertex][lane], and with `gradients` not null their gradients into gradients[vertex][axis][lane]. A flag in
-/// `delicate` says that the lane's point is so near a face that plane_local must weigh it.
-using MeanValueBatch = void (*)(const BatchCage& cage, const double* points, double* workspace, double* weights,
-                                double* gradients, std::uint8_t* delicate);
-
-/// The implementation for this machine's processor.
-MeanValueBatch mean_value_batch();
+/// `delicate` says that the lane's point is so near a face that plane_local must weigh it. `start`, where not null:
+/// what faces that are not in `cage` weigh before normalising, as vertex_count rows of lanes, each followed by its
+/// gradient's three rows if `gradients` is not null.
+using MeanValueBatch = void (*)(const BatchCage& cage, const double* points, const double* start, double* workspace,
+                                double* weights, double* gradients, std::uint8_t* delicate);
 
 // One source, compiled once for each kind of processor.
-void mean_value_batch_baseline(const BatchCage& cage, const double* points, double* workspace, double* weights,
-                               double* gradients, std::uint8_t* delicate);
+void mean_value_batch_baseline(const BatchCage& cage, const double* points, const double* start, double* workspace,
+                               double* weights, double* gradients, std::uint8_t* delicate);
 #ifdef REBAKE_WIDE_VECTORS
-void mean_value_batch_v3(const BatchCage& cage, const double* points, double* workspace, double* weights,
-                         double* gradients, std::uint8_t* delicate);
-void mean_value_batch_v4(const BatchCage& cage, const double* points, double* workspace, double* weights,
-                         double* gradients, std::uint8_t* delicate);
+void mean_value_batch_v3(const BatchCage& cage, const double* points, const double* start, double* workspace,
+                         double* weights, double* gradients, std::uint8_t* delicate);
+void mean_value_batch_v4(const BatchCage& cage, const double* points, const double* start, double* workspace,
+                         double* weights, double* gradients, std::uint8_t* delicate);
 #endif
 
 }  // namespace rebake

@@ -1,12 +1,21 @@
 #include "mesh_ops/deform/coordinates.h"
+#include "mesh_ops/deform/far_quadrature.h"
 
 namespace rebake {
 
 namespace {
 
+namespace pl = plane_local;
+
+// Below this distance (local units) from a face the batch cannot weigh a point.
+constexpr double delicate_distance = 1e-6;
+// Farther out than this from the cage's centre (its diagonal is 1 to 2), all faces are small beside their distance.
+constexpr double far_distance = 4;
+
 class MeanValue final : public Coordinates {
  public:
-  explicit MeanValue(const Cage& cage) : Coordinates(cage.vertices.size()), frame_(frame_of(cage)) {
+  MeanValue(const Cage& cage, MeanValueBatch batch)
+      : Coordinates(cage.vertices.size()), frame_(frame_of(cage)), run_(batch) {
     for (const Vec3& v : frame_.vertices) vertices_.insert(vertices_.end(), {v.x(), v.y(), v.z()});
     for (const EdgeFrame& edge : frame_.edges) {
       edges_.insert(edges_.end(), {edge.first, edge.second});
@@ -14,6 +23,10 @@ class MeanValue final : public Coordinates {
       edge_frames_.push_back(edge.length);
     }
     for (const FaceFrame& face : frame_.faces) {
+      if (pl::is_needle(face)) {
+        needles_.push_back(&face);
+        continue;
+      }
       faces_.insert(faces_.end(), face.vertices.begin(), face.vertices.end());
       faces_.insert(faces_.end(), face.edges.begin(), face.edges.end());
       const auto append = [&](const std::array<double, 3>& numbers) {
@@ -37,8 +50,8 @@ class MeanValue final : public Coordinates {
       }
       face_frames_.push_back(half);
     }
-    batch_ = {frame_.vertices.size(), frame_.edges.size(), frame_.faces.size(), vertices_.data(),
-              edges_.data(),          edge_frames_.data(), faces_.data(),       face_frames_.data()};
+    batch_ = {frame_.vertices.size(), frame_.edges.size(), faces_.size() / 6, vertices_.data(),
+              edges_.data(),          edge_frames_.data(), faces_.data(),     face_frames_.data()};
   }
   MeanValue(const MeanValue&) = delete;
   MeanValue& operator=(const MeanValue&) = delete;
@@ -53,11 +66,23 @@ class MeanValue final : public Coordinates {
     }
     thread_local std::vector<double> workspace;
     workspace.resize(batch_workspace(batch_, gradients != nullptr));
-    std::array<std::uint8_t, batch_lanes> delicate;
-    run_(batch_, local.data(), workspace.data(), weights, gradients, delicate.data());
+    thread_local std::vector<double> start;
+    start.clear();
+    std::array<std::uint8_t, batch_lanes> near_needles{}, delicate;
+    if (!needles_.empty()) {
+      start.assign((gradients != nullptr ? 4U : 1U) * batch_lanes * rows(), 0.0);
+      for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
+        const Vec3 p(local[lane], local[batch_lanes + lane], local[2 * batch_lanes + lane]);
+        const bool near = gradients != nullptr ? !add_needles<Dual>(p, start.data() + lane)
+                                               : !add_needles<double>(p, start.data() + lane);
+        near_needles[lane] = near ? 1 : 0;
+      }
+    }
+    run_(batch_, local.data(), start.empty() ? nullptr : start.data(), workspace.data(), weights, gradients,
+         delicate.data());
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
-      if (delicate[lane] == 0) continue;
       const Vec3 p(local[lane], local[batch_lanes + lane], local[2 * batch_lanes + lane]);
+      if (delicate[lane] == 0 && near_needles[lane] == 0 && p.cwiseAbs().maxCoeff() < far_distance) continue;
       if (gradients != nullptr) {
         thread_local std::vector<Dual> exact;
         mean_value_weights(frame_, p, exact);
@@ -79,11 +104,35 @@ class MeanValue final : public Coordinates {
   }
 
  private:
+  // What needles weigh, into one lane of rows of them. False where the point is too near one.
+  template <class T>
+  bool add_needles(const Vec3& local, double* sums) const {
+    const pl::Point<T> x = pl::local_point(local, T());
+    for (const FaceFrame* face : needles_) {
+      const pl::Seen<T> s = pl::seen(frame_, *face, x);
+      if (std::max(std::abs(value_of(s.h)), pl::distance_in_plane(s)) < delicate_distance) return false;
+      const bool in_plane = pl::place(s) != pl::Place::off_plane;
+      const auto terms = pl::mean_value_terms(*face, s);
+      for (std::size_t k = 0; k < 3; ++k) {
+        double* sum = sums + face->vertices[k] * (pl::has_gradient<T> ? 4 : 1) * batch_lanes;
+        // In its plane a face weighs nothing, but what it weighs changes.
+        if (!in_plane) sum[0] += value_of(terms[k]);
+        if constexpr (pl::has_gradient<T>) {
+          sum[batch_lanes] += terms[k].x;
+          sum[2 * batch_lanes] += terms[k].y;
+          sum[3 * batch_lanes] += terms[k].z;
+        }
+      }
+    }
+    return true;
+  }
+
   CageFrame frame_;
+  std::vector<const FaceFrame*> needles_;  ///< weighed one by one
   std::vector<double> vertices_, edge_frames_, face_frames_;
   std::vector<std::uint32_t> edges_, faces_;
   BatchCage batch_;
-  MeanValueBatch run_ = mean_value_batch();
+  MeanValueBatch run_;
 };
 
 }  // namespace
@@ -94,7 +143,9 @@ std::vector<Vec3> Coordinates::row_motions(const Cage& rest, const std::vector<V
   return motions;
 }
 
-std::unique_ptr<Coordinates> mean_value_coordinates(const Cage& cage) { return std::make_unique<MeanValue>(cage); }
+std::unique_ptr<Coordinates> mean_value_coordinates(const Cage& cage, MeanValueBatch batch) {
+  return std::make_unique<MeanValue>(cage, batch);
+}
 
 std::unique_ptr<Coordinates> coordinates_of(const Cage& cage, CageCoordinates kind, int resolution,
                                             const Progress& progress) {

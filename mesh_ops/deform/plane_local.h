@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "mesh_ops/deform/cage_frame.h"
 #include "mesh_ops/deform/dual.h"
@@ -19,10 +20,12 @@ template <class T>
 struct RealOf {
   using type = T;
 };
-template <>
-struct RealOf<Dual> {
-  using type = double;
+template <class R>
+struct RealOf<DualOf<R>> {
+  using type = R;
 };
+template <class T>
+inline constexpr bool has_gradient = !std::is_same_v<T, typename RealOf<T>::type>;
 template <class T>
 inline constexpr double epsilon = static_cast<double>(std::numeric_limits<typename RealOf<T>::type>::epsilon());
 
@@ -43,11 +46,12 @@ inline Point<float> local_point(const Vec3& p, float /*tag*/) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
 inline Point<long double> local_point(const Vec3& p, long double /*tag*/) { return {p.x(), p.y(), p.z()}; }
-inline Point<Dual> local_point(const Vec3& p, const Dual& /*tag*/) {
-  return {Dual(p.x(), 1, 0, 0), Dual(p.y(), 0, 1, 0), Dual(p.z(), 0, 0, 1)};
+template <class R>
+Point<DualOf<R>> local_point(const Vec3& p, const DualOf<R>& /*tag*/) {
+  return {DualOf<R>(p.x(), 1, 0, 0), DualOf<R>(p.y(), 0, 1, 0), DualOf<R>(p.z(), 0, 0, 1)};
 }
 
-/// A triangle as seen from a point: e = corner − point, in world and in-plane coordinates.
+/// A triangle as seen from a point: e = corner − point, in the plane and across it.
 template <class T>
 struct Seen {
   std::array<T, 3> along, out;  ///< of each corner, along the tangent and outward
@@ -56,7 +60,7 @@ struct Seen {
   std::array<T, 3> a;           ///< distance of the point's projection from each edge's line, positive inside
   std::array<T, 3> c;           ///< distance of the point itself from it
   std::array<T, 3> begin, end;  ///< the edge's ends along its line, from the point's projection
-  double near, far;             ///< least and largest r
+  double far;                   ///< the largest r
 };
 
 template <class T>
@@ -78,7 +82,6 @@ Seen<T> seen(const CageFrame& cage, const FaceFrame& face, const Point<T>& x) {
     if (value_of(s.r[k]) < value_of(s.r[nearest])) nearest = k;
   }
   s.h = height[nearest];
-  s.near = value_of(s.r[nearest]);
   s.far = std::max({value_of(s.r[0]), value_of(s.r[1]), value_of(s.r[2])});
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;

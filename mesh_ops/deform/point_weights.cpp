@@ -1,9 +1,8 @@
 #include "mesh_ops/deform/coordinates.h"
 
 #include <numbers>
-#include <type_traits>
 
-#include "mesh_ops/deform/plane_local.h"
+#include "mesh_ops/deform/far_quadrature.h"
 
 namespace rebake {
 
@@ -18,14 +17,14 @@ void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>
     const pl::Seen<T> s = pl::seen(cage, face, x);
     const pl::Place place = pl::place(s);
     // Without this rule coplanar neighbours could get heights of opposite signs, and weights of ±9.
-    if (place == pl::Place::in_plane && !std::is_same_v<T, Dual>) continue;
+    if (place == pl::Place::in_plane && !pl::has_gradient<T>) continue;
     if (place == pl::Place::on_face) {
       weights.assign(cage.vertices.size(), pl::constant<T>(0));
       const auto lambda = pl::barycentric(face, s);
       for (std::size_t k = 0; k < 3; ++k) weights[face.vertices[k]] = lambda[k];
       return;
     }
-    auto terms = pl::mean_value(face, s);
+    auto terms = pl::mean_value_terms(face, s);
     // It weighs nothing there, but what it weighs changes.
     if (place == pl::Place::in_plane)
       for (T& term : terms) term = term - pl::constant<T>(value_of(term));
@@ -76,7 +75,7 @@ bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_co
   for (std::size_t f = 0; f < cage.faces.size(); ++f) {
     const FaceFrame& face = cage.faces[f];
     const pl::Seen<T> s = pl::seen(cage, face, x);
-    const auto terms = pl::green(face, s);
+    const auto terms = pl::green_terms(face, s);
     for (std::size_t k = 0; k < 3; ++k) {
       phi[face.vertices[k]] += terms.corners[k] * share;
       sum += terms.corners[k] * share;
@@ -102,6 +101,7 @@ template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<doub
 template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<float>&);
 template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<Dual>&);
 template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<long double>&);
+template void mean_value_weights(const CageFrame&, const Vec3&, std::vector<LongDual>&);
 template bool green_weights(const CageFrame&, const Vec3&, std::size_t, std::vector<double>&, std::vector<double>&);
 template bool green_weights(const CageFrame&, const Vec3&, std::size_t, std::vector<float>&, std::vector<float>&);
 template bool green_weights(const CageFrame&, const Vec3&, std::size_t, std::vector<Dual>&, std::vector<Dual>&);

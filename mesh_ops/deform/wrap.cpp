@@ -3,12 +3,32 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
+#include <fmt/format.h>
 
 #include "mesh_ops/error.h"
 
 namespace rebake {
 
-Cage wrap(const TriangleList& triangles, double coarseness) {
+namespace {
+
+// Called by CGAL as it carves; throwing ends that.
+struct Watch : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
+  explicit Watch(const Progress& to) : progress(&to) {}
+
+  // How many facets there will be is not known.
+  template <class Wrapper, class Facet>
+  void before_facet_treatment(const Wrapper& wrapper, const Facet& /*unused*/) {
+    if (facets++ % 1024 == 0)
+      progress->at(fmt::format("wrap, {} points", wrapper.triangulation().number_of_vertices()), 0);
+  }
+
+  const Progress* progress;
+  std::size_t facets = 0;
+};
+
+}  // namespace
+
+Cage wrap(const TriangleList& triangles, double coarseness, const Progress& progress) {
   if (!(coarseness >= 0.005 && coarseness <= 0.5)) throw FieldError("wrap", "must lie between 0.005 and 0.5");
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
@@ -31,7 +51,8 @@ Cage wrap(const TriangleList& triangles, double coarseness) {
     points.emplace_back(q.x(), q.y(), q.z());
   }
   Mesh mesh;
-  CGAL::alpha_wrap_3(points, faces, coarseness, coarseness / 4, mesh);
+  CGAL::alpha_wrap_3(points, faces, coarseness, coarseness / 4, mesh, CGAL::parameters::default_values(),
+                     CGAL::parameters::visitor(Watch(progress)));
   Cage cage;
   std::vector<std::uint32_t> number(mesh.num_vertices());
   for (const auto v : mesh.vertices()) {

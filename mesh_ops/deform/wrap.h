@@ -17,6 +17,6 @@ struct TriangleList {
 /// the smallest hollow that the wrap enters and about that of its triangles, as a share of the triangles' box diagonal
 /// (0.005 … 0.5); the wrap keeps a quarter of it away from the triangles. A fine wrap may fall into several components.
 /// Triangles with a corner that is not finite are left out. Throws Error when none is left.
-Cage wrap(const TriangleList& triangles, double coarseness);
+Cage wrap(const TriangleList& triangles, double coarseness, const Progress& progress = {});
 
 }  // namespace rebake

@@ -1,6 +1,8 @@
 // Deforming edits: what scripts can do, what they are told, and that pictures and files agree.
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "editor/script/script.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/files.h"
@@ -43,6 +45,26 @@ class DeformScript : public ::testing::Test {
   std::string said;
   TemporaryFolder folder_;
 };
+
+// Ctrl+C, or Cancel in a window: each stage of a deformation stops when it is asked to, and nothing is changed.
+TEST_F(DeformScript, LongDeformationsReportAndStopWhereverTheyAre) {
+  const Scene before = session.scene();
+  const std::string moves = R"("moves": [{"points": [0], "translate": [0.1, 0, 0]}]})";
+  for (const auto& [stage, line] :
+       {std::pair("wrap", R"("wrap": 0.05, )"), std::pair("cage weights", R"("wrap": 0.3, )"),
+        std::pair("harmonic", R"("wrap": 0.3, "coordinates": "harmonic", )")}) {
+    std::atomic<bool> stop = false;
+    session.progress = Progress(
+        [&, name = std::string(stage)](std::string_view what, double share) {
+          EXPECT_GE(share, 0);
+          EXPECT_LE(share, 1);
+          if (what.find(name) != std::string_view::npos) stop = true;
+        },
+        &stop);
+    EXPECT_THROW(run(R"({"op": "cage", "node": "ball", )" + std::string(line) + moves), Cancelled) << stage;
+    EXPECT_EQ(session.scene().roots, before.roots);
+  }
+}
 
 TEST_F(DeformScript, ARigidMotionByACageIsThatOfTheNode) {
   const char* const moves =

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <boost/math/quadrature/gauss.hpp>
+
+#include "mesh_ops/deform/plane_local.h"
+
+// Integrals over a triangle that is thin, or small, beside the point's distance from it. There the closed forms are
+// differences of what the edges see, far larger than what the triangle does: a needle's weights are off by rounding
+// times its length over its height. Gauss-Legendre sums have terms of one sign and cancel nothing.
+
+namespace rebake::plane_local {
+
+/// Thinner ones lose more than a digit by the closed forms.
+inline bool is_needle(const FaceFrame& face) { return 16 * face.height < face.length; }
+
+/// Whether the sums below hold, to rounding, and are better than the closed forms.
+template <class T>
+bool prefers_quadrature(const FaceFrame& face, const Seen<T>& s) {
+  const double extent = is_needle(face) ? face.height : face.length;
+  return std::hypot(value_of(s.h), distance_in_plane(s)) > 8 * extent;
+}
+
+/// f(dA, λ, r²) at the nodes: on each side of corner 0's foot on the longest edge, 10 along the edge in pieces no
+/// longer than half their distance, and 7 across it in each. The nearest pole of 1 / r is then so far that the
+/// remainder is below 1e-17 of the sum.
+template <class T, class F>
+void for_each_node(const FaceFrame& face, const Seen<T>& s, const F& f) {
+  using Across = boost::math::quadrature::gauss<double, 7>;
+  using Along = boost::math::quadrature::gauss<double, 10>;
+  // On [0, 1]; Boost lists the nodes ≥ 0 of [−1, 1] only.
+  const auto for_each_of = [](const auto& places, const auto& weights, const auto& g) {
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      g((1 + places[k]) / 2, weights[k] / 2);
+      if (places[k] != 0) g((1 - places[k]) / 2, weights[k] / 2);
+    }
+  };
+  const double beside = std::hypot(value_of(s.out[1]), value_of(s.h));
+  for (const std::size_t corner : {std::size_t{1}, std::size_t{2}}) {  // from it to the foot
+    const double reach = corner == 1 ? face.apex : face.length - face.apex;
+    const double direction = corner == 1 ? 1 : -1;
+    if (!(reach > 0)) continue;
+    const double start = direction * value_of(s.along[corner]);
+    for (double begin = 0; begin < 1;) {
+      double size = 1 - begin;
+      const auto too_long = [&] {
+        const double low = start + begin * reach, high = low + size * reach;
+        return 2 * size * reach > std::hypot(beside, std::max({0.0, low, -high}));
+      };
+      while (too_long()) size /= 2;
+      for_each_of(Along::abscissa(), Along::weights(), [&](double place, double weight_along) {
+        const double u = begin + size * place, share = u * reach / face.length;
+        const T e = s.along[corner] + constant<T>(direction * u * reach);
+        const T square = e * e + s.h * s.h;
+        for_each_of(Across::abscissa(), Across::weights(), [&](double v, double weight_across) {
+          std::array<double, 3> lambda;
+          lambda[0] = v * u;
+          lambda[3 - corner] = share * (1 - v);
+          lambda[corner] = 1 - lambda[0] - lambda[3 - corner];
+          const T out = s.out[corner] - constant<T>(lambda[0] * face.height);
+          f(weight_along * weight_across * size * reach * u * face.height, lambda, square + out * out);
+        });
+      });
+      begin += size;
+    }
+  }
+}
+
+/// h ∫ λᵢ / r⁴ dA by the form that holds.
+template <class T>
+std::array<T, 3> mean_value_terms(const FaceFrame& face, const Seen<T>& s) {
+  if (!prefers_quadrature(face, s)) return mean_value(face, s);
+  std::array<T, 3> sums{constant<T>(0), constant<T>(0), constant<T>(0)};
+  for_each_node(face, s, [&](double area, const std::array<double, 3>& lambda, const T& square) {
+    const T share = constant<T>(area) / (square * square);
+    for (std::size_t k = 0; k < 3; ++k) sums[k] += constant<T>(lambda[k]) * share;
+  });
+  for (T& sum : sums) sum = s.h * sum;
+  return sums;
+}
+
+/// ∫ λᵢ h / r³ dA and ∫ 1 / r dA by the form that holds.
+template <class T>
+GreenTerms<T> green_terms(const FaceFrame& face, const Seen<T>& s) {
+  using std::sqrt;
+  if (!prefers_quadrature(face, s)) return green(face, s);
+  GreenTerms<T> sums{{constant<T>(0), constant<T>(0), constant<T>(0)}, constant<T>(0)};
+  for_each_node(face, s, [&](double area, const std::array<double, 3>& lambda, const T& square) {
+    const T by_r = constant<T>(area) / sqrt(square), by_cube = by_r / square;
+    for (std::size_t k = 0; k < 3; ++k) sums.corners[k] += constant<T>(lambda[k]) * by_cube;
+    sums.face += by_r;
+  });
+  for (T& corner : sums.corners) corner = s.h * corner;
+  return sums;
+}
+
+}  // namespace rebake::plane_local
