@@ -20,17 +20,35 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+void fit_overlay(FrameTargets& targets, const FramePlan& plan, bool wanted) {
+  if (!wanted) {
+    targets.overlay_buffer = {};
+  } else if (!targets.overlay_buffer) {
+    targets.overlay_buffer = gl::make_framebuffer({&targets.picture}, nullptr);
+  }
+  if (!plan.runs("selection")) {
+    targets.mask_buffer = {};
+    targets.mask = {};
+  } else if (!targets.mask) {
+    targets.mask = gl::make_texture(GL_R8, targets.width, targets.height, 1);
+    targets.mask_buffer = gl::make_framebuffer({&targets.mask}, nullptr);
+  }
+}
+
 // Makes the buffers that the plan calls for, and frees those that it does not.
 void fit(FrameTargets& targets, const FramePlan& plan) {
   const bool features = plan.runs("geometry"), frames = features && plan.runs("node frames"),
              rays = features && plan.runs("turned rays");
   const bool forward = plan.runs("forward");
+  const bool overlay = plan.runs("selection") || plan.runs("guides");
   const int side = plan.view.side();
   const int width = plan.view.width, height = plan.view.height;
   if (targets.picture && targets.width == width && targets.height == height && targets.side == side &&
       targets.has_features == features && targets.has_frames == frames && targets.has_rays == rays &&
-      bool(targets.depth) == (features || forward))
+      bool(targets.depth) == (features || forward)) {
+    fit_overlay(targets, plan, overlay);
     return;
+  }
   targets = {};
   targets.width = width;
   targets.height = height;
@@ -54,18 +72,25 @@ void fit(FrameTargets& targets, const FramePlan& plan) {
     targets.sample_buffer = gl::make_framebuffer(colors, &targets.depth);
   }
   targets.picture_buffer = gl::make_framebuffer({&targets.picture}, forward ? &targets.depth : nullptr);
+  fit_overlay(targets, plan, overlay);
 }
 
 }  // namespace
 
 class Renderer::Impl {
  public:
-  Impl() : context_(gl::make_headless_context()) { state_.empty_array = gl::make_vertex_array(); }
+  explicit Impl(std::unique_ptr<gl::Context> context) : context_(std::move(context)) {
+    context_->make_current();
+    state_.empty_array = gl::make_vertex_array();
+  }
 
-  FrameTimes draw(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass) {
+  FrameTimes draw(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass,
+                  const Guides* guides = nullptr, std::vector<PlannedPass>* passes = nullptr) {
     context_->make_current();
     const Clock::time_point start = Clock::now();
-    const FramePlan frame_plan = plan(scene, view, options);
+    const FramePlan frame_plan = plan(scene, view, options, guides);
+    if (passes != nullptr) *passes = frame_plan.passes;
+    shown_ = view;
     if (frame_plan.frames.size() > 65535)
       throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
     gpu_.update(scene);
@@ -93,7 +118,11 @@ class Renderer::Impl {
     return times;
   }
 
-  Image read_back(const View& view) {
+  unsigned texture() const { return state_.targets.picture.name(); }
+
+  Image read_back() {
+    context_->make_current();
+    const View& view = shown_;
     Image image{
         view.width, view.height,
         std::vector<std::uint8_t>(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * 3)};
@@ -112,19 +141,30 @@ class Renderer::Impl {
   std::unique_ptr<gl::Context> context_;  // first in, last out: the rest is deleted while it is current
   GpuScene gpu_;
   PassState state_;
+  View shown_;
 };
 
-Renderer::Renderer() : impl_(std::make_unique<Impl>()) {}
+Renderer::Renderer() : Renderer(gl::make_headless_context()) {}
+Renderer::Renderer(std::unique_ptr<gl::Context> context) : impl_(std::make_unique<Impl>(std::move(context))) {}
 Renderer::~Renderer() = default;
 
 Image Renderer::render(const Scene& scene, const View& view, const RenderOptions& options) {
   impl_->draw(scene, view, options, false);
-  return impl_->read_back(view);
+  return impl_->read_back();
 }
 
 FrameTimes Renderer::time_frame(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass) {
   return impl_->draw(scene, view, options, each_pass);
 }
+
+Renderer::Shown Renderer::show(const Scene& scene, const View& view, const RenderOptions& options, const Guides& guides,
+                               bool each_pass) {
+  Shown shown;
+  shown.times = impl_->draw(scene, view, options, each_pass, &guides, &shown.passes);
+  shown.texture = impl_->texture();
+  return shown;
+}
+Image Renderer::shown_image() { return impl_->read_back(); }
 
 std::string Renderer::device() const { return gl::device_name(); }
 std::uint64_t Renderer::peak_gpu_bytes() const { return gl::memory_use().peak; }

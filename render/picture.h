@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "render/frame/plan.h"
 #include "render/image.h"
@@ -15,12 +16,18 @@ struct FrameTimes {
   std::map<std::string, double> pass_ms;
 };
 
-/// Draws scenes without a window. Keeps what it uploaded for the next picture; not for use from several threads at
+namespace gl {
+class Context;
+}
+
+/// Draws scenes. Keeps what it uploaded for the next picture; not for use from several threads at
 /// once.
 class Renderer {
  public:
-  /// Throws DeviceError where there is no OpenGL.
+  /// Without a window. Throws DeviceError where there is no OpenGL.
   Renderer();
+  /// In a context that is there already, e.g. a window's, which goes on to own what this makes.
+  explicit Renderer(std::unique_ptr<gl::Context> context);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
@@ -30,6 +37,17 @@ class Renderer {
   /// Draws a frame and leaves it on the GPU. With `each_pass`, waits for each pass and fills pass_ms; else the frame as
   /// a whole.
   FrameTimes time_frame(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass);
+
+  /// Draws with `guides` over the picture and leaves it on the GPU, to be shown by its texture: RGBA8 of the view's
+  /// size, bottom row first, until the next picture is drawn. `times.pass_ms` is filled with `each_pass`.
+  struct Shown {
+    unsigned texture;
+    FrameTimes times;
+    std::vector<PlannedPass> passes;
+  };
+  Shown show(const Scene& scene, const View& view, const RenderOptions& options, const Guides& guides, bool each_pass);
+  /// The picture shown last.
+  Image shown_image();
 
   std::string device() const;
   /// Most bytes held on the GPU at once so far.

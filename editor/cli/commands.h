@@ -13,6 +13,7 @@ struct Subcommand {
 
 void add_info(CLI::App& program);
 void add_render(CLI::App& program);
+void add_edit(CLI::App& program);
 void add_run(CLI::App& program);
 void add_export(CLI::App& program);
 void add_batch(CLI::App& program);
@@ -21,7 +22,7 @@ void add_compare(CLI::App& program);
 void add_study(CLI::App& program);
 
 /// The one table of subcommands, in the order of help.
-inline constexpr Subcommand subcommand_table[] = {{add_info},  {add_render},  {add_run},     {add_export},
+inline constexpr Subcommand subcommand_table[] = {{add_edit},  {add_info},    {add_render},  {add_run},  {add_export},
                                                   {add_batch}, {add_recover}, {add_compare}, {add_study}};
 
 /// Says what main is to return after a command that ran, but whose answer is "no" (compare below its bar).

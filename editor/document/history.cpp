@@ -63,6 +63,12 @@ std::vector<Edit> History::edits() const {
   return result;
 }
 
+std::vector<Edit> History::undone() const {
+  std::vector<Edit> result;
+  for (std::size_t k = position_ + 1; k < steps_.size(); ++k) result.push_back(*steps_[k].edit);
+  return result;
+}
+
 std::size_t History::kept() const {
   std::size_t result = 0;
   for (const Step& step : steps_) result += step.scene ? 1 : 0;

@@ -21,6 +21,8 @@ class History {
   const Scene& now() const { return *steps_[position_].scene; }
   /// Edits that led to now().
   std::vector<Edit> edits() const;
+  /// Edits that were undone, in the order in which redo() does them.
+  std::vector<Edit> undone() const;
   std::size_t undo_count() const { return position_; }
   std::size_t redo_count() const { return steps_.size() - 1 - position_; }
 

@@ -188,6 +188,14 @@ void Journal::discard() {
   fs::remove(file_->path(), ignored);
 }
 
+bool Journal::in_use(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool free = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  ::close(descriptor);
+  return !free;
+}
+
 Journal::Contents Journal::read(const fs::path& path) { return parse(path, read_file(path)).contents; }
 
 }  // namespace rebake

@@ -41,6 +41,8 @@ class Journal {
     std::vector<nlohmann::json> entries;
     bool torn = false;  ///< something followed that was being written when the program ended
   };
+  /// Whether another process is writing it now.
+  static bool in_use(const std::filesystem::path& path);
   /// Throws FileError for a file that is no journal, is from a newer version, or is damaged before its last line.
   static Contents read(const std::filesystem::path& path);
 

@@ -148,7 +148,7 @@ void set_uniform(const gl::Program& program, const char* name, const glm::mat4& 
   glUniformMatrix4fv(location(program, name), 1, GL_FALSE, glm::value_ptr(value));
 }
 
-void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program) {
+void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Program& program) {
   const GpuMesh& mesh = input.gpu.mesh(draw.set);
   const GpuTexture& texture = input.gpu.texture(draw.set);
   Affine to_camera = draw.to_camera;
@@ -166,9 +166,13 @@ void draw_set(const PassInput& input, const Draw& draw, const gl::Program& progr
   }
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, texture.texture.name());
-  glBindVertexArray(mesh.array.name());
+}
 
-  const Eigen::Matrix4d cull = to_clip * draw.to_camera.matrix();
+void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program) {
+  set_mesh_uniforms(input, draw, program);
+  const GpuMesh& mesh = input.gpu.mesh(draw.set);
+  glBindVertexArray(mesh.array.name());
+  const Eigen::Matrix4d cull = projection(input.plan.view) * draw.to_camera.matrix();
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
   for (const GpuMesh::Cluster& cluster : mesh.clusters) {
@@ -203,6 +207,40 @@ void begin_geometry(const FramePlan& plan, int side) {
   glDepthFunc(reversed_depth() ? GL_GEQUAL : GL_LEQUAL);
   const float farthest = reversed_depth() ? 0.0F : 1.0F;
   glClearBufferfv(GL_DEPTH, 0, &farthest);
+}
+
+void begin_overlay(const FramePlan& plan) {
+  glViewport(0, 0, plan.view.width, plan.view.height);
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+  if (reversed_depth()) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+}
+
+void bind_scene_depth(const PassInput& input, const gl::Program& program) {
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_2D, input.state.targets.depth.name());
+  set_uniform(program, "scene_depth", 1);
+  set_uniform(program, "side", input.plan.runs("forward") ? 1 : input.plan.view.side());
+  set_uniform(program, "nearer", reversed_depth() ? 1.0F : -1.0F);
+}
+
+void set_camera_to_clip(const FramePlan& plan, const gl::Program& program) {
+  set_uniform(program, "camera_to_clip", to_glm(projection(plan.view)));
+}
+
+gl::VertexArray make_position_array(const GpuMesh& mesh) {
+  gl::VertexArray array = gl::make_vertex_array();
+  glBindVertexArray(array.name());
+  glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices.name());
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(GpuVertex),
+                        reinterpret_cast<const void*>(offsetof(GpuVertex, position)));
+  glEnableVertexAttribArray(1);
+  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(GpuVertex),
+                        reinterpret_cast<const void*>(offsetof(GpuVertex, texel)));
+  glBindVertexArray(0);
+  return array;
 }
 
 void end_geometry() {

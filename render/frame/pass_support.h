@@ -33,12 +33,22 @@ void set_uniform(const gl::Program& program, const char* name, const glm::ivec2&
 void set_uniform(const gl::Program& program, const char* name, const glm::mat3& value);
 void set_uniform(const gl::Program& program, const char* name, const glm::mat4& value);
 
-/// Sets what geometry.vert needs, binds mesh and texture, and draws the clusters in view.
+/// Sets what geometry.vert needs of a set and binds its texture.
+void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Program& program);
+/// The same, and draws the clusters in view.
 void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program);
 
 /// Depth test (less or equal, in reversed depth where the driver can), both sides drawn, restricted to plan.covered at
 /// `side` samples.
 void begin_geometry(const FramePlan& plan, int side);
 void end_geometry();
+
+/// For what is drawn over the picture: its whole raster, the depth convention of the scene, no depth test.
+void begin_overlay(const FramePlan& plan);
+/// Binds the scene's depth to texture unit 1, and sets scene_depth, side and nearer.
+void bind_scene_depth(const PassInput& input, const gl::Program& program);
+void set_camera_to_clip(const FramePlan& plan, const gl::Program& program);
+/// A vertex array over a mesh's vertices, without indices.
+gl::VertexArray make_position_array(const GpuMesh& mesh);
 
 }  // namespace rebake

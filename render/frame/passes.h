@@ -19,6 +19,9 @@ struct FrameTargets {
   gl::Texture frames;    ///< R16UI, index into FramePlan::frames
   gl::Texture rays;      ///< RGBA32F, fed direction of turned triangles, else 0
   gl::Texture depth;
+  gl::Texture mask;  ///< R8, selected triangles
+  gl::Framebuffer mask_buffer;
+  gl::Framebuffer overlay_buffer;  ///< picture without depth
   gl::Framebuffer sample_buffer;   ///< features, frames, rays and depth
   gl::Framebuffer picture_buffer;  ///< picture, and depth for forward shading
 };
@@ -32,11 +35,22 @@ struct DecoderTables {
   gl::Texture weights, layout;
 };
 
+/// The selected faces of a texture set on the GPU.
+struct SelectedFaces {
+  std::shared_ptr<const TriangleSet> selection;
+  Soup source;  ///< with the selection keeps the key's addresses alive
+  gl::VertexArray array;
+  gl::Buffer indices;
+  std::size_t count = 0;
+};
+using SelectionKey = std::pair<MeshKey, const TriangleSet*>;
+
 /// Lives as long as the renderer: shaders and buffers that frames share.
 struct PassState {
   std::map<std::string, gl::Program> programs;  ///< by their full source
   FrameTargets targets;
   DecoderTables tables;
+  std::map<SelectionKey, SelectedFaces> selected;
   gl::VertexArray empty_array;
 };
 
@@ -56,12 +70,13 @@ struct Pass {
 void execute_geometry(const PassInput& input);
 void execute_resolve(const PassInput& input);
 void execute_forward(const PassInput& input);
+void execute_selection(const PassInput& input);
+void execute_guides(const PassInput& input);
 
 /// In the order in which they run.
 inline constexpr Pass pass_table[] = {
-    {"geometry", execute_geometry},
-    {"resolve", execute_resolve},
-    {"forward", execute_forward},
+    {"geometry", execute_geometry},   {"resolve", execute_resolve}, {"forward", execute_forward},
+    {"selection", execute_selection}, {"guides", execute_guides},
 };
 
 }  // namespace rebake

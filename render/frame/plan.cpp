@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "mesh_ops/error.h"
 
@@ -148,13 +149,25 @@ void plan_passes(FramePlan& plan, std::size_t turned_draws, std::size_t culled, 
   if (hidden > 0) say("hidden objects", false, plural(hidden, "is", "are") + " hidden by an edit");
 }
 
+void plan_guides(FramePlan& plan) {
+  const std::size_t selected = static_cast<std::size_t>(
+      std::count_if(plan.draws.begin(), plan.draws.end(), [](const Draw& draw) { return draw.selection != nullptr; }));
+  plan.passes.push_back({"selection", plan.guides.selection && selected > 0,
+                         !plan.guides.selection ? "selections are not to be shown"
+                         : selected == 0        ? "nothing in view is selected"
+                                                : plural(selected, "draw has", "draws have") + " selected triangles"});
+  plan.passes.push_back({"guides", !plan.guides.lines.empty(),
+                         plan.guides.lines.empty() ? "no grid, cage or handle is shown"
+                                                   : plural(plan.guides.lines.size(), "line", "lines")});
+}
+
 }  // namespace
 
 bool FramePlan::runs(const std::string& pass) const {
   return std::any_of(passes.begin(), passes.end(), [&](const PlannedPass& p) { return p.name == pass && p.runs; });
 }
 
-FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options) {
+FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options, const Guides* guides) {
   check(view);
   if (options.shading == RenderOptions::Shading::forward && view.samples != 1)
     throw FieldError("shading",
@@ -177,7 +190,9 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
     to_camera.translation() = camera_rows * (placed.to_world.translation() - view.camera.eye);
     bool any_in_view = false;
     std::optional<std::size_t> frame;
+    std::size_t next_triangle = 0;
     for (const TextureSet& set : object.sets) {
+      const std::size_t first_triangle = std::exchange(next_triangle, next_triangle + set.soup.triangle_count());
       const auto rect = projected(transformed(set.soup.bounds(), to_camera), view);
       if (!rect) continue;
       if (!frame) {
@@ -194,7 +209,8 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
       result.covered = join(result.covered, *rect);
       result.triangles += set.soup.triangle_count();
       if (set.soup.turns() != nullptr) ++turned;
-      result.draws.push_back({placed.node->id, set, *frame, to_camera, object.axes});
+      result.draws.push_back(
+          {placed.node->id, set, *frame, to_camera, object.axes, placed.node->selection, first_triangle});
     }
     if (!any_in_view) ++culled;
   }
@@ -210,6 +226,10 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
                                  ? RenderOptions::Shading::forward
                                  : RenderOptions::Shading::deferred;
   plan_passes(result, turned, culled, hidden);
+  if (guides != nullptr) {
+    result.guides = *guides;
+    plan_guides(result);
+  }
   return result;
 }
 

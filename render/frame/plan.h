@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh_ops/scene/scene.h"
+#include "render/frame/guides.h"
 #include "render/frame/view.h"
 
 namespace rebake {
@@ -44,6 +45,8 @@ struct Draw {
   std::size_t frame = 0;  ///< index into FramePlan::frames
   Affine to_camera;       ///< object to camera space, composed in double
   Axes axes = Axes::y_up;
+  std::shared_ptr<const TriangleSet> selection;  ///< of the whole object; null when nothing is selected
+  std::size_t first_triangle = 0;                ///< the set's, in the object's numbering
 };
 
 /// A pass or an optional part of one, and why it runs or not.
@@ -70,13 +73,14 @@ struct FramePlan {
   std::vector<PlannedPass> passes;
   PixelRect covered;  ///< nothing is drawn outside it
   std::size_t triangles = 0;
+  Guides guides;
 
   bool runs(const std::string& pass) const;
 };
 
-/// Pure. Throws FieldError for a view or option that cannot be carried out, EditError for a node whose transform is
-/// singular.
-FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options = {});
+/// Pure. `guides`: what an editor wants over the picture, null for the picture alone. Throws FieldError for a view or
+/// option that cannot be carried out, EditError for a node whose transform is singular.
+FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options = {}, const Guides* guides = nullptr);
 
 /// One line a pass, e.g. "left out  node frames     one decoder and orientation in view".
 std::string describe(const FramePlan& plan);

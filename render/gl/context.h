@@ -12,6 +12,9 @@ class Context {
   virtual void make_current() = 0;
 };
 
+/// Clears the window of the current context, `width` × `height` pixels.
+void clear_window(int width, int height);
+
 /// A context without any display or window system, through EGL: Mesa's surfaceless platform first, then the first EGL
 /// device. Throws DeviceError that says what is missing.
 std::unique_ptr<Context> make_headless_context();

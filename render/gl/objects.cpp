@@ -98,6 +98,9 @@ Texture make_texture(unsigned internal_format, int width, int height, int bytes_
     case GL_RGBA32F:
       format = GL_RGBA, type = GL_FLOAT;
       break;
+    case GL_R8:
+      format = GL_RED;
+      break;
     case GL_DEPTH_COMPONENT32F:
       format = GL_DEPTH_COMPONENT, type = GL_FLOAT;
       break;

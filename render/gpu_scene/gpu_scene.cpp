@@ -13,18 +13,13 @@ namespace {
 
 constexpr std::size_t faces_a_cluster = 2048;
 
-struct Vertex {
-  float position[3];
-  float texel[2];
-};
-
 GpuMesh upload(const TextureSet& set) {
   const Soup& soup = set.soup;
   GpuMesh mesh;
   mesh.source = soup;
   if (!soup.bounds().isEmpty()) mesh.center = soup.bounds().center();
 
-  std::vector<Vertex> vertices(soup.positions().size());
+  std::vector<GpuVertex> vertices(soup.positions().size());
   const double width = set.texels->width(), height = set.texels->height();
   tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t v) {
     const Eigen::Vector3f position = (soup.positions()[v] - mesh.center).cast<float>();
@@ -35,12 +30,12 @@ GpuMesh upload(const TextureSet& set) {
 
   mesh.array = gl::make_vertex_array();
   glBindVertexArray(mesh.array.name());
-  mesh.vertices = gl::make_buffer(GL_ARRAY_BUFFER, vertices.data(), vertices.size() * sizeof(Vertex));
+  mesh.vertices = gl::make_buffer(GL_ARRAY_BUFFER, vertices.data(), vertices.size() * sizeof(GpuVertex));
   glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(GpuVertex), nullptr);
   glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                        reinterpret_cast<const void*>(offsetof(Vertex, texel)));
+  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(GpuVertex),
+                        reinterpret_cast<const void*>(offsetof(GpuVertex, texel)));
   if (soup.turns() != nullptr) {
     std::vector<float> turns;
     turns.reserve(soup.turns()->size() * 9);

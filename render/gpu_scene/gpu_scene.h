@@ -9,6 +9,12 @@
 
 namespace rebake {
 
+/// What geometry.vert reads of a vertex.
+struct GpuVertex {
+  float position[3];
+  float texel[2];
+};
+
 /// A texture set's triangles on the GPU: positions as floats relative to `center`, UVs in texels.
 struct GpuMesh {
   /// Faces [first, first + count) and their box, so that what is out of view is not drawn.

@@ -1,0 +1,186 @@
+#include "editor/gui/desk.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+
+#include "editor/document/project.h"
+#include "editor/edits/support.h"
+#include "editor/gui/navigation.h"
+#include "editor/script/script.h"
+#include "mesh_ops/formats/files.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+Desk::Desk(Settings with, std::function<void()> wake)
+    : settings(std::move(with)), worker(std::move(wake)), now(worker.snapshot()) {
+  keep_journal();
+}
+
+void Desk::keep_journal() {
+  worker.start("journal", [](Session& session) {
+    const fs::path folder = journal_folder();
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (failed) throw FileError(folder, "cannot be made, so work is not kept safe: " + failed.message());
+    const auto since = std::chrono::system_clock::now().time_since_epoch();
+    session.document.keep_journal(
+        folder /
+        fmt::format("{}-{}.journal", std::chrono::duration_cast<std::chrono::milliseconds>(since).count(), ::getpid()));
+  });
+}
+
+void Desk::update() {
+  for (Worker::Message& message : worker.take_messages()) {
+    if (message.failed) error = message.text;
+    log.push_back({std::move(message.text), message.failed});
+  }
+  const std::shared_ptr<const Snapshot> next = worker.snapshot();
+  if (next != now) {
+    now = next;
+    preview.reset();
+    std::erase_if(active, [&](NodeId id) { return find(scene(), id) == nullptr; });
+    selected_ = 0;
+    for (const PlacedNode& placed : placed_nodes(scene()))
+      if (placed.node->selection) selected_ += count(*placed.node->selection);
+    if (fresh_ && !world_bounds(scene()).isEmpty()) {
+      fresh_ = false;
+      camera = framing_of(scene(), static_cast<double>(view_width) / view_height);
+    }
+  }
+  for (const std::function<void()>& then : worker.take_finished()) then();
+}
+
+void Desk::edit(const Edit& one) { edits({one}); }
+
+void Desk::edits(const std::vector<Edit>& list) {
+  for (const Edit& one : list)
+    worker.start(std::visit([](const auto& e) { return std::string(e.op); }, one),
+                 [one](Session& session) { session.edit(one); });
+}
+
+void Desk::undo(int steps) {
+  worker.start("undo", [steps](Session& session) {
+    int done = 0;
+    while (done < steps && session.document.undo()) ++done;
+    session.say(fmt::format("undone: {}", done));
+  });
+}
+void Desk::redo(int steps) {
+  worker.start("redo", [steps](Session& session) {
+    int done = 0;
+    while (done < steps && session.document.redo()) ++done;
+    session.say(fmt::format("done again: {}", done));
+  });
+}
+
+void Desk::open(const std::vector<std::string>& paths) {
+  if (paths.size() == 1 && is_project_file(paths.front())) {
+    const fs::path path = fs::absolute(paths.front());
+    worker.start(
+        "open",
+        [path](Session& session) {
+          Document opened = Document::open(path);
+          session.document.discard_journal();
+          session.document = std::move(opened);
+        },
+        [this, path] {
+          project = path;
+          saved_edits_ = now->done.size();
+          settings.remember(path.string());
+        });
+    keep_journal();
+    return;
+  }
+  for (const std::string& path : paths) {
+    Import import;
+    import.path = path;
+    worker.start(
+        "import", [import](Session& session) { session.edit(import); },
+        [this, path] { settings.remember(fs::absolute(path).lexically_normal().string()); });
+  }
+}
+
+void Desk::recover(const fs::path& journal) {
+  worker.start(
+      "recover",
+      [journal](Session& session) {
+        Document::Recovered recovered = Document::recover(journal);
+        session.document.discard_journal();
+        session.document = std::move(recovered.document);
+        session.say(fmt::format("{} edits recovered{}", recovered.edits,
+                                recovered.torn ? "; one more was being made when the editor ended: it is lost" : ""));
+      },
+      [this] { recoverable.clear(); });
+}
+
+void Desk::save_project(const fs::path& path) {
+  const std::size_t edits_then = now->done.size();
+  worker.start(
+      "save", [path](Session& session) { session.document.save(path); },
+      [this, path, edits_then] {
+        project = path;
+        saved_edits_ = edits_then;
+        settings.remember(path.string());
+        log.push_back({"saved " + path.string()});
+      });
+}
+
+void Desk::save_scene(const fs::path& folder) {
+  worker.start("save scene", [folder](Session& session) {
+    SaveAction action;
+    action.out = folder.string();
+    run(session, action);
+  });
+}
+
+void Desk::export_to(const fs::path& folder) {
+  worker.start("export", [folder](Session& session) {
+    ExportAction action;
+    action.out = folder.string();
+    run(session, action);
+  });
+}
+
+void Desk::save_script(const fs::path& path) {
+  std::string text;
+  for (const Edit& one : now->done) text += to_json(one).dump() + "\n";
+  worker.start("save script", [path, text](Session& session) {
+    write_file_atomically(path, text);
+    session.say("saved " + path.string());
+  });
+}
+
+void Desk::run_script(const fs::path& path) {
+  worker.start("script", [path](Session& session) { rebake::run_script(session, read_file(path), path, {}); });
+}
+
+bool Desk::unsaved() const { return now->done.size() != saved_edits_ && now->done.size() > (project.empty() ? 1 : 0); }
+
+Box Desk::focus() const {
+  Box box;
+  for (const NodeId id : active) box.extend(subtree_bounds(scene(), id));
+  return box.isEmpty() ? world_bounds(scene()) : box;
+}
+
+void Desk::frame_view() {
+  Box box;
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (placed.visible && placed.node->selection) box.extend(selection_bounds(placed));
+  camera = framed(camera, box.isEmpty() ? focus() : box, static_cast<double>(view_width) / view_height);
+}
+
+std::string title_of(const Edit& edit, const Scene& scene) {
+  const nlohmann::json object = to_json(edit);
+  std::string title = object.at("op").get<std::string>();
+  if (object.contains("path")) return title + " " + folder_title(object.at("path").get<std::string>());
+  if (object.contains("node") && object.at("node").is_number_unsigned())
+    if (const NodePtr node = find(scene, static_cast<NodeId>(object.at("node").get<std::uint64_t>())))
+      title += " " + node->name;
+  return title;
+}
+
+}  // namespace rebake

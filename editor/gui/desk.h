@@ -1,0 +1,111 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "editor/gui/settings.h"
+#include "editor/gui/worker.h"
+#include "render/frame/plan.h"
+
+namespace rebake {
+
+enum class ToolKind { pick, rectangle, lasso, polygon, brush, flood, erase, move, turn, scale, cage };
+
+/// A file or folder that a dialog asks for.
+enum class PathQuestion {
+  none,
+  open,
+  save_project,
+  save_scene,
+  export_folder,
+  screenshot,
+  turntable,
+  save_script,
+  run_script
+};
+
+/// What the window shows beside the document: panels, tools and commands act upon it. What people make is in the
+/// document, which the worker owns; `now` is a copy.
+struct Desk {
+  explicit Desk(Settings with, std::function<void()> wake);
+
+  Settings settings;
+  Worker worker;
+  std::shared_ptr<const Snapshot> now;
+
+  // Looking
+  Camera camera;
+  int view_width = 1, view_height = 1;  ///< the viewport's pixels
+  bool flying = false;
+  double perspective_fov = Camera{}.fov_degrees;  ///< to come back to from a flat view
+  bool show_selection = true;
+  int samples = 4;
+  std::optional<Scene> preview;  ///< drawn in place of the scene while something is dragged
+
+  // Tools
+  ToolKind tool = ToolKind::pick;
+  bool visible_only = true;
+  bool local_axes = false;
+  std::set<NodeId> active;  ///< nodes that panels and gizmos work on
+
+  // Talking
+  struct Line {
+    std::string text;
+    bool failed = false;
+  };
+  std::vector<Line> log;
+  std::string error;  ///< shown until it is read
+  bool palette_open = false, quitting = false;
+  PathQuestion question = PathQuestion::none;
+  std::string form_op;  ///< the edit whose form is open, empty for none
+  std::vector<std::filesystem::path> recoverable;
+  std::filesystem::path project;  ///< empty until it has been saved
+
+  // Long work that the window itself carries out, a picture a frame
+  struct Turntable {
+    std::filesystem::path folder;
+    int next = 0, count = 36;
+  };
+  std::optional<Turntable> turntable;
+  std::filesystem::path screenshot;  ///< to be written with the next picture
+
+  /// Takes in what the worker did.
+  void update();
+
+  void edit(const Edit& edit);
+  void edits(const std::vector<Edit>& list);
+  void undo(int steps = 1);
+  void redo(int steps = 1);
+  /// Imports folders and scenes; opens a project instead when it is the only path.
+  void open(const std::vector<std::string>& paths);
+  void recover(const std::filesystem::path& journal);
+  void save_project(const std::filesystem::path& path);
+  void save_scene(const std::filesystem::path& folder);
+  void export_to(const std::filesystem::path& folder);
+  void save_script(const std::filesystem::path& path);
+  void run_script(const std::filesystem::path& path);
+
+  const Scene& scene() const { return now->scene; }
+  /// Not yet in a file: a project, or the sources themselves.
+  bool unsaved() const;
+  /// Of the active nodes, or of everything visible when none is.
+  Box focus() const;
+  std::size_t selected_triangles() const { return selected_; }
+  void frame_view();
+
+ private:
+  void keep_journal();
+  std::size_t saved_edits_ = 0;  ///< done when last saved
+  std::size_t selected_ = 0;
+  bool fresh_ = true;  ///< nothing was shown yet: the first scene is framed
+};
+
+/// One line for an edit in lists: its op and what it names.
+std::string title_of(const Edit& edit, const Scene& scene);
+
+}  // namespace rebake

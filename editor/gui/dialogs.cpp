@@ -1,0 +1,218 @@
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <filesystem>
+
+#include "editor/gui/panels.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Question {
+  PathQuestion kind;
+  const char* title;
+  const char* hint;
+  bool folders;        ///< a folder is meant
+  const char* ending;  ///< that a file's name gets where it has none
+};
+constexpr Question questions[] = {
+    {PathQuestion::open, "Open", "a MobileNeRF folder, a scene folder, or a project (.rebake)", true, ""},
+    {PathQuestion::save_project, "Save project", "a file; it remembers all edits", false, ".rebake"},
+    {PathQuestion::save_scene, "Save scene folder", "a folder; keeps every node, not the history", true, ""},
+    {PathQuestion::export_folder, "Export", "a folder in the MobileNeRF format", true, ""},
+    {PathQuestion::screenshot, "Screenshot", "a PNG file of the picture as it is", false, ".png"},
+    {PathQuestion::turntable, "Turntable", "a folder for 36 pictures around the target", true, ""},
+    {PathQuestion::save_script, "Save as script", "a file with a line an edit", false, ".jsonl"},
+    {PathQuestion::run_script, "Run script", "a file with a line an edit", false, ".jsonl"},
+};
+
+const Question& question_of(PathQuestion kind) {
+  for (const Question& question : questions)
+    if (question.kind == kind) return question;
+  return questions[0];
+}
+
+// What the format cannot keep of this scene.
+std::vector<std::string> losses(const Scene& scene) {
+  std::vector<std::string> lines;
+  std::size_t objects = 0, hidden = 0, turned = 0;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object) continue;
+    placed.visible ? ++objects : ++hidden;
+    if (placed.visible && placed.node->object->any_turns()) ++turned;
+  }
+  if (objects > 1)
+    lines.push_back(
+        fmt::format("{} objects: one folder holds one decoder; those that do not fit together become a "
+                    "scene folder (scene.json)",
+                    objects));
+  if (hidden > 0) lines.push_back(fmt::format("{} hidden objects are left out", hidden));
+  if (turned > 0)
+    lines.push_back(
+        fmt::format("{} bent or turned objects: the plain format keeps places, not turned view directions; "
+                    "the log says what that costs in dB",
+                    turned));
+  lines.emplace_back("names, groups, stored views and history are not in the plain format");
+  return lines;
+}
+
+}  // namespace
+
+void Dialogs::draw_path(Desk& desk) {
+  if (desk.question == PathQuestion::none) {
+    asked_ = PathQuestion::none;
+    return;
+  }
+  const Question& question = question_of(desk.question);
+  const bool first = asked_ != desk.question;
+  if (first) {
+    asked_ = desk.question;
+    path_ = desk.question == PathQuestion::save_project && !desk.project.empty() ? desk.project.string()
+                                                                                 : fs::current_path().string() + "/";
+    ImGui::OpenPopup("###path");
+  }
+  ImGui::SetNextWindowSize({620, 420}, ImGuiCond_Appearing);
+  bool open = true;
+  if (!ImGui::BeginPopupModal((std::string(question.title) + "###path").c_str(), &open)) {
+    if (!open) desk.question = PathQuestion::none;
+    return;
+  }
+  if (first) ImGui::SetKeyboardFocusHere();
+  ImGui::TextDisabled("%s", question.hint);
+  ImGui::SetNextItemWidth(-1);
+  bool done = ImGui::InputText("##text", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
+  const fs::path typed(path_);
+  std::error_code error;
+  const fs::path folder = fs::is_directory(typed, error) ? typed : typed.parent_path();
+  ImGui::BeginChild("entries", {0, desk.question == PathQuestion::export_folder ? 200.0F : 290.0F}, true);
+  if (ImGui::Selectable("..")) path_ = (folder / "..").lexically_normal().string();
+  std::vector<fs::path> entries;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    entries.push_back(at->path());
+  std::sort(entries.begin(), entries.end());
+  for (const fs::path& entry : entries) {
+    const bool is_folder = fs::is_directory(entry, error);
+    if (entry.filename().string().starts_with('.')) continue;
+    const bool fits = is_folder || question.ending[0] == '\0' ? is_folder || entry.extension() == ".rebake"
+                                                              : entry.extension() == question.ending;
+    if (!fits) continue;
+    if (ImGui::Selectable((entry.filename().string() + (is_folder ? "/" : "")).c_str()))
+      path_ = entry.string() + (is_folder ? "/" : "");
+  }
+  if (desk.question == PathQuestion::open)
+    for (const std::string& recent : desk.settings.recent) {
+      if (ImGui::Selectable(fmt::format("recent: {}", recent).c_str())) path_ = recent;
+    }
+  ImGui::EndChild();
+  if (desk.question == PathQuestion::export_folder)
+    for (const std::string& line : losses(desk.scene())) ImGui::TextWrapped("- %s", line.c_str());
+  done = ImGui::Button(question.title) || done;
+  ImGui::SameLine();
+  const bool cancelled = ImGui::Button("Cancel") || !open;
+  if (done && !path_.empty()) {
+    fs::path path(path_);
+    if (!path.has_filename()) path = path.parent_path();
+    if (question.ending[0] != '\0' && path.extension() != question.ending) path += question.ending;
+    switch (desk.question) {
+      case PathQuestion::open:
+        desk.open({path.string()});
+        break;
+      case PathQuestion::save_project:
+        desk.save_project(path);
+        break;
+      case PathQuestion::save_scene:
+        desk.save_scene(path);
+        break;
+      case PathQuestion::export_folder:
+        desk.export_to(path);
+        break;
+      case PathQuestion::screenshot:
+        desk.screenshot = path;
+        break;
+      case PathQuestion::turntable:
+        desk.turntable = Desk::Turntable{path};
+        break;
+      case PathQuestion::save_script:
+        desk.save_script(path);
+        break;
+      default:
+        desk.run_script(path);
+    }
+  }
+  if (done || cancelled) {
+    desk.question = PathQuestion::none;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void Dialogs::draw_error(Desk& desk) {
+  if (!desk.error.empty() && !ImGui::IsPopupOpen("It could not be done")) ImGui::OpenPopup("It could not be done");
+  ImGui::SetNextWindowSize({480, 0}, ImGuiCond_Appearing);
+  if (!ImGui::BeginPopupModal("It could not be done", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  ImGui::PushTextWrapPos(460);
+  ImGui::TextUnformatted(desk.error.c_str());
+  ImGui::PopTextWrapPos();
+  if (ImGui::Button("OK") || desk.error.empty()) {
+    desk.error.clear();
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void Dialogs::draw_recovery(Desk& desk) {
+  if (desk.recoverable.empty()) return;
+  if (!ImGui::IsPopupOpen("Unsaved work")) ImGui::OpenPopup("Unsaved work");
+  ImGui::SetNextWindowSize({560, 0}, ImGuiCond_Appearing);
+  if (!ImGui::BeginPopupModal("Unsaved work", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  ImGui::TextWrapped("The editor ended without saving. Its work can be got back:");
+  for (const fs::path& journal : desk.recoverable) {
+    ImGui::PushID(journal.c_str());
+    if (ImGui::Button("Recover")) desk.recover(journal);
+    ImGui::SameLine();
+    ImGui::TextUnformatted(journal.filename().c_str());
+    ImGui::PopID();
+  }
+  if (ImGui::Button("Later")) desk.recoverable.clear();
+  if (desk.recoverable.empty() || desk.worker.busy()) {
+    desk.recoverable.clear();
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void Dialogs::draw_quitting(Desk& desk) {
+  if (!desk.quitting) return;
+  if (!desk.unsaved() && !desk.worker.busy()) {
+    may_quit_ = true;
+    return;
+  }
+  if (!ImGui::IsPopupOpen("Unsaved changes")) ImGui::OpenPopup("Unsaved changes");
+  if (!ImGui::BeginPopupModal("Unsaved changes", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  ImGui::TextUnformatted(desk.worker.busy() ? "Something is still being done."
+                                            : "There are changes in no project yet.");
+  if (!desk.project.empty()) {
+    if (ImGui::Button("Save and quit")) desk.save_project(desk.project);
+    ImGui::SameLine();
+  }
+  if (ImGui::Button("Quit without saving")) may_quit_ = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Go on")) {
+    desk.quitting = false;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void Dialogs::draw(Desk& desk) {
+  draw_path(desk);
+  draw_recovery(desk);
+  draw_quitting(desk);
+  draw_error(desk);
+}
+
+}  // namespace rebake

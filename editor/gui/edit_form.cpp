@@ -1,0 +1,138 @@
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "editor/fields/variants.h"
+#include "editor/gui/expression.h"
+#include "editor/gui/panels.h"
+
+namespace rebake {
+
+using nlohmann::json;
+
+namespace {
+
+std::vector<FieldLine> fields_of(const std::string& op, std::string& help) {
+  std::vector<FieldLine> lines;
+  for_each_type<Edit>([&](auto edit) {
+    if (op != edit.op) return;
+    help = edit.help;
+    FieldLister lister(lines);
+    decltype(edit)::fields(edit, lister);
+  });
+  return lines;
+}
+
+// The words of a type that is a choice, e.g. "set, add, remove or intersect".
+std::vector<std::string> choices(const std::string& type) {
+  static const std::vector<std::vector<std::string>> all = {{"set", "add", "remove", "intersect"},
+                                                            {"world", "node", "bounds"},
+                                                            {"mean_value", "green", "harmonic"},
+                                                            {"360", "forward"},
+                                                            {"split", "chunked", "unsplit"}};
+  for (const auto& words : all)
+    if (type.starts_with(words[0]) && type.ends_with(words.back())) return words;
+  return {};
+}
+
+}  // namespace
+
+void EditForm::begin(const Desk& desk) {
+  op_ = desk.form_op;
+  problem_.clear();
+  values_ = json::object();
+  texts_.clear();
+  std::string help;
+  for (const FieldLine& field : fields_of(op_, help)) {
+    // What people have picked is what they mean.
+    if (field.name == "node" && !desk.active.empty() && desk.selected_triangles() == 0)
+      values_["node"] = static_cast<std::uint64_t>(*desk.active.begin());
+    if (!field.initial.empty() && field.type != "true or false") continue;
+    if (field.required && field.type == "number") values_[field.name] = 0;
+  }
+}
+
+void EditForm::draw(Desk& desk) {
+  if (desk.form_op.empty()) {
+    op_.clear();
+    return;
+  }
+  if (op_ != desk.form_op) begin(desk);
+  bool open = true;
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y * 0.12F}, ImGuiCond_Appearing, {0.5F, 0});
+  ImGui::SetNextWindowSize({520, 0}, ImGuiCond_Appearing);
+  ImGui::Begin((op_ + "###form").c_str(), &open, ImGuiWindowFlags_NoCollapse);
+  std::string help;
+  const std::vector<FieldLine> fields = fields_of(op_, help);
+  ImGui::TextWrapped("%s", help.c_str());
+  for (const FieldLine& field : fields) {
+    ImGui::PushID(field.name.c_str());
+    const char* name = field.name.c_str();
+    ImGui::SetNextItemWidth(230);
+    if (field.type == "true or false") {
+      bool value = values_.contains(name) ? values_[name].get<bool>() : field.initial == "true";
+      if (ImGui::Checkbox(name, &value)) values_[name] = value;
+    } else if (field.type == "node") {
+      const std::uint64_t chosen = values_.value(name, std::uint64_t{0});
+      const NodePtr node = find(desk.scene(), static_cast<NodeId>(chosen));
+      if (ImGui::BeginCombo(name, node ? node->name.c_str() : "")) {
+        if (!field.required && ImGui::Selectable("(none)", chosen == 0)) values_.erase(name);
+        for (const PlacedNode& placed : placed_nodes(desk.scene()))
+          if (ImGui::Selectable(placed.node->name.c_str(), placed.node->id == static_cast<NodeId>(chosen)))
+            values_[name] = static_cast<std::uint64_t>(placed.node->id);
+        ImGui::EndCombo();
+      }
+    } else if (const std::vector<std::string> words = choices(field.type); !words.empty()) {
+      const std::string initial = field.initial.size() > 2 ? field.initial.substr(1, field.initial.size() - 2) : "";
+      const std::string chosen = values_.value(name, initial);
+      if (ImGui::BeginCombo(name, chosen.c_str())) {
+        for (const std::string& word : words)
+          if (ImGui::Selectable(word.c_str(), word == chosen)) values_[name] = word;
+        ImGui::EndCombo();
+      }
+    } else {
+      std::string& text = texts_[name];
+      if (ImGui::InputTextWithHint(name, field.initial.empty() ? field.type.c_str() : field.initial.c_str(), &text)) {
+        if (text.empty()) {
+          values_.erase(name);
+        } else if (field.type == "text") {
+          values_[name] = text;
+        } else if (const auto number = evaluated(text); number) {
+          values_[name] =
+              field.type == "whole number" && *number == static_cast<double>(static_cast<std::int64_t>(*number))
+                  ? json(static_cast<std::int64_t>(*number))
+                  : json(*number);
+        } else {
+          // Read when it is applied, so that what is half typed is no error yet.
+          const json read = json::parse(text, nullptr, false);
+          values_[name] = read.is_discarded() ? json(text) : read;
+        }
+      }
+    }
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s%s\n%s", field.help.c_str(), field.required ? " (needed)" : "", field.type.c_str());
+    if (problem_.find("\"" + field.name + "\"") != std::string::npos)
+      ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
+    ImGui::PopID();
+  }
+  const bool said = std::any_of(fields.begin(), fields.end(), [&](const FieldLine& field) {
+    return problem_.find("\"" + field.name + "\"") != std::string::npos;
+  });
+  if (!problem_.empty() && !said) ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
+  if (ImGui::Button("Apply")) {
+    try {
+      json line = values_;
+      line["op"] = op_;
+      desk.edit(read_edit(line, desk.scene()));
+      problem_.clear();
+    } catch (const Error& error) {
+      problem_ = error.what();
+    }
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Close")) open = false;
+  ImGui::End();
+  if (!open) desk.form_op.clear();
+}
+
+}  // namespace rebake

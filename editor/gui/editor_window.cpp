@@ -1,0 +1,314 @@
+#include "editor/gui/editor_window.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "editor/document/journal.h"
+#include "editor/gui/commands.h"
+#include "editor/gui/viewport.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Frames that Dear ImGui needs after an event until hovering, popups and focus have settled.
+constexpr int frames_after_event = 3;
+
+void set_looks(double scale, bool dark) {
+  if (dark)
+    ImGui::StyleColorsDark();
+  else
+    ImGui::StyleColorsLight();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 0;
+  style.FrameRounding = 3;
+  style.WindowBorderSize = 1;
+  (void)scale;
+}
+
+void load_font(double scale) {
+  ImGuiIO& io = ImGui::GetIO();
+  constexpr const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+  const auto size = static_cast<float>(14 * scale);
+  // The font that comes with Dear ImGui is a picture of 13 pixels.
+  if (!fs::exists(font) || io.Fonts->AddFontFromFileTTF(font, size) == nullptr) {
+    io.Fonts->AddFontDefault();
+    io.FontGlobalScale = static_cast<float>(scale);
+  }
+  ImGui::GetStyle().ScaleAllSizes(static_cast<float>(scale));
+}
+
+/// Everything in the window, laid out.
+class EditorWindow {
+ public:
+  explicit EditorWindow(const std::vector<std::string>& paths)
+      : settings_file_(config_folder() / "settings.json"),
+        settings_(read_settings(settings_file_, settings_problem_)),
+        window_("Rebake", settings_.window_width, settings_.window_height),
+        renderer_(window_.context()),
+        viewport_(renderer_),
+        desk_(settings_, Window::wake) {
+    scale_ = window_.scale();
+    set_looks(scale_, desk_.settings.dark);
+    load_font(scale_);
+    if (!settings_problem_.empty()) desk_.log.push_back({settings_problem_, true});
+    window_.on_key = [this](const KeyPress& press) { key(press); };
+    window_.on_drop = [this](const std::vector<std::string>& dropped) { desk_.open(dropped); };
+    find_journals();
+    if (!paths.empty()) desk_.open(paths);
+  }
+
+  void run() {
+    int frames = frames_after_event;
+    while (!dialogs_.may_quit()) {
+      const double pause = frames > 0 ? 0 : desk_.worker.busy() ? 0.1 : viewport_.next_frame_in(desk_);
+      if (window_.wait(pause) || desk_.worker.busy()) frames = frames_after_event;
+      if (desk_.now != desk_.worker.snapshot()) frames = frames_after_event;
+      frames = std::max(0, frames - 1);
+      if (window_.wants_to_close()) {
+        window_.stay_open();
+        desk_.quitting = true;
+        frames = frames_after_event;
+      }
+      desk_.update();
+      draw();
+    }
+    desk_.settings.window_width = static_cast<int>(window_.width() / scale_);
+    desk_.settings.window_height = static_cast<int>(window_.height() / scale_);
+    write_settings(desk_.settings, settings_file_);
+    // The work is saved, or not wanted.
+    desk_.worker.start("end", [](Session& session) { session.document.discard_journal(); });
+    while (desk_.worker.busy()) window_.wait(0.02);
+  }
+
+ private:
+  void find_journals() {
+    std::error_code error;
+    for (fs::directory_iterator at(journal_folder(), error), end; !error && at != end; at.increment(error))
+      if (at->path().extension() == ".journal" && !Journal::in_use(at->path())) {
+        try {
+          if (!Journal::read(at->path()).entries.empty())
+            desk_.recoverable.push_back(at->path());
+          else
+            fs::remove(at->path());
+        } catch (const Error& problem) {
+          desk_.log.push_back({problem.what(), true});
+        }
+      }
+    std::sort(desk_.recoverable.rbegin(), desk_.recoverable.rend());
+  }
+
+  void key(const KeyPress& press) {
+    const bool plain = !press.control && !press.alt;
+    if (press.key == GLFW_KEY_ESCAPE) {
+      escape();
+      return;
+    }
+    // Text fields take what is typed; commands with Ctrl other than those of editing text go on working.
+    if (ImGui::GetIO().WantTextInput && (plain || (press.key != GLFW_KEY_S && press.key != GLFW_KEY_P))) return;
+    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) return;
+    if (viewport_.key(desk_, press)) return;
+    if (desk_.flying && plain &&
+        std::string_view("WASDQE").find(static_cast<char>(press.key)) != std::string_view::npos)
+      return;
+    if (const Command* command = command_for(press, desk_); command != nullptr && command->enabled(desk_))
+      command->run(desk_);
+  }
+
+  void escape() {
+    if (desk_.palette_open) {
+      desk_.palette_open = false;
+    } else if (!desk_.error.empty()) {
+      desk_.error.clear();
+    } else if (desk_.question != PathQuestion::none) {
+      desk_.question = PathQuestion::none;
+      close_popup_ = true;
+    } else if (!desk_.form_op.empty()) {
+      desk_.form_op.clear();
+    } else if (viewport_.cancel(desk_)) {
+      return;
+    } else if (desk_.worker.busy()) {
+      desk_.worker.cancel();
+    } else {
+      desk_.tool = ToolKind::pick;
+    }
+  }
+
+  void draw() {
+    set_title();
+    if (dark_ != desk_.settings.dark) {
+      dark_ = desk_.settings.dark;
+      set_looks(scale_, dark_);
+    }
+    window_.begin_frame();
+    menu();
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float top = ImGui::GetFrameHeight(), line = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
+    const auto s = static_cast<float>(scale_);
+    const float side = static_cast<float>(desk_.settings.side_width) * s, tools = 66 * s,
+                bottom = static_cast<float>(desk_.settings.bottom_height) * s;
+    const float height = screen.y - top - line;  // above the status line
+    panel("tool bar", {0, top}, {tools, height - bottom}, [&] { tool_bar(); });
+    panel("options", {tools, top}, {screen.x - tools - side, line}, [&] { viewport_.tool(desk_).options(desk_); });
+    panel(
+        "picture", {tools, top + line}, {screen.x - tools - side, height - bottom - line},
+        [&] { viewport_.draw(desk_); }, true);
+    panel("outline", {screen.x - side, top}, {side, (height - bottom) * 0.55F}, [&] {
+      ImGui::TextDisabled("Outline");
+      outline_.draw(desk_);
+    });
+    panel("properties", {screen.x - side, top + (height - bottom) * 0.55F}, {side, (height - bottom) * 0.45F}, [&] {
+      ImGui::TextDisabled("Properties");
+      properties_.draw(desk_);
+    });
+    panel("bottom", {0, top + height - bottom}, {screen.x, bottom}, [&] { tabs(); });
+    panel("status", {0, screen.y - line}, {screen.x, line}, [&] { status(); });
+    splitter("side", {screen.x - side - 3, top}, {6, height - bottom}, ImGuiMouseCursor_ResizeEW,
+             [&](const ImVec2& moved) {
+               desk_.settings.side_width =
+                   std::clamp(desk_.settings.side_width - static_cast<double>(moved.x / s), 200.0, 700.0);
+             });
+    splitter("height", {0, top + height - bottom - 3}, {screen.x, 6}, ImGuiMouseCursor_ResizeNS,
+             [&](const ImVec2& moved) {
+               desk_.settings.bottom_height =
+                   std::clamp(desk_.settings.bottom_height - static_cast<double>(moved.y / s), 80.0, 500.0);
+             });
+    palette_.draw(desk_);
+    form_.draw(desk_);
+    dialogs_.draw(desk_);
+    window_.end_frame();
+  }
+
+  template <class Content>
+  void panel(const char* name, const ImVec2& at, const ImVec2& size, Content content, bool bare = false) {
+    ImGui::SetNextWindowPos(at);
+    ImGui::SetNextWindowSize(size);
+    if (bare) ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    ImGui::Begin(name, nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | (bare ? ImGuiWindowFlags_NoScrollbar : 0));
+    if (bare) ImGui::PopStyleVar();
+    content();
+    ImGui::End();
+  }
+
+  template <class Moved>
+  void splitter(const char* name, const ImVec2& at, const ImVec2& size, ImGuiMouseCursor cursor, Moved moved) {
+    ImGui::SetNextWindowPos(at);
+    ImGui::SetNextWindowSize(size);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+    ImGui::Begin(name, nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::InvisibleButton("handle", size);
+    if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(cursor);
+    if (ImGui::IsItemActive()) moved(ImGui::GetIO().MouseDelta);
+    ImGui::End();
+    ImGui::PopStyleVar(2);
+  }
+
+  void menu() {
+    if (!ImGui::BeginMainMenuBar()) return;
+    for (const char* name : {"File", "Edit", "Select", "Tool", "View"}) {
+      if (!ImGui::BeginMenu(name)) continue;
+      for (const Command& command : command_table())
+        if (command.menu == std::string_view(name)) {
+          const std::string keys = command.keys_of(desk_);
+          if (ImGui::MenuItem(command.title, keys.substr(0, keys.find(' ')).c_str(), false, command.enabled(desk_)))
+            command.run(desk_);
+        }
+      ImGui::EndMenu();
+    }
+    ImGui::EndMainMenuBar();
+  }
+
+  void tool_bar() {
+    struct Button {
+      ToolKind kind;
+      const char* label;
+    };
+    for (const Button& button :
+         {Button{ToolKind::pick, "Pick"}, Button{ToolKind::rectangle, "Rect"}, Button{ToolKind::lasso, "Lasso"},
+          Button{ToolKind::polygon, "Poly"}, Button{ToolKind::brush, "Brush"}, Button{ToolKind::flood, "Flood"},
+          Button{ToolKind::erase, "Erase"}, Button{ToolKind::move, "Move"}, Button{ToolKind::turn, "Turn"},
+          Button{ToolKind::scale, "Scale"}, Button{ToolKind::cage, "Cage"}}) {
+      const bool taken = desk_.tool == button.kind;
+      if (taken) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+      if (ImGui::Button(button.label, {-1, 0})) desk_.tool = button.kind;
+      if (taken) ImGui::PopStyleColor();
+    }
+  }
+
+  void tabs() {
+    if (!ImGui::BeginTabBar("tabs")) return;
+    const auto tab = [](const char* name, const auto& content) {
+      if (!ImGui::BeginTabItem(name)) return;
+      ImGui::BeginChild(name);
+      content();
+      ImGui::EndChild();
+      ImGui::EndTabItem();
+    };
+    tab("History", [&] { draw_history(desk_); });
+    tab("Script", [&] { script_.draw(desk_); });
+    tab("Cost", [&] { draw_costs(desk_, viewport_.report(), viewport_.each_pass()); });
+    tab("Log", [&] { draw_log(desk_); });
+    ImGui::EndTabBar();
+  }
+
+  void status() {
+    if (desk_.worker.busy()) {
+      const Worker::Status status = desk_.worker.status();
+      if (ImGui::SmallButton("Cancel")) desk_.worker.cancel();
+      ImGui::SameLine();
+      ImGui::ProgressBar(static_cast<float>(status.share), {160, 0});
+      ImGui::SameLine();
+      ImGui::TextUnformatted((status.what.empty() ? status.title : status.title + ": " + status.what).c_str());
+      return;
+    }
+    if (!desk_.log.empty()) {
+      const Desk::Line& last = desk_.log.back();
+      ImGui::TextUnformatted(last.text.substr(0, 160).c_str());
+    } else {
+      ImGui::TextDisabled(
+          "middle button turns, Shift + middle or right button moves, wheel zooms; Ctrl+P: all commands");
+    }
+  }
+
+  void set_title() {
+    std::string title = "Rebake";
+    if (!desk_.project.empty()) title = desk_.project.filename().string() + " - " + title;
+    if (desk_.unsaved()) title = "* " + title;
+    if (title != title_) window_.set_title(title_ = title);
+  }
+
+  fs::path settings_file_;
+  std::string settings_problem_;
+  Settings settings_;
+  Window window_;
+  Renderer renderer_;
+  Viewport viewport_;
+  Desk desk_;
+  OutlinePanel outline_;
+  PropertiesPanel properties_;
+  ScriptPanel script_;
+  PalettePanel palette_;
+  EditForm form_;
+  Dialogs dialogs_;
+  double scale_ = 1;
+  bool dark_ = true, close_popup_ = false;
+  std::string title_;
+};
+
+}  // namespace
+
+void run_editor(const std::vector<std::string>& paths) { EditorWindow(paths).run(); }
+
+}  // namespace rebake

@@ -1,0 +1,258 @@
+#include "editor/gui/gizmo.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr double handle_pixels = 90, grab_pixels = 9;
+constexpr ImU32 axis_colors[] = {IM_COL32(235, 70, 70, 255), IM_COL32(100, 200, 60, 255), IM_COL32(70, 130, 245, 255),
+                                 IM_COL32(235, 235, 235, 255)};
+
+double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 along = b - a;
+  const double t = along.squaredNorm() > 0 ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+  return (a + t * along - p).norm();
+}
+
+// A handle's line on the screen: an axis, or for turning a circle about it.
+std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, double reach, const Lens& lens) {
+  std::vector<Vec2> points;
+  const auto add = [&](const Vec3& world) {
+    if (const auto pixel = lens.pixel(world)) points.push_back(*pixel);
+  };
+  if (kind == ToolKind::turn) {
+    const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
+    constexpr int corners = 48;
+    for (int k = 0; k <= corners; ++k) {
+      const double angle = 2 * std::numbers::pi * k / corners;
+      add(pivot + reach * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+  } else {
+    add(pivot);
+    add(pivot + reach * axis);
+  }
+  return points;
+}
+
+}  // namespace
+
+std::optional<Gizmo::Target> Gizmo::target(const Desk& desk) const {
+  Target target;
+  Box box;
+  for (const PlacedNode& placed : placed_nodes(desk.scene())) {
+    if (!placed.visible || placed.locked || !placed.node->selection || count(*placed.node->selection) == 0) continue;
+    target.nodes.push_back(placed.node->id);
+    box.extend(selection_bounds(placed));
+  }
+  target.triangles = !target.nodes.empty();
+  if (!target.triangles) {
+    for (const NodeId id : desk.active) {
+      const auto placed = find_placed(desk.scene(), id);
+      if (!placed || placed->locked) continue;
+      target.nodes.push_back(id);
+      box.extend(subtree_bounds(desk.scene(), id));
+    }
+  }
+  if (target.nodes.empty()) return std::nullopt;
+  const auto first = find_placed(desk.scene(), target.nodes.front());
+  target.pivot = box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center());
+  if (desk.local_axes) target.axes = orthogonal_factor(first->to_world.linear());
+  return target;
+}
+
+double Gizmo::reach(const Lens& lens, const Vec3& pivot) { return handle_pixels * lens.unit(pivot); }
+
+int Gizmo::handle_at(const Target& target, const Lens& lens, const Vec2& at) const {
+  const auto middle = lens.pixel(target.pivot);
+  if (!middle) return -1;
+  if (kind_ != ToolKind::turn && (*middle - at).norm() < grab_pixels) return 3;
+  int found = -1;
+  double least = grab_pixels;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<Vec2> line = outline(kind_, target.pivot, target.axes.col(axis), reach(lens, target.pivot), lens);
+    for (std::size_t k = 0; k + 1 < line.size(); ++k)
+      if (const double distance = distance_to_segment(at, line[k], line[k + 1]); distance < least) {
+        least = distance;
+        found = axis;
+      }
+  }
+  return found;
+}
+
+double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
+  const auto middle = lens.pixel(at_.pivot);
+  if (!middle) return 0;
+  const double fine = pointer.shift ? 0.1 : 1;
+  double result = 0;
+  if (kind_ == ToolKind::turn) {
+    const Vec3 axis = at_.axes.col(held_);
+    const Vec2 a = from_ - *middle, b = now_ - *middle;
+    double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+    // On the screen y points down; seen from behind the turn goes the other way.
+    if (axis.dot(lens.eye() - at_.pivot) > 0) angle = -angle;
+    result = angle * 180 / std::numbers::pi * fine;
+    return pointer.control ? std::round(result / 15) * 15 : result;
+  }
+  if (held_ == 3) {
+    result = kind_ == ToolKind::scale ? (now_.x() - from_.x()) / handle_pixels : 1;
+  } else {
+    const auto end = lens.pixel(at_.pivot + reach(lens, at_.pivot) * at_.axes.col(held_));
+    if (!end) return 0;
+    const Vec2 along = *end - *middle;
+    const double length = along.norm();
+    // An axis towards the eye has no direction on the screen.
+    if (length < 1) return 0;
+    const double pixels = (now_ - from_).dot(along) / length;
+    result = kind_ == ToolKind::scale ? pixels / handle_pixels : pixels / length * reach(lens, at_.pivot);
+  }
+  result *= fine;
+  if (!pointer.control) return result;
+  // Steps of the power of ten below the handle's length.
+  const double step = kind_ == ToolKind::scale ? 0.1 : std::pow(10, std::floor(std::log10(reach(lens, at_.pivot))));
+  return std::round(result / step) * step;
+}
+
+std::vector<Edit> Gizmo::edits(const Lens& lens) const {
+  Transform transform;
+  transform.selection = at_.triangles;
+  transform.pivot = at_.pivot;
+  if (kind_ == ToolKind::turn) {
+    transform.rotate.value = Eigen::AngleAxisd(amount_ * std::numbers::pi / 180, at_.axes.col(held_));
+  } else if (kind_ == ToolKind::scale) {
+    if (held_ == 3)
+      transform.scale.value = Vec3::Constant(1 + amount_);
+    else
+      transform.scale.value[held_] = 1 + amount_;
+  } else if (held_ == 3) {
+    const double unit = lens.unit(at_.pivot);
+    const Vec3 right = (lens.ray(Vec2(1, 0)) - lens.ray(Vec2(0, 0))).normalized(),
+               down = (lens.ray(Vec2(0, 1)) - lens.ray(Vec2(0, 0))).normalized();
+    transform.translate = amount_ * unit * (right * (now_.x() - from_.x()) + down * (now_.y() - from_.y()));
+  } else {
+    transform.translate = amount_ * at_.axes.col(held_);
+  }
+  std::vector<Edit> result;
+  for (const NodeId id : at_.nodes) {
+    transform.node = NodeRef{id};
+    result.emplace_back(transform);
+  }
+  return result;
+}
+
+void Gizmo::preview(Desk& desk, const Lens& lens) {
+  try {
+    Scene scene = desk.scene();
+    for (const Edit& edit : edits(lens)) scene = rebake::apply(scene, edit);
+    desk.preview = std::move(scene);
+  } catch (const Error&) {
+    desk.preview.reset();  // what cannot be done is said on release
+  }
+}
+
+void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
+  if (held_ < 0) {
+    if (!pointer.pressed || !pointer.inside) return;
+    const std::optional<Target> here = target(desk);
+    if (!here) return;
+    held_ = handle_at(*here, lens, pointer.at);
+    at_ = *here;
+    from_ = now_ = pointer.at;
+    amount_ = 0;
+    typed_.clear();
+    return;
+  }
+  const bool moved = (now_ - pointer.at).norm() > 0;
+  now_ = pointer.at;
+  const double before = amount_;
+  amount_ = typed_.empty() ? amount(lens, pointer) : std::strtod(typed_.c_str(), nullptr);
+  if (moved || amount_ != before) preview(desk, lens);
+  if (!pointer.released) return;
+  const std::vector<Edit> made = edits(lens);
+  const bool nothing = amount_ == 0 || (held_ == 3 && kind_ == ToolKind::move && now_ == from_);
+  held_ = -1;
+  typed_.clear();
+  if (nothing)
+    desk.preview.reset();
+  else
+    desk.edits(made);
+}
+
+bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
+  if (held_ < 0) return false;
+  if (press.key >= GLFW_KEY_0 && press.key <= GLFW_KEY_9) {
+    typed_ += static_cast<char>(press.key);
+  } else if (press.key >= GLFW_KEY_KP_0 && press.key <= GLFW_KEY_KP_9) {
+    typed_ += static_cast<char>('0' + press.key - GLFW_KEY_KP_0);
+  } else if (press.key == GLFW_KEY_PERIOD || press.key == GLFW_KEY_KP_DECIMAL) {
+    typed_ += '.';
+  } else if (press.key == GLFW_KEY_MINUS || press.key == GLFW_KEY_KP_SUBTRACT) {
+    typed_ = typed_.starts_with('-') ? typed_.substr(1) : "-" + typed_;
+  } else if (press.key == GLFW_KEY_BACKSPACE && !typed_.empty()) {
+    typed_.pop_back();
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
+                 const ImVec2& origin) const {
+  const std::optional<Target> here = held_ >= 0 ? std::optional(at_) : target(desk);
+  if (!here) return;
+  const auto middle = lens.pixel(here->pivot);
+  if (!middle) return;
+  const int hot = held_ >= 0 ? held_ : pointer.inside ? handle_at(*here, lens, pointer.at) : -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<ImVec2> line;
+    for (const Vec2& p : outline(kind_, here->pivot, here->axes.col(axis), reach(lens, here->pivot), lens))
+      line.push_back(on_screen(p, origin));
+    if (line.size() < 2) continue;
+    const ImU32 color = axis == hot ? IM_COL32(255, 230, 60, 255) : axis_colors[axis];
+    list.AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(0, 0, 0, 120), 0, 5);
+    list.AddPolyline(line.data(), static_cast<int>(line.size()), color, 0, 3);
+    if (kind_ == ToolKind::move) list.AddCircleFilled(line.back(), 6, color);
+    if (kind_ == ToolKind::scale)
+      list.AddRectFilled({line.back().x - 6, line.back().y - 6}, {line.back().x + 6, line.back().y + 6}, color);
+  }
+  if (kind_ != ToolKind::turn)
+    list.AddCircleFilled(on_screen(*middle, origin), 6, hot == 3 ? IM_COL32(255, 230, 60, 255) : axis_colors[3]);
+  if (held_ < 0) return;
+  const char* const names[] = {"X", "Y", "Z", kind_ == ToolKind::move ? "view" : "all"};
+  std::string text = kind_ == ToolKind::turn    ? fmt::format("{} {:.2f} deg", names[held_], amount_)
+                     : kind_ == ToolKind::scale ? fmt::format("{} x {:.3f}", names[held_], 1 + amount_)
+                     : held_ == 3               ? std::string(names[held_])
+                                                : fmt::format("{} {:.4g}", names[held_], amount_);
+  if (!typed_.empty()) text += "  [" + typed_ + "]";
+  const ImVec2 at = on_screen(now_ + Vec2(16, 16), origin);
+  list.AddRectFilled({at.x - 4, at.y - 2},
+                     {at.x + ImGui::CalcTextSize(text.c_str()).x + 4, at.y + ImGui::GetFontSize() + 2},
+                     IM_COL32(0, 0, 0, 200));
+  list.AddText(at, IM_COL32(255, 255, 255, 255), text.c_str());
+}
+
+void Gizmo::options(Desk& desk) {
+  ImGui::Checkbox("local axes", &desk.local_axes);
+  if (kind_ == ToolKind::scale) desk.local_axes = false;
+  ImGui::SameLine();
+  if (!target(desk))
+    ImGui::TextDisabled("pick a node in the outline, or select triangles");
+  else
+    ImGui::TextDisabled("drag a handle; type a number meanwhile; Ctrl snaps, Shift is fine, Esc lets go");
+}
+
+void Gizmo::cancel(Desk& desk) {
+  held_ = -1;
+  typed_.clear();
+  desk.preview.reset();
+}
+
+}  // namespace rebake

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <numbers>
+
+#include "editor/edits/support.h"
+#include "editor/gui/expression.h"
+#include "editor/gui/panels.h"
+
+namespace rebake {
+
+// A field that takes an expression; true when Enter, or leaving it, gave a new value.
+bool PropertiesPanel::number(const char* label, double& value, const char* format) {
+  const bool open = editing_ == label;
+  std::string text = open ? text_ : fmt::format(fmt::runtime(format), value);
+  ImGui::SetNextItemWidth(76);
+  ImGui::InputText(label, &text, ImGuiInputTextFlags_AutoSelectAll);
+  if (ImGui::IsItemActive()) {
+    editing_ = label;
+    text_ = text;
+    return false;
+  }
+  if (!open) return false;
+  editing_.clear();
+  const std::optional<double> read = evaluated(text);
+  if (!ImGui::IsItemDeactivatedAfterEdit() || !read || *read == value) return false;
+  value = *read;
+  return true;
+}
+
+void PropertiesPanel::draw(Desk& desk) {
+  if (desk.active.empty()) {
+    ImGui::TextWrapped("Pick a node in the outline or the picture.");
+    return;
+  }
+  const auto placed = find_placed(desk.scene(), *desk.active.begin());
+  if (!placed) return;
+  const Node& node = *placed->node;
+  ImGui::TextUnformatted(desk.active.size() == 1 ? node.name.c_str()
+                                                 : fmt::format("{} nodes", desk.active.size()).c_str());
+  if (placed->locked) ImGui::TextDisabled("locked");
+  Box box;
+  for (const NodeId id : desk.active) box.extend(subtree_bounds(desk.scene(), id));
+  const Vec3 center = box.isEmpty() ? Vec3(placed->to_world.translation()) : Vec3(box.center());
+  std::vector<Edit> list;
+  const auto transform_all = [&](const auto& change) {
+    for (const NodeId id : desk.active) {
+      Transform transform;
+      transform.node = NodeRef{id};
+      transform.pivot = center;
+      change(transform);
+      list.emplace_back(transform);
+    }
+  };
+  const char* const axes[] = {"X", "Y", "Z"};
+  ImGui::TextDisabled("centre, world");
+  for (int axis = 0; axis < 3; ++axis) {
+    double value = center[axis];
+    if (number(fmt::format("{}##centre", axes[axis]).c_str(), value, "{:.5g}"))
+      transform_all([&](Transform& transform) { transform.translate[axis] = value - center[axis]; });
+    if (axis < 2) ImGui::SameLine();
+  }
+  ImGui::TextDisabled("turn about the centre, degrees");
+  for (int axis = 0; axis < 3; ++axis) {
+    double value = 0;
+    if (number(fmt::format("{}##turn", axes[axis]).c_str(), value, "{:.5g}"))
+      transform_all([&](Transform& transform) {
+        transform.rotate.value = Eigen::AngleAxisd(value * std::numbers::pi / 180, Vec3::Unit(axis));
+      });
+    if (axis < 2) ImGui::SameLine();
+  }
+  ImGui::TextDisabled("size of the box, world");
+  for (int axis = 0; axis < 3; ++axis) {
+    const double size = box.isEmpty() ? 0 : box.sizes()[axis];
+    double value = size;
+    if (number(fmt::format("{}##size", axes[axis]).c_str(), value, "{:.5g}") && size > 0)
+      transform_all([&](Transform& transform) { transform.scale.value[axis] = value / size; });
+    if (axis < 2) ImGui::SameLine();
+  }
+  double factor = 1;
+  if (number("all sizes", factor, "x {:.5g}"))
+    transform_all([&](Transform& transform) { transform.scale.value = Vec3::Constant(factor); });
+  if (!list.empty()) desk.edits(list);
+  if (!node.object) return;
+  ImGui::Separator();
+  ImGui::Text("%zu triangles in %zu texture sets", node.object->triangle_count(), node.object->sets.size());
+  ImGui::Text("%s", fmt::format("{:.1f} MB", static_cast<double>(node.object->memory()) / 1e6).c_str());
+  if (node.object->any_turns()) ImGui::TextWrapped("bent: view directions turn with its triangles");
+}
+
+}  // namespace rebake

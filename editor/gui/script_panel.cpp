@@ -1,0 +1,54 @@
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "editor/gui/panels.h"
+#include "editor/script/script.h"
+
+namespace rebake {
+
+void ScriptPanel::draw(Desk& desk) {
+  if (ImGui::Button("Copy")) {
+    std::string text;
+    for (const Edit& edit : desk.now->done) text += to_json(edit).dump() + "\n";
+    ImGui::SetClipboardText(text.c_str());
+  }
+  ImGui::SameLine();
+  if (ImGui::Button("Save...")) desk.question = PathQuestion::save_script;
+  ImGui::SameLine();
+  if (ImGui::Button("Run...")) desk.question = PathQuestion::run_script;
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::InputTextWithHint("##line", "a line, e.g. {\"op\": \"select\", \"all\": true}", &line_,
+                               ImGuiInputTextFlags_EnterReturnsTrue) &&
+      !line_.empty()) {
+    try {
+      const Command command = read_command(read_line(line_), desk.scene());
+      if (const Edit* edit = std::get_if<Edit>(&command))
+        desk.edit(*edit);
+      else
+        desk.worker.start("script line", [action = std::get<Action>(command)](Session& session) {
+          std::visit([&](const auto& one) { run(session, one); }, action);
+        });
+      line_.clear();
+      problem_.clear();
+    } catch (const nlohmann::json::exception& error) {
+      problem_ = std::string("no valid JSON: ") + error.what();
+    } catch (const Error& error) {
+      problem_ = error.what();
+    }
+  }
+  if (!problem_.empty()) ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
+  ImGui::BeginChild("lines");
+  for (const Edit& edit : desk.now->done) {
+    // Regions drawn by hand are long.
+    std::string text = to_json(edit).dump();
+    constexpr std::size_t longest = 300;
+    if (text.size() > longest) text = text.substr(0, longest) + " ...";
+    ImGui::TextUnformatted(text.c_str());
+  }
+  if (shown_ != desk.now->done.size()) ImGui::SetScrollHereY(1);
+  shown_ = desk.now->done.size();
+  ImGui::EndChild();
+}
+
+}  // namespace rebake

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace rebake {
+
+/// What the editor remembers of a person, as JSON in the user's configuration folder.
+struct Settings {
+  bool dark = true;
+  bool blender_keys = false;
+  bool grid = true;
+  double brush_radius = 20;  ///< pixels
+  double likeness = 0.1;     ///< distance of colours that still count as alike, 0 … 1
+  double side_width = 320;   ///< pixels on a plain screen
+  double bottom_height = 190;
+  int window_width = 1280, window_height = 800;
+  std::vector<std::string> recent;  ///< newest first
+
+  /// Puts a path first among the recent ones.
+  void remember(const std::string& path);
+};
+
+/// $XDG_CONFIG_HOME/rebake, by default ~/.config/rebake.
+std::filesystem::path config_folder();
+/// Where journals of open editors lie: $XDG_STATE_HOME/rebake/journals, by default ~/.local/state/rebake/journals.
+std::filesystem::path journal_folder();
+
+/// Settings that cannot be read, or do not fit, are as at first; `problem` then says what is wrong with the file.
+Settings read_settings(const std::filesystem::path& file, std::string& problem);
+/// Throws FileError.
+void write_settings(const Settings& settings, const std::filesystem::path& file);
+
+}  // namespace rebake

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <imgui.h>
+
+#include "editor/gui/desk.h"
+#include "editor/gui/lens.h"
+#include "editor/gui/window.h"
+
+namespace rebake {
+
+/// The pointer over the viewport, in its pixels.
+struct Pointer {
+  Vec2 at{0, 0};
+  bool inside = false;                                   ///< over the viewport, nothing above it
+  bool pressed = false, down = false, released = false;  ///< left button: just now, held, just now
+  bool double_clicked = false;
+  bool shift = false, control = false;
+};
+
+/// What the left button does in the viewport. A drag is a preview; release makes one edit.
+class ViewTool {
+ public:
+  virtual ~ViewTool() = default;
+  virtual void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) = 0;
+  /// Draws over the picture, whose top left corner is at `origin`.
+  virtual void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
+                    const ImVec2& origin) const = 0;
+  /// Lines in the world.
+  virtual void add_guides(const Desk& /*desk*/, std::vector<Guides::Line>& /*lines*/) const {}
+  /// Takes a key before commands do; true when it was for this tool.
+  virtual bool key(Desk& /*desk*/, const KeyPress& /*press*/) { return false; }
+  /// Options and help, in the tool bar's panel.
+  virtual void options(Desk& desk) = 0;
+  /// True while something is held that Escape would let go of.
+  virtual bool busy() const { return false; }
+  virtual void cancel(Desk& desk) = 0;
+};
+
+inline ImVec2 on_screen(const Vec2& pixel, const ImVec2& origin) {
+  return {origin.x + static_cast<float>(pixel.x()), origin.y + static_cast<float>(pixel.y())};
+}
+
+/// How modifiers join a new selection to the present one.
+inline SelectMode select_mode(const Pointer& pointer) {
+  if (pointer.shift && pointer.control) return SelectMode::intersect;
+  return pointer.shift ? SelectMode::add : pointer.control ? SelectMode::remove : SelectMode::set;
+}
+
+}  // namespace rebake

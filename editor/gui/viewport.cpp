@@ -1,0 +1,294 @@
+#include "editor/gui/viewport.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "editor/gui/cage_tool.h"
+#include "editor/gui/gizmo.h"
+#include "editor/gui/navigation.h"
+#include "editor/gui/pick_tool.h"
+#include "editor/gui/region_tool.h"
+#include "render/image.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr auto settle_time = std::chrono::milliseconds(200);  // after the last move the picture is drawn in full
+constexpr double wanted_ms = 45;                              // a picture while moving
+
+bool same_scene(const Scene& a, const Scene& b) { return a.roots == b.roots && a.background == b.background; }
+bool same_view(const View& a, const View& b) {
+  return a.camera == b.camera && a.width == b.width && a.height == b.height && a.samples == b.samples;
+}
+
+}  // namespace
+
+Viewport::Viewport(Renderer& renderer) : renderer_(renderer) {
+  tools_[ToolKind::pick] = std::make_unique<PickTool>(false);
+  tools_[ToolKind::flood] = std::make_unique<PickTool>(true);
+  for (const ToolKind kind :
+       {ToolKind::rectangle, ToolKind::lasso, ToolKind::polygon, ToolKind::brush, ToolKind::erase})
+    tools_[kind] = std::make_unique<RegionTool>(kind);
+  for (const ToolKind kind : {ToolKind::move, ToolKind::turn, ToolKind::scale})
+    tools_[kind] = std::make_unique<Gizmo>(kind);
+  tools_[ToolKind::cage] = std::make_unique<CageTool>();
+  report_.device = renderer.device();
+}
+Viewport::~Viewport() = default;
+
+bool Viewport::key(Desk& desk, const KeyPress& press) { return tool(desk).key(desk, press); }
+
+bool Viewport::cancel(Desk& desk) {
+  if (desk.flying) {
+    desk.flying = false;
+    return true;
+  }
+  const bool held = tool(desk).busy();
+  tool(desk).cancel(desk);
+  return held;
+}
+
+bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
+
+double Viewport::next_frame_in(const Desk& desk) const {
+  if (desk.turntable || desk.flying) return 0;
+  if (!moving()) return made_ && made_->view.width != made_->shown_width ? 0 : -1;
+  return std::chrono::duration<double>(settle_time).count();
+}
+
+void Viewport::fly(Desk& desk) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto held = [&](int key, char letter) {
+    return io.KeysDown[key] || io.KeysDown[static_cast<int>(letter)] ? 1.0 : 0.0;
+  };
+  const Clock::time_point now = Clock::now();
+  const double seconds = std::min(0.2, std::chrono::duration<double>(now - flown_at_).count());
+  flown_at_ = now;
+  const double speed = desk.focus().isEmpty() ? 1 : desk.focus().diagonal().norm() * (io.KeyShift ? 1.0 : 0.3);
+  const double right = held(GLFW_KEY_RIGHT, 'D') - held(GLFW_KEY_LEFT, 'A'), up = held('E', 'E') - held('Q', 'Q'),
+               forward = held(GLFW_KEY_UP, 'W') - held(GLFW_KEY_DOWN, 'S');
+  if (right != 0 || up != 0 || forward != 0)
+    desk.camera = flown(desk.camera, right * speed * seconds, up * speed * seconds, forward * speed * seconds);
+}
+
+void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool picks = desk.tool == ToolKind::pick;
+  if (pointer.inside) {
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) (io.KeyShift ? panning_ : orbiting_) = true;
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) panning_ = true;
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) && (io.KeyAlt || (picks && !io.KeyShift && !io.KeyCtrl)))
+      orbiting_ = true;
+    if (io.MouseWheel != 0) {
+      // Towards what lies under the pointer; beside everything, towards the target's depth there.
+      const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at);
+      const Vec3 at = picked ? picked->world : Vec3(lens.eye() + lens.ray(pointer.at) * lens.depth(desk.camera.target));
+      desk.camera = zoomed(desk.camera, at, std::pow(0.85, static_cast<double>(io.MouseWheel)));
+    }
+  }
+  if (!io.MouseDown[0] && !io.MouseDown[2]) orbiting_ = false;
+  if (!io.MouseDown[1] && !io.MouseDown[2]) panning_ = false;
+  const double dx = static_cast<double>(io.MouseDelta.x), dy = static_cast<double>(io.MouseDelta.y);
+  if (dx == 0 && dy == 0) return;
+  if (orbiting_)
+    desk.camera =
+        desk.flying ? looked(desk.camera, dx, dy, desk.view_height) : orbited(desk.camera, dx, dy, desk.view_height);
+  else if (panning_)
+    desk.camera = panned(desk.camera, dx, dy, desk.view_height);
+}
+
+Guides Viewport::guides(const Desk& desk) const {
+  Guides result;
+  result.selection = desk.show_selection;
+  if (desk.settings.grid) {
+    // On the ground; squares of the power of ten that fits the scene.
+    const Box box = world_bounds(desk.scene());
+    const double size = box.isEmpty() ? 1 : std::max(box.diagonal().norm(), 1e-6);
+    const double step = std::pow(10, std::floor(std::log10(size)));
+    const double floor = box.isEmpty() ? 0 : box.min().y();
+    constexpr int half = 10;
+    for (int k = -half; k <= half; ++k) {
+      const double at = k * step, end = half * step;
+      const Color grey(0.5, 0.5, 0.5);
+      result.lines.push_back({{at, floor, -end}, {at, floor, end}, k == 0 ? Color(0.25, 0.45, 0.95) : grey, 0.45, 0});
+      result.lines.push_back({{-end, floor, at}, {end, floor, at}, k == 0 ? Color(0.9, 0.3, 0.3) : grey, 0.45, 0});
+    }
+  }
+  for (const NodeId id : desk.active) {
+    const Box box = subtree_bounds(desk.preview ? *desk.preview : desk.scene(), id);
+    if (box.isEmpty()) continue;
+    for (int corner = 0; corner < 8; ++corner)
+      for (int axis = 0; axis < 3; ++axis)
+        if ((corner >> axis & 1) == 0)
+          result.lines.push_back({box.corner(static_cast<Box::CornerType>(corner)),
+                                  box.corner(static_cast<Box::CornerType>(corner | 1 << axis)), Color(1, 0.7, 0.2), 0.9,
+                                  0.25});
+  }
+  tools_.at(desk.tool)->add_guides(desk, result.lines);
+  return result;
+}
+
+void Viewport::picture(Desk& desk) {
+  const bool still = !moving() && !desk.flying;
+  View view;
+  const Scene& scene = desk.preview ? *desk.preview : desk.scene();
+  view.camera = with_depth_for(desk.camera, world_bounds(scene));
+  view.samples = desk.samples;
+  double scale = 1;
+  if (!still && full_ms_ > wanted_ms) {
+    view.samples = 1;
+    scale = moving_scale_;
+  }
+  view.width = std::max(16, static_cast<int>(std::lround(desk.view_width * scale)));
+  view.height = std::max(16, static_cast<int>(std::lround(desk.view_height * scale)));
+  Made wanted{scene, view, guides(desk), each_pass_, desk.view_width, desk.view_height};
+  if (made_ && same_scene(made_->scene, scene) && same_view(made_->view, view) && made_->guides == wanted.guides &&
+      made_->each_pass == each_pass_)
+    return;
+  const Renderer::Shown shown = renderer_.show(scene, view, {}, wanted.guides, each_pass_);
+  texture_ = shown.texture;
+  const double ms = shown.times.frame_ms;
+  if (view.width == desk.view_width && view.samples == desk.samples) full_ms_ = ms;
+  // The time goes with the pixels, as far as it goes with anything that can be chosen here.
+  if (!still && full_ms_ > wanted_ms) moving_scale_ = std::clamp(scale * std::sqrt(wanted_ms / ms), 0.35, 1.0);
+  report_ = {shown.times, shown.passes, renderer_.peak_gpu_bytes(), report_.device, scale, view.samples};
+  made_ = std::move(wanted);
+}
+
+bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner) {
+  constexpr float arm = 34, knob = 9;
+  const ImVec2 middle{corner.x - arm - 16, corner.y + arm + 16};
+  const Mat3 rows = world_to_camera(desk.camera);
+  struct Knob {
+    double depth;
+    ImVec2 at;
+    Vec3 axis;
+    int number;
+  };
+  std::array<Knob, 6> knobs;
+  for (int k = 0; k < 6; ++k) {
+    Vec3 axis(0, 0, 0);
+    axis[k / 2] = k % 2 == 0 ? 1 : -1;
+    const Vec3 seen = rows * axis;
+    knobs[static_cast<std::size_t>(k)] = {
+        seen.z(),
+        {middle.x + arm * static_cast<float>(seen.x()), middle.y - arm * static_cast<float>(seen.y())},
+        axis,
+        k};
+  }
+  std::sort(knobs.begin(), knobs.end(), [](const Knob& a, const Knob& b) { return a.depth < b.depth; });
+  bool hovered = false;
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  for (const Knob& one : knobs) {
+    const bool positive = one.number % 2 == 0;
+    const int axis = one.number / 2;
+    const ImU32 color = axis == 0   ? IM_COL32(235, 70, 70, positive ? 255 : 110)
+                        : axis == 1 ? IM_COL32(100, 200, 60, positive ? 255 : 110)
+                                    : IM_COL32(70, 130, 245, positive ? 255 : 110);
+    if (positive) list.AddLine(middle, one.at, color, 2);
+    list.AddCircleFilled(one.at, positive ? knob : knob - 3, color);
+    if (positive) {
+      const char letter[] = {static_cast<char>('X' + axis), 0};
+      const ImVec2 size = ImGui::CalcTextSize(letter);
+      list.AddText({one.at.x - size.x / 2, one.at.y - size.y / 2}, IM_COL32(0, 0, 0, 255), letter);
+    }
+    const float dx = mouse.x - one.at.x, dy = mouse.y - one.at.y;
+    if (dx * dx + dy * dy > knob * knob || !ImGui::IsWindowHovered()) continue;
+    hovered = true;
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) desk.camera = along_axis(desk.camera, one.axis);
+  }
+  return hovered;
+}
+
+void Viewport::write_pictures(Desk& desk) {
+  View view;
+  view.camera = with_depth_for(desk.camera, world_bounds(desk.scene()));
+  view.width = desk.view_width;
+  view.height = desk.view_height;
+  view.samples = desk.samples;
+  try {
+    if (!desk.screenshot.empty()) {
+      const std::filesystem::path path = std::exchange(desk.screenshot, {});
+      write_png(renderer_.render(desk.scene(), view), path);
+      desk.log.push_back({"screenshot " + path.string()});
+      made_.reset();
+    }
+    if (desk.turntable) {
+      Desk::Turntable& turntable = *desk.turntable;
+      std::filesystem::create_directories(turntable.folder);
+      view.camera =
+          orbited(view.camera, 2.0 * desk.view_height * turntable.next / turntable.count, 0, desk.view_height);
+      write_png(renderer_.render(desk.scene(), view), turntable.folder / fmt::format("{:03}.png", turntable.next));
+      made_.reset();
+      if (++turntable.next == turntable.count) {
+        desk.log.push_back({fmt::format("turntable of {} pictures in {}", turntable.count, turntable.folder.string())});
+        desk.turntable.reset();
+      }
+    }
+  } catch (const std::exception& error) {
+    desk.turntable.reset();
+    desk.error = error.what();
+  }
+}
+
+void Viewport::draw(Desk& desk) {
+  const ImVec2 size = ImGui::GetContentRegionAvail(), origin = ImGui::GetCursorScreenPos();
+  desk.view_width = std::max(16, static_cast<int>(size.x));
+  desk.view_height = std::max(16, static_cast<int>(size.y));
+  if (desk.tool != last_tool_) {
+    tools_.at(last_tool_)->cancel(desk);
+    last_tool_ = desk.tool;
+  }
+  ImGui::InvisibleButton(
+      "viewport", size,
+      ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
+  const ImGuiIO& io = ImGui::GetIO();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  Pointer pointer;
+  pointer.at = Vec2(static_cast<double>(io.MousePos.x - origin.x), static_cast<double>(io.MousePos.y - origin.y));
+  pointer.inside = ImGui::IsItemHovered();
+  pointer.pressed = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !io.KeyAlt;
+  pointer.down = io.MouseDown[0];
+  pointer.released = ImGui::IsMouseReleased(ImGuiMouseButton_Left);
+  pointer.double_clicked = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+  pointer.shift = io.KeyShift;
+  pointer.control = io.KeyCtrl;
+
+  list.PushClipRect(origin, {origin.x + size.x, origin.y + size.y}, true);
+  list.ChannelsSplit(2);
+  list.ChannelsSetCurrent(1);
+  const bool on_axes = draw_axes(desk, list, {origin.x + size.x, origin.y});
+  if (on_axes) pointer.inside = false;
+  const Lens lens(desk.camera, desk.view_width, desk.view_height);
+  navigate(desk, lens, pointer);
+  if (desk.flying) fly(desk);
+  try {
+    if (!desk.worker.busy() || tool(desk).busy()) tool(desk).pointer(desk, lens, pointer);
+  } catch (const Error& error) {
+    desk.error = error.what();
+    tool(desk).cancel(desk);
+  }
+  if (!(desk.camera == last_camera_)) {
+    last_camera_ = desk.camera;
+    moved_at_ = Clock::now();
+  }
+  try {
+    write_pictures(desk);
+    picture(desk);
+  } catch (const Error& error) {
+    desk.error = error.what();
+  }
+  tool(desk).draw(desk, Lens(desk.camera, desk.view_width, desk.view_height), pointer, list, origin);
+  list.ChannelsSetCurrent(0);
+  if (texture_ != 0)
+    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), origin,
+                  {origin.x + size.x, origin.y + size.y}, {0, 1}, {1, 0});
+  list.ChannelsMerge();
+  list.PopClipRect();
+}
+
+}  // namespace rebake

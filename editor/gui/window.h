@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/gl/context.h"
+
+struct GLFWwindow;
+
+namespace rebake {
+
+/// A key press: GLFW's number of the key, and which modifiers are held.
+struct KeyPress {
+  int key = 0;
+  bool shift = false, control = false, alt = false;
+  bool operator==(const KeyPress&) const = default;
+};
+
+/// A desktop window with an OpenGL context and Dear ImGui in it.
+class Window {
+ public:
+  /// Throws DeviceError where there is no display or the driver is too old; the message names what works without.
+  Window(const std::string& title, int width, int height);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  /// The window's context, for a renderer. The window must outlive it.
+  std::unique_ptr<gl::Context> context();
+
+  bool wants_to_close() const;
+  void stay_open();
+  void close();
+  void set_title(const std::string& title);
+  int width() const;   ///< pixels
+  int height() const;  ///< pixels
+  /// How much larger than on a plain screen text and buttons are to be.
+  double scale() const;
+
+  /// Sleeps until something happens, at most so many seconds (for ever when negative), and handles it. True when
+  /// something came.
+  bool wait(double seconds);
+  /// Wakes wait() up, from any thread.
+  static void wake();
+
+  void begin_frame();
+  void end_frame();
+
+  std::function<void(const KeyPress&)> on_key;
+  std::function<void(const std::vector<std::string>&)> on_drop;
+
+ private:
+  class Callbacks;
+  GLFWwindow* window_ = nullptr;
+  int events_ = 0;
+};
+
+}  // namespace rebake

@@ -1,0 +1,13 @@
+uniform sampler2D scene_depth;
+uniform int side;      // samples along a pixel's side
+uniform float nearer;  // 1 where larger depths are nearer, else -1
+uniform bool empty;    // nothing was drawn: there is no depth
+in vec4 line_color;
+in float hidden_opacity;
+out vec4 color;
+
+void main() {
+  float depth = texelFetch(scene_depth, ivec2(gl_FragCoord.xy) * side + side / 2, 0).r;
+  bool seen = empty || (gl_FragCoord.z - depth) * nearer >= 0.0;
+  color = vec4(line_color.rgb, seen ? line_color.a : hidden_opacity);
+}
