@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 
 #include <map>
+#include <utility>
 
 #include "editor/edits/deforming.h"
 #include "mesh_ops/deform/cage_deformation.h"
@@ -154,6 +155,8 @@ void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     held_ = point_at(lens, pointer.at);
     if (held_ < 0) {
       if (!pointer.shift) std::fill(picked_.begin(), picked_.end(), std::uint8_t{0});
+      boxing_ = true;
+      from_ = to_ = pointer.at;
       return;
     }
     const auto v = static_cast<std::size_t>(held_);
@@ -163,6 +166,16 @@ void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     before_ = moved_;
     dragging_ = true;
     return;
+  }
+  if (boxing_) {
+    to_ = pointer.at;
+    if (!pointer.released) return;
+    boxing_ = false;
+    const Vec2 low = from_.cwiseMin(to_), high = from_.cwiseMax(to_);
+    for (std::size_t v = 0; v < moved_.size(); ++v)
+      if (const auto pixel = lens.pixel(moved_[v]);
+          pixel && (pixel->array() >= low.array()).all() && (pixel->array() <= high.array()).all())
+        picked_[v] = 1;
   }
   if (!dragging_) return;
   const double unit = lens.unit(before_[static_cast<std::size_t>(held_)]);
@@ -192,6 +205,7 @@ void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
 void CageTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& pointer, ImDrawList& list,
                     const ImVec2& origin) const {
   if (!bound_) return;
+  if (boxing_) list.AddRect(on_screen(from_, origin), on_screen(to_, origin), IM_COL32(255, 140, 20, 255));
   const int hot = dragging_ ? held_ : pointer.inside ? point_at(lens, pointer.at) : -1;
   for (std::size_t v = 0; v < moved_.size(); ++v) {
     const auto pixel = lens.pixel(moved_[v]);
@@ -255,6 +269,7 @@ void CageTool::options(Desk& desk) {
 
 void CageTool::cancel(Desk& desk) {
   desk.preview.reset();
+  if (std::exchange(boxing_, false)) return;
   if (dragging_) {
     moved_ = before_;
     dragging_ = false;

@@ -17,7 +17,7 @@ class CageTool final : public ViewTool {
   void add_guides(const Desk& desk, std::vector<Guides::Line>& lines) const override;
   bool key(Desk& desk, const KeyPress& press) override;
   void options(Desk& desk) override;
-  bool busy() const override { return dragging_; }
+  bool busy() const override { return dragging_ || boxing_; }
   void cancel(Desk& desk) override;
 
  private:
@@ -34,9 +34,9 @@ class CageTool final : public ViewTool {
   std::shared_ptr<const Bound> bound_;  ///< null before a cage was made
   std::vector<Vec3> moved_, before_;    ///< cage points now, and when the drag began
   std::vector<std::uint8_t> picked_;
-  bool dragging_ = false;
+  bool dragging_ = false, boxing_ = false;  ///< points are dragged; a box is drawn to pick some
   int held_ = -1;
-  Vec2 from_{0, 0};
+  Vec2 from_{0, 0}, to_{0, 0};
 };
 
 }  // namespace rebake

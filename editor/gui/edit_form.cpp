@@ -59,8 +59,9 @@ void EditForm::draw(Desk& desk) {
   if (op_ != desk.form_op) begin(desk);
   bool open = true;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y * 0.12F}, ImGuiCond_Appearing, {0.5F, 0});
-  ImGui::SetNextWindowSize({520, 0}, ImGuiCond_Appearing);
+  // Beside the picture, so that what the edit does can be seen.
+  ImGui::SetNextWindowPos({screen.x - 10, 40}, ImGuiCond_Appearing, {1, 0});
+  ImGui::SetNextWindowSize({420, 0}, ImGuiCond_Appearing);
   ImGui::Begin((op_ + "###form").c_str(), &open, ImGuiWindowFlags_NoCollapse);
   std::string help;
   const std::vector<FieldLine> fields = fields_of(op_, help);

@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 
 #include "editor/document/journal.h"
@@ -309,6 +310,11 @@ class EditorWindow {
 
 }  // namespace
 
-void run_editor(const std::vector<std::string>& paths) { EditorWindow(paths).run(); }
+void run_editor(const std::vector<std::string>& paths) {
+  // An editor that is told to end does so at once: its journal keeps the work.
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  EditorWindow(paths).run();
+}
 
 }  // namespace rebake

@@ -54,6 +54,7 @@ struct FrameReport {
   std::string device;
   double scale = 1;  ///< of the picture's resolution
   int samples = 4;
+  double pictures_a_second = 0;  ///< while the view last moved
 };
 void draw_costs(Desk& desk, const FrameReport& report, bool& each_pass);
 

@@ -155,7 +155,13 @@ void Viewport::picture(Desk& desk) {
   if (view.width == desk.view_width && view.samples == desk.samples) full_ms_ = ms;
   // The time goes with the pixels, as far as it goes with anything that can be chosen here.
   if (!still && full_ms_ > wanted_ms) moving_scale_ = std::clamp(scale * std::sqrt(wanted_ms / ms), 0.35, 1.0);
-  report_ = {shown.times, shown.passes, renderer_.peak_gpu_bytes(), report_.device, scale, view.samples};
+  // Of pictures that follow each other in one movement.
+  const Clock::time_point now = Clock::now();
+  const double since = std::chrono::duration<double>(now - drawn_at_).count();
+  drawn_at_ = now;
+  double rate = report_.pictures_a_second;
+  if (!still && since < 0.5) rate = rate > 0 ? 0.8 * rate + 0.2 / since : 1 / since;
+  report_ = {shown.times, shown.passes, renderer_.peak_gpu_bytes(), report_.device, scale, view.samples, rate};
   made_ = std::move(wanted);
 }
 

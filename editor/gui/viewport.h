@@ -54,7 +54,7 @@ class Viewport {
   FrameReport report_;
   bool each_pass_ = false;
   Camera last_camera_;
-  Clock::time_point moved_at_{}, flown_at_{};
+  Clock::time_point moved_at_{}, flown_at_{}, drawn_at_{};
   double full_ms_ = 0;       ///< of a picture at full quality
   double moving_scale_ = 1;  ///< of the resolution while the camera moves
   bool orbiting_ = false, panning_ = false;
