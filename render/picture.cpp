@@ -39,7 +39,7 @@ void fit_overlay(FrameTargets& targets, const FramePlan& plan, bool wanted) {
 void fit(FrameTargets& targets, const FramePlan& plan) {
   const bool features = plan.runs("geometry"), frames = features && plan.runs("node frames"),
              rays = features && plan.runs("turned rays");
-  const bool forward = plan.runs("forward");
+  const bool forward = plan.runs("forward") || plan.runs("inspect");
   const bool overlay = plan.runs("selection") || plan.runs("guides");
   const int side = plan.view.side();
   const int width = plan.view.width, height = plan.view.height;

@@ -109,6 +109,17 @@ void flatten(Desk& desk) {
   }
 }
 
+template <Guides::Inspect inspect>
+void look_at(Desk& desk) {
+  desk.inspect = inspect;
+}
+
+void next_channel(Desk& desk) {
+  desk.channel = desk.inspect == Guides::Inspect::channel ? (desk.channel + 1) % 8 : 0;
+  desk.inspect = Guides::Inspect::channel;
+  desk.log.push_back({"feature channel " + std::to_string(desk.channel) + (desk.channel == 0 ? ": opacity" : "")});
+}
+
 void store_view(Desk& desk) {
   StoreView edit;
   edit.camera = desk.camera;
@@ -180,6 +191,13 @@ const std::vector<Command>& command_table() {
       {"View", "Grid", "G", "Shift+G", always, [](Desk& desk) { desk.settings.grid = !desk.settings.grid; }},
       {"View", "Show selection", "Shift+T", "Shift+T", always,
        [](Desk& desk) { desk.show_selection = !desk.show_selection; }},
+      {"View", "Before and after", "Y", "Y", has_scene, [](Desk& desk) { desk.wipe = !desk.wipe; }},
+      {"View", "Show colours", "Alt+1", "Alt+1", always, look_at<Guides::Inspect::none>},
+      {"View", "Show wireframe", "Alt+2", "Alt+2", always, look_at<Guides::Inspect::wireframe>},
+      {"View", "Show opacity", "Alt+3", "Alt+3", always, look_at<Guides::Inspect::opacity>},
+      {"View", "Show texture sets", "Alt+4", "Alt+4", always, look_at<Guides::Inspect::texture_sets>},
+      {"View", "Show next feature channel", "Alt+5", "Alt+5", always, next_channel},
+      {"View", "Show overdraw", "Alt+6", "Alt+6", always, look_at<Guides::Inspect::overdraw>},
       {"View", "Store view", "", "", has_scene, store_view},
       {"View", "Dark or light", "", "", always, [](Desk& desk) { desk.settings.dark = !desk.settings.dark; }},
       {"View", "Keys of Blender", "", "", always,

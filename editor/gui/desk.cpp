@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "editor/document/project.h"
@@ -43,6 +44,9 @@ void Desk::update() {
     now = next;
     preview.reset();
     std::erase_if(active, [&](NodeId id) { return find(scene(), id) == nullptr; });
+    if (std::all_of(now->done.begin(), now->done.end(),
+                    [](const Edit& one) { return std::holds_alternative<Import>(one); }))
+      imported = scene();
     selected_ = 0;
     for (const PlacedNode& placed : placed_nodes(scene()))
       if (placed.node->selection) selected_ += count(*placed.node->selection);

@@ -45,6 +45,11 @@ struct Desk {
   double perspective_fov = Camera{}.fov_degrees;  ///< to come back to from a flat view
   bool show_selection = true;
   int samples = 4;
+  Guides::Inspect inspect = Guides::Inspect::none;
+  int channel = 1;
+  bool wipe = false;             ///< the scene as imported is shown left of `wipe_at`
+  double wipe_at = 0.5;          ///< share of the viewport's width
+  Scene imported;                ///< as it was before anything but imports was done
   std::optional<Scene> preview;  ///< drawn in place of the scene while something is dragged
 
   // Tools

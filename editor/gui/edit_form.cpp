@@ -39,20 +39,57 @@ std::vector<std::string> choices(const std::string& type) {
 void EditForm::begin(const Desk& desk) {
   op_ = desk.form_op;
   problem_.clear();
+  previewed_.clear();
   values_ = json::object();
   texts_.clear();
   std::string help;
   for (const FieldLine& field : fields_of(op_, help)) {
-    // What people have picked is what they mean.
-    if (field.name == "node" && !desk.active.empty() && desk.selected_triangles() == 0)
-      values_["node"] = static_cast<std::uint64_t>(*desk.active.begin());
+    // What people have picked is what they mean; with nothing picked or selected, the first object.
+    if (field.name == "node" && desk.selected_triangles() == 0)
+      for (const PlacedNode& placed : placed_nodes(desk.scene()))
+        if (placed.visible && placed.node->object && (desk.active.empty() || desk.active.contains(placed.node->id))) {
+          values_["node"] = static_cast<std::uint64_t>(placed.node->id);
+          break;
+        }
     if (!field.initial.empty() && field.type != "true or false") continue;
     if (field.required && field.type == "number") values_[field.name] = 0;
   }
 }
 
+// Has the worker make what the fields say, to be seen before it is applied; half-typed fields wait.
+void EditForm::show(Desk& desk) {
+  json line = values_;
+  line["op"] = op_;
+  if (line.dump() == previewed_ || desk.worker.busy() || ImGui::IsAnyMouseDown()) return;
+  previewed_ = line.dump();
+  try {
+    const Edit edit = read_edit(line, desk.scene());
+    // Only what changes the picture: an import would be read twice.
+    if (std::holds_alternative<Import>(edit)) return;
+    auto made = std::make_shared<std::optional<Scene>>();
+    desk.worker.start(
+        "preview",
+        [edit, made](Session& session) {
+          try {
+            *made = rebake::apply(session.scene(), edit, session.progress);
+          } catch (const Cancelled&) {
+            throw;
+          } catch (const Error&) {
+            made->reset();  // said when it is applied
+          }
+        },
+        [&desk, made, op = op_] {
+          if (desk.form_op == op) desk.preview = std::move(*made);
+        });
+    problem_.clear();
+  } catch (const Error& error) {
+    problem_ = error.what();
+  }
+}
+
 void EditForm::draw(Desk& desk) {
   if (desk.form_op.empty()) {
+    if (!op_.empty()) desk.preview.reset();
     op_.clear();
     return;
   }
@@ -120,18 +157,22 @@ void EditForm::draw(Desk& desk) {
     return problem_.find("\"" + field.name + "\"") != std::string::npos;
   });
   if (!problem_.empty() && !said) ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
+  if (previews_) show(desk);
   if (ImGui::Button("Apply")) {
     try {
       json line = values_;
       line["op"] = op_;
       desk.edit(read_edit(line, desk.scene()));
       problem_.clear();
+      previewed_ = line.dump();
     } catch (const Error& error) {
       problem_ = error.what();
     }
   }
   ImGui::SameLine();
   if (ImGui::Button("Close")) open = false;
+  ImGui::SameLine();
+  if (ImGui::Checkbox("preview", &previews_) && !previews_) desk.preview.reset();
   ImGui::End();
   if (!open) desk.form_op.clear();
 }

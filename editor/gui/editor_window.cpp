@@ -53,7 +53,7 @@ class EditorWindow {
         settings_(read_settings(settings_file_, settings_problem_)),
         window_("Rebake", settings_.window_width, settings_.window_height),
         renderer_(window_.context()),
-        viewport_(renderer_),
+        viewport_(renderer_, [this] { return window_.context(); }),
         desk_(settings_, Window::wake) {
     scale_ = window_.scale();
     set_looks(scale_, desk_.settings.dark);

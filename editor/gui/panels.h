@@ -79,6 +79,9 @@ class EditForm {
 
  private:
   void begin(const Desk& desk);
+  void show(Desk& desk);
+  bool previews_ = true;
+  std::string previewed_;  ///< the line whose result is shown, or being made
   std::string op_, problem_;
   nlohmann::json values_;
   std::map<std::string, std::string> texts_;  ///< of fields that are typed as JSON

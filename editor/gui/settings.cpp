@@ -52,6 +52,7 @@ Settings read_settings(const fs::path& file, std::string& problem) {
   if (!fs::exists(file)) return {};
   try {
     const json read = json::parse(read_file(file));
+    if (!read.is_object()) throw Error("they must be an object");
     Settings settings;
     for_fields(settings, [&](const char* name, auto& value) {
       if (read.contains(name)) read.at(name).get_to(value);

@@ -27,7 +27,8 @@ bool same_view(const View& a, const View& b) {
 
 }  // namespace
 
-Viewport::Viewport(Renderer& renderer) : renderer_(renderer) {
+Viewport::Viewport(Renderer& renderer, std::function<std::unique_ptr<gl::Context>()> window_context)
+    : renderer_(renderer), window_context_(std::move(window_context)) {
   tools_[ToolKind::pick] = std::make_unique<PickTool>(false);
   tools_[ToolKind::flood] = std::make_unique<PickTool>(true);
   for (const ToolKind kind :
@@ -104,6 +105,8 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
 Guides Viewport::guides(const Desk& desk) const {
   Guides result;
   result.selection = desk.show_selection;
+  result.inspect = desk.inspect;
+  result.channel = desk.channel;
   if (desk.settings.grid) {
     // On the ground; squares of the power of ten that fits the scene.
     const Box box = world_bounds(desk.scene());
@@ -145,9 +148,9 @@ void Viewport::picture(Desk& desk) {
   }
   view.width = std::max(16, static_cast<int>(std::lround(desk.view_width * scale)));
   view.height = std::max(16, static_cast<int>(std::lround(desk.view_height * scale)));
-  Made wanted{scene, view, guides(desk), each_pass_, desk.view_width, desk.view_height};
+  Made wanted{scene, view, guides(desk), each_pass_, desk.wipe, desk.view_width, desk.view_height};
   if (made_ && same_scene(made_->scene, scene) && same_view(made_->view, view) && made_->guides == wanted.guides &&
-      made_->each_pass == each_pass_)
+      made_->each_pass == each_pass_ && made_->wipe == desk.wipe)
     return;
   const Renderer::Shown shown = renderer_.show(scene, view, {}, wanted.guides, each_pass_);
   texture_ = shown.texture;
@@ -162,7 +165,32 @@ void Viewport::picture(Desk& desk) {
   double rate = report_.pictures_a_second;
   if (!still && since < 0.5) rate = rate > 0 ? 0.8 * rate + 0.2 / since : 1 / since;
   report_ = {shown.times, shown.passes, renderer_.peak_gpu_bytes(), report_.device, scale, view.samples, rate};
+  if (!desk.wipe) {
+    before_.reset();
+  } else {
+    // A renderer of its own keeps what the scene was on the GPU, as long as it is compared with.
+    if (!before_) before_ = std::make_unique<Renderer>(window_context_());
+    before_texture_ = before_->show(desk.imported, view, {}, {}, false).texture;
+  }
   made_ = std::move(wanted);
+}
+
+// The line between before and after, which the pointer moves. True while it does, or is about to.
+bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer) {
+  constexpr double grab = 8;  // pixels
+  const double at = desk.wipe_at * desk.view_width;
+  const bool hot = pointer.inside && std::abs(pointer.at.x() - at) < grab;
+  if (hot && pointer.pressed) wiping_ = true;
+  if (!pointer.down) wiping_ = false;
+  if (wiping_) desk.wipe_at = std::clamp(pointer.at.x() / desk.view_width, 0.02, 0.98);
+  const float x = origin.x + static_cast<float>(desk.wipe_at * desk.view_width);
+  const float bottom = origin.y + static_cast<float>(desk.view_height);
+  list.AddLine({x, origin.y}, {x, bottom}, IM_COL32(0, 0, 0, 200), 4);
+  list.AddLine({x, origin.y}, {x, bottom}, hot || wiping_ ? IM_COL32(255, 230, 60, 255) : IM_COL32(255, 255, 255, 255),
+               2);
+  list.AddText({x - 60, origin.y + 8}, IM_COL32(0, 0, 0, 255), "before");
+  list.AddText({x + 12, origin.y + 8}, IM_COL32(0, 0, 0, 255), "after");
+  return hot || wiping_;
 }
 
 bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner) {
@@ -268,7 +296,10 @@ void Viewport::draw(Desk& desk) {
   list.ChannelsSplit(2);
   list.ChannelsSetCurrent(1);
   const bool on_axes = draw_axes(desk, list, {origin.x + size.x, origin.y});
-  if (on_axes) pointer.inside = false;
+  if (on_axes || (desk.wipe && draw_wipe(desk, list, origin, pointer))) {
+    pointer.inside = false;
+    pointer.pressed = false;
+  }
   const Lens lens(desk.camera, desk.view_width, desk.view_height);
   navigate(desk, lens, pointer);
   if (desk.flying) fly(desk);
@@ -293,6 +324,11 @@ void Viewport::draw(Desk& desk) {
   if (texture_ != 0)
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), origin,
                   {origin.x + size.x, origin.y + size.y}, {0, 1}, {1, 0});
+  if (desk.wipe && before_) {
+    const auto share = static_cast<float>(desk.wipe_at);
+    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(before_texture_)), origin,
+                  {origin.x + share * size.x, origin.y + size.y}, {0, 1}, {share, 0});
+  }
   list.ChannelsMerge();
   list.PopClipRect();
 }

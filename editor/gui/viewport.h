@@ -12,7 +12,8 @@ namespace rebake {
 /// The picture with what is drawn over it, the pointer in it, and the camera that it moves.
 class Viewport {
  public:
-  explicit Viewport(Renderer& renderer);
+  /// `window_context` makes contexts for further renderers, in the same window.
+  Viewport(Renderer& renderer, std::function<std::unique_ptr<gl::Context>()> window_context);
   ~Viewport();
 
   /// Draws into the present Dear ImGui window, over all of its content.
@@ -35,18 +36,22 @@ class Viewport {
     Scene scene;
     View view;
     Guides guides;
-    bool each_pass = false;
+    bool each_pass = false, wipe = false;
     int shown_width = 0, shown_height = 0;
   };
   void navigate(Desk& desk, const Lens& lens, const Pointer& pointer);
   void fly(Desk& desk);
   void picture(Desk& desk);
   Guides guides(const Desk& desk) const;
+  bool draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer);
   bool draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner);
   void write_pictures(Desk& desk);
   bool moving() const;
 
   Renderer& renderer_;
+  std::function<std::unique_ptr<gl::Context>()> window_context_;
+  std::unique_ptr<Renderer> before_;  ///< of the scene as imported; null while it is not compared with
+  unsigned before_texture_ = 0;
   std::map<ToolKind, std::unique_ptr<ViewTool>> tools_;
   ToolKind last_tool_ = ToolKind::pick;
   std::optional<Made> made_;
@@ -57,7 +62,7 @@ class Viewport {
   Clock::time_point moved_at_{}, flown_at_{}, drawn_at_{};
   double full_ms_ = 0;       ///< of a picture at full quality
   double moving_scale_ = 1;  ///< of the resolution while the camera moves
-  bool orbiting_ = false, panning_ = false;
+  bool orbiting_ = false, panning_ = false, wiping_ = false;
   Vec3 zoom_at_{0, 0, 0};
 };
 

@@ -18,6 +18,18 @@ struct Guides {
   std::vector<Line> lines;
   bool selection = true;  ///< tints and outlines selected triangles
 
+  /// Another look at the triangles, in place of their colours; at 1 sample a pixel.
+  enum class Inspect {
+    none,
+    wireframe,     ///< every triangle that may show something, transparent parts too
+    opacity,       ///< opaque texels light, transparent ones dark
+    texture_sets,  ///< a colour for each
+    channel,       ///< one feature byte as grey
+    overdraw       ///< brighter where more opaque triangles lie behind each other
+  };
+  Inspect inspect = Inspect::none;
+  int channel = 1;  ///< 0 … 3 of feat0 (0 is opacity), 4 … 7 of feat1
+
   bool operator==(const Guides&) const = default;
 };
 

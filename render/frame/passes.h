@@ -70,13 +70,14 @@ struct Pass {
 void execute_geometry(const PassInput& input);
 void execute_resolve(const PassInput& input);
 void execute_forward(const PassInput& input);
+void execute_inspect(const PassInput& input);
 void execute_selection(const PassInput& input);
 void execute_guides(const PassInput& input);
 
 /// In the order in which they run.
 inline constexpr Pass pass_table[] = {
-    {"geometry", execute_geometry},   {"resolve", execute_resolve}, {"forward", execute_forward},
-    {"selection", execute_selection}, {"guides", execute_guides},
+    {"geometry", execute_geometry}, {"resolve", execute_resolve},     {"forward", execute_forward},
+    {"inspect", execute_inspect},   {"selection", execute_selection}, {"guides", execute_guides},
 };
 
 }  // namespace rebake

@@ -150,6 +150,14 @@ void plan_passes(FramePlan& plan, std::size_t turned_draws, std::size_t culled, 
 }
 
 void plan_guides(FramePlan& plan) {
+  const bool inspects = plan.guides.inspect != Guides::Inspect::none;
+  if (inspects)
+    for (PlannedPass& pass : plan.passes)
+      if (pass.name != "culling" && pass.runs) pass = {pass.name, false, "the triangles are inspected, not decoded"};
+  plan.passes.push_back({"inspect", inspects && !plan.draws.empty(),
+                         !inspects            ? "colours are asked for"
+                         : plan.draws.empty() ? "nothing is in view"
+                                              : "another look than colours is asked for"});
   const std::size_t selected = static_cast<std::size_t>(
       std::count_if(plan.draws.begin(), plan.draws.end(), [](const Draw& draw) { return draw.selection != nullptr; }));
   plan.passes.push_back({"selection", plan.guides.selection && selected > 0,
@@ -174,6 +182,7 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
                      "forward needs 1 sample: with more, the format averages features before it decodes them");
   FramePlan result;
   result.view = view;
+  if (guides != nullptr && guides->inspect != Guides::Inspect::none) result.view.samples = 1;
   result.options = options;
   result.background = scene.background;
   const Mat3 camera_rows = world_to_camera(view.camera);
@@ -222,7 +231,7 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
                                  : RenderOptions::Weights::buffer;
   }
   if (result.options.shading == RenderOptions::Shading::automatic)
-    result.options.shading = view.samples == 1 && result.options.weights == RenderOptions::Weights::constants
+    result.options.shading = result.view.samples == 1 && result.options.weights == RenderOptions::Weights::constants
                                  ? RenderOptions::Shading::forward
                                  : RenderOptions::Shading::deferred;
   plan_passes(result, turned, culled, hidden);

@@ -1,0 +1,130 @@
+// What the window is made of, without a window: keys, typed numbers, settings, the worker.
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <sstream>
+
+#include "editor/gui/commands.h"
+#include "editor/gui/expression.h"
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/files.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+TEST(Keys, AreReadAsPeopleWriteThem) {
+  EXPECT_EQ(parse_key("R"), (KeyPress{GLFW_KEY_R}));
+  EXPECT_EQ(parse_key("Ctrl+Shift+Z"), (KeyPress{GLFW_KEY_Z, true, true, false}));
+  EXPECT_EQ(parse_key("["), (KeyPress{GLFW_KEY_LEFT_BRACKET}));
+  EXPECT_EQ(parse_key("F12"), (KeyPress{GLFW_KEY_F12}));
+  EXPECT_EQ(parse_key("KP_7"), (KeyPress{GLFW_KEY_KP_7}));
+  EXPECT_EQ(parse_key("Alt+Delete"), (KeyPress{GLFW_KEY_DELETE, false, false, true}));
+  for (const char* text : {"", "Ctrl+", "F13", "KP_X", "rr", "Shift"}) EXPECT_FALSE(parse_key(text)) << text;
+}
+
+TEST(Keys, EveryKeyOfBothKeymapsIsKnownAndMeansOneThing) {
+  for (const bool blender : {false, true}) {
+    std::set<std::string> taken;
+    for (const Command& command : command_table()) {
+      std::istringstream keys(blender ? command.blender_keys : command.keys);
+      for (std::string key; keys >> key;) {
+        EXPECT_TRUE(parse_key(key)) << key;
+        EXPECT_TRUE(taken.insert(key).second) << key << " is taken twice, by " << command.title;
+      }
+    }
+  }
+}
+
+TEST(Expression, IsWhatACalculatorSays) {
+  EXPECT_EQ(evaluated("90/4 + 1"), 23.5);
+  EXPECT_EQ(evaluated(" -(2+3)*2 "), -10);
+  EXPECT_EQ(evaluated("2-3-4"), -5);
+  EXPECT_EQ(evaluated("1e-3*-2"), -0.002);
+  EXPECT_NEAR(*evaluated("pi/2"), 1.5707963267948966, 1e-15);
+  for (const char* text : {"", "1+", "(1", "1/0", "x", "1 2", "--"}) EXPECT_FALSE(evaluated(text)) << text;
+  EXPECT_FALSE(evaluated(std::string(100000, '('))) << "however deep";
+}
+
+TEST(SettingsFile, ComesBackAndABadOneIsSaid) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "deeper" / "settings.json";
+  std::string problem;
+  EXPECT_TRUE(read_settings(file, problem).dark);
+  EXPECT_EQ(problem, "") << "none is no problem";
+  Settings settings;
+  settings.dark = false;
+  settings.brush_radius = 33;
+  for (int k = 0; k < 20; ++k) settings.remember("folder " + std::to_string(k));
+  settings.remember("folder 15");
+  write_settings(settings, file);
+  const Settings read = read_settings(file, problem);
+  EXPECT_FALSE(read.dark);
+  EXPECT_EQ(read.brush_radius, 33);
+  ASSERT_EQ(read.recent.size(), 12U);
+  EXPECT_EQ(read.recent[0], "folder 15");
+  EXPECT_EQ(read.recent[1], "folder 19");
+  for (const char* text : {"{", "[]", R"({"dark": 3})", R"({"brush_radius": "wide"})"}) {
+    write_file_atomically(file, text);
+    problem.clear();
+    EXPECT_TRUE(read_settings(file, problem).dark) << text;
+    EXPECT_NE(problem.find(file.string()), std::string::npos) << text;
+  }
+  write_file_atomically(file, R"({"side_width": -5, "window_width": 1000000, "something_newer": 1})");
+  EXPECT_EQ(read_settings(file, problem).side_width, 200);
+}
+
+class WorkerTest : public ::testing::Test {
+ protected:
+  void wait() {
+    while (worker.busy()) std::this_thread::yield();
+  }
+  Worker worker{[] {}};
+};
+
+TEST_F(WorkerTest, DoesJobsInOrderAndCopiesTheSceneOut) {
+  const TemporaryFolder folder;
+  export_scene(scene_of(made_object({.columns = 8, .rows = 4})), folder.path() / "ball", {});
+  Import import;
+  import.path = (folder.path() / "ball").string();
+  bool told = false;
+  worker.start(
+      "import", [&](Session& session) { session.edit(import); }, [&] { told = true; });
+  worker.start("bad", [](Session& session) { session.edit(DeleteSelected{}); });
+  Select all;
+  all.all = true;
+  worker.start("select", [&](Session& session) { session.edit(all); });
+  wait();
+  const auto snapshot = worker.snapshot();
+  EXPECT_EQ(snapshot->done.size(), 2U);
+  ASSERT_EQ(snapshot->scene.roots.size(), 1U);
+  EXPECT_NE(snapshot->scene.roots[0]->selection, nullptr);
+  std::size_t failed = 0;
+  for (const Worker::Message& message : worker.take_messages()) failed += message.failed ? 1 : 0;
+  EXPECT_EQ(failed, 1U);
+  EXPECT_FALSE(told) << "only when the window asks";
+  for (const auto& then : worker.take_finished()) then();
+  EXPECT_TRUE(told);
+}
+
+TEST_F(WorkerTest, CancelStopsWhatRunsAndForgetsWhatWaits) {
+  std::atomic<bool> begun = false;
+  bool second = false;
+  worker.start("long", [&](Session& session) {
+    begun = true;
+    for (;;) session.progress.at("waiting", 0.5);
+  });
+  worker.start("next", [&](Session&) { second = true; });
+  while (!begun) std::this_thread::yield();
+  worker.cancel();
+  wait();
+  EXPECT_FALSE(second);
+  const auto messages = worker.take_messages();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_TRUE(messages[0].failed);
+  EXPECT_NE(messages[0].text.find("stopped"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace rebake::test

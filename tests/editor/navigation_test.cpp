@@ -1,0 +1,108 @@
+// How the viewport's camera moves: what people point at stays where they point.
+#include "editor/gui/navigation.h"
+
+#include <gtest/gtest.h>
+
+#include "editor/gui/lens.h"
+
+namespace rebake::test {
+namespace {
+
+constexpr int width = 640, height = 480;
+
+Camera camera() {
+  Camera camera;
+  camera.eye = {1, 2, 5};
+  camera.target = {0.5, 0.25, -1};
+  return camera;
+}
+
+TEST(Navigation, OrbitingKeepsTheDistanceAndStopsAtThePoles) {
+  const double distance = (camera().eye - camera().target).norm();
+  Camera moved = camera();
+  for (int k = 0; k < 50; ++k) moved = orbited(moved, 13, 40, height);
+  EXPECT_NEAR((moved.eye - moved.target).norm(), distance, 1e-12);
+  EXPECT_EQ(moved.target, camera().target);
+  // Far beyond the pole it looks straight down, and is not turned over.
+  const Vec3 direction = (moved.eye - moved.target).normalized();
+  EXPECT_GT(direction.y(), 0.9999);
+  EXPECT_LT(direction.y(), 1);
+}
+
+TEST(Navigation, AFullTurnComesBack) {
+  Camera moved = camera();
+  for (int k = 0; k < 8; ++k) moved = orbited(moved, 2.0 * height / 8, 0, height);
+  EXPECT_LT((moved.eye - camera().eye).norm(), 1e-12);
+}
+
+TEST(Navigation, PanningTakesTheTargetWithThePointer) {
+  const Vec2 before = *Lens(camera(), width, height).pixel(camera().target);
+  const Camera moved = panned(camera(), 30, -20, height);
+  const Vec2 after = *Lens(moved, width, height).pixel(camera().target);
+  EXPECT_LT((after - before - Vec2(30, -20)).norm(), 1e-9);
+}
+
+TEST(Navigation, ZoomingKeepsThePointUnderThePointer) {
+  const Vec3 point(0.8, 0.4, -0.5);
+  const Vec2 before = *Lens(camera(), width, height).pixel(point);
+  Camera moved = camera();
+  for (int k = 0; k < 10; ++k) moved = zoomed(moved, point, 0.8);
+  EXPECT_LT((*Lens(moved, width, height).pixel(point) - before).norm(), 1e-7);
+  EXPECT_NEAR((moved.eye - point).norm(), (camera().eye - point).norm() * std::pow(0.8, 10), 1e-12);
+  // For ever so long: it ends before numbers do.
+  for (int k = 0; k < 1000; ++k) moved = zoomed(moved, point, 0.5);
+  EXPECT_GT((moved.eye - moved.target).norm(), 0);
+}
+
+TEST(Navigation, FramingShowsAllOfABoxAtAnyAspect) {
+  const Box box(Vec3(-3, -1, -2), Vec3(1, 0.5, 0));
+  for (const double aspect : {0.3, 1.0, 3.0}) {
+    const Camera moved = framed(camera(), box, aspect);
+    const Lens lens(moved, static_cast<int>(600 * aspect), 600);
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto pixel = lens.pixel(box.corner(static_cast<Box::CornerType>(corner)));
+      ASSERT_TRUE(pixel);
+      EXPECT_GE(pixel->minCoeff(), 0);
+      EXPECT_LE(pixel->x(), 600 * aspect);
+      EXPECT_LE(pixel->y(), 600);
+    }
+  }
+}
+
+TEST(Navigation, AxisViewsAndFlatViewsKeepTheTargetsSize) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      const Camera moved = along_axis(camera(), sign * Vec3::Unit(axis));
+      const Vec3 direction = (moved.eye - moved.target).normalized();
+      EXPECT_GT(direction[axis] * sign, 0.9999);
+      // Turning goes on from there.
+      EXPECT_TRUE(orbited(moved, 10, 10, height).eye.allFinite());
+    }
+  const Camera flat = with_field_of_view(camera(), 0.5);
+  const Lens near(camera(), width, height), far(flat, width, height);
+  EXPECT_NEAR(near.unit(camera().target), far.unit(camera().target), 1e-12);
+}
+
+TEST(Navigation, DepthRangesHoldTheSceneFromAnywhere) {
+  const Box box(Vec3(-1, -1, -1), Vec3(1, 1, 1));
+  for (const double away : {0.01, 1.0, 100.0, 1e5}) {
+    Camera moved = camera();
+    moved.eye = moved.target + Vec3(0, 0, away);
+    moved = with_depth_for(moved, box);
+    EXPECT_NO_THROW(check(moved));
+    EXPECT_GT(moved.far_plane, (box.center() - moved.eye).norm() + 1);
+  }
+}
+
+TEST(Lens, PixelAndRayAreInverse) {
+  const Lens lens(camera(), width, height);
+  for (const Vec2& pixel : {Vec2(0, 0), Vec2(320, 240), Vec2(637.5, 12.25)}) {
+    const Vec3 point = lens.eye() + 3 * lens.ray(pixel);
+    EXPECT_LT((*lens.pixel(point) - pixel).norm(), 1e-9);
+    EXPECT_NEAR(lens.depth(point), 3, 1e-12);
+  }
+  EXPECT_FALSE(lens.pixel(lens.eye() - lens.ray({320, 240})));
+}
+
+}  // namespace
+}  // namespace rebake::test

@@ -1,0 +1,204 @@
+"""The editor as people use it: each test asserts the edits that arrived in the document, and what is seen."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from screen import Editor, Screen, until
+
+PROGRAM = sys.argv.pop(1)
+HERE = pathlib.Path(__file__).resolve().parent
+FICUS = HERE.parents[1] / "samples" / "scenes" / "ficus"
+# Where things stand in a window of 1280 x 800.
+LEAVES = [(560, 160), (700, 160), (700, 300), (560, 300)]
+NODE_IN_OUTLINE = (1060, 57)
+MAKE_CAGE = (475, 38)
+RECOVER = (490, 406)
+DEGREES = (960, 231)
+APPLY = (877, 375)
+
+
+def leaf_pixels(editor):
+    picture = editor.picture()[60:570, 75:950]
+    return int(((picture[..., 1] > picture[..., 0] + 25) & (picture[..., 1] > picture[..., 2] + 25)).sum())
+
+
+class EditorTest(unittest.TestCase):
+    def setUp(self):
+        self.screen = Screen()
+        self.editor = None
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+
+    def tearDown(self):
+        if self.editor and self.editor.process.poll() is None:
+            self.editor.kill()
+        self.screen.close()
+
+    def open(self, *paths):
+        self.editor = Editor(PROGRAM, self.screen, *paths)
+        return self.editor
+
+    def open_ficus(self):
+        editor = self.open(FICUS)
+        editor.until_ops("import")
+        return editor
+
+    def expect_like(self, name, decibels):
+        """The whole window against a kept picture. 30 dB leaves room for another version of the driver or the font;
+        a missing panel, tint or leaf is below 25."""
+        kept, seen = HERE / "pictures" / (name + ".png"), self.folder / (name + ".png")
+        self.editor.save_picture(seen)
+        result = subprocess.run([PROGRAM, "compare", kept, seen, "--min-psnr", str(decibels)], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, f"{result.stdout}{result.stderr} (seen: {seen})")
+
+    def test_turn_the_view_lasso_leaves_delete_undo_redo(self):
+        editor = self.open_ficus()
+        self.expect_like("opened", 30)
+        all_leaves = leaf_pixels(editor)
+        editor.drag(2, [(400, 500), (430, 490)])
+        editor.key("l")
+        editor.drag(1, LEAVES + LEAVES[:1])
+        editor.until_ops("import", "select_picture")
+        selected = editor.journal()[-1]["edit"]
+        self.assertGreater(len(selected["polygon"]), 10)
+        self.assertFalse(selected["through"])
+        self.expect_like("selected", 30)
+        editor.key("Delete")
+        editor.until_ops("import", "select_picture", "delete")
+        fewer = leaf_pixels(editor)
+        self.assertLess(fewer, 0.85 * all_leaves)
+        editor.key("ctrl+z")
+        editor.until_ops("import", "select_picture", "delete", "undo")
+        editor.key("ctrl+shift+z")
+        editor.until_ops("import", "select_picture", "delete", "undo", "redo")
+        self.assertAlmostEqual(leaf_pixels(editor), fewer, delta=50)
+
+    def test_move_with_the_gizmo_and_by_typing(self):
+        editor = self.open_ficus()
+        editor.click(*NODE_IN_OUTLINE)
+        editor.key("1")
+        editor.settle()
+        handle = editor.find_color((235, 70, 70))[0]
+        editor.drag(1, [handle, (handle[0] + 60, handle[1] + 5)])
+        editor.until_ops("import", "transform")
+        moved = editor.journal()[-1]["edit"]["translate"]
+        self.assertGreater(moved[0], 0.05)
+        self.assertEqual(moved[1:], [0, 0])
+        # A number typed during the drag counts in place of the pointer's way.
+        handle = editor.find_color((235, 70, 70))[0]
+        editor.drag(1, [handle, (handle[0] - 30, handle[1])], meanwhile=lambda: editor.key("minus", "0", "period", "2", "5"))
+        editor.until_ops("import", "transform", "transform")
+        self.assertEqual(editor.journal()[-1]["edit"]["translate"], [-0.25, 0, 0])
+        # Escape lets go of a drag and changes nothing.
+        handle = editor.find_color((235, 70, 70))[0]
+        editor.drag(1, [handle, (handle[0] + 80, handle[1])], meanwhile=lambda: editor.key("Escape"))
+        editor.settle()
+        self.assertEqual(len(editor.ops()), 3)
+        # A field takes expressions.
+        editor.click(1000, 396)
+        editor.key("ctrl+a")
+        editor.type("3/2")
+        editor.key("Return")
+        editor.until_ops("import", "transform", "transform", "transform")
+        self.assertNotEqual(editor.journal()[-1]["edit"]["translate"][0], 0)
+
+    def test_bend_by_a_cage(self):
+        editor = self.open_ficus()
+        editor.key("c")
+        editor.settle()
+        editor.click(*MAKE_CAGE)
+        points = until(lambda: [p for p in editor.find_color((120, 190, 255)) if p], "the cage's points")
+        self.assertGreaterEqual(len(points), 8)
+        top = min(points, key=lambda p: p[1])
+        editor.drag(1, [top, (top[0] + 70, top[1] + 40)])
+        self.assertEqual(editor.ops(), ["import"], "a drag is a preview")
+        editor.key("Return")
+        editor.until_ops("import", "cage")
+        edit = editor.journal()[-1]["edit"]
+        self.assertEqual(edit["lattice"], [2, 2, 2])
+        self.assertEqual(len(edit["moves"]), 1)
+        editor.key("ctrl+z")
+        editor.until_ops("import", "cage", "undo")
+
+    def test_bend_by_numbers_is_seen_before_it_is_applied(self):
+        editor = self.open_ficus()
+        before = editor.picture()[60:570, 75:700]
+        editor.command("bend")
+        editor.click(*DEGREES)
+        editor.type("30*2")
+        changed = lambda: int((abs(editor.picture()[60:570, 75:700] - before).max(axis=2) > 30).sum())
+        until(lambda: changed() > 10000, "a bent plant")
+        self.assertEqual(editor.ops(), ["import"], "it is a preview")
+        editor.key("Escape")
+        editor.settle()
+        self.assertLess(changed(), 100, "closed, it is gone")
+        editor.command("bend")
+        editor.click(*DEGREES)
+        editor.type("60")
+        editor.click(*APPLY)
+        editor.until_ops("import", "bend")
+        self.assertEqual(editor.journal()[-1]["edit"]["degrees"], 60)
+
+    def test_export_and_replay_give_the_same_bytes(self):
+        editor = self.open_ficus()
+        editor.key("b")
+        editor.drag(1, [(600, 200), (660, 230)])
+        editor.until_ops("import", "select_picture")
+        editor.key("Delete")
+        editor.until_ops("import", "select_picture", "delete")
+        exported, script = self.folder / "exported", self.folder / "session.jsonl"
+        editor.key("ctrl+e", "ctrl+a")
+        editor.type(str(exported))
+        editor.key("Return")
+        until(lambda: (exported / "mlp.json").is_file() or list(exported.glob("*/mlp.json")), "the export")
+        editor.settle()
+        editor.command("save as script")
+        editor.key("ctrl+a")
+        editor.type(str(script))
+        editor.key("Return")
+        until(script.is_file, "the script")
+        with script.open("a") as lines:
+            lines.write('{"op": "export", "out": "%s"}\n' % (self.folder / "replayed"))
+        subprocess.run([PROGRAM, "run", script], check=True, capture_output=True)
+        subprocess.run(["diff", "-r", exported, self.folder / "replayed"], check=True)
+
+    def test_recover_after_a_kill(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+a")
+        editor.until_ops("import", "select")
+        editor.kill()
+        editor = self.open()
+        self.assertLess(leaf_pixels(editor), 1000)
+        editor.click(*RECOVER)
+        editor.settle()
+        editor.key("shift+t")  # the tint of what is selected
+        editor.settle()
+        self.assertGreater(leaf_pixels(editor), 1000, "the scene is back")
+        editor.key("ctrl+i")
+        editor.until_ops("import", "select", "select")
+
+    def test_what_cannot_be_read_is_said_and_the_rest_is_there(self):
+        bad = self.folder / "bad"
+        bad.mkdir()
+        editor = self.open(bad, FICUS)
+        editor.until_ops("import")
+        self.assertGreater(leaf_pixels(editor), 1000)
+        self.assertIsNone(editor.process.poll())
+        editor.key("Escape")
+        editor.key("Escape")
+        editor.settle()
+        self.assertIsNone(editor.process.poll(), "Escape never quits")
+
+
+class NoWindowTest(unittest.TestCase):
+    def test_without_a_display_the_headless_commands_are_named(self):
+        result = subprocess.run([PROGRAM, "edit"], env={"PATH": "/usr/bin:/bin", "HOME": tempfile.mkdtemp()},
+                                capture_output=True, text=True)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("rebake run", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

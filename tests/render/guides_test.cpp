@@ -1,0 +1,96 @@
+// What an editor draws over the picture: selected triangles and lines, in front of and behind what is there.
+#include "render/frame/guides.h"
+
+#include <gtest/gtest.h>
+
+#include "render/compare.h"
+#include "render/picture.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+View view_of(int samples) {
+  View view;
+  view.width = view.height = 120;
+  view.samples = samples;
+  view.camera.eye = {0, 0, 4};
+  view.camera.near_plane = 0.1;
+  return view;
+}
+
+Scene selected_scene(bool front) {
+  const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
+  const BakedObject& object = *scene.roots[0]->object;
+  TriangleSet flags;
+  for (const TextureSet& set : object.sets)
+    for (const Face& face : set.soup.faces()) {
+      Vec3 centre(0, 0, 0);
+      for (const std::uint32_t v : face) centre += set.soup.positions()[v] / 3;
+      flags.push_back((centre.z() > 0.3) == front && std::abs(centre.z()) > 0.3 ? 1 : 0);
+    }
+  return with_changed(scene, scene.roots[0]->id,
+                      [&](Node& node) { node.selection = std::make_shared<const TriangleSet>(flags); });
+}
+
+// Pixels that differ by more than the drawing's rounding.
+std::size_t changed(const Image& a, const Image& b, int by) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < a.rgb.size(); k += 3)
+    for (std::size_t c = 0; c < 3; ++c)
+      if (std::abs(a.rgb[k + c] - b.rgb[k + c]) > by) {
+        ++count;
+        break;
+      }
+  return count;
+}
+
+class GuidesTest : public ::testing::TestWithParam<int> {
+ protected:
+  Image shown(const Scene& scene, const Guides& guides) {
+    renderer.show(scene, view_of(GetParam()), {}, guides, false);
+    return renderer.shown_image();
+  }
+  Renderer renderer;
+};
+
+TEST_P(GuidesTest, NothingToShowIsThePictureItself) {
+  const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
+  EXPECT_EQ(shown(scene, {}).rgb, renderer.render(scene, view_of(GetParam())).rgb);
+  const auto planned = renderer.show(scene, view_of(GetParam()), {}, {}, false).passes;
+  for (const PlannedPass& pass : planned)
+    EXPECT_FALSE(pass.runs && (pass.name == "selection" || pass.name == "guides")) << pass.why;
+}
+
+TEST_P(GuidesTest, SelectedTrianglesInFrontAreTintedMoreThanThoseBehind) {
+  const Image plain = renderer.render(selected_scene(true), view_of(GetParam()));
+  const Image front = shown(selected_scene(true), {}), back = shown(selected_scene(false), {});
+  EXPECT_GT(changed(plain, front, 25), 800U);
+  EXPECT_GT(changed(plain, back, 8), 800U) << "what is hidden shows through, faintly";
+  EXPECT_LT(changed(plain, back, 60), changed(plain, front, 60) / 2);
+  Guides off;
+  off.selection = false;
+  EXPECT_EQ(shown(selected_scene(true), off).rgb, plain.rgb);
+}
+
+TEST_P(GuidesTest, LinesAreHiddenByWhatLiesInFront) {
+  const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
+  const Image plain = renderer.render(scene, view_of(GetParam()));
+  const auto line_at = [&](double z, double hidden) {
+    Guides guides;
+    guides.lines.push_back({{-0.2, 0.01, z}, {0.2, 0.01, z}, Color(1, 0, 1), 1, hidden});
+    return changed(plain, shown(scene, guides), 40);
+  };
+  EXPECT_GE(line_at(2, 0), 10U);
+  EXPECT_EQ(line_at(-2, 0), 0U);
+  EXPECT_GE(line_at(-2, 1), 5U);
+  // In front of nothing at all.
+  Guides guides;
+  guides.lines.push_back({{-1, 0, 0}, {1, 0, 0}, Color(0, 0, 0), 1, 0});
+  EXPECT_GT(changed(shown({}, {}), shown({}, guides), 40), 30U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, GuidesTest, ::testing::Values(1, 4));
+
+}  // namespace
+}  // namespace rebake::test
