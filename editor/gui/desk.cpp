@@ -81,8 +81,12 @@ void Desk::redo(int steps) {
   });
 }
 
-void Desk::open(const std::vector<std::string>& paths) {
+void Desk::open(const std::vector<std::string>& paths, bool wanted) {
   if (paths.size() == 1 && is_project_file(paths.front())) {
+    if (unsaved() && !wanted) {
+      to_open = paths;
+      return;
+    }
     const fs::path path = fs::absolute(paths.front());
     worker.start(
         "open",
@@ -93,7 +97,8 @@ void Desk::open(const std::vector<std::string>& paths) {
         },
         [this, path] {
           project = path;
-          saved_edits_ = now->done.size();
+          saved_ = scene();
+          imported = scene();
           settings.remember(path.string());
         });
     keep_journal();
@@ -122,12 +127,16 @@ void Desk::recover(const fs::path& journal) {
 }
 
 void Desk::save_project(const fs::path& path) {
-  const std::size_t edits_then = now->done.size();
+  auto saved = std::make_shared<Scene>();
   worker.start(
-      "save", [path](Session& session) { session.document.save(path); },
-      [this, path, edits_then] {
+      "save",
+      [path, saved](Session& session) {
+        session.document.save(path);
+        *saved = session.scene();
+      },
+      [this, path, saved] {
         project = path;
-        saved_edits_ = edits_then;
+        saved_ = *saved;
         settings.remember(path.string());
         log.push_back({"saved " + path.string()});
       });
@@ -162,7 +171,10 @@ void Desk::run_script(const fs::path& path) {
   worker.start("script", [path](Session& session) { rebake::run_script(session, read_file(path), path, {}); });
 }
 
-bool Desk::unsaved() const { return now->done.size() != saved_edits_ && now->done.size() > (project.empty() ? 1 : 0); }
+bool Desk::unsaved() const {
+  const Scene& kept = saved_ ? *saved_ : imported;
+  return scene().roots != kept.roots || scene().views != kept.views || scene().background != kept.background;
+}
 
 Box Desk::focus() const {
   Box box;

@@ -69,7 +69,8 @@ struct Desk {
   PathQuestion question = PathQuestion::none;
   std::string form_op;  ///< the edit whose form is open, empty for none
   std::vector<std::filesystem::path> recoverable;
-  std::filesystem::path project;  ///< empty until it has been saved
+  std::filesystem::path project;     ///< empty until it has been saved
+  std::vector<std::string> to_open;  ///< a project that waits for people's word
 
   // Long work that the window itself carries out, a picture a frame
   struct Turntable {
@@ -86,8 +87,9 @@ struct Desk {
   void edits(const std::vector<Edit>& list);
   void undo(int steps = 1);
   void redo(int steps = 1);
-  /// Imports folders and scenes; opens a project instead when it is the only path.
-  void open(const std::vector<std::string>& paths);
+  /// Imports folders and scenes. A project, which must be the only path, takes the place of the document; with unsaved
+  /// work in it, people are asked first unless it is `wanted` so.
+  void open(const std::vector<std::string>& paths, bool wanted = false);
   void recover(const std::filesystem::path& journal);
   void save_project(const std::filesystem::path& path);
   void save_scene(const std::filesystem::path& folder);
@@ -96,7 +98,7 @@ struct Desk {
   void run_script(const std::filesystem::path& path);
 
   const Scene& scene() const { return now->scene; }
-  /// Not yet in a file: a project, or the sources themselves.
+  /// Whether there is something that no file holds: neither the project nor the sources.
   bool unsaved() const;
   /// Of the active nodes, or of everything visible when none is.
   Box focus() const;
@@ -105,7 +107,7 @@ struct Desk {
 
  private:
   void keep_journal();
-  std::size_t saved_edits_ = 0;  ///< done when last saved
+  std::optional<Scene> saved_;  ///< what the project holds
   std::size_t selected_ = 0;
   bool fresh_ = true;  ///< nothing was shown yet: the first scene is framed
 };

@@ -208,10 +208,26 @@ void Dialogs::draw_quitting(Desk& desk) {
   ImGui::EndPopup();
 }
 
+void Dialogs::draw_replacing(Desk& desk) {
+  if (desk.to_open.empty()) return;
+  if (!ImGui::IsPopupOpen("Open another project")) ImGui::OpenPopup("Open another project");
+  if (!ImGui::BeginPopupModal("Open another project", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  ImGui::TextUnformatted("There are changes in no project yet; opening another one drops them.");
+  const bool drops = ImGui::Button("Drop them and open");
+  ImGui::SameLine();
+  if (drops) desk.open(desk.to_open, true);
+  if (ImGui::Button("Go on") || drops) {
+    desk.to_open.clear();
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
 void Dialogs::draw(Desk& desk) {
   draw_path(desk);
   draw_recovery(desk);
   draw_quitting(desk);
+  draw_replacing(desk);
   draw_error(desk);
 }
 

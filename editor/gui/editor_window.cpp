@@ -21,7 +21,7 @@ namespace {
 // Frames that Dear ImGui needs after an event until hovering, popups and focus have settled.
 constexpr int frames_after_event = 3;
 
-void set_looks(double scale, bool dark) {
+void set_looks(bool dark) {
   if (dark)
     ImGui::StyleColorsDark();
   else
@@ -30,7 +30,6 @@ void set_looks(double scale, bool dark) {
   style.WindowRounding = 0;
   style.FrameRounding = 3;
   style.WindowBorderSize = 1;
-  (void)scale;
 }
 
 void load_font(double scale) {
@@ -56,7 +55,7 @@ class EditorWindow {
         viewport_(renderer_, [this] { return window_.context(); }),
         desk_(settings_, Window::wake) {
     scale_ = window_.scale();
-    set_looks(scale_, desk_.settings.dark);
+    set_looks(desk_.settings.dark);
     load_font(scale_);
     if (!settings_problem_.empty()) desk_.log.push_back({settings_problem_, true});
     window_.on_key = [this](const KeyPress& press) { key(press); };
@@ -84,6 +83,7 @@ class EditorWindow {
     desk_.settings.window_height = static_cast<int>(window_.height() / scale_);
     write_settings(desk_.settings, settings_file_);
     // The work is saved, or not wanted.
+    desk_.worker.cancel();
     desk_.worker.start("end", [](Session& session) { session.document.discard_journal(); });
     while (desk_.worker.busy()) window_.wait(0.02);
   }
@@ -115,6 +115,7 @@ class EditorWindow {
     if (ImGui::GetIO().WantTextInput && (plain || (press.key != GLFW_KEY_S && press.key != GLFW_KEY_P))) return;
     if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) return;
     if (viewport_.key(desk_, press)) return;
+    if (viewport_.tool(desk_).busy()) return;  // nothing else happens during a drag
     if (desk_.flying && plain &&
         std::string_view("WASDQE").find(static_cast<char>(press.key)) != std::string_view::npos)
       return;
@@ -129,7 +130,6 @@ class EditorWindow {
       desk_.error.clear();
     } else if (desk_.question != PathQuestion::none) {
       desk_.question = PathQuestion::none;
-      close_popup_ = true;
     } else if (!desk_.form_op.empty()) {
       desk_.form_op.clear();
     } else if (viewport_.cancel(desk_)) {
@@ -145,7 +145,7 @@ class EditorWindow {
     set_title();
     if (dark_ != desk_.settings.dark) {
       dark_ = desk_.settings.dark;
-      set_looks(scale_, dark_);
+      set_looks(dark_);
     }
     window_.begin_frame();
     menu();
@@ -304,7 +304,7 @@ class EditorWindow {
   EditForm form_;
   Dialogs dialogs_;
   double scale_ = 1;
-  bool dark_ = true, close_popup_ = false;
+  bool dark_ = true;
   std::string title_;
 };
 

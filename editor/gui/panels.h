@@ -99,6 +99,7 @@ class Dialogs {
   void draw_error(Desk& desk);
   void draw_recovery(Desk& desk);
   void draw_quitting(Desk& desk);
+  void draw_replacing(Desk& desk);
   std::string path_;
   PathQuestion asked_ = PathQuestion::none;
   bool may_quit_ = false;
