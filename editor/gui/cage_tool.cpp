@@ -14,22 +14,6 @@ namespace {
 
 constexpr double grab_pixels = 10;
 
-// What the cage goes around: the selected triangles, else the first active node, else the first that shows.
-DeformTarget target_of(const Desk& desk) {
-  DeformTarget target;
-  if (desk.selected_triangles() > 0) {
-    target.selection = true;
-    return target;
-  }
-  for (const PlacedNode& placed : placed_nodes(desk.scene()))
-    if (placed.visible && !placed.locked && placed.node->object &&
-        (desk.active.empty() || desk.active.contains(placed.node->id))) {
-      target.node = NodeRef{placed.node->id};
-      break;
-    }
-  return target;
-}
-
 }  // namespace
 
 /// A cage with everything bound to it, for previews.
@@ -46,9 +30,14 @@ CageTool::CageTool() = default;
 CageTool::~CageTool() = default;
 
 void CageTool::make(Desk& desk) {
+  const std::optional<DeformTarget> target = desk.deform_target();
+  if (!target) {
+    desk.error = "there is nothing to put a cage around: open a folder first";
+    return;
+  }
   CageDeform edit = edit_;
   const double falloff = edit.target.falloff;
-  edit.target = target_of(desk);
+  edit.target = *target;
   edit.target.falloff = falloff;
   edit.cage = {};
   if (wraps_)

@@ -182,6 +182,29 @@ Box Desk::focus() const {
   return box.isEmpty() ? world_bounds(scene()) : box;
 }
 
+std::optional<DeformTarget> Desk::deform_target() const {
+  DeformTarget target;
+  if (selected_triangles() > 0) {
+    target.selection = true;
+    return target;
+  }
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (placed.visible && !placed.locked && placed.node->object &&
+        (active.empty() || active.contains(placed.node->id))) {
+      target.node = NodeRef{placed.node->id};
+      return target;
+    }
+  return std::nullopt;
+}
+
+Box Desk::deform_bounds(const DeformTarget& target) const {
+  if (target.node) return subtree_bounds(scene(), target.node->id);
+  Box box;
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (placed.visible && !placed.locked && placed.node->selection) box.extend(selection_bounds(placed));
+  return box;
+}
+
 void Desk::frame_view() {
   Box box;
   for (const PlacedNode& placed : placed_nodes(scene()))

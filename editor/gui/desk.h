@@ -8,13 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "editor/edits/deforming.h"
 #include "editor/gui/settings.h"
 #include "editor/gui/worker.h"
 #include "render/frame/plan.h"
 
 namespace rebake {
 
-enum class ToolKind { pick, rectangle, lasso, polygon, brush, flood, erase, move, turn, scale, cage };
+enum class ToolKind { pick, rectangle, lasso, polygon, brush, flood, erase, move, turn, scale, cage, bend };
 
 /// A file or folder that a dialog asks for.
 enum class PathQuestion {
@@ -102,6 +103,11 @@ struct Desk {
   bool unsaved() const;
   /// Of the active nodes, or of everything visible when none is.
   Box focus() const;
+  /// What deforming tools take: the selected triangles, else the first active node, else the first that shows; nothing
+  /// in an empty scene.
+  std::optional<DeformTarget> deform_target() const;
+  /// World box of that.
+  Box deform_bounds(const DeformTarget& target) const;
   std::size_t selected_triangles() const { return selected_; }
   void frame_view();
 

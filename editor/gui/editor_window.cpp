@@ -240,7 +240,7 @@ class EditorWindow {
          {Button{ToolKind::pick, "Pick"}, Button{ToolKind::rectangle, "Rect"}, Button{ToolKind::lasso, "Lasso"},
           Button{ToolKind::polygon, "Poly"}, Button{ToolKind::brush, "Brush"}, Button{ToolKind::flood, "Flood"},
           Button{ToolKind::erase, "Erase"}, Button{ToolKind::move, "Move"}, Button{ToolKind::turn, "Turn"},
-          Button{ToolKind::scale, "Scale"}, Button{ToolKind::cage, "Cage"}}) {
+          Button{ToolKind::scale, "Scale"}, Button{ToolKind::cage, "Cage"}, Button{ToolKind::bend, "Bend"}}) {
       const bool taken = desk_.tool == button.kind;
       if (taken) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
       if (ImGui::Button(button.label, {-1, 0})) desk_.tool = button.kind;

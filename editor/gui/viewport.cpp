@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "editor/gui/bend_tool.h"
 #include "editor/gui/cage_tool.h"
 #include "editor/gui/gizmo.h"
 #include "editor/gui/navigation.h"
@@ -36,6 +37,7 @@ Viewport::Viewport(Renderer& renderer, std::function<std::unique_ptr<gl::Context
     tools_[kind] = std::make_unique<RegionTool>(kind);
   for (const ToolKind kind : {ToolKind::move, ToolKind::turn, ToolKind::scale})
     tools_[kind] = std::make_unique<Gizmo>(kind);
+  tools_[ToolKind::bend] = std::make_unique<BendTool>();
   tools_[ToolKind::cage] = std::make_unique<CageTool>();
   report_.device = renderer.device();
 }

@@ -122,10 +122,25 @@ class EditorTest(unittest.TestCase):
         editor.key("ctrl+z")
         editor.until_ops("import", "cage", "undo")
 
+    def test_bend_by_its_end(self):
+        editor = self.open_ficus()
+        editor.key("n")
+        editor.settle()
+        tip = editor.find_color((255, 120, 200))[0]
+        before = leaf_pixels(editor)
+        editor.drag(1, [tip, (tip[0] + 120, tip[1] + 30)])
+        editor.until_ops("import", "bend")
+        edit = editor.journal()[-1]["edit"]
+        self.assertGreater(edit["degrees"], 20)
+        self.assertGreater(edit["direction"][0], 0.5, "to the right, as the pointer went")
+        editor.key("ctrl+z")
+        editor.until_ops("import", "bend", "undo")
+        self.assertAlmostEqual(leaf_pixels(editor), before, delta=50)
+
     def test_bend_by_numbers_is_seen_before_it_is_applied(self):
         editor = self.open_ficus()
         before = editor.picture()[60:570, 75:700]
-        editor.command("bend")
+        editor.command("bend by")
         editor.click(*DEGREES)
         editor.type("30*2")
         changed = lambda: int((abs(editor.picture()[60:570, 75:700] - before).max(axis=2) > 30).sum())
@@ -134,7 +149,7 @@ class EditorTest(unittest.TestCase):
         editor.key("Escape")
         editor.settle()
         self.assertLess(changed(), 100, "closed, it is gone")
-        editor.command("bend")
+        editor.command("bend by")
         editor.click(*DEGREES)
         editor.type("60")
         editor.click(*APPLY)
