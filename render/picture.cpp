@@ -49,9 +49,8 @@ void fit(FrameTargets& targets, const FramePlan& plan) {
     fit_overlay(targets, plan, overlay);
     return;
   }
+  // Its size is set at the end: what fails in between is made anew.
   targets = {};
-  targets.width = width;
-  targets.height = height;
   targets.side = side;
   targets.has_features = features;
   targets.has_frames = frames;
@@ -72,6 +71,8 @@ void fit(FrameTargets& targets, const FramePlan& plan) {
     targets.sample_buffer = gl::make_framebuffer(colors, &targets.depth);
   }
   targets.picture_buffer = gl::make_framebuffer({&targets.picture}, forward ? &targets.depth : nullptr);
+  targets.width = width;
+  targets.height = height;
   fit_overlay(targets, plan, overlay);
 }
 
@@ -95,6 +96,7 @@ class Renderer::Impl {
       throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
     gpu_.update(scene);
     fit(state_.targets, frame_plan);
+    if (!frame_plan.runs("selection")) state_.selected.clear();
     glBindFramebuffer(GL_FRAMEBUFFER, state_.targets.picture_buffer.name());
     glDisable(GL_SCISSOR_TEST);
     const Color& b = frame_plan.background;

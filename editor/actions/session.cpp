@@ -94,6 +94,8 @@ Renderer& Session::renderer() {
   return *renderer_;
 }
 
+void Session::drop_renderer() { renderer_.reset(); }
+
 Camera framing_of(const Scene& scene, double aspect, double fov_degrees) {
   bool forward = true;
   for (const PlacedNode& placed : placed_nodes(scene))

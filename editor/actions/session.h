@@ -28,6 +28,8 @@ class Session {
 
   /// Throws DeviceError where there is no OpenGL.
   Renderer& renderer();
+  /// Frees it, on the thread that used it.
+  void drop_renderer();
 
  private:
   std::unique_ptr<Renderer> renderer_;

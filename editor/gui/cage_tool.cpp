@@ -18,9 +18,9 @@ constexpr double grab_pixels = 10;
 
 /// A cage with everything bound to it, for previews.
 struct CageTool::Bound {
+  CageDeform edit;  ///< without moves
   Cage cage;
   DeformSet set;
-  DeformTarget target;
   std::unique_ptr<Coordinates> coordinates;
   std::vector<std::unique_ptr<CageBinding>> bindings;  ///< one a node of the set
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -44,13 +44,12 @@ void CageTool::make(Desk& desk) {
     edit.cage.wrap = static_cast<double>(coarseness_);
   else
     edit.cage.lattice = {cells_[0], cells_[1], cells_[2]};
-  edit_ = edit;
   auto made = std::make_shared<std::shared_ptr<const Bound>>();
   desk.worker.start(
       "cage",
       [edit, made](Session& session) {
         auto bound = std::make_shared<Bound>();
-        bound->target = edit.target;
+        bound->edit = edit;
         bound->set = deform_set(session.scene(), edit.target);
         bound->cage = cage_of(edit.cage, bound->set, session.progress);
         bound->coordinates = coordinates_of(bound->cage, edit.coordinates, edit.resolution, session.progress);
@@ -90,10 +89,8 @@ void CageTool::apply(Desk& desk) {
       ranges.emplace_back(v, v);
   }
   if (groups.empty()) return;
-  CageDeform edit = edit_;
-  edit.target = bound_->target;
+  CageDeform edit = bound_->edit;
   edit.target.falloff = edit_.target.falloff;
-  edit.moves.clear();
   for (const auto& [motion, points] : groups) {
     CageMove move;
     move.points = points;
@@ -101,7 +98,17 @@ void CageTool::apply(Desk& desk) {
     edit.moves.push_back(move);
   }
   desk.edit(edit);
-  bound_.reset();
+}
+
+// False once an edit has changed what the cage was made around: its points would mean other places.
+bool CageTool::fits(const Desk& desk) const {
+  for (const PlacedNode& placed : bound_->set.nodes) {
+    const auto now = find_placed(desk.scene(), placed.node->id);
+    if (!now || now->node->object != placed.node->object || now->node->selection != placed.node->selection ||
+        now->to_world.matrix() != placed.to_world.matrix())
+      return false;
+  }
+  return true;
 }
 
 void CageTool::preview(Desk& desk) {
@@ -139,6 +146,10 @@ int CageTool::point_at(const Lens& lens, const Vec2& at) const {
 }
 
 void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
+  if (bound_ && !fits(desk)) {
+    bound_.reset();
+    dragging_ = boxing_ = false;
+  }
   if (!bound_) return;
   if (pointer.pressed && pointer.inside) {
     held_ = point_at(lens, pointer.at);
@@ -214,7 +225,7 @@ void CageTool::add_guides(const Desk& /*desk*/, std::vector<Guides::Line>& lines
 }
 
 bool CageTool::key(Desk& desk, const KeyPress& press) {
-  if (press.key != GLFW_KEY_ENTER || !bound_) return false;
+  if (press.key != GLFW_KEY_ENTER || !bound_ || busy()) return false;
   apply(desk);
   return true;
 }
@@ -257,11 +268,10 @@ void CageTool::options(Desk& desk) {
 }
 
 void CageTool::cancel(Desk& desk) {
-  desk.preview.reset();
   if (std::exchange(boxing_, false)) return;
-  if (dragging_) {
+  desk.preview.reset();
+  if (std::exchange(dragging_, false)) {
     moved_ = before_;
-    dragging_ = false;
     if (moved_ != bound_->cage.vertices) preview(desk);
     return;
   }

@@ -24,10 +24,11 @@ class CageTool final : public ViewTool {
   struct Bound;
   void make(Desk& desk);
   void apply(Desk& desk);
+  bool fits(const Desk& desk) const;
   void preview(Desk& desk);
   int point_at(const Lens& lens, const Vec2& at) const;
 
-  CageDeform edit_;  ///< what the options say; its moves are made by apply()
+  CageDeform edit_;  ///< what the options say
   bool wraps_ = false;
   int cells_[3] = {2, 2, 2};
   float coarseness_ = 0.1F, softness_ = 0;

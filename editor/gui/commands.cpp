@@ -38,7 +38,7 @@ void select(Desk& desk, bool all, bool none, bool invert) {
 template <class T>
 void each_active(Desk& desk) {
   std::vector<Edit> list;
-  for (const NodeId id : desk.active) {
+  for (const NodeId id : desk.active_tops()) {
     T edit;
     edit.node = NodeRef{id};
     list.emplace_back(edit);
@@ -46,9 +46,16 @@ void each_active(Desk& desk) {
   desk.edits(list);
 }
 
+bool selects_triangles(ToolKind tool) {
+  return tool == ToolKind::rectangle || tool == ToolKind::lasso || tool == ToolKind::polygon ||
+         tool == ToolKind::brush || tool == ToolKind::flood || tool == ToolKind::erase;
+}
+
 void remove(Desk& desk) {
   if (has_selection(desk))
     desk.edit(DeleteSelected{});
+  else if (selects_triangles(desk.tool))
+    desk.log.push_back({"delete: nothing is selected (with Pick or Move in hand, picked nodes are removed)"});
   else
     each_active<Remove>(desk);
 }
@@ -77,7 +84,7 @@ void separate(Desk& desk) {
 
 void group(Desk& desk) {
   Group edit;
-  for (const NodeId id : desk.active) edit.nodes.push_back(NodeRef{id});
+  for (const NodeId id : desk.active_tops()) edit.nodes.push_back(NodeRef{id});
   desk.edit(edit);
 }
 
@@ -145,9 +152,9 @@ const std::vector<Command>& command_table() {
       {"File", "Run script...", "", "", always, ask<PathQuestion::run_script>},
       {"File", "Quit", "Ctrl+Q", "Ctrl+Q", always, [](Desk& desk) { desk.quitting = true; }},
       {"Edit", "Undo", "Ctrl+Z", "Ctrl+Z", [](const Desk& desk) { return !desk.now->done.empty(); },
-       [](Desk& desk) { desk.undo(); }},
+       [](Desk& desk) { desk.undo(); }, true},
       {"Edit", "Redo", "Ctrl+Shift+Z Ctrl+Y", "Ctrl+Shift+Z",
-       [](const Desk& desk) { return !desk.now->undone.empty(); }, [](Desk& desk) { desk.redo(); }},
+       [](const Desk& desk) { return !desk.now->undone.empty(); }, [](Desk& desk) { desk.redo(); }, true},
       {"Edit", "All commands...", "Ctrl+P", "F3 Ctrl+P", always, [](Desk& desk) { desk.palette_open = true; }},
       {"Edit", "Delete", "Delete", "X Delete", has_either, remove},
       {"Edit", "Duplicate", "Ctrl+D", "Shift+D", has_active, each_active<Duplicate>},
@@ -178,8 +185,8 @@ const std::vector<Command>& command_table() {
       {"Tool", "Twist by numbers...", "", "", has_scene, [](Desk& desk) { desk.form_op = Twist::op; }},
       {"Tool", "Taper by numbers...", "", "", has_scene, [](Desk& desk) { desk.form_op = Taper::op; }},
       {"Tool", "Local axes", "X", "Comma", always, [](Desk& desk) { desk.local_axes = !desk.local_axes; }},
-      {"Tool", "Smaller brush", "[", "[", always, [](Desk& desk) { brush_by(desk, 1 / 1.25); }},
-      {"Tool", "Larger brush", "]", "]", always, [](Desk& desk) { brush_by(desk, 1.25); }},
+      {"Tool", "Smaller brush", "[", "[", always, [](Desk& desk) { brush_by(desk, 1 / 1.25); }, true},
+      {"Tool", "Larger brush", "]", "]", always, [](Desk& desk) { brush_by(desk, 1.25); }, true},
       {"View", "Frame selection", "F", "KP_DECIMAL Home", has_scene, [](Desk& desk) { desk.frame_view(); }},
       {"View", "Front", "KP_1", "KP_1", always, look_along<2, 1>},
       {"View", "Back", "Ctrl+KP_1", "Ctrl+KP_1", always, look_along<2, -1>},
@@ -229,7 +236,7 @@ std::optional<KeyPress> parse_key(const std::string& text) {
     press.key = found->second;
   } else if (rest.size() == 1 && ((rest[0] >= 'A' && rest[0] <= 'Z') || (rest[0] >= '0' && rest[0] <= '9') ||
                                   rest[0] == '[' || rest[0] == ']')) {
-    press.key = rest[0];  // GLFW's numbers of these are ASCII
+    press.key = static_cast<unsigned char>(rest[0]);  // GLFW's numbers of these are ASCII
   } else if (rest.size() == 4 && rest.starts_with("KP_") && rest[3] >= '0' && rest[3] <= '9') {
     press.key = GLFW_KEY_KP_0 + (rest[3] - '0');
   } else if (rest.size() >= 2 && rest.size() <= 3 && rest[0] == 'F' &&

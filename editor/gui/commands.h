@@ -16,6 +16,7 @@ struct Command {
   const char* blender_keys;  ///< in the keymap that follows Blender
   bool (*enabled)(const Desk& desk);
   void (*run)(Desk& desk);
+  bool repeats = false;  ///< while its key is held
 
   const char* keys_of(const Desk& desk) const { return desk.settings.blender_keys ? blender_keys : keys; }
 };

@@ -6,12 +6,13 @@
 namespace rebake {
 
 void draw_costs(Desk& desk, const FrameReport& report, bool& each_pass) {
-  ImGui::Text("%s", fmt::format("{:.1f} ms a picture at {} samples a pixel, {:.0f} % of the resolution; {:.1f} MB on "
-                                "the GPU; {:.1f} MB of history; {:.0f} pictures a second while moving",
-                                report.times.frame_ms, report.samples, report.scale * 100,
-                                static_cast<double>(report.gpu_bytes) / 1e6,
-                                static_cast<double>(desk.now->history_bytes) / 1e6, report.pictures_a_second)
-                        .c_str());
+  ImGui::Text(
+      "%s", fmt::format("{:.1f} ms a picture at {} samples a pixel, {:.0f} % of the resolution; at most {:.1f} MB on "
+                        "the GPU; {:.1f} MB of history; {:.0f} pictures a second while moving",
+                        report.times.frame_ms, report.samples, report.scale * 100,
+                        static_cast<double>(report.gpu_bytes) / 1e6, static_cast<double>(desk.now->history_bytes) / 1e6,
+                        report.pictures_a_second)
+                .c_str());
   ImGui::TextDisabled("%s", report.device.c_str());
   ImGui::Checkbox("time each pass (waits between them)", &each_pass);
   ImGui::SameLine();

@@ -16,22 +16,24 @@ namespace rebake {
 
 namespace fs = std::filesystem;
 
-Desk::Desk(Settings with, std::function<void()> wake)
-    : settings(std::move(with)), worker(std::move(wake)), now(worker.snapshot()) {
-  keep_journal();
+namespace {
+
+void keep_journal(Document& document) {
+  const fs::path folder = journal_folder();
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw FileError(folder, "cannot be made, so work is not kept safe: " + failed.message());
+  const auto since = std::chrono::system_clock::now().time_since_epoch();
+  document.keep_journal(folder / fmt::format("{}-{}.journal",
+                                             std::chrono::duration_cast<std::chrono::milliseconds>(since).count(),
+                                             ::getpid()));
 }
 
-void Desk::keep_journal() {
-  worker.start("journal", [](Session& session) {
-    const fs::path folder = journal_folder();
-    std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (failed) throw FileError(folder, "cannot be made, so work is not kept safe: " + failed.message());
-    const auto since = std::chrono::system_clock::now().time_since_epoch();
-    session.document.keep_journal(
-        folder /
-        fmt::format("{}-{}.journal", std::chrono::duration_cast<std::chrono::milliseconds>(since).count(), ::getpid()));
-  });
+}  // namespace
+
+Desk::Desk(Settings with, std::function<void()> wake)
+    : settings(std::move(with)), worker(std::move(wake)), now(worker.snapshot()) {
+  worker.start("journal", [](Session& session) { keep_journal(session.document); });
 }
 
 void Desk::update() {
@@ -39,10 +41,13 @@ void Desk::update() {
     if (message.failed) error = message.text;
     log.push_back({std::move(message.text), message.failed});
   }
+  // Before the snapshot, which is then at least as new.
+  const std::vector<std::function<void()>> finished = worker.take_finished();
   const std::shared_ptr<const Snapshot> next = worker.snapshot();
   if (next != now) {
+    const bool other = next->scene.roots != scene().roots;
     now = next;
-    preview.reset();
+    if (other) preview.reset();
     std::erase_if(active, [&](NodeId id) { return find(scene(), id) == nullptr; });
     if (std::all_of(now->done.begin(), now->done.end(),
                     [](const Edit& one) { return std::holds_alternative<Import>(one); }))
@@ -55,15 +60,26 @@ void Desk::update() {
       camera = framing_of(scene(), static_cast<double>(view_width) / view_height);
     }
   }
-  for (const std::function<void()>& then : worker.take_finished()) then();
+  for (const std::function<void()>& then : finished) then();
 }
 
 void Desk::edit(const Edit& one) { edits({one}); }
 
 void Desk::edits(const std::vector<Edit>& list) {
-  for (const Edit& one : list)
-    worker.start(std::visit([](const auto& e) { return std::string(e.op); }, one),
-                 [one](Session& session) { session.edit(one); });
+  if (list.empty()) return;
+  worker.start(std::visit([](const auto& e) { return std::string(e.op); }, list.front()), [list](Session& session) {
+    std::size_t done = 0;
+    try {
+      for (const Edit& one : list) {
+        session.edit(one);
+        ++done;
+      }
+    } catch (...) {
+      // All or nothing.
+      while (done-- > 0) session.document.undo();
+      throw;
+    }
+  });
 }
 
 void Desk::undo(int steps) {
@@ -92,6 +108,7 @@ void Desk::open(const std::vector<std::string>& paths, bool wanted) {
         "open",
         [path](Session& session) {
           Document opened = Document::open(path);
+          keep_journal(opened);
           session.document.discard_journal();
           session.document = std::move(opened);
         },
@@ -101,7 +118,6 @@ void Desk::open(const std::vector<std::string>& paths, bool wanted) {
           imported = scene();
           settings.remember(path.string());
         });
-    keep_journal();
     return;
   }
   for (const std::string& path : paths) {
@@ -123,7 +139,11 @@ void Desk::recover(const fs::path& journal) {
         session.say(fmt::format("{} edits recovered{}", recovered.edits,
                                 recovered.torn ? "; one more was being made when the editor ended: it is lost" : ""));
       },
-      [this] { recoverable.clear(); });
+      [this] {
+        project.clear();
+        saved_.reset();
+        imported = {};
+      });
 }
 
 void Desk::save_project(const fs::path& path) {
@@ -174,6 +194,17 @@ void Desk::run_script(const fs::path& path) {
 bool Desk::unsaved() const {
   const Scene& kept = saved_ ? *saved_ : imported;
   return scene().roots != kept.roots || scene().views != kept.views || scene().background != kept.background;
+}
+
+std::vector<NodeId> Desk::active_tops() const {
+  std::vector<NodeId> tops;
+  for (const NodeId id : active) {
+    bool below = false;
+    for (NodeId parent = parent_of(scene(), id); parent != NodeId::none && !below; parent = parent_of(scene(), parent))
+      below = active.contains(parent);
+    if (!below) tops.push_back(id);
+  }
+  return tops;
 }
 
 Box Desk::focus() const {

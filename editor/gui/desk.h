@@ -50,7 +50,7 @@ struct Desk {
   int channel = 1;
   bool wipe = false;             ///< the scene as imported is shown left of `wipe_at`
   double wipe_at = 0.5;          ///< share of the viewport's width
-  Scene imported;                ///< as it was before anything but imports was done
+  Scene imported;                ///< as it was before anything but imports was done, or as a project was opened
   std::optional<Scene> preview;  ///< drawn in place of the scene while something is dragged
 
   // Tools
@@ -69,7 +69,11 @@ struct Desk {
   bool palette_open = false, quitting = false;
   PathQuestion question = PathQuestion::none;
   std::string form_op;  ///< the edit whose form is open, empty for none
-  std::vector<std::filesystem::path> recoverable;
+  struct LostWork {
+    std::filesystem::path journal;
+    std::string what;  ///< how much, and of what
+  };
+  std::vector<LostWork> recoverable;
   std::filesystem::path project;     ///< empty until it has been saved
   std::vector<std::string> to_open;  ///< a project that waits for people's word
 
@@ -85,6 +89,7 @@ struct Desk {
   void update();
 
   void edit(const Edit& edit);
+  /// All of them, or none where one fails.
   void edits(const std::vector<Edit>& list);
   void undo(int steps = 1);
   void redo(int steps = 1);
@@ -101,6 +106,8 @@ struct Desk {
   const Scene& scene() const { return now->scene; }
   /// Whether there is something that no file holds: neither the project nor the sources.
   bool unsaved() const;
+  /// Active nodes that lie in no other active one.
+  std::vector<NodeId> active_tops() const;
   /// Of the active nodes, or of everything visible when none is.
   Box focus() const;
   /// What deforming tools take: the selected triangles, else the first active node, else the first that shows; nothing
@@ -112,7 +119,6 @@ struct Desk {
   void frame_view();
 
  private:
-  void keep_journal();
   std::optional<Scene> saved_;  ///< what the project holds
   std::size_t selected_ = 0;
   bool fresh_ = true;  ///< nothing was shown yet: the first scene is framed

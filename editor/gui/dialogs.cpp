@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "editor/gui/panels.h"
 
@@ -16,24 +19,32 @@ struct Question {
   PathQuestion kind;
   const char* title;
   const char* hint;
-  bool folders;        ///< a folder is meant
   const char* ending;  ///< that a file's name gets where it has none
 };
 constexpr Question questions[] = {
-    {PathQuestion::open, "Open", "a MobileNeRF folder, a scene folder, or a project (.rebake)", true, ""},
-    {PathQuestion::save_project, "Save project", "a file; it remembers all edits", false, ".rebake"},
-    {PathQuestion::save_scene, "Save scene folder", "a folder; keeps every node, not the history", true, ""},
-    {PathQuestion::export_folder, "Export", "a folder in the MobileNeRF format", true, ""},
-    {PathQuestion::screenshot, "Screenshot", "a PNG file of the picture as it is", false, ".png"},
-    {PathQuestion::turntable, "Turntable", "a folder for 36 pictures around the target", true, ""},
-    {PathQuestion::save_script, "Save as script", "a file with a line an edit", false, ".jsonl"},
-    {PathQuestion::run_script, "Run script", "a file with a line an edit", false, ".jsonl"},
+    {PathQuestion::open, "Open", "a MobileNeRF folder, a scene folder, or a project (.rebake)", ""},
+    {PathQuestion::save_project, "Save project", "a file; it remembers all edits", ".rebake"},
+    {PathQuestion::save_scene, "Save scene folder", "a folder; keeps every node, not the history", ""},
+    {PathQuestion::export_folder, "Export", "a folder in the MobileNeRF format", ""},
+    {PathQuestion::screenshot, "Screenshot", "a PNG file of the scene, without grid and handles", ".png"},
+    {PathQuestion::turntable, "Turntable", "a folder for 36 pictures around the target", ""},
+    {PathQuestion::save_script, "Save as script", "a file with a line an edit", ".jsonl"},
+    {PathQuestion::run_script, "Run script", "a file with a line an edit", ".jsonl"},
 };
 
 const Question& question_of(PathQuestion kind) {
   for (const Question& question : questions)
     if (question.kind == kind) return question;
   return questions[0];
+}
+
+bool entered() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false); }
+
+// In the middle, wherever it stood before.
+bool begin_question(const char* title) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+  return ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
 }
 
 // What the format cannot keep of this scene.
@@ -71,17 +82,21 @@ void Dialogs::draw_path(Desk& desk) {
   const bool first = asked_ != desk.question;
   if (first) {
     asked_ = desk.question;
-    path_ = desk.question == PathQuestion::save_project && !desk.project.empty() ? desk.project.string()
-                                                                                 : fs::current_path().string() + "/";
-    ImGui::OpenPopup("###path");
+    replacing_.clear();
+    std::error_code gone;
+    path_ = desk.question == PathQuestion::save_project && !desk.project.empty()
+                ? desk.project.string()
+                : fs::current_path(gone).string() + "/";
   }
+  // Another question may have closed it meanwhile.
+  if (!ImGui::IsPopupOpen("###path")) ImGui::OpenPopup("###path");
   ImGui::SetNextWindowSize({620, 420}, ImGuiCond_Appearing);
   bool open = true;
   if (!ImGui::BeginPopupModal((std::string(question.title) + "###path").c_str(), &open)) {
     if (!open) desk.question = PathQuestion::none;
     return;
   }
-  if (first) ImGui::SetKeyboardFocusHere();
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::TextDisabled("%s", question.hint);
   ImGui::SetNextItemWidth(-1);
   bool done = ImGui::InputText("##text", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
@@ -113,10 +128,19 @@ void Dialogs::draw_path(Desk& desk) {
   done = ImGui::Button(question.title) || done;
   ImGui::SameLine();
   const bool cancelled = ImGui::Button("Cancel") || !open;
+  fs::path path(path_);
+  if (!path.has_filename()) path = path.parent_path();
+  if (question.ending[0] != '\0' && path.extension() != question.ending) path += question.ending;
+  const bool replaces = desk.question != PathQuestion::open && desk.question != PathQuestion::run_script &&
+                        path != desk.project && fs::is_regular_file(path, error);
+  if (done && replaces && replacing_ != path) {
+    replacing_ = path;
+    done = false;
+    ImGui::SetKeyboardFocusHere(-1);
+  }
+  if (replaces && replacing_ == path)
+    ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s is there already: once more to replace it", path.filename().c_str());
   if (done && !path_.empty()) {
-    fs::path path(path_);
-    if (!path.has_filename()) path = path.parent_path();
-    if (question.ending[0] != '\0' && path.extension() != question.ending) path += question.ending;
     switch (desk.question) {
       case PathQuestion::open:
         desk.open({path.string()});
@@ -151,13 +175,13 @@ void Dialogs::draw_path(Desk& desk) {
 }
 
 void Dialogs::draw_error(Desk& desk) {
-  if (!desk.error.empty() && !ImGui::IsPopupOpen("It could not be done")) ImGui::OpenPopup("It could not be done");
-  ImGui::SetNextWindowSize({480, 0}, ImGuiCond_Appearing);
-  if (!ImGui::BeginPopupModal("It could not be done", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-  ImGui::PushTextWrapPos(460);
+  const char* const title = "It could not be done";
+  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+  if (!begin_question(title)) return;
+  ImGui::PushTextWrapPos(520);
   ImGui::TextUnformatted(desk.error.c_str());
   ImGui::PopTextWrapPos();
-  if (ImGui::Button("OK") || desk.error.empty()) {
+  if (ImGui::Button("OK") || entered()) {
     desk.error.clear();
     ImGui::CloseCurrentPopup();
   }
@@ -165,20 +189,31 @@ void Dialogs::draw_error(Desk& desk) {
 }
 
 void Dialogs::draw_recovery(Desk& desk) {
-  if (desk.recoverable.empty()) return;
-  if (!ImGui::IsPopupOpen("Unsaved work")) ImGui::OpenPopup("Unsaved work");
-  ImGui::SetNextWindowSize({560, 0}, ImGuiCond_Appearing);
-  if (!ImGui::BeginPopupModal("Unsaved work", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-  ImGui::TextWrapped("The editor ended without saving. Its work can be got back:");
-  for (const fs::path& journal : desk.recoverable) {
-    ImGui::PushID(journal.c_str());
-    if (ImGui::Button("Recover")) desk.recover(journal);
+  const char* const title = "Unsaved work";
+  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+  if (!begin_question(title)) return;
+  ImGui::TextUnformatted("The editor ended without saving. Its work can be got back:");
+  bool done = false;
+  for (const Desk::LostWork& lost : desk.recoverable) {
+    ImGui::PushID(lost.journal.c_str());
+    if (ImGui::Button("Recover")) {
+      desk.recover(lost.journal);
+      done = true;
+    }
     ImGui::SameLine();
-    ImGui::TextUnformatted(journal.filename().c_str());
+    ImGui::TextUnformatted(lost.what.c_str());
     ImGui::PopID();
   }
-  if (ImGui::Button("Later")) desk.recoverable.clear();
-  if (desk.recoverable.empty() || desk.worker.busy()) {
+  if (ImGui::Button("Later")) done = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Drop all of it")) {
+    for (const Desk::LostWork& lost : desk.recoverable) {
+      std::error_code ignored;
+      fs::remove(lost.journal, ignored);
+    }
+    done = true;
+  }
+  if (done) {
     desk.recoverable.clear();
     ImGui::CloseCurrentPopup();
   }
@@ -186,19 +221,25 @@ void Dialogs::draw_recovery(Desk& desk) {
 }
 
 void Dialogs::draw_quitting(Desk& desk) {
-  if (!desk.quitting) return;
   if (!desk.unsaved() && !desk.worker.busy()) {
     may_quit_ = true;
     return;
   }
-  if (!ImGui::IsPopupOpen("Unsaved changes")) ImGui::OpenPopup("Unsaved changes");
-  if (!ImGui::BeginPopupModal("Unsaved changes", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  const char* const title = "Unsaved changes";
+  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+  if (!begin_question(title)) return;
   ImGui::TextUnformatted(desk.worker.busy() ? "Something is still being done."
-                                            : "There are changes in no project yet.");
-  if (!desk.project.empty()) {
-    if (ImGui::Button("Save and quit")) desk.save_project(desk.project);
-    ImGui::SameLine();
+                                            : "There are changes that no project holds yet.");
+  if (ImGui::Button(desk.project.empty() ? "Save..." : "Save and quit")) {
+    if (desk.project.empty()) {
+      desk.quitting = false;
+      desk.question = PathQuestion::save_project;
+      ImGui::CloseCurrentPopup();
+    } else {
+      desk.save_project(desk.project);
+    }
   }
+  ImGui::SameLine();
   if (ImGui::Button("Quit without saving")) may_quit_ = true;
   ImGui::SameLine();
   if (ImGui::Button("Go on")) {
@@ -209,10 +250,10 @@ void Dialogs::draw_quitting(Desk& desk) {
 }
 
 void Dialogs::draw_replacing(Desk& desk) {
-  if (desk.to_open.empty()) return;
-  if (!ImGui::IsPopupOpen("Open another project")) ImGui::OpenPopup("Open another project");
-  if (!ImGui::BeginPopupModal("Open another project", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-  ImGui::TextUnformatted("There are changes in no project yet; opening another one drops them.");
+  const char* const title = "Open another project";
+  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+  if (!begin_question(title)) return;
+  ImGui::TextUnformatted("There are changes that no project holds yet; opening another project drops them.");
   const bool drops = ImGui::Button("Drop them and open");
   ImGui::SameLine();
   if (drops) desk.open(desk.to_open, true);
@@ -223,12 +264,36 @@ void Dialogs::draw_replacing(Desk& desk) {
   ImGui::EndPopup();
 }
 
+bool Dialogs::escape(Desk& desk) {
+  if (!desk.error.empty())
+    desk.error.clear();
+  else if (desk.quitting)
+    desk.quitting = false;
+  else if (!desk.to_open.empty())
+    desk.to_open.clear();
+  else if (!desk.recoverable.empty())
+    desk.recoverable.clear();
+  else if (desk.question != PathQuestion::none)
+    desk.question = PathQuestion::none;
+  else
+    return false;
+  closes_ = true;
+  return true;
+}
+
+// One at a time, the most urgent first.
 void Dialogs::draw(Desk& desk) {
-  draw_path(desk);
-  draw_recovery(desk);
-  draw_quitting(desk);
-  draw_replacing(desk);
-  draw_error(desk);
+  if (std::exchange(closes_, false)) ImGui::ClosePopupsOverWindow(nullptr, false);
+  if (!desk.error.empty())
+    draw_error(desk);
+  else if (desk.quitting)
+    draw_quitting(desk);
+  else if (!desk.to_open.empty())
+    draw_replacing(desk);
+  else if (!desk.recoverable.empty())
+    draw_recovery(desk);
+  else
+    draw_path(desk);
 }
 
 }  // namespace rebake

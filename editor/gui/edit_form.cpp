@@ -1,6 +1,9 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <cmath>
+#include <sstream>
+
 #include "editor/fields/variants.h"
 #include "editor/gui/expression.h"
 #include "editor/gui/panels.h"
@@ -22,16 +25,19 @@ std::vector<FieldLine> fields_of(const std::string& op, std::string& help) {
   return lines;
 }
 
-// The words of a type that is a choice, e.g. "set, add, remove or intersect".
+// The words of a type that is a choice, e.g. "set, add, remove or intersect"; none for other types.
 std::vector<std::string> choices(const std::string& type) {
-  static const std::vector<std::vector<std::string>> all = {{"set", "add", "remove", "intersect"},
-                                                            {"world", "node", "bounds"},
-                                                            {"mean_value", "green", "harmonic"},
-                                                            {"360", "forward"},
-                                                            {"split", "chunked", "unsplit"}};
-  for (const auto& words : all)
-    if (type.starts_with(words[0]) && type.ends_with(words.back())) return words;
-  return {};
+  if (type.find(" or ") == std::string::npos ||
+      type.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_, ") != std::string::npos)
+    return {};
+  std::vector<std::string> words;
+  std::istringstream rest(type);
+  for (std::string word; rest >> word;) {
+    if (word == "or") continue;
+    if (word.ends_with(',')) word.pop_back();
+    words.push_back(word);
+  }
+  return words;
 }
 
 }  // namespace
@@ -51,6 +57,7 @@ void EditForm::begin(const Desk& desk) {
           values_["node"] = static_cast<std::uint64_t>(placed.node->id);
           break;
         }
+    if (field.name == "selection" && desk.selected_triangles() > 0) values_["selection"] = true;
     if (!field.initial.empty() && field.type != "true or false") continue;
     if (field.required && field.type == "number") values_[field.name] = 0;
   }
@@ -60,8 +67,10 @@ void EditForm::begin(const Desk& desk) {
 void EditForm::show(Desk& desk) {
   json line = values_;
   line["op"] = op_;
-  if (line.dump() == previewed_ || desk.worker.busy() || ImGui::IsAnyMouseDown()) return;
+  const bool same = line.dump() == previewed_ && previewed_on_ == desk.scene().roots;
+  if (same || desk.worker.busy() || ImGui::IsAnyMouseDown()) return;
   previewed_ = line.dump();
+  previewed_on_ = desk.scene().roots;
   try {
     const Edit edit = read_edit(line, desk.scene());
     // Only what changes the picture: an import would be read twice.
@@ -72,10 +81,8 @@ void EditForm::show(Desk& desk) {
         [edit, made](Session& session) {
           try {
             *made = rebake::apply(session.scene(), edit, session.progress);
-          } catch (const Cancelled&) {
-            throw;
           } catch (const Error&) {
-            made->reset();  // said when it is applied
+            made->reset();  // said when it is applied; or stopped
           }
         },
         [&desk, made, op = op_] {
@@ -136,10 +143,9 @@ void EditForm::draw(Desk& desk) {
         } else if (field.type == "text") {
           values_[name] = text;
         } else if (const auto number = evaluated(text); number) {
-          values_[name] =
-              field.type == "whole number" && *number == static_cast<double>(static_cast<std::int64_t>(*number))
-                  ? json(static_cast<std::int64_t>(*number))
-                  : json(*number);
+          values_[name] = field.type == "whole number" && std::abs(*number) < 1e15 && *number == std::round(*number)
+                              ? json(static_cast<std::int64_t>(*number))
+                              : json(*number);
         } else {
           // Read when it is applied, so that what is half typed is no error yet.
           const json read = json::parse(text, nullptr, false);
@@ -164,7 +170,7 @@ void EditForm::draw(Desk& desk) {
       line["op"] = op_;
       desk.edit(read_edit(line, desk.scene()));
       problem_.clear();
-      previewed_ = line.dump();
+      open = false;
     } catch (const Error& error) {
       problem_ = error.what();
     }

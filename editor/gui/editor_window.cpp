@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 
@@ -49,18 +50,26 @@ class EditorWindow {
  public:
   explicit EditorWindow(const std::vector<std::string>& paths)
       : settings_file_(config_folder() / "settings.json"),
-        settings_(read_settings(settings_file_, settings_problem_)),
-        window_("Rebake", settings_.window_width, settings_.window_height),
+        kept_settings_(read_settings(settings_file_, settings_problem_)),
+        window_("Rebake", kept_settings_.window_width, kept_settings_.window_height),
         renderer_(window_.context()),
         viewport_(renderer_, [this] { return window_.context(); }),
-        desk_(settings_, Window::wake) {
+        lost_(lost_work()),
+        desk_(kept_settings_, Window::wake) {
     scale_ = window_.scale();
     set_looks(desk_.settings.dark);
     load_font(scale_);
     if (!settings_problem_.empty()) desk_.log.push_back({settings_problem_, true});
-    window_.on_key = [this](const KeyPress& press) { key(press); };
+    // Nothing may be thrown through the window system.
+    window_.on_key = [this](const KeyPress& press) {
+      try {
+        key(press);
+      } catch (const std::exception& error) {
+        desk_.error = error.what();
+      }
+    };
     window_.on_drop = [this](const std::vector<std::string>& dropped) { desk_.open(dropped); };
-    find_journals();
+    desk_.recoverable = lost_;
     if (!paths.empty()) desk_.open(paths);
   }
 
@@ -78,10 +87,8 @@ class EditorWindow {
       }
       desk_.update();
       draw();
+      keep_settings();
     }
-    desk_.settings.window_width = static_cast<int>(window_.width() / scale_);
-    desk_.settings.window_height = static_cast<int>(window_.height() / scale_);
-    write_settings(desk_.settings, settings_file_);
     // The work is saved, or not wanted.
     desk_.worker.cancel();
     desk_.worker.start("end", [](Session& session) { session.document.discard_journal(); });
@@ -89,20 +96,46 @@ class EditorWindow {
   }
 
  private:
-  void find_journals() {
+  // What other editors left behind when they ended without saving, the latest first.
+  static std::vector<Desk::LostWork> lost_work() {
+    std::vector<Desk::LostWork> found;
     std::error_code error;
-    for (fs::directory_iterator at(journal_folder(), error), end; !error && at != end; at.increment(error))
-      if (at->path().extension() == ".journal" && !Journal::in_use(at->path())) {
-        try {
-          if (!Journal::read(at->path()).entries.empty())
-            desk_.recoverable.push_back(at->path());
-          else
-            fs::remove(at->path());
-        } catch (const Error& problem) {
-          desk_.log.push_back({problem.what(), true});
+    for (fs::directory_iterator at(journal_folder(), error), end; !error && at != end; at.increment(error)) {
+      const fs::path& path = at->path();
+      if (path.extension() != ".journal" || Journal::in_use(path)) continue;
+      try {
+        const Journal::Contents contents = Journal::read(path);
+        std::string first;
+        for (const nlohmann::json& entry : contents.entries)
+          if (first.empty() && entry.contains("edit") && entry.at("edit").contains("path"))
+            first = entry.at("edit").at("path").get<std::string>();
+        if (!contents.entries.empty()) {
+          found.push_back({path, fmt::format("{} edits, {}", contents.entries.size(), first)});
+          continue;
         }
+        // Nothing was done there; a fresh one may be another editor's that is just starting.
+        std::error_code unknown;
+        const auto age = fs::file_time_type::clock::now() - fs::last_write_time(path, unknown);
+        if (!unknown && age > std::chrono::minutes(1)) fs::remove(path, unknown);
+      } catch (const std::exception& problem) {
+        found.push_back({path, problem.what()});
       }
-    std::sort(desk_.recoverable.rbegin(), desk_.recoverable.rend());
+    }
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.journal > b.journal; });
+    return found;
+  }
+
+  // On the disk once nothing is held any more, so that they are there however the editor ends.
+  void keep_settings() {
+    desk_.settings.window_width = static_cast<int>(window_.width() / scale_);
+    desk_.settings.window_height = static_cast<int>(window_.height() / scale_);
+    if (desk_.settings == kept_settings_ || ImGui::IsAnyMouseDown()) return;
+    kept_settings_ = desk_.settings;
+    try {
+      write_settings(kept_settings_, settings_file_);
+    } catch (const Error& error) {
+      desk_.log.push_back({error.what(), true});
+    }
   }
 
   void key(const KeyPress& press) {
@@ -116,20 +149,24 @@ class EditorWindow {
     if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) return;
     if (viewport_.key(desk_, press)) return;
     if (viewport_.tool(desk_).busy()) return;  // nothing else happens during a drag
-    if (desk_.flying && plain &&
+    const bool letter = press.key >= 'A' && press.key <= 'Z';
+    if (desk_.flying && plain && letter &&
         std::string_view("WASDQE").find(static_cast<char>(press.key)) != std::string_view::npos)
       return;
-    if (const Command* command = command_for(press, desk_); command != nullptr && command->enabled(desk_))
+    const Command* command = command_for(press, desk_);
+    if (command == nullptr || (press.repeated && !command->repeats)) return;
+    if (command->enabled(desk_))
       command->run(desk_);
+    else
+      desk_.log.push_back({std::string(command->title) + ": there is nothing to do it with"});
   }
 
   void escape() {
+    if (dialogs_.escape(desk_)) return;
     if (desk_.palette_open) {
       desk_.palette_open = false;
-    } else if (!desk_.error.empty()) {
-      desk_.error.clear();
-    } else if (desk_.question != PathQuestion::none) {
-      desk_.question = PathQuestion::none;
+    } else if (desk_.turntable) {
+      desk_.turntable.reset();
     } else if (!desk_.form_op.empty()) {
       desk_.form_op.clear();
     } else if (viewport_.cancel(desk_)) {
@@ -226,6 +263,12 @@ class EditorWindow {
           if (ImGui::MenuItem(command.title, keys.substr(0, keys.find(' ')).c_str(), false, command.enabled(desk_)))
             command.run(desk_);
         }
+      if (name == std::string_view("File") && ImGui::BeginMenu("Recent", !desk_.settings.recent.empty())) {
+        const std::vector<std::string> recent = desk_.settings.recent;
+        for (const std::string& path : recent)
+          if (ImGui::MenuItem(path.c_str())) desk_.open({path});
+        ImGui::EndMenu();
+      }
       ImGui::EndMenu();
     }
     ImGui::EndMainMenuBar();
@@ -257,7 +300,7 @@ class EditorWindow {
       ImGui::EndChild();
       ImGui::EndTabItem();
     };
-    tab("History", [&] { draw_history(desk_); });
+    tab("History", [&] { history_.draw(desk_); });
     tab("Script", [&] { script_.draw(desk_); });
     tab("Cost", [&] { draw_costs(desk_, viewport_.report(), viewport_.each_pass()); });
     tab("Log", [&] { draw_log(desk_); });
@@ -265,6 +308,10 @@ class EditorWindow {
   }
 
   void status() {
+    if (desk_.turntable) {
+      ImGui::Text("turntable: picture %d of %d (Esc ends it)", desk_.turntable->next + 1, desk_.turntable->count);
+      return;
+    }
     if (desk_.worker.busy()) {
       const Worker::Status status = desk_.worker.status();
       if (ImGui::SmallButton("Cancel")) desk_.worker.cancel();
@@ -292,13 +339,15 @@ class EditorWindow {
 
   fs::path settings_file_;
   std::string settings_problem_;
-  Settings settings_;
+  Settings kept_settings_;  ///< as they are on the disk
   Window window_;
   Renderer renderer_;
   Viewport viewport_;
+  std::vector<Desk::LostWork> lost_;  ///< looked for before this editor's own journal is begun
   Desk desk_;
   OutlinePanel outline_;
   PropertiesPanel properties_;
+  HistoryPanel history_;
   ScriptPanel script_;
   PalettePanel palette_;
   EditForm form_;

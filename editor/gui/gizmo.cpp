@@ -55,7 +55,7 @@ std::optional<Gizmo::Target> Gizmo::target(const Desk& desk) const {
   }
   target.triangles = !target.nodes.empty();
   if (!target.triangles) {
-    for (const NodeId id : desk.active) {
+    for (const NodeId id : desk.active_tops()) {
       const auto placed = find_placed(desk.scene(), id);
       if (!placed || placed->locked) continue;
       target.nodes.push_back(id);
@@ -65,7 +65,7 @@ std::optional<Gizmo::Target> Gizmo::target(const Desk& desk) const {
   if (target.nodes.empty()) return std::nullopt;
   const auto first = find_placed(desk.scene(), target.nodes.front());
   target.pivot = box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center());
-  if (desk.local_axes) target.axes = orthogonal_factor(first->to_world.linear());
+  if (desk.local_axes && kind_ != ToolKind::scale) target.axes = orthogonal_factor(first->to_world.linear());
   return target;
 }
 
@@ -173,7 +173,8 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   const bool moved = (now_ - pointer.at).norm() > 0;
   now_ = pointer.at;
   const double before = amount_;
-  amount_ = typed_.empty() ? amount(lens, pointer) : std::strtod(typed_.c_str(), nullptr);
+  amount_ = amount(lens, pointer);
+  if (!typed_.empty()) amount_ = std::strtod(typed_.c_str(), nullptr) - (kind_ == ToolKind::scale ? 1 : 0);
   if (moved || amount_ != before) preview(desk, lens);
   if (!pointer.released) return;
   const std::vector<Edit> made = edits(lens);
@@ -186,8 +187,11 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     desk.edits(made);
 }
 
-bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
-  if (held_ < 0) return false;
+bool Gizmo::key(Desk& desk, const KeyPress& press) {
+  // In Blender these choose an axis here: they must not delete.
+  const bool axis_key = press.key == GLFW_KEY_X || press.key == GLFW_KEY_Y || press.key == GLFW_KEY_Z;
+  if (desk.settings.blender_keys && axis_key && !press.control && !press.alt) return true;
+  if (held_ < 0 || (held_ == 3 && kind_ == ToolKind::move)) return false;
   if (press.key >= GLFW_KEY_0 && press.key <= GLFW_KEY_9) {
     typed_ += static_cast<char>(press.key);
   } else if (press.key >= GLFW_KEY_KP_0 && press.key <= GLFW_KEY_KP_9) {
@@ -240,9 +244,10 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
 }
 
 void Gizmo::options(Desk& desk) {
-  ImGui::Checkbox("local axes", &desk.local_axes);
-  if (kind_ == ToolKind::scale) desk.local_axes = false;
-  ImGui::SameLine();
+  if (kind_ != ToolKind::scale) {  // sizes are along the world's axes
+    ImGui::Checkbox("local axes", &desk.local_axes);
+    ImGui::SameLine();
+  }
   if (!target(desk))
     ImGui::TextDisabled("pick a node in the outline, or select triangles");
   else

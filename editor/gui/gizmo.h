@@ -39,7 +39,6 @@ class Gizmo final : public ViewTool {
   Vec2 from_{0, 0}, now_{0, 0};
   double amount_ = 0;
   std::string typed_;  ///< numbers typed during the drag
-  bool local_ = false;
 };
 
 }  // namespace rebake

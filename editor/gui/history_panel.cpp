@@ -5,21 +5,25 @@
 
 namespace rebake {
 
-void draw_history(Desk& desk) {
+void HistoryPanel::draw(Desk& desk) {
   const Snapshot& now = *desk.now;
   const int done = static_cast<int>(now.done.size());
-  if (ImGui::Selectable("start", done == 0) && done > 0) desk.undo(done);
-  for (int k = 0; k < done; ++k) {
-    const std::string title = fmt::format("{}  {}", k + 1, title_of(now.done[static_cast<std::size_t>(k)], now.scene));
-    if (ImGui::Selectable(title.c_str(), k + 1 == done) && k + 1 < done) desk.undo(done - k - 1);
+  const bool fresh = of_ != desk.now;
+  if (fresh) {
+    of_ = desk.now;
+    lines_ = {"start"};
+    for (const Edit& edit : now.done) lines_.push_back(fmt::format("{}  {}", lines_.size(), title_of(edit, now.scene)));
+    for (const Edit& edit : now.undone)
+      lines_.push_back(fmt::format("{}  {} (undone)", lines_.size(), title_of(edit, now.scene)));
   }
-  for (int k = 0; k < static_cast<int>(now.undone.size()); ++k) {
-    const std::string title =
-        fmt::format("{}  {} (undone)", done + k + 1, title_of(now.undone[static_cast<std::size_t>(k)], now.scene));
-    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    const bool clicked = ImGui::Selectable(title.c_str());
+  for (int k = 0; k < static_cast<int>(lines_.size()); ++k) {
+    const ImGuiCol_ color = k <= done ? ImGuiCol_Text : ImGuiCol_TextDisabled;
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(color));
+    const bool clicked = ImGui::Selectable(lines_[static_cast<std::size_t>(k)].c_str(), k == done);
     ImGui::PopStyleColor();
-    if (clicked) desk.redo(k + 1);
+    if (k == done && fresh) ImGui::SetScrollHereY(0.8F);
+    if (clicked && k < done) desk.undo(done - k);
+    if (clicked && k > done) desk.redo(k - done);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace rebake {
@@ -12,6 +13,13 @@ constexpr double closest_to_pole = 0.01;  // radians
 
 double half_tangent(const Camera& camera) { return std::tan(camera.fov_degrees * std::numbers::pi / 360); }
 
+Camera flown_to(const Camera& camera, const Vec3& target) {
+  Camera result = camera;
+  result.eye += target - camera.target;
+  result.target = target;
+  return result;
+}
+
 // `direction` turned about the camera's up and then towards or away from it.
 Vec3 turned(const Camera& camera, const Vec3& direction, double about_up, double towards_up) {
   const Vec3 up = camera.up.normalized();
@@ -19,7 +27,7 @@ Vec3 turned(const Camera& camera, const Vec3& direction, double about_up, double
   const double angle = std::acos(std::clamp(level.normalized().dot(up), -1.0, 1.0));
   const double wanted = std::clamp(angle - towards_up, closest_to_pole, std::numbers::pi - closest_to_pole);
   Vec3 side = up.cross(level);
-  if (!(side.norm() > 1e-9 * level.norm())) side = up.unitOrthogonal();
+  if (!(side.norm() > 1e-9 * level.norm())) side = up.unitOrthogonal();  // along the axis every side is as good
   return Eigen::AngleAxisd(wanted - angle, side.normalized()) * level;
 }
 
@@ -49,13 +57,15 @@ Camera zoomed(const Camera& camera, const Vec3& towards, double factor) {
   result.eye = towards + (camera.eye - towards) * factor;
   result.target = towards + (camera.target - towards) * factor;
   // Nearer than numbers tell points apart there is nothing to see.
-  const double least = 1e-9 * (1 + towards.norm());
+  const double least = std::max(1e-12 * result.target.norm(), std::numeric_limits<double>::min());
   return (result.eye - result.target).norm() > least ? result : camera;
 }
 
 Camera framed(const Camera& camera, const Box& box, double aspect) {
   if (box.isEmpty()) return camera;
-  const double radius = std::max(box.diagonal().norm() / 2, 1e-9 * (1 + box.center().norm()));
+  // A single point is looked at from where the camera is.
+  const double radius = box.diagonal().norm() / 2;
+  if (!(radius > 1e-12 * box.center().norm())) return flown_to(camera, box.center());
   const double half = std::atan(half_tangent(camera) * std::min(1.0, aspect));
   Camera result = camera;
   result.target = box.center();

@@ -33,6 +33,10 @@ std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
   // Those whose name holds it come before those whose help does.
   std::stable_partition(all.begin(), all.end(),
                         [&](const Entry& entry) { return lower(entry.title).find(wanted) != std::string::npos; });
+  std::stable_partition(all.begin(), all.end(), [&](const Entry& entry) {
+    const std::size_t colon = entry.title.find(": ");
+    return lower(colon == std::string::npos ? entry.title : entry.title.substr(colon + 2)).starts_with(wanted);
+  });
   return all;
 }
 
@@ -46,10 +50,10 @@ void PalettePanel::draw(Desk& desk) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x / 2, screen.y * 0.15F}, ImGuiCond_Always, {0.5F, 0});
   ImGui::SetNextWindowSize({std::min(720.0F, screen.x * 0.8F), screen.y * 0.6F});
+  ImGui::SetNextWindowBgAlpha(1);
   ImGui::Begin("All commands", &desk.palette_open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
   if (!was_open_) {
     filter_.clear();
-    chosen_ = 0;
     ImGui::SetKeyboardFocusHere();
   }
   ImGui::SetNextItemWidth(-1);

@@ -29,12 +29,18 @@ class PropertiesPanel {
 
  private:
   bool number(const char* label, double& value, const char* format);
-  std::string text_, editing_;
-  double move_[3] = {0, 0, 0}, turn_[3] = {0, 0, 0}, size_[3] = {1, 1, 1};
+  std::string text_, editing_, problem_;
 };
 
 /// All edits, done and undone; a click goes there.
-void draw_history(Desk& desk);
+class HistoryPanel {
+ public:
+  void draw(Desk& desk);
+
+ private:
+  std::shared_ptr<const Snapshot> of_;  ///< what the lines say
+  std::vector<std::string> lines_;
+};
 
 /// The edits as script lines, to be copied or saved, and a line to type one.
 class ScriptPanel {
@@ -43,7 +49,8 @@ class ScriptPanel {
 
  private:
   std::string line_, problem_;
-  std::size_t shown_ = 0;
+  std::shared_ptr<const Snapshot> of_;  ///< what the lines say
+  std::vector<std::string> lines_;
 };
 
 /// What the last picture cost: passes, why each ran or not, memory.
@@ -68,7 +75,6 @@ class PalettePanel {
 
  private:
   std::string filter_;
-  int chosen_ = 0;
   bool was_open_ = false;
 };
 
@@ -81,7 +87,8 @@ class EditForm {
   void begin(const Desk& desk);
   void show(Desk& desk);
   bool previews_ = true;
-  std::string previewed_;  ///< the line whose result is shown, or being made
+  std::string previewed_;              ///< the line whose result is shown, or being made
+  std::vector<NodePtr> previewed_on_;  ///< the scene that it was made of
   std::string op_, problem_;
   nlohmann::json values_;
   std::map<std::string, std::string> texts_;  ///< of fields that are typed as JSON
@@ -91,6 +98,8 @@ class EditForm {
 class Dialogs {
  public:
   void draw(Desk& desk);
+  /// Answers the question that is open with "not now"; false when none is.
+  bool escape(Desk& desk);
   /// True once the window may close.
   bool may_quit() const { return may_quit_; }
 
@@ -102,7 +111,8 @@ class Dialogs {
   void draw_replacing(Desk& desk);
   std::string path_;
   PathQuestion asked_ = PathQuestion::none;
-  bool may_quit_ = false;
+  std::filesystem::path replacing_;  ///< is there already: asked for once
+  bool may_quit_ = false, closes_ = false;
 };
 
 }  // namespace rebake

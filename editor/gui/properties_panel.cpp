@@ -24,7 +24,10 @@ bool PropertiesPanel::number(const char* label, double& value, const char* forma
   if (!open) return false;
   editing_.clear();
   const std::optional<double> read = evaluated(text);
-  if (!ImGui::IsItemDeactivatedAfterEdit() || !read || *read == value) return false;
+  const bool typed = ImGui::IsItemDeactivatedAfterEdit();
+  if (typed && !read) problem_ = "\"" + text + "\" is no number";
+  if (!typed || !read || *read == value) return false;
+  problem_.clear();
   value = *read;
   return true;
 }
@@ -45,7 +48,7 @@ void PropertiesPanel::draw(Desk& desk) {
   const Vec3 center = box.isEmpty() ? Vec3(placed->to_world.translation()) : Vec3(box.center());
   std::vector<Edit> list;
   const auto transform_all = [&](const auto& change) {
-    for (const NodeId id : desk.active) {
+    for (const NodeId id : desk.active_tops()) {
       Transform transform;
       transform.node = NodeRef{id};
       transform.pivot = center;
@@ -82,11 +85,23 @@ void PropertiesPanel::draw(Desk& desk) {
   if (number("all sizes", factor, "x {:.5g}"))
     transform_all([&](Transform& transform) { transform.scale.value = Vec3::Constant(factor); });
   if (!list.empty()) desk.edits(list);
-  if (!node.object) return;
+  if (!problem_.empty()) ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
+  std::size_t triangles = 0, sets = 0;
+  std::uint64_t bytes = 0;
+  bool bent = false;
+  for (const NodeId id : desk.active) {
+    const NodePtr one = find(desk.scene(), id);
+    if (!one || !one->object) continue;
+    triangles += one->object->triangle_count();
+    sets += one->object->sets.size();
+    bytes += one->object->memory();
+    bent = bent || one->object->any_turns();
+  }
+  if (sets == 0) return;
   ImGui::Separator();
-  ImGui::Text("%zu triangles in %zu texture sets", node.object->triangle_count(), node.object->sets.size());
-  ImGui::Text("%s", fmt::format("{:.1f} MB", static_cast<double>(node.object->memory()) / 1e6).c_str());
-  if (node.object->any_turns()) ImGui::TextWrapped("bent: view directions turn with its triangles");
+  ImGui::Text("%zu triangles in %zu texture sets", triangles, sets);
+  ImGui::Text("%.1f MB", static_cast<double>(bytes) / 1e6);
+  if (bent) ImGui::TextWrapped("bent: view directions turn with its triangles");
 }
 
 }  // namespace rebake

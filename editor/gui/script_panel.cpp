@@ -37,17 +37,26 @@ void ScriptPanel::draw(Desk& desk) {
       problem_ = error.what();
     }
   }
-  if (!problem_.empty()) ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
-  ImGui::BeginChild("lines");
-  for (const Edit& edit : desk.now->done) {
-    // Regions drawn by hand are long.
-    std::string text = to_json(edit).dump();
-    constexpr std::size_t longest = 300;
-    if (text.size() > longest) text = text.substr(0, longest) + " ...";
-    ImGui::TextUnformatted(text.c_str());
+  if (!problem_.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.5F, 0.4F, 1));
+    ImGui::TextWrapped("%s", problem_.c_str());
+    ImGui::PopStyleColor();
   }
-  if (shown_ != desk.now->done.size()) ImGui::SetScrollHereY(1);
-  shown_ = desk.now->done.size();
+  ImGui::BeginChild("lines");
+  const bool fresh = of_ != desk.now;
+  if (fresh) {
+    of_ = desk.now;
+    lines_.clear();
+    for (const Edit& edit : desk.now->done) {
+      // Regions drawn by hand are long.
+      std::string text = to_json(edit).dump();
+      constexpr std::size_t longest = 300;
+      if (text.size() > longest) text = text.substr(0, longest) + " ...";
+      lines_.push_back(std::move(text));
+    }
+  }
+  for (const std::string& line : lines_) ImGui::TextUnformatted(line.c_str());
+  if (fresh) ImGui::SetScrollHereY(1);
   ImGui::EndChild();
 }
 

@@ -20,6 +20,7 @@ struct Settings {
 
   /// Puts a path first among the recent ones.
   void remember(const std::string& path);
+  bool operator==(const Settings&) const = default;
 };
 
 /// $XDG_CONFIG_HOME/rebake, by default ~/.config/rebake.

@@ -72,6 +72,7 @@ void Viewport::fly(Desk& desk) {
   const double seconds = std::min(0.2, std::chrono::duration<double>(now - flown_at_).count());
   flown_at_ = now;
   const double speed = desk.focus().isEmpty() ? 1 : desk.focus().diagonal().norm() * (io.KeyShift ? 1.0 : 0.3);
+  if (io.WantTextInput || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) return;
   const double right = held(GLFW_KEY_RIGHT, 'D') - held(GLFW_KEY_LEFT, 'A'), up = held('E', 'E') - held('Q', 'Q'),
                forward = held(GLFW_KEY_UP, 'W') - held(GLFW_KEY_DOWN, 'S');
   if (right != 0 || up != 0 || forward != 0)
@@ -112,7 +113,7 @@ Guides Viewport::guides(const Desk& desk) const {
   if (desk.settings.grid) {
     // On the ground; squares of the power of ten that fits the scene.
     const Box box = world_bounds(desk.scene());
-    const double size = box.isEmpty() ? 1 : std::max(box.diagonal().norm(), 1e-6);
+    const double size = box.isEmpty() || !(box.diagonal().norm() > 0) ? 1 : box.diagonal().norm();
     const double step = std::pow(10, std::floor(std::log10(size)));
     const double floor = box.isEmpty() ? 0 : box.min().y();
     constexpr int half = 10;
@@ -141,7 +142,7 @@ void Viewport::picture(Desk& desk) {
   const bool still = !moving() && !desk.flying;
   View view;
   const Scene& scene = desk.preview ? *desk.preview : desk.scene();
-  view.camera = with_depth_for(desk.camera, world_bounds(scene));
+  view.camera = desk.camera;
   view.samples = desk.samples;
   double scale = 1;
   if (!still && full_ms_ > wanted_ms) {
@@ -154,8 +155,10 @@ void Viewport::picture(Desk& desk) {
   if (made_ && same_scene(made_->scene, scene) && same_view(made_->view, view) && made_->guides == wanted.guides &&
       made_->each_pass == each_pass_ && made_->wipe == desk.wipe)
     return;
+  // Whether it can be drawn or not: what cannot is said once.
+  made_ = wanted;
+  texture_ = 0;
   const Renderer::Shown shown = renderer_.show(scene, view, {}, wanted.guides, each_pass_);
-  texture_ = shown.texture;
   const double ms = shown.times.frame_ms;
   if (view.width == desk.view_width && view.samples == desk.samples) full_ms_ = ms;
   // The time goes with the pixels, as far as it goes with anything that can be chosen here.
@@ -174,7 +177,7 @@ void Viewport::picture(Desk& desk) {
     if (!before_) before_ = std::make_unique<Renderer>(window_context_());
     before_texture_ = before_->show(desk.imported, view, {}, {}, false).texture;
   }
-  made_ = std::move(wanted);
+  texture_ = shown.texture;
 }
 
 // The line between before and after, which the pointer moves. True while it does, or is about to.
@@ -249,17 +252,18 @@ void Viewport::write_pictures(Desk& desk) {
   try {
     if (!desk.screenshot.empty()) {
       const std::filesystem::path path = std::exchange(desk.screenshot, {});
+      made_.reset();
       write_png(renderer_.render(desk.scene(), view), path);
       desk.log.push_back({"screenshot " + path.string()});
-      made_.reset();
     }
     if (desk.turntable) {
       Desk::Turntable& turntable = *desk.turntable;
       std::filesystem::create_directories(turntable.folder);
-      view.camera =
-          orbited(view.camera, 2.0 * desk.view_height * turntable.next / turntable.count, 0, desk.view_height);
-      write_png(renderer_.render(desk.scene(), view), turntable.folder / fmt::format("{:03}.png", turntable.next));
       made_.reset();
+      view.camera = with_depth_for(
+          orbited(desk.camera, 2.0 * desk.view_height * turntable.next / turntable.count, 0, desk.view_height),
+          world_bounds(desk.scene()));
+      write_png(renderer_.render(desk.scene(), view), turntable.folder / fmt::format("{:03}.png", turntable.next));
       if (++turntable.next == turntable.count) {
         desk.log.push_back({fmt::format("turntable of {} pictures in {}", turntable.count, turntable.folder.string())});
         desk.turntable.reset();
@@ -302,12 +306,18 @@ void Viewport::draw(Desk& desk) {
     pointer.inside = false;
     pointer.pressed = false;
   }
-  const Lens lens(desk.camera, desk.view_width, desk.view_height);
-  navigate(desk, lens, pointer);
+  try {
+    navigate(desk, Lens(desk.camera, desk.view_width, desk.view_height), pointer);
+  } catch (const std::exception& error) {
+    desk.error = error.what();
+  }
   if (desk.flying) fly(desk);
+  // What edits select through this camera is what is drawn through it.
+  desk.camera = with_depth_for(desk.camera, world_bounds(desk.scene()));
+  const Lens lens(desk.camera, desk.view_width, desk.view_height);
   try {
     if (!desk.worker.busy() || tool(desk).busy()) tool(desk).pointer(desk, lens, pointer);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     desk.error = error.what();
     tool(desk).cancel(desk);
   }
@@ -318,10 +328,10 @@ void Viewport::draw(Desk& desk) {
   try {
     write_pictures(desk);
     picture(desk);
-  } catch (const Error& error) {
+    tool(desk).draw(desk, lens, pointer, list, origin);
+  } catch (const std::exception& error) {
     desk.error = error.what();
   }
-  tool(desk).draw(desk, Lens(desk.camera, desk.view_width, desk.view_height), pointer, list, origin);
   list.ChannelsSetCurrent(0);
   if (texture_ != 0)
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), origin,

@@ -37,7 +37,7 @@ class Window::Callbacks {
       Window& self = of(w);
       if (action == GLFW_RELEASE || !self.on_key) return;
       self.on_key({key, (modifiers & GLFW_MOD_SHIFT) != 0, (modifiers & GLFW_MOD_CONTROL) != 0,
-                   (modifiers & GLFW_MOD_ALT) != 0});
+                   (modifiers & GLFW_MOD_ALT) != 0, action == GLFW_REPEAT});
     });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
       Window& self = of(w);
@@ -75,6 +75,7 @@ Window::Window(const std::string& title, int width, int height) {
     throw DeviceError(
         fmt::format("no window with OpenGL 3.3 core can be opened here ({}); {}", last_error, without_window));
   }
+  glfwSetWindowSizeLimits(window_, 640, 480, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwSetWindowUserPointer(window_, this);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);

@@ -15,7 +15,10 @@ namespace rebake {
 struct KeyPress {
   int key = 0;
   bool shift = false, control = false, alt = false;
-  bool operator==(const KeyPress&) const = default;
+  bool repeated = false;  ///< by being held
+  bool operator==(const KeyPress& other) const {
+    return key == other.key && shift == other.shift && control == other.control && alt == other.alt;
+  }
 };
 
 /// A desktop window with an OpenGL context and Dear ImGui in it.

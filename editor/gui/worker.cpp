@@ -85,7 +85,6 @@ void Worker::publish() {
   next->undone = history.undone();
   next->history_bytes = history.memory();
   const std::lock_guard lock(mutex_);
-  next->revision = snapshot_->revision + 1;
   snapshot_ = std::move(next);
 }
 
@@ -97,7 +96,7 @@ void Worker::loop() {
       running_ = false;
       status_ = {};
       changed_.wait(lock, [this] { return ending_ || !waiting_.empty(); });
-      if (ending_) return;
+      if (ending_) break;
       next = std::move(waiting_.front());
       waiting_.pop_front();
       running_ = true;
@@ -105,17 +104,20 @@ void Worker::loop() {
       status_.title = next.title;
     }
     std::string failed;
+    const std::size_t before = session_.document.history().undo_count();
     try {
       next.job(session_);
     } catch (const Cancelled&) {
-      failed = next.title + ": stopped; nothing was changed";
+      failed = next.title + ": stopped";
     } catch (const std::filesystem::filesystem_error& error) {
       failed = next.title + ": " + error.path1().string() + ": " + error.code().message();
     } catch (const std::bad_alloc&) {
-      failed = next.title + ": memory is out; nothing was changed";
+      failed = next.title + ": memory is out";
     } catch (const std::exception& error) {
       failed = next.title + ": " + error.what();
     }
+    if (!failed.empty() && session_.document.history().undo_count() != before)
+      failed += " (what was done before stays, and can be undone)";
     publish();
     {
       const std::lock_guard lock(mutex_);
@@ -139,6 +141,8 @@ void Worker::loop() {
       // Picking says what is wrong when it wants it.
     }
   }
+  // Where it was made, its context is current.
+  session_.drop_renderer();
 }
 
 }  // namespace rebake

@@ -18,7 +18,6 @@ namespace rebake {
 struct Snapshot {
   Scene scene;
   std::vector<Edit> done, undone;   ///< oldest first; the first of `undone` is what redo does
-  std::uint64_t revision = 0;       ///< grows with every change of the scene
   std::uint64_t history_bytes = 0;  ///< that the kept scenes hold
 };
 
@@ -45,7 +44,7 @@ class Worker {
   };
   Status status() const;
   std::shared_ptr<const Snapshot> snapshot() const;
-  /// What jobs had to say since the last call, in order. `failed`: the job changed nothing.
+  /// What jobs had to say since the last call, in order.
   struct Message {
     std::string text;
     bool failed = false;

@@ -46,7 +46,8 @@ void for_each_node(const FaceFrame& face, const Seen<T>& s, const F& f) {
         const double low = start + begin * reach, high = low + size * reach;
         return 2 * size * reach > std::hypot(beside, std::max({0.0, low, -high}));
       };
-      while (too_long()) size /= 2;
+      // A point on the edge itself is not asked for, but must not make this endless.
+      while (too_long() && size > std::numeric_limits<double>::epsilon()) size /= 2;
       for_each_of(Along::abscissa(), Along::weights(), [&](double place, double weight_along) {
         const double u = begin + size * place, share = u * reach / face.length;
         const T e = s.along[corner] + constant<T>(direction * u * reach);

@@ -39,9 +39,8 @@ void execute_inspect(const PassInput& input) {
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
   }
-  std::size_t number = 0;
   for (const Draw& draw : input.plan.draws) {
-    set_uniform(shader, "set_color", color_of(number++));
+    set_uniform(shader, "set_color", color_of(static_cast<std::size_t>(draw.node) + draw.first_triangle));
     draw_set(input, draw, shader);
   }
   glDisable(GL_BLEND);

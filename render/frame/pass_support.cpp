@@ -206,7 +206,10 @@ void begin_geometry(const FramePlan& plan, int side) {
   if (reversed_depth()) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDepthFunc(reversed_depth() ? GL_GEQUAL : GL_LEQUAL);
   const float farthest = reversed_depth() ? 0.0F : 1.0F;
+  // Lines are compared with the depth of all pixels.
+  if (plan.runs("guides")) glDisable(GL_SCISSOR_TEST);
   glClearBufferfv(GL_DEPTH, 0, &farthest);
+  glEnable(GL_SCISSOR_TEST);
 }
 
 void begin_overlay(const FramePlan& plan) {

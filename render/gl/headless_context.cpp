@@ -85,16 +85,4 @@ class HeadlessContext final : public Context {
 
 std::unique_ptr<Context> make_headless_context() { return std::make_unique<HeadlessContext>(); }
 
-void clear_window(int width, int height) {
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glViewport(0, 0, width, height);
-  glClearColor(0, 0, 0, 1);
-  glClear(GL_COLOR_BUFFER_BIT);
-}
-
-std::string device_name() {
-  const auto text = [](GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); };
-  return fmt::format("{}, OpenGL {}.{}", text(GL_RENDERER), epoxy_gl_version() / 10, epoxy_gl_version() % 10);
-}
-
 }  // namespace rebake::gl

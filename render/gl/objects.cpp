@@ -3,7 +3,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <atomic>
 
 #include "mesh_ops/error.h"
 
@@ -11,11 +11,12 @@ namespace rebake::gl {
 
 namespace {
 
-MemoryUse use;
+// Several threads may draw, each in a context of its own.
+std::atomic<std::uint64_t> held = 0, most = 0;
 
 void take(std::uint64_t bytes) {
-  use.now += bytes;
-  use.peak = std::max(use.peak, use.now);
+  const std::uint64_t now = held += bytes;
+  for (std::uint64_t peak = most; now > peak && !most.compare_exchange_weak(peak, now);) continue;
 }
 
 class Shader {
@@ -51,15 +52,15 @@ void check_memory(const char* what) {
 
 }  // namespace
 
-MemoryUse memory_use() { return use; }
+MemoryUse memory_use() { return {held, most}; }
 
 void BufferTraits::release(unsigned name, std::uint64_t bytes) {
   glDeleteBuffers(1, &name);
-  use.now -= bytes;
+  held -= bytes;
 }
 void TextureTraits::release(unsigned name, std::uint64_t bytes) {
   glDeleteTextures(1, &name);
-  use.now -= bytes;
+  held -= bytes;
 }
 void FramebufferTraits::release(unsigned name, std::uint64_t) { glDeleteFramebuffers(1, &name); }
 void VertexArrayTraits::release(unsigned name, std::uint64_t) { glDeleteVertexArrays(1, &name); }

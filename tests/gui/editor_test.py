@@ -4,6 +4,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 from screen import Editor, Screen, until
@@ -74,6 +75,58 @@ class EditorTest(unittest.TestCase):
         editor.key("ctrl+shift+z")
         editor.until_ops("import", "select_picture", "delete", "undo", "redo")
         self.assertAlmostEqual(leaf_pixels(editor), fewer, delta=50)
+
+    def test_what_is_seen_is_selected_from_near_far_and_flat(self):
+        editor = self.open_ficus()
+        seen = []
+        for look in (lambda: [editor.click_wheel(530, 230, 4) for _ in range(8)],
+                     lambda: [editor.click_wheel(530, 230, 5) for _ in range(14)], lambda: editor.key("f", "5")):
+            look()
+            editor.settle()
+            editor.key("r")
+            editor.drag(1, [(80, 70), (950, 560)])
+            editor.until_ops("import", *["select_picture"] * (len(seen) + 1))
+            seen.append(editor.journal()[-1]["edit"]["camera"])
+            self.assertGreater(self.share_tinted(), 0.7, seen[-1])
+            editor.key("v")
+
+    def share_tinted(self):
+        """Of the pixels that are not the white background or the grey grid, those that are orange."""
+        picture = self.editor.picture()[200:560, 75:940]
+        coloured = picture.max(axis=2) - picture.min(axis=2) > 60
+        orange = coloured & (picture[..., 0] > picture[..., 1]) & (picture[..., 1] > picture[..., 2])
+        return orange.sum() / max(1, coloured.sum())
+
+    def test_save_quit_and_open_again(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+a")
+        editor.until_ops("import", "select")
+        project = self.folder / "plant.rebake"
+        editor.key("ctrl+q")
+        editor.settle()
+        editor.key("Escape")
+        editor.settle()
+        self.assertIsNone(editor.process.poll(), "there are unsaved changes")
+        editor.key("ctrl+s")
+        editor.settle()
+        editor.key("ctrl+a")
+        time.sleep(0.5)
+        editor.type(str(project))
+        editor.key("Return")
+        until(project.is_file, "the project")
+        editor.settle()
+        editor.key("ctrl+q")
+        self.assertEqual(editor.process.wait(20), 0)
+        self.assertEqual(list((self.screen.home / "state/rebake/journals").iterdir()), [], "the work is safe in the project")
+        editor = self.open(project)
+        editor.settle()
+        self.assertEqual(editor.ops(), ["import", "select"])
+        # Another edit in place of an undone one is a change too.
+        editor.key("ctrl+z", "ctrl+i")
+        editor.until_ops("import", "select", "undo", "select")
+        editor.key("ctrl+q")
+        editor.settle()
+        self.assertIsNone(editor.process.poll())
 
     def test_move_with_the_gizmo_and_by_typing(self):
         editor = self.open_ficus()
@@ -184,15 +237,15 @@ class EditorTest(unittest.TestCase):
         editor.key("ctrl+a")
         editor.until_ops("import", "select")
         editor.kill()
-        editor = self.open()
-        self.assertLess(leaf_pixels(editor), 1000)
+        editor = self.open(FICUS)  # the question waits while something is read
+        editor.settle()
         editor.click(*RECOVER)
         editor.settle()
         editor.key("shift+t")  # the tint of what is selected
         editor.settle()
         self.assertGreater(leaf_pixels(editor), 1000, "the scene is back")
         editor.key("ctrl+i")
-        editor.until_ops("import", "select", "select")
+        until(lambda: editor.ops() == ["import", "select", "select"], "the recovered work, going on")
 
     def test_what_cannot_be_read_is_said_and_the_rest_is_there(self):
         bad = self.folder / "bad"

@@ -50,8 +50,7 @@ class Editor:
 
     def __init__(self, program, screen, *paths):
         self.screen = screen
-        self.process = subprocess.Popen([program, "edit", *map(str, paths)], env=screen.environment,
-                                        stderr=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen([program, "edit", *map(str, paths)], env=screen.environment)
         self.window = until(lambda: self.tool("search", "--onlyvisible", "--name", "Rebake").split(), "a window")[0]
         self.tool("windowfocus", "--sync", self.window)
         self.settle()
@@ -68,6 +67,12 @@ class Editor:
 
     def click(self, x, y):
         self.drag(1, [(x, y)])
+
+    def click_wheel(self, x, y, button):
+        """4 turns it away from people, 5 towards them."""
+        self.move(x, y)
+        self.tool("click", button)
+        time.sleep(0.05)
 
     def drag(self, button, points, meanwhile=lambda: None):
         """Along points, with steps between them as a hand makes."""
@@ -159,9 +164,4 @@ class Editor:
 
     def kill(self):
         self.process.send_signal(signal.SIGKILL)
-        self.process.communicate()
-
-    def quit(self):
-        """As a person does who wants nothing saved."""
-        self.process.send_signal(signal.SIGTERM)
-        self.process.communicate()
+        self.process.wait()

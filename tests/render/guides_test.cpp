@@ -90,6 +90,41 @@ TEST_P(GuidesTest, LinesAreHiddenByWhatLiesInFront) {
   EXPECT_GT(changed(shown({}, {}), shown({}, guides), 40), 30U);
 }
 
+// Where nothing is drawn now, something was in the picture before.
+TEST_P(GuidesTest, WhatWasThereBeforeHidesNoLine) {
+  const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
+  Guides guides;
+  guides.lines.push_back({{-0.3, 0.01, -2}, {0.3, 0.01, -2}, Color(1, 0, 1), 1, 0});
+  View beside = view_of(GetParam());
+  beside.camera.target = {9, 0, 3};
+  Renderer fresh;
+  for (const View& view : {view_of(GetParam()), beside}) {
+    renderer.show(scene, view, {}, guides, false);
+    fresh.show(scene, view, {}, guides, false);
+  }
+  EXPECT_EQ(renderer.shown_image().rgb, fresh.shown_image().rgb);
+}
+
+TEST_P(GuidesTest, EveryLookDiffersFromColoursAndTheyComeBack) {
+  const Scene scene = selected_scene(true);
+  Guides guides;
+  guides.lines.push_back({{-1, 0, 0}, {1, 0, 0}, Color(0, 0, 0), 1, 0.3});
+  const Image colours = shown(scene, guides);
+  std::vector<Image> looks;
+  for (const Guides::Inspect inspect :
+       {Guides::Inspect::wireframe, Guides::Inspect::opacity, Guides::Inspect::texture_sets, Guides::Inspect::channel,
+        Guides::Inspect::overdraw}) {
+    guides.inspect = inspect;
+    looks.push_back(shown(scene, guides));
+    for (const PlannedPass& pass : renderer.show(scene, view_of(GetParam()), {}, guides, false).passes)
+      EXPECT_FALSE(pass.runs && (pass.name == "geometry" || pass.name == "resolve" || pass.name == "forward"));
+    EXPECT_GT(changed(looks.back(), colours, 20), 500U);
+    for (std::size_t k = 0; k + 1 < looks.size(); ++k) EXPECT_GT(changed(looks.back(), looks[k], 20), 500U);
+    guides.inspect = Guides::Inspect::none;
+    EXPECT_EQ(shown(scene, guides).rgb, colours.rgb);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Samples, GuidesTest, ::testing::Values(1, 4));
 
 }  // namespace
