@@ -85,6 +85,17 @@ class Renderer::Impl {
     state_.empty_array = gl::make_vertex_array();
   }
 
+  // What members delete are names in this context, whichever was used last.
+  ~Impl() {
+    try {
+      context_->make_current();
+    } catch (const Error&) {
+      // Lost, and its names with it.
+    }
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
   FrameTimes draw(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass,
                   const Guides* guides = nullptr, std::vector<PlannedPass>* passes = nullptr) {
     context_->make_current();
@@ -140,7 +151,7 @@ class Renderer::Impl {
   }
 
  private:
-  std::unique_ptr<gl::Context> context_;  // first in, last out: the rest is deleted while it is current
+  std::unique_ptr<gl::Context> context_;  // outlives the rest, which are names in it
   GpuScene gpu_;
   PassState state_;
   View shown_;

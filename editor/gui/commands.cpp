@@ -46,6 +46,23 @@ void each_active(Desk& desk) {
   desk.edits(list);
 }
 
+// The copies are picked then: they are what is moved next.
+void duplicate(Desk& desk) {
+  std::set<NodeId> before;
+  for (const PlacedNode& placed : placed_nodes(desk.scene())) before.insert(placed.node->id);
+  std::vector<Edit> list;
+  for (const NodeId id : desk.active_tops()) {
+    Duplicate edit;
+    edit.node = NodeRef{id};
+    list.emplace_back(edit);
+  }
+  desk.edits(list, [&desk, before] {
+    desk.active.clear();
+    for (const PlacedNode& placed : placed_nodes(desk.scene()))
+      if (!before.contains(placed.node->id)) desk.active.insert(placed.node->id);
+  });
+}
+
 bool selects_triangles(ToolKind tool) {
   return tool == ToolKind::rectangle || tool == ToolKind::lasso || tool == ToolKind::polygon ||
          tool == ToolKind::brush || tool == ToolKind::flood || tool == ToolKind::erase;
@@ -157,7 +174,7 @@ const std::vector<Command>& command_table() {
        [](const Desk& desk) { return !desk.now->undone.empty(); }, [](Desk& desk) { desk.redo(); }, true},
       {"Edit", "All commands...", "Ctrl+P", "F3 Ctrl+P", always, [](Desk& desk) { desk.palette_open = true; }},
       {"Edit", "Delete", "Delete", "X Delete", has_either, remove},
-      {"Edit", "Duplicate", "Ctrl+D", "Shift+D", has_active, each_active<Duplicate>},
+      {"Edit", "Duplicate", "Ctrl+D", "Shift+D", has_active, duplicate},
       {"Edit", "Group", "Ctrl+G", "Ctrl+G", has_active, group},
       {"Edit", "Separate", "Ctrl+J", "P", has_selection, separate},
       {"Edit", "Hide", "H", "H", has_active, each_active<Hide>},

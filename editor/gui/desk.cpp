@@ -65,21 +65,24 @@ void Desk::update() {
 
 void Desk::edit(const Edit& one) { edits({one}); }
 
-void Desk::edits(const std::vector<Edit>& list) {
+void Desk::edits(const std::vector<Edit>& list, std::function<void()> then) {
   if (list.empty()) return;
-  worker.start(std::visit([](const auto& e) { return std::string(e.op); }, list.front()), [list](Session& session) {
-    std::size_t done = 0;
-    try {
-      for (const Edit& one : list) {
-        session.edit(one);
-        ++done;
-      }
-    } catch (...) {
-      // All or nothing.
-      while (done-- > 0) session.document.undo();
-      throw;
-    }
-  });
+  worker.start(
+      std::visit([](const auto& e) { return std::string(e.op); }, list.front()),
+      [list](Session& session) {
+        std::size_t done = 0;
+        try {
+          for (const Edit& one : list) {
+            session.edit(one);
+            ++done;
+          }
+        } catch (...) {
+          // All or nothing.
+          while (done-- > 0) session.document.undo();
+          throw;
+        }
+      },
+      std::move(then));
 }
 
 void Desk::undo(int steps) {

@@ -89,8 +89,8 @@ struct Desk {
   void update();
 
   void edit(const Edit& edit);
-  /// All of them, or none where one fails.
-  void edits(const std::vector<Edit>& list);
+  /// All of them, or none where one fails; `then` once they are done.
+  void edits(const std::vector<Edit>& list, std::function<void()> then = {});
   void undo(int steps = 1);
   void redo(int steps = 1);
   /// Imports folders and scenes. A project, which must be the only path, takes the place of the document; with unsaved

@@ -248,10 +248,12 @@ void Gizmo::options(Desk& desk) {
     ImGui::Checkbox("local axes", &desk.local_axes);
     ImGui::SameLine();
   }
-  if (!target(desk))
+  const std::optional<Target> here = target(desk);
+  if (!here)
     ImGui::TextDisabled("pick a node in the outline, or select triangles");
   else
-    ImGui::TextDisabled("drag a handle; type a number meanwhile; Ctrl snaps, Shift is fine, Esc lets go");
+    ImGui::TextDisabled("%s: drag a handle; type a number meanwhile; Ctrl snaps, Shift is fine, Esc lets go",
+                        here->triangles ? "the selected triangles" : "the picked nodes");
 }
 
 void Gizmo::cancel(Desk& desk) {

@@ -13,20 +13,52 @@ namespace {
 
 constexpr std::size_t faces_a_cluster = 2048;
 
+std::vector<GpuVertex> vertices_of(const TextureSet& set, const Vec3& center) {
+  const Soup& soup = set.soup;
+  std::vector<GpuVertex> vertices(soup.positions().size());
+  const double width = set.texels->width(), height = set.texels->height();
+  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t v) {
+    const Eigen::Vector3f position = (soup.positions()[v] - center).cast<float>();
+    const Vec2& uv = soup.uvs()[v];
+    vertices[v] = {{position.x(), position.y(), position.z()},
+                   {static_cast<float>(uv.x() * width), static_cast<float>((1 - uv.y()) * height)}};
+  });
+  return vertices;
+}
+
+void make_clusters(GpuMesh& mesh) {
+  mesh.clusters.resize((mesh.faces.size() + faces_a_cluster - 1) / faces_a_cluster);
+  tbb::parallel_for(std::size_t{0}, mesh.clusters.size(), [&](std::size_t k) {
+    const std::size_t first = k * faces_a_cluster;
+    GpuMesh::Cluster cluster{first, std::min(faces_a_cluster, mesh.faces.size() - first), {}};
+    for (std::size_t f = first; f < first + cluster.face_count; ++f)
+      for (const std::uint32_t vertex : mesh.faces[f]) cluster.bounds.extend(mesh.source.positions()[vertex]);
+    mesh.clusters[k] = cluster;
+  });
+}
+
+// Whether a mesh is a set's but for its positions, as while something is dragged.
+bool differs_in_place(const MeshKey& held, const MeshKey& wanted) {
+  return held.uvs == wanted.uvs && held.faces == wanted.faces && held.texels == wanted.texels &&
+         held.turns == nullptr && wanted.turns == nullptr;
+}
+
+// New positions into a mesh that is there.
+void move_vertices(GpuMesh& mesh, const TextureSet& set) {
+  mesh.source = set.soup;
+  if (!set.soup.bounds().isEmpty()) mesh.center = set.soup.bounds().center();
+  const std::vector<GpuVertex> vertices = vertices_of(set, mesh.center);
+  glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices.name());
+  glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(vertices.size() * sizeof(GpuVertex)), vertices.data());
+  make_clusters(mesh);
+}
+
 GpuMesh upload(const TextureSet& set) {
   const Soup& soup = set.soup;
   GpuMesh mesh;
   mesh.source = soup;
   if (!soup.bounds().isEmpty()) mesh.center = soup.bounds().center();
-
-  std::vector<GpuVertex> vertices(soup.positions().size());
-  const double width = set.texels->width(), height = set.texels->height();
-  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t v) {
-    const Eigen::Vector3f position = (soup.positions()[v] - mesh.center).cast<float>();
-    const Vec2& uv = soup.uvs()[v];
-    vertices[v] = {{position.x(), position.y(), position.z()},
-                   {static_cast<float>(uv.x() * width), static_cast<float>((1 - uv.y()) * height)}};
-  });
+  const std::vector<GpuVertex> vertices = vertices_of(set, mesh.center);
 
   mesh.array = gl::make_vertex_array();
   glBindVertexArray(mesh.array.name());
@@ -50,18 +82,11 @@ GpuMesh upload(const TextureSet& set) {
   }
   // Faces that show nothing are not worth a draw.
   const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
-  std::vector<Face> faces;
   for (std::size_t f = 0; f < shows.size(); ++f)
-    if (shows[f] != 0) faces.push_back(soup.faces()[f]);
-  mesh.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, faces.data(), faces.size() * sizeof(Face));
+    if (shows[f] != 0) mesh.faces.push_back(soup.faces()[f]);
+  mesh.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, mesh.faces.data(), mesh.faces.size() * sizeof(Face));
   glBindVertexArray(0);
-
-  for (std::size_t first = 0; first < faces.size(); first += faces_a_cluster) {
-    GpuMesh::Cluster cluster{first, std::min(faces_a_cluster, faces.size() - first), {}};
-    for (std::size_t f = first; f < first + cluster.face_count; ++f)
-      for (const std::uint32_t vertex : faces[f]) cluster.bounds.extend(soup.positions()[vertex]);
-    mesh.clusters.push_back(cluster);
-  }
+  make_clusters(mesh);
   return mesh;
 }
 
@@ -87,7 +112,19 @@ void GpuScene::update(const Scene& scene) {
   for (const auto& [key, mesh] : meshes_) held_meshes.insert(key);
   std::set<TextureKey> held_textures;
   for (const auto& [key, texture] : textures_) held_textures.insert(key);
-  const ResourceDiff change = diff(held_meshes, held_textures, scene);
+  ResourceDiff change = diff(held_meshes, held_textures, scene);
+  // What has only moved keeps its buffers.
+  std::erase_if(change.meshes, [&](const TextureSet& set) {
+    const auto held = std::find_if(change.released_meshes.begin(), change.released_meshes.end(),
+                                   [&](const MeshKey& key) { return differs_in_place(key, mesh_key(set)); });
+    if (held == change.released_meshes.end()) return false;
+    auto node = meshes_.extract(*held);
+    change.released_meshes.erase(held);
+    node.key() = mesh_key(set);
+    move_vertices(node.mapped(), set);
+    meshes_.insert(std::move(node));
+    return true;
+  });
   for (const MeshKey& key : change.released_meshes) meshes_.erase(key);
   for (const TextureKey key : change.released_textures) textures_.erase(key);
   for (const TextureSet& set : change.meshes) meshes_.emplace(mesh_key(set), upload(set));

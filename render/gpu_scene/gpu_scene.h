@@ -29,6 +29,7 @@ struct GpuMesh {
   gl::Buffer vertices;
   gl::Buffer turns;
   gl::Buffer indices;
+  std::vector<Face> faces;  ///< those that may show something, as in `indices`
   std::vector<Cluster> clusters;
 };
 

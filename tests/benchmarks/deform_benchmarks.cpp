@@ -9,6 +9,7 @@
 
 #include "mesh_ops/deform/deform_object.h"
 #include "mesh_ops/deform/wrap.h"
+#include "render/picture.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -167,6 +168,37 @@ void wrap_soup(benchmark::State& state) {
   state.counters["triangles"] = static_cast<double>(many.faces.size());
 }
 
+// What one step of a drag in the window costs beside drawing: the real mic's object with new positions, on the GPU. A
+// picture of one pixel draws next to nothing.
+void drag_preview(benchmark::State& state) {
+  auto object = mic_object();
+  if (!object) object = made_object({.columns = 256, .rows = 160});
+  const TriangleSet all(object->triangle_count(), 1);
+  std::unique_ptr<CageBinding> binding;
+  const Case& mic = mic_case();
+  const auto coordinates = mean_value_coordinates(mic.cage);
+  Renderer renderer;
+  View view;
+  view.width = view.height = 1;
+  view.samples = 1;
+  std::size_t vertices = 0;
+  for (const TextureSet& set : object->sets) vertices += set.soup.positions().size();
+  double turn = 0;
+  for (auto _ : state) {
+    std::vector<Vec3> moved = mic.cage.vertices;
+    turn += 0.01;
+    for (Vec3& v : moved) v = Eigen::AngleAxisd(turn * v.y(), Vec3::UnitY()) * v;
+    DeformedObject made = deformed(*object, Affine::Identity(), all, 0, [&](const std::vector<Vec3>& world) {
+      if (!binding) binding = std::make_unique<CageBinding>(*coordinates, mic.cage, world, false);
+      DeformedPoints points{{}, std::vector<Mat3>(world.size(), Mat3::Identity()), {}};
+      binding->positions(moved, points.points);
+      return points;
+    });
+    renderer.time_frame(scene_of(made.object), view, {}, false);
+  }
+  state.counters["vertices"] = static_cast<double>(vertices);
+}
+
 BENCHMARK_CAPTURE(bind, mean_value, false)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(bind, mean_value_with_gradients, true)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(weigh, mean_value, false)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
@@ -175,6 +207,7 @@ BENCHMARK(green)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(drag_positions)->Args({2, 1000000})->Args({2, 10})->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(drag_corners)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(drag_rotations)->Args({2, 1})->Args({2, 64})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(drag_preview)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(wrap_soup)->Arg(10)->Arg(20)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace

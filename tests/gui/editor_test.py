@@ -47,8 +47,8 @@ class EditorTest(unittest.TestCase):
         return editor
 
     def expect_like(self, name, decibels):
-        """The whole window against a kept picture. 30 dB leaves room for another version of the driver or the font;
-        a missing panel, tint or leaf is below 25."""
+        """The whole window against a kept picture. Without the tint, or without the grid, it is at 30 dB, without the
+        leaves at 23; 40 leaves room for rounding of another processor."""
         kept, seen = HERE / "pictures" / (name + ".png"), self.folder / (name + ".png")
         self.editor.save_picture(seen)
         result = subprocess.run([PROGRAM, "compare", kept, seen, "--min-psnr", str(decibels)], capture_output=True, text=True)
@@ -56,7 +56,7 @@ class EditorTest(unittest.TestCase):
 
     def test_turn_the_view_lasso_leaves_delete_undo_redo(self):
         editor = self.open_ficus()
-        self.expect_like("opened", 30)
+        self.expect_like("opened", 40)
         all_leaves = leaf_pixels(editor)
         editor.drag(2, [(400, 500), (430, 490)])
         editor.key("l")
@@ -65,7 +65,7 @@ class EditorTest(unittest.TestCase):
         selected = editor.journal()[-1]["edit"]
         self.assertGreater(len(selected["polygon"]), 10)
         self.assertFalse(selected["through"])
-        self.expect_like("selected", 30)
+        self.expect_like("selected", 40)
         editor.key("Delete")
         editor.until_ops("import", "select_picture", "delete")
         fewer = leaf_pixels(editor)
