@@ -66,7 +66,7 @@ double Viewport::next_frame_in(const Desk& desk) const {
 void Viewport::fly(Desk& desk) {
   const ImGuiIO& io = ImGui::GetIO();
   const auto held = [&](int key, char letter) {
-    return io.KeysDown[key] || io.KeysDown[static_cast<int>(letter)] ? 1.0 : 0.0;
+    return io.KeysDown[key] || io.KeysDown[static_cast<unsigned char>(letter)] ? 1.0 : 0.0;
   };
   const Clock::time_point now = Clock::now();
   const double seconds = std::min(0.2, std::chrono::duration<double>(now - flown_at_).count());
