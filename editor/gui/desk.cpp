@@ -119,6 +119,7 @@ void Desk::open(const std::vector<std::string>& paths, bool wanted) {
           project = path;
           saved_ = scene();
           imported = scene();
+          camera = framing_of(scene(), static_cast<double>(view_width) / view_height);
           settings.remember(path.string());
         });
     return;

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <utility>
 
 #include "editor/document/journal.h"
 #include "editor/gui/commands.h"
@@ -69,7 +70,7 @@ class EditorWindow {
       }
     };
     window_.on_drop = [this](const std::vector<std::string>& dropped) { desk_.open(dropped); };
-    desk_.recoverable = lost_;
+    desk_.recoverable = std::move(lost_);
     if (!paths.empty()) desk_.open(paths);
   }
 

@@ -25,7 +25,7 @@ struct Snapshot {
 class Worker {
  public:
   using Job = std::function<void(Session&)>;
-  /// `wake` is called, from another thread, when there is something for poll().
+  /// `wake` is called, from another thread, when there is something new to take, or progress to show.
   explicit Worker(std::function<void()> wake);
   /// Asks what runs to stop, and waits for it.
   ~Worker();

@@ -61,5 +61,5 @@ editor.settle()
 frame(6)
 editor.kill()
 screen.close()
-subprocess.run(["convert", "-delay", "14", "-loop", "0", *sorted(map(str, frames.glob("*.png"))), "-resize", "45%",
+subprocess.run(["convert", "-delay", "14", "-loop", "0", *sorted(map(str, frames.glob("*.png"))), "-resize", "40%",
                 "-colors", "64", "+dither", "-layers", "OptimizeTransparency", str(OUT / "window.gif")], check=True)
