@@ -9,26 +9,11 @@
 
 #include "mesh_ops/deform/cage_deformation.h"
 #include "tests/support/gold.h"
+#include "tests/support/hard_cages.h"
 
 namespace rebake::test {
 namespace {
 
-// All have a diagonal of about 1.
-Cage cube(int cells = 1) {
-  const double half = 0.5 / std::sqrt(3.0);
-  return lattice_cage(Box(Vec3::Constant(-half), Vec3::Constant(half)), cells, cells, cells);
-}
-// A subdivided cube, dented: concave, in general position.
-Cage dented() {
-  Cage cage = cube(3);
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> shift(-0.06, 0.06);
-  for (Vec3& v : cage.vertices) {
-    v = v.normalized() * 0.4 + Vec3(shift(random), shift(random), shift(random));
-    if (v.x() > 0.2) v.x() = 0.35 - v.x();
-  }
-  return checked_cage(cage);
-}
 // A tetrahedron with a face split at a point that lies `thin` from an edge: needles of that height.
 Cage needles(double thin) {
   Cage cage;
@@ -55,34 +40,6 @@ std::vector<Vec3> points_inside_flat() {  // 1e-8 thick
 Cage scaled(Cage cage, double scale, const Vec3& offset = Vec3(0, 0, 0)) {
   for (Vec3& v : cage.vertices) v = v * scale + offset;
   return cage;
-}
-
-// Points on each face, edge and vertex, at distances on both sides, along their planes and lines, and on corners'
-// projections.
-std::vector<Vec3> hard_points(const Cage& cage) {
-  std::vector<Vec3> points;
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> any(0.05, 0.9);
-  for (const Face& face : cage.faces) {
-    const Vec3 &a = cage.vertices[face[0]], &b = cage.vertices[face[1]], &c = cage.vertices[face[2]];
-    const Vec3 normal = (b - a).cross(c - a).stableNormalized();
-    if (!normal.allFinite()) continue;
-    const double s = any(random), t = any(random) * (1 - s);
-    const std::vector<Vec3> places = {(a + b + c) / 3, a + s * (b - a) + t * (c - a), (a + b) / 2, a + s * (b - a), a};
-    for (const double d : {0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1e-1})
-      for (const Vec3& place : places) {
-        points.push_back(place - d * normal);
-        points.push_back(place + d * normal);
-        points.push_back(place + d * Vec3(0.3, -0.5, 0.8));
-      }
-    // In the plane outside, on the edge's extension, and above a corner of the plane.
-    for (const double d : {1e-12, 1e-6, 0.3}) {
-      points.push_back(a + (a - b) * d + (a - c) * d);
-      points.push_back(a + (a - b) * d);
-      points.push_back(b + (b - c) * d + 1e-12 * normal);
-    }
-  }
-  return points;
 }
 
 struct Errors {
@@ -317,22 +274,6 @@ TEST(MeanValue, InFloatTheScaleDoesNotMatter) {
   EXPECT_EQ(all[2], all[1]);
 }
 
-// Those of the hard points that are inside by far more than rounding, by the solid angle of the cage (van Oosterom).
-std::vector<Vec3> inside_points(const Cage& cage) {
-  std::vector<Vec3> points;
-  for (const Vec3& p : hard_points(cage)) {
-    double sum = 0;
-    for (const Face& face : cage.faces) {
-      const Vec3 a = cage.vertices[face[0]] - p, b = cage.vertices[face[1]] - p, c = cage.vertices[face[2]] - p;
-      sum += 2 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
-                                                   b.dot(c) * a.norm() + c.dot(a) * b.norm());
-    }
-    if (std::abs(sum / (4 * std::acos(-1.0)) - 1) < 1e-3) points.push_back(p);
-  }
-  EXPECT_GE(points.size(), 20U);
-  return points;
-}
-
 TEST(Green, SumsAndLinearFunctionsAreExactInside) {
   for (const auto& [name, cage] : hard_cages()) {
     const Errors errors = errors_of(*green_coordinates(cage), cage, inside_points(cage));
@@ -494,63 +435,6 @@ TEST(Harmonic, FinerGridsComeNearerToEachOther) {
     before = worst;
   }
   EXPECT_LT(before, 0.02);
-}
-
-TEST(CageDeformation, TheIdentityChangesNoBitAndEqualPointsMoveAlike) {
-  const Cage cage = dented();
-  std::vector<Vec3> points = hard_points(cage);
-  points.insert(points.end(), points.begin(), points.end());  // corners that are not welded
-  for (const CageCoordinates kind : {CageCoordinates::mean_value, CageCoordinates::green, CageCoordinates::harmonic}) {
-    const auto coordinates = coordinates_of(cage, kind, 16);
-    EXPECT_EQ(deform_points(*coordinates, cage, cage.vertices, points, true).points, points);
-    std::vector<Vec3> moved = cage.vertices;
-    for (Vec3& v : moved) v = Eigen::AngleAxisd(v.y() * 3, Vec3::UnitY()) * v;
-    const DeformedPoints result = deform_points(*coordinates, cage, moved, points, false);
-    for (std::size_t k = 0; k < points.size() / 2; ++k)
-      ASSERT_EQ(result.points[k], result.points[k + points.size() / 2]);
-  }
-}
-
-TEST(CageDeformation, RigidMotionsOfTheCageAreRigidMotions) {
-  const Cage cage = dented();
-  const Affine motion =
-      Eigen::Translation3d(0.2, -3, 1) * Eigen::AngleAxisd(3.141592653589793, Vec3(1, 2, 3).normalized());
-  std::vector<Vec3> moved;
-  for (const Vec3& v : cage.vertices) moved.push_back(motion * v);
-  std::vector<Vec3> points;
-  for (const Vec3& p : inside_points(cage)) points.push_back(p);
-  for (const CageCoordinates kind : {CageCoordinates::mean_value, CageCoordinates::green, CageCoordinates::harmonic}) {
-    const DeformedPoints result = deform_points(*coordinates_of(cage, kind, 16), cage, moved, points, true);
-    double worst = 0;
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      ASSERT_EQ(result.outside[k], 0) << points[k].transpose();
-      worst = std::max(worst, (result.points[k] - motion * points[k]).norm());
-    }
-    EXPECT_LE(worst, kind == CageCoordinates::harmonic ? 1e-9 : 1e-13) << static_cast<int>(kind);
-  }
-}
-
-TEST(CageDeformation, BoundPointsFollowToAMillionth) {
-  const Cage cage = dented();
-  const auto coordinates = mean_value_coordinates(cage);
-  const std::vector<Vec3> points = hard_points(cage);
-  const CageBinding binding(*coordinates, cage, points, true);
-  std::vector<Vec3> moved = cage.vertices;
-  moved[3] += Vec3(0.3, 0.1, 0);
-  moved[9] += Vec3(0, -0.4, 0.2);
-  const DeformedPoints exact = deform_points(*coordinates, cage, moved, points, true);
-  std::vector<Vec3> bound;
-  binding.positions(moved, bound);
-  for (std::size_t k = 0; k < points.size(); ++k) ASSERT_LE((bound[k] - exact.points[k]).norm(), 1e-6);
-  binding.positions(cage.vertices, bound);
-  EXPECT_EQ(bound, points);
-  std::vector<Mat3> all, some;
-  binding.rotations(moved, all);
-  binding.rotations(moved, some, 4);
-  std::size_t same = 0;
-  for (std::size_t k = 0; k < all.size(); ++k) same += all[k] == some[k] ? 1 : 0;
-  EXPECT_GE(same, all.size() / 4);
-  EXPECT_LT(same, all.size());
 }
 
 }  // namespace

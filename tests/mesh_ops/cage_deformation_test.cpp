@@ -1,0 +1,69 @@
+// Points that follow a cage: bit for bit where nothing moves, rigidly where it does so, and near enough while dragged.
+#include "mesh_ops/deform/cage_deformation.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/hard_cages.h"
+
+namespace rebake::test {
+namespace {
+
+TEST(CageDeformation, TheIdentityChangesNoBitAndEqualPointsMoveAlike) {
+  const Cage cage = dented();
+  std::vector<Vec3> points = hard_points(cage);
+  points.insert(points.end(), points.begin(), points.end());  // corners that are not welded
+  for (const CageCoordinates kind : {CageCoordinates::mean_value, CageCoordinates::green, CageCoordinates::harmonic}) {
+    const auto coordinates = coordinates_of(cage, kind, 16);
+    EXPECT_EQ(deform_points(*coordinates, cage, cage.vertices, points, true).points, points);
+    std::vector<Vec3> moved = cage.vertices;
+    for (Vec3& v : moved) v = Eigen::AngleAxisd(v.y() * 3, Vec3::UnitY()) * v;
+    const DeformedPoints result = deform_points(*coordinates, cage, moved, points, false);
+    for (std::size_t k = 0; k < points.size() / 2; ++k)
+      ASSERT_EQ(result.points[k], result.points[k + points.size() / 2]);
+  }
+}
+
+TEST(CageDeformation, RigidMotionsOfTheCageAreRigidMotions) {
+  const Cage cage = dented();
+  const Affine motion =
+      Eigen::Translation3d(0.2, -3, 1) * Eigen::AngleAxisd(3.141592653589793, Vec3(1, 2, 3).normalized());
+  std::vector<Vec3> moved;
+  for (const Vec3& v : cage.vertices) moved.push_back(motion * v);
+  std::vector<Vec3> points;
+  for (const Vec3& p : inside_points(cage)) points.push_back(p);
+  for (const CageCoordinates kind : {CageCoordinates::mean_value, CageCoordinates::green, CageCoordinates::harmonic}) {
+    const DeformedPoints result = deform_points(*coordinates_of(cage, kind, 16), cage, moved, points, true);
+    double worst = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      ASSERT_EQ(result.outside[k], 0) << points[k].transpose();
+      worst = std::max(worst, (result.points[k] - motion * points[k]).norm());
+    }
+    EXPECT_LE(worst, kind == CageCoordinates::harmonic ? 1e-9 : 1e-13) << static_cast<int>(kind);
+  }
+}
+
+TEST(CageDeformation, BoundPointsFollowToAMillionth) {
+  const Cage cage = dented();
+  const auto coordinates = mean_value_coordinates(cage);
+  const std::vector<Vec3> points = hard_points(cage);
+  const CageBinding binding(*coordinates, cage, points, true);
+  std::vector<Vec3> moved = cage.vertices;
+  moved[3] += Vec3(0.3, 0.1, 0);
+  moved[9] += Vec3(0, -0.4, 0.2);
+  const DeformedPoints exact = deform_points(*coordinates, cage, moved, points, true);
+  std::vector<Vec3> bound;
+  binding.positions(moved, bound);
+  for (std::size_t k = 0; k < points.size(); ++k) ASSERT_LE((bound[k] - exact.points[k]).norm(), 1e-6);
+  binding.positions(cage.vertices, bound);
+  EXPECT_EQ(bound, points);
+  std::vector<Mat3> all, some;
+  binding.rotations(moved, all);
+  binding.rotations(moved, some, 4);
+  std::size_t same = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) same += all[k] == some[k] ? 1 : 0;
+  EXPECT_GE(same, all.size() / 4);
+  EXPECT_LT(same, all.size());
+}
+
+}  // namespace
+}  // namespace rebake::test

@@ -1,0 +1,67 @@
+#include "tests/support/hard_cages.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace rebake::test {
+
+Cage cube(int cells) {
+  const double half = 0.5 / std::sqrt(3.0);
+  return lattice_cage(Box(Vec3::Constant(-half), Vec3::Constant(half)), cells, cells, cells);
+}
+
+Cage dented() {
+  Cage cage = cube(3);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> shift(-0.06, 0.06);
+  for (Vec3& v : cage.vertices) {
+    v = v.normalized() * 0.4 + Vec3(shift(random), shift(random), shift(random));
+    if (v.x() > 0.2) v.x() = 0.35 - v.x();
+  }
+  return checked_cage(cage);
+}
+
+std::vector<Vec3> hard_points(const Cage& cage) {
+  std::vector<Vec3> points;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(0.05, 0.9);
+  for (const Face& face : cage.faces) {
+    const Vec3 &a = cage.vertices[face[0]], &b = cage.vertices[face[1]], &c = cage.vertices[face[2]];
+    const Vec3 normal = (b - a).cross(c - a).stableNormalized();
+    if (!normal.allFinite()) continue;
+    const double s = any(random), t = any(random) * (1 - s);
+    const std::vector<Vec3> places = {(a + b + c) / 3, a + s * (b - a) + t * (c - a), (a + b) / 2, a + s * (b - a), a};
+    for (const double d : {0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1e-1})
+      for (const Vec3& place : places) {
+        points.push_back(place - d * normal);
+        points.push_back(place + d * normal);
+        points.push_back(place + d * Vec3(0.3, -0.5, 0.8));
+      }
+    // In the plane outside, on the edge's extension, and above a corner of the plane.
+    for (const double d : {1e-12, 1e-6, 0.3}) {
+      points.push_back(a + (a - b) * d + (a - c) * d);
+      points.push_back(a + (a - b) * d);
+      points.push_back(b + (b - c) * d + 1e-12 * normal);
+    }
+  }
+  return points;
+}
+
+std::vector<Vec3> inside_points(const Cage& cage) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : hard_points(cage)) {
+    double sum = 0;
+    for (const Face& face : cage.faces) {
+      const Vec3 a = cage.vertices[face[0]] - p, b = cage.vertices[face[1]] - p, c = cage.vertices[face[2]] - p;
+      sum += 2 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                                   b.dot(c) * a.norm() + c.dot(a) * b.norm());
+    }
+    if (std::abs(sum / (4 * std::acos(-1.0)) - 1) < 1e-3) points.push_back(p);
+  }
+  EXPECT_GE(points.size(), 20U);
+  return points;
+}
+
+}  // namespace rebake::test
