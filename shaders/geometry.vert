@@ -2,6 +2,7 @@ layout(location = 0) in vec3 position;  // object space, relative to the mesh's 
 layout(location = 1) in vec2 texel;     // in texels, v down
 #if TURNED_MESH
 layout(location = 2) in mat3 turn;  // by which an edit turned the vertex against its object
+uniform bool parallel_rays;     // of an orthographic camera
 uniform mat4 object_to_camera;
 uniform mat3 camera_to_object;  // directions, orthogonal
 uniform mat3 object_to_fed;     // the axes of the decoder
@@ -15,7 +16,7 @@ void main() {
   at_texel = texel;
 #if TURNED_MESH
   // Unnormalised, so that interpolation over the triangle is exact where all three turns agree.
-  vec3 ray = camera_to_object * (object_to_camera * vec4(position, 1.0)).xyz;
+  vec3 ray = camera_to_object * (parallel_rays ? vec3(0.0, 0.0, -1.0) : (object_to_camera * vec4(position, 1.0)).xyz);
   turned_ray = object_to_fed * (ray * turn);
 #endif
 }

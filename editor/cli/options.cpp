@@ -72,7 +72,7 @@ void ViewOptions::add_to(CLI::App& command) {
   command.add_option("--far", far_plane, "far plane")->option_text("f");
   command
       .add_option("--camera", camera_file,
-                  "JSON file with eye, target, up, fov, near, far; or the name of a view of the scene")
+                  "JSON file with eye, target, up, fov, ortho_height, near, far; or the name of a view of the scene")
       ->option_text("FILE|VIEW");
   command.add_option("--samples", samples, "samples a pixel")
       ->check(CLI::IsMember({1, 4, 16}))

@@ -8,17 +8,18 @@ namespace rebake {
 
 namespace {
 
-// Whether something opaque stands between the eye and a world point.
+// Whether something opaque stands between a picture's eye and a world point.
 class Hiding {
  public:
-  Hiding(const Scene& scene, const Vec3& eye) : eye_(eye) {
+  Hiding(const Scene& scene, const Projector& projector) : projector_(projector) {
     for (const PlacedNode& placed : visible_objects(scene))
       objects_.push_back(
           {rays_of(*placed.node->object), placed.to_world.inverse(), placed.node->object->bounds().diagonal().norm()});
   }
   bool operator()(const Vec3& world) const {
+    const Vec3 eye = projector_.eye_for(world);
     for (const Object& object : objects_) {
-      const Vec3 from = object.to_object * eye_, way = object.to_object * world - from;
+      const Vec3 from = object.to_object * eye, way = object.to_object * world - from;
       const double distance = way.norm();
       // Stops short of the point itself by more than the tree's rounding.
       if (distance > 0 && object.rays->blocked(from, way, 0, 1 - 1e-5 * std::max(1.0, object.size / distance)))
@@ -33,7 +34,7 @@ class Hiding {
     Affine to_object;
     double size;
   };
-  Vec3 eye_;
+  const Projector& projector_;
   std::vector<Object> objects_;
 };
 
@@ -64,7 +65,7 @@ Scene apply(const Scene& scene, const Erase& edit) {
   if (in_picture) {
     const PictureRegion region(scene, edit.picture);
     const std::optional<Hiding> hidden =
-        edit.through ? std::nullopt : std::optional<Hiding>(std::in_place, scene, region.projector().eye());
+        edit.through ? std::nullopt : std::optional<Hiding>(std::in_place, scene, region.projector());
     return erased(scene, targets, [&](const PlacedNode& placed) {
       const auto inside = [&region, &hidden, to_world = placed.to_world](const Vec3& p) {
         const Vec3 world = to_world * p;

@@ -31,7 +31,10 @@ Scene apply(const Scene& scene, const SelectUnneeded& edit) {
   for (const std::string& name : edit.unseen_from) {
     const auto found = scene.views.find(name);
     if (found == scene.views.end()) throw FieldError("unseen_from", fmt::format("there is no view \"{}\"", name));
-    world_eyes.push_back(found->second.eye);
+    // An orthographic view's parallel rays come from as good as nowhere.
+    const Camera& camera = found->second;
+    const double away = camera.orthographic() ? 1000 * world_bounds(scene).diagonal().norm() : 0;
+    world_eyes.push_back(camera.eye + away * world_to_camera(camera).row(2).transpose());
   }
   return with_selected(scene, selectable(scene, edit.node), edit.mode, [&](const PlacedNode& placed) {
     const BakedObject& object = *placed.node->object;

@@ -292,7 +292,7 @@ json Codec<Layout>::write(const Layout& value) {
 }
 
 const char* Codec<Camera>::type() {
-  return "{\"eye\", \"target\", \"up\": [x, y, z], \"fov\": degrees, \"near\", \"far\"}";
+  return "{\"eye\", \"target\", \"up\": [x, y, z], \"fov\": degrees, \"ortho_height\", \"near\", \"far\"}";
 }
 Camera Codec<Camera>::read(const json& value, const Scene&) { return read_camera_json(value); }
 json Codec<Camera>::write(const Camera& value) { return camera_json(value); }

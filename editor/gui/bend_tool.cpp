@@ -51,7 +51,7 @@ std::optional<Edit> BendTool::edit(const Lens& lens) const {
       Bend bend;
       // The tip lies half the bend's angle off, as seen from its foot; it goes where the pointer goes on the screen.
       const double angle = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
-      const Vec3 away = (bent_->at(0.5) - lens.eye()).normalized();
+      const Vec3 away = -lens.towards_eye(bent_->at(0.5));
       const Vec3 side = away.cross(bent_->along);
       if (!(side.norm() > 0.05)) return std::nullopt;  // the axis points at the eye
       bend.degrees = std::abs(angle) * 2 * 180 / std::numbers::pi;

@@ -178,10 +178,7 @@ void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
         picked_[v] = 1;
   }
   if (!dragging_) return;
-  const double unit = lens.unit(before_[static_cast<std::size_t>(held_)]);
-  const Vec2 pixels = pointer.at - from_;
-  const Vec3 right = lens.ray(Vec2(1, 0)) - lens.ray(Vec2(0, 0)), down = lens.ray(Vec2(0, 1)) - lens.ray(Vec2(0, 0));
-  const Vec3 motion = unit * (right.normalized() * pixels.x() + down.normalized() * pixels.y());
+  const Vec3 motion = lens.motion(before_[static_cast<std::size_t>(held_)], pointer.at - from_);
   Box box;
   for (const Vec3& p : bound_->cage.vertices) box.extend(p);
   const double soft = static_cast<double>(softness_) * box.diagonal().norm();

@@ -123,15 +123,7 @@ void look_along(Desk& desk) {
   desk.camera = along_axis(desk.camera, direction);
 }
 
-void flatten(Desk& desk) {
-  constexpr double flat = 0.5;  // degrees: lines that are parallel meet 115 heights away
-  if (desk.camera.fov_degrees > flat) {
-    desk.perspective_fov = desk.camera.fov_degrees;
-    desk.camera = with_field_of_view(desk.camera, flat);
-  } else {
-    desk.camera = with_field_of_view(desk.camera, desk.perspective_fov);
-  }
-}
+void project_otherwise(Desk& desk) { desk.camera = projected_otherwise(desk.camera); }
 
 template <Guides::Inspect inspect>
 void look_at(Desk& desk) {
@@ -211,7 +203,7 @@ const std::vector<Command>& command_table() {
       {"View", "Left", "Ctrl+KP_3", "Ctrl+KP_3", always, look_along<0, -1>},
       {"View", "Top", "KP_7", "KP_7", always, look_along<1, 1>},
       {"View", "Bottom", "Ctrl+KP_7", "Ctrl+KP_7", always, look_along<1, -1>},
-      {"View", "Flat or perspective", "5 KP_5", "KP_5", always, flatten},
+      {"View", "Orthographic or perspective", "5 KP_5", "KP_5", always, project_otherwise},
       {"View", "Fly (W A S D Q E)", "Shift+F", "Shift+F", always, [](Desk& desk) { desk.flying = !desk.flying; }},
       {"View", "Grid", "G", "Shift+G", always, [](Desk& desk) { desk.settings.grid = !desk.settings.grid; }},
       {"View", "Show selection", "Shift+T", "Shift+T", always,

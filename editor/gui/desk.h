@@ -43,7 +43,6 @@ struct Desk {
   Camera camera;
   int view_width = 1, view_height = 1;  ///< the viewport's pixels
   bool flying = false;
-  double perspective_fov = Camera{}.fov_degrees;  ///< to come back to from a flat view
   bool show_selection = true;
   int samples = 4;
   Guides::Inspect inspect = Guides::Inspect::none;

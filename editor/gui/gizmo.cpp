@@ -98,7 +98,7 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
     const Vec2 a = from_ - *middle, b = now_ - *middle;
     double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
     // On the screen y points down; seen from behind the turn goes the other way.
-    if (axis.dot(lens.eye() - at_.pivot) > 0) angle = -angle;
+    if (axis.dot(lens.towards_eye(at_.pivot)) > 0) angle = -angle;
     result = angle * 180 / std::numbers::pi * fine;
     return pointer.control ? std::round(result / 15) * 15 : result;
   }
@@ -133,10 +133,7 @@ std::vector<Edit> Gizmo::edits(const Lens& lens) const {
     else
       transform.scale.value[held_] = 1 + amount_;
   } else if (held_ == 3) {
-    const double unit = lens.unit(at_.pivot);
-    const Vec3 right = (lens.ray(Vec2(1, 0)) - lens.ray(Vec2(0, 0))).normalized(),
-               down = (lens.ray(Vec2(0, 1)) - lens.ray(Vec2(0, 0))).normalized();
-    transform.translate = amount_ * unit * (right * (now_.x() - from_.x()) + down * (now_.y() - from_.y()));
+    transform.translate = amount_ * lens.motion(at_.pivot, now_ - from_);
   } else {
     transform.translate = amount_ * at_.axes.col(held_);
   }

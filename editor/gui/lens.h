@@ -10,20 +10,22 @@ namespace rebake {
 class Lens {
  public:
   Lens(const Camera& camera, int width, int height);
-  /// Nothing behind the eye.
+  /// Nothing behind a perspective camera's eye.
   std::optional<Vec2> pixel(const Vec3& world) const;
-  /// From the eye through a pixel, of length 1 along the line of sight.
-  Vec3 ray(const Vec2& pixel) const;
-  const Vec3& eye() const { return eye_; }
+  ViewRay ray(const Vec2& pixel) const;
+  /// From a world point to where it is looked at from, of length 1.
+  Vec3 towards_eye(const Vec3& world) const;
+  /// What a way on the screen is in the world, at a world point's depth.
+  Vec3 motion(const Vec3& world, const Vec2& pixels) const;
   /// Along the line of sight.
   double depth(const Vec3& world) const;
   /// Scene units that a pixel spans at a world point's depth.
   double unit(const Vec3& world) const;
 
  private:
-  Vec3 eye_;
+  Camera camera_;
   Mat3 rows_;
-  double scale_;  ///< pixels a unit at depth 1
+  double height_;  ///< pixels
   Vec2 middle_;
 };
 

@@ -11,8 +11,6 @@ namespace {
 
 constexpr double closest_to_pole = 0.01;  // radians
 
-double half_tangent(const Camera& camera) { return std::tan(camera.fov_degrees * std::numbers::pi / 360); }
-
 Camera flown_to(const Camera& camera, const Vec3& target) {
   Camera result = camera;
   result.eye += target - camera.target;
@@ -48,7 +46,7 @@ Camera looked(const Camera& camera, double right_pixels, double down_pixels, int
 }
 
 Camera panned(const Camera& camera, double right_pixels, double down_pixels, int height) {
-  const double unit = 2 * half_tangent(camera) * (camera.target - camera.eye).norm() / height;
+  const double unit = 2 * half_height(camera, (camera.target - camera.eye).norm()) / height;
   return flown(camera, -right_pixels * unit, down_pixels * unit, 0);
 }
 
@@ -56,9 +54,12 @@ Camera zoomed(const Camera& camera, const Vec3& towards, double factor) {
   Camera result = camera;
   result.eye = towards + (camera.eye - towards) * factor;
   result.target = towards + (camera.target - towards) * factor;
+  result.ortho_height *= factor;
   // Nearer than numbers tell points apart there is nothing to see.
   const double least = std::max(1e-12 * result.target.norm(), std::numeric_limits<double>::min());
-  return (result.eye - result.target).norm() > least ? result : camera;
+  const bool sound = (result.eye - result.target).norm() > least &&
+                     (!camera.orthographic() || (result.ortho_height > least && std::isfinite(result.ortho_height)));
+  return sound ? result : camera;
 }
 
 Camera framed(const Camera& camera, const Box& box, double aspect) {
@@ -66,8 +67,9 @@ Camera framed(const Camera& camera, const Box& box, double aspect) {
   // A single point is looked at from where the camera is.
   const double radius = box.diagonal().norm() / 2;
   if (!(radius > 1e-12 * box.center().norm())) return flown_to(camera, box.center());
-  const double half = std::atan(half_tangent(camera) * std::min(1.0, aspect));
+  const double half = std::atan(std::tan(camera.fov_degrees * std::numbers::pi / 360) * std::min(1.0, aspect));
   Camera result = camera;
+  if (camera.orthographic()) result.ortho_height = 2 * radius / std::min(1.0, aspect);
   result.target = box.center();
   result.eye = result.target + (camera.eye - camera.target).normalized() * (radius / std::sin(half));
   return result;
@@ -102,18 +104,28 @@ Camera along_axis(const Camera& camera, const Vec3& axis) {
   return result;
 }
 
-Camera with_field_of_view(const Camera& camera, double degrees) {
+Camera projected_otherwise(const Camera& camera) {
   Camera result = camera;
-  result.fov_degrees = degrees;
-  result.eye = camera.target + (camera.eye - camera.target) * (half_tangent(camera) / half_tangent(result));
+  if (camera.orthographic()) {
+    result.ortho_height = 0;
+    result.eye =
+        camera.target + (camera.eye - camera.target).normalized() * (camera.ortho_height / 2 / half_height(result, 1));
+  } else {
+    result.ortho_height = 2 * half_height(camera, (camera.eye - camera.target).norm());
+  }
   return result;
 }
 
 Camera with_depth_for(const Camera& camera, const Box& box) {
   Camera result = camera;
-  const double target = (camera.target - camera.eye).norm();
+  if (camera.orthographic() && !box.isEmpty()) {
+    const Vec3 back = (camera.eye - camera.target).normalized();
+    const double before = back.dot(box.center() - camera.target) + box.diagonal().norm();
+    if (before > (camera.eye - camera.target).norm()) result.eye = camera.target + before * back;
+  }
+  const double target = (result.target - result.eye).norm();
   double farthest = 2 * target;
-  if (!box.isEmpty()) farthest = std::max(farthest, (box.center() - camera.eye).norm() + box.diagonal().norm());
+  if (!box.isEmpty()) farthest = std::max(farthest, (box.center() - result.eye).norm() + box.diagonal().norm());
   result.far_plane = farthest * 2;
   // Float depth is reversed: what a small near plane costs is nothing.
   result.near_plane = std::min(target / 100, farthest / 1000);

@@ -21,9 +21,9 @@ Camera flown(const Camera& camera, double right, double up, double forward);
 Camera looked(const Camera& camera, double right_pixels, double down_pixels, int height);
 /// Looks along an axis of the world at the target, from the same distance. `axis` points from the target to the eye.
 Camera along_axis(const Camera& camera, const Vec3& axis);
-/// Another field of view with the target as large as before. Near 0 the view is as good as orthographic.
-Camera with_field_of_view(const Camera& camera, double degrees);
-/// Near and far planes that hold the box, whatever lies around it.
+/// Orthographic where it was perspective and the reverse, with the target as large as before.
+Camera projected_otherwise(const Camera& camera);
+/// Near and far planes that hold the box, whatever lies around it; an orthographic camera steps back before the box.
 Camera with_depth_for(const Camera& camera, const Box& box);
 
 }  // namespace rebake

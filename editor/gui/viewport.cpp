@@ -90,7 +90,8 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
     if (io.MouseWheel != 0) {
       // Towards what lies under the pointer; beside everything, towards the target's depth there.
       const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at);
-      const Vec3 at = picked ? picked->world : Vec3(lens.eye() + lens.ray(pointer.at) * lens.depth(desk.camera.target));
+      const ViewRay ray = lens.ray(pointer.at);
+      const Vec3 at = picked ? picked->world : Vec3(ray.origin + ray.direction * lens.depth(desk.camera.target));
       desk.camera = zoomed(desk.camera, at, std::pow(0.85, static_cast<double>(io.MouseWheel)));
     }
   }

@@ -102,6 +102,7 @@ class Camera(TypedDict, total=False):
     target: Vector
     up: Vector
     fov: float
+    ortho_height: float
     near: float
     far: float
 

@@ -26,12 +26,15 @@ double number(const json& value, const std::string& key) {
 }  // namespace
 
 nlohmann::json camera_json(const Camera& camera) {
-  return {{"eye", list(camera.eye)},   {"target", list(camera.target)}, {"up", list(camera.up)},
-          {"fov", camera.fov_degrees}, {"near", camera.near_plane},     {"far", camera.far_plane}};
+  json result = {{"eye", list(camera.eye)},   {"target", list(camera.target)}, {"up", list(camera.up)},
+                 {"fov", camera.fov_degrees}, {"near", camera.near_plane},     {"far", camera.far_plane}};
+  if (camera.orthographic()) result["ortho_height"] = camera.ortho_height;
+  return result;
 }
 
 Camera read_camera_json(const nlohmann::json& value, const Camera& base) {
-  if (!value.is_object()) throw FieldError("camera", "must be an object with eye, target, up, fov, near, far");
+  if (!value.is_object())
+    throw FieldError("camera", "must be an object with eye, target, up, fov, ortho_height, near, far");
   Camera camera = base;
   for (const auto& [key, field] : value.items()) {
     if (key == "eye")
@@ -42,12 +45,14 @@ Camera read_camera_json(const nlohmann::json& value, const Camera& base) {
       camera.up = vector(field, key);
     else if (key == "fov")
       camera.fov_degrees = number(field, key);
+    else if (key == "ortho_height")
+      camera.ortho_height = number(field, key);
     else if (key == "near")
       camera.near_plane = number(field, key);
     else if (key == "far")
       camera.far_plane = number(field, key);
     else
-      throw FieldError(key, "is not a field of a camera (eye, target, up, fov, near, far)");
+      throw FieldError(key, "is not a field of a camera (eye, target, up, fov, ortho_height, near, far)");
   }
   check(camera);
   return camera;

@@ -8,6 +8,11 @@
 
 namespace rebake {
 
+double half_height(const Camera& camera, double depth) {
+  return camera.orthographic() ? camera.ortho_height / 2
+                               : depth * std::tan(camera.fov_degrees * std::numbers::pi / 360);
+}
+
 Mat3 world_to_camera(const Camera& camera) {
   const Vec3 back = (camera.eye - camera.target).stableNormalized();
   if (back.squaredNorm() == 0) throw FieldError("target", "is the same point as the eye");
@@ -33,6 +38,8 @@ void check(const Camera& camera) {
   if (!camera.up.allFinite() || camera.up.isZero(0)) throw FieldError("up", "must be a finite, non-zero vector");
   if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
     throw FieldError("fov", "must lie between 0 and 180 degrees");
+  if (!(camera.ortho_height >= 0) || !std::isfinite(camera.ortho_height))
+    throw FieldError("ortho_height", "must be greater than 0 (orthographic), or 0 (perspective)");
   if (!(camera.near_plane > 0) || !std::isfinite(camera.near_plane)) throw FieldError("near", "must be greater than 0");
   if (!(camera.far_plane > camera.near_plane) || !std::isfinite(camera.far_plane))
     throw FieldError("far", "must be greater than near");

@@ -4,16 +4,27 @@
 
 namespace rebake {
 
-/// A pinhole camera in world space. Lengths are in the scene's units.
+/// A camera in world space: a pinhole, or orthographic. Lengths are in the scene's units.
 struct Camera {
   Vec3 eye{0, 2, 3.464};
   Vec3 target{0, 0, 0};
   Vec3 up{0, 1, 0};
-  double fov_degrees = 39;  ///< vertical field of view, in (0, 180)
+  double fov_degrees = 39;  ///< vertical field of view of a pinhole, in (0, 180)
+  double ortho_height = 0;  ///< above 0 the camera is orthographic: its picture shows so much from top to bottom
   double near_plane = 0.01;
   double far_plane = 1000;
 
+  bool orthographic() const { return ortho_height > 0; }
   bool operator==(const Camera&) const = default;
+};
+
+/// Half of what the picture shows from top to bottom at a depth along the line of sight.
+double half_height(const Camera& camera, double depth);
+
+/// What a point of a picture shows lies along this.
+struct ViewRay {
+  Vec3 origin;     ///< the eye; of an orthographic camera a point of the plane through it
+  Vec3 direction;  ///< of length 1 along the line of sight
 };
 
 /// Rows right, up, back: turns world directions into camera directions (the camera looks along −z).

@@ -91,8 +91,6 @@ PixelMask brush_mask(const std::vector<Vec2>& points, double radius, int width, 
 Projector::Projector(const Picture& picture) : picture_(picture), eye_(picture.camera.eye) {
   check(picture.camera);
   rows_ = world_to_camera(picture.camera);
-  half_height_ = std::tan(picture.camera.fov_degrees / 2 * std::numbers::pi / 180);
-  half_width_ = half_height_ * picture.width / picture.height;
 }
 
 bool Projector::operator()(const Vec3& world, At& at) const {
@@ -100,15 +98,25 @@ bool Projector::operator()(const Vec3& world, At& at) const {
   at.depth = -p.z();
   if (!(at.depth >= picture_.camera.near_plane && at.depth <= picture_.camera.far_plane)) return false;
   const auto pixel = [](double v) { return static_cast<int>(std::floor(std::clamp(v, -1e9, 1e9))); };
-  at.x = pixel((p.x() / (at.depth * half_width_) + 1) / 2 * picture_.width);
-  at.y = pixel((1 - p.y() / (at.depth * half_height_)) / 2 * picture_.height);
+  const double top = half_height(picture_.camera, at.depth), right = top * picture_.width / picture_.height;
+  at.x = pixel((p.x() / right + 1) / 2 * picture_.width);
+  at.y = pixel((1 - p.y() / top) / 2 * picture_.height);
   return true;
 }
 
-Vec3 Projector::ray(int x, int y) const {
-  const Vec3 p((2 * (x + 0.5) / picture_.width - 1) * half_width_, (1 - 2 * (y + 0.5) / picture_.height) * half_height_,
-               -1);
-  return rows_.transpose() * p;
+ViewRay Projector::ray(int x, int y) const {
+  const double top = half_height(picture_.camera, 1), right = top * picture_.width / picture_.height;
+  const Vec3 aside = rows_.transpose() *
+                     Vec3((2 * (x + 0.5) / picture_.width - 1) * right, (1 - 2 * (y + 0.5) / picture_.height) * top, 0);
+  const Vec3 forward = -rows_.row(2).transpose();
+  if (picture_.camera.orthographic()) return {eye_ + aside, forward};
+  return {eye_, aside + forward};
+}
+
+Vec3 Projector::eye_for(const Vec3& world) const {
+  if (!picture_.camera.orthographic()) return eye_;
+  const Vec3 back = rows_.row(2).transpose();
+  return world - back.dot(world - eye_) * back;
 }
 
 TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, const Projector& project,
@@ -132,14 +140,13 @@ std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, 
                                         const PixelMask& mask, double nearest, double farthest) {
   struct Seen {
     std::shared_ptr<const RayTree> rays;
-    Vec3 eye;
-    Mat3 to_object;
+    Affine to_object;
   };
   std::vector<Seen> trees;
   std::vector<TriangleSet> flags;
   for (const PlacedNode& placed : objects) {
     const Affine to_object = placed.to_world.inverse();
-    trees.push_back({rays_of(*placed.node->object), to_object * project.eye(), to_object.linear()});
+    trees.push_back({rays_of(*placed.node->object), to_object});
     flags.emplace_back(placed.node->object->triangle_count(), 0);
   }
   struct Pick {
@@ -148,7 +155,7 @@ std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, 
   std::vector<std::vector<Pick>> picks(static_cast<std::size_t>(mask.height));
   tbb::parallel_for(0, mask.height, [&](int y) {
     for (int first = 0; first < mask.width; first += 8) {
-      std::array<Vec3, 8> rays;
+      std::array<ViewRay, 8> rays;
       std::array<std::optional<Pick>, 8> picked;
       RayTree::Bundle bundle;
       bool any = false;
@@ -160,8 +167,11 @@ std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, 
       }
       if (!any) continue;
       for (std::uint32_t object = 0; object < trees.size(); ++object) {
-        bundle.origin = trees[object].eye;
-        for (std::size_t k = 0; k < 8; ++k) bundle.directions[k] = trees[object].to_object * rays[k];
+        const Affine& to_object = trees[object].to_object;
+        for (std::size_t k = 0; k < 8; ++k) {
+          bundle.origins[k] = to_object * rays[k].origin;
+          bundle.directions[k] = to_object.linear() * rays[k].direction;
+        }
         trees[object].rays->nearest(bundle, project.camera().near_plane);
         for (std::size_t k = 0; k < 8; ++k)
           if (bundle.hit[k]) picked[k] = Pick{object, bundle.triangle[k]};

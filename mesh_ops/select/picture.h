@@ -42,16 +42,16 @@ class Projector {
   };
   /// False behind the near plane or beyond the far one. Pixels outside the picture are possible.
   bool operator()(const Vec3& world, At& at) const;
-  /// Direction from the eye through a pixel's centre, of length 1 along the view axis.
-  Vec3 ray(int x, int y) const;
-  const Vec3& eye() const { return eye_; }
+  /// Through a pixel's centre.
+  ViewRay ray(int x, int y) const;
+  /// From where a world point is looked at.
+  Vec3 eye_for(const Vec3& world) const;
   const Camera& camera() const { return picture_.camera; }
 
  private:
   Picture picture_;
   Vec3 eye_;
   Mat3 rows_;
-  double half_height_, half_width_;
 };
 
 /// Triangles whose centre falls on a flagged pixel at a depth in [nearest, farthest], hidden ones too.

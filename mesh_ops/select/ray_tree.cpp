@@ -91,8 +91,8 @@ class RayTree::Impl {
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     RTCRayHit8 query{};
     alignas(32) std::array<int, 8> valid{};
-    const Vec3 start = rays.origin - center_;
     for (std::size_t i = 0; i < 8; ++i) {
+      const Vec3 start = rays.origins[i] - center_;
       valid[i] = rays.far[i] >= near ? -1 : 0;
       query.ray.org_x[i] = static_cast<float>(start.x());
       query.ray.org_y[i] = static_cast<float>(start.y());

@@ -21,10 +21,10 @@ class RayTree {
   };
   /// The nearest hit with t in [near, far]. Origin and direction in object space, the direction of any length.
   std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const;
-  /// The same for eight rays of one origin that go much the same way: faster than one by one. Rays whose `far` is below
+  /// The same for eight rays that go much the same way: faster than one by one. Rays whose `far` is below
   /// `near` are left out. Where something is hit, `far` and `triangle` become the hit's.
   struct Bundle {
-    Vec3 origin;
+    std::array<Vec3, 8> origins;
     std::array<Vec3, 8> directions;
     std::array<double, 8> far;
     std::array<std::uint32_t, 8> triangle;

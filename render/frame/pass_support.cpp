@@ -22,11 +22,22 @@ bool reversed_depth() {
 }
 
 Eigen::Matrix4d projection(const View& view) {
-  const double f = 1 / std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180);
+  const double f = 1 / half_height(view.camera, 1);
   const double n = view.camera.near_plane, r = view.camera.far_plane;
   Eigen::Matrix4d p = Eigen::Matrix4d::Zero();
   p(0, 0) = f * view.height / view.width;
   p(1, 1) = f;
+  if (view.camera.orthographic()) {
+    p(3, 3) = 1;
+    if (reversed_depth()) {
+      p(2, 2) = 1 / (r - n);
+      p(2, 3) = r / (r - n);
+    } else {
+      p(2, 2) = -2 / (r - n);
+      p(2, 3) = -(r + n) / (r - n);
+    }
+    return p;
+  }
   p(3, 2) = -1;
   if (reversed_depth()) {
     p(2, 2) = n / (r - n);
@@ -116,11 +127,11 @@ Mat3 camera_to_fed(const FramePlan& plan, const NodeFrame& frame) {
 glm::vec2 alpha_factors(AlphaCode code) { return code == AlphaCode::halved ? glm::vec2(2, -1) : glm::vec2(1, 0); }
 
 void set_ray_uniforms(const gl::Program& program, const View& view, int side) {
-  const double half_height = std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180);
-  const double half_width = half_height * view.width / view.height;
-  set_uniform(program, "ray_scale",
-              glm::vec2(2 * half_width / (view.width * side), 2 * half_height / (view.height * side)));
-  set_uniform(program, "ray_offset", glm::vec2(-half_width, -half_height));
+  // Parallel rays are all (0, 0, -1).
+  const double top = view.camera.orthographic() ? 0 : half_height(view.camera, 1);
+  const double right = top * view.width / view.height;
+  set_uniform(program, "ray_scale", glm::vec2(2 * right / (view.width * side), 2 * top / (view.height * side)));
+  set_uniform(program, "ray_offset", glm::vec2(-right, -top));
 }
 
 void set_uniform(const gl::Program& program, const char* name, int value) {
@@ -159,6 +170,7 @@ void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Progr
   set_uniform(program, "features", 0);
   if (draw.set.soup.turns() != nullptr) {
     const Mat3 axes = axes_matrix(draw.axes);
+    set_uniform(program, "parallel_rays", input.plan.view.camera.orthographic() ? 1 : 0);
     set_uniform(program, "object_to_camera", to_glm(Eigen::Matrix4d(to_camera.matrix())));
     set_uniform(program, "camera_to_object",
                 to_glm(Mat3(axes.transpose() * camera_to_fed(input.plan, input.plan.frames[draw.frame]))));

@@ -21,9 +21,9 @@ constexpr std::size_t most_constant_weights = 4096;
 // vectors spread by s differs from the unit vector of their mean position by O(s^2): at most 4e-6 here.
 constexpr double widest_single_ray = 1.0 / 256;
 
-// Width or height of a pixel over its distance along the view axis.
+// Width or height of a pixel over its distance along the view axis; nothing where rays are parallel.
 double pixel_span(const View& view) {
-  return 2 * std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180) / view.height;
+  return view.camera.orthographic() ? 0 : 2 * half_height(view.camera, 1) / view.height;
 }
 
 std::size_t weight_count(const Decoder& d) {
@@ -32,7 +32,6 @@ std::size_t weight_count(const Decoder& d) {
 
 // Where a camera-space box falls in the picture: nothing when it is out of view.
 std::optional<PixelRect> projected(const Box& box, const View& view) {
-  const double tan_half = std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180);
   const double aspect = static_cast<double>(view.width) / view.height;
   const double nearest = view.camera.near_plane, farthest = view.camera.far_plane;
   if (box.isEmpty() || -box.min().z() < nearest || -box.max().z() > farthest) return std::nullopt;
@@ -42,13 +41,14 @@ std::optional<PixelRect> projected(const Box& box, const View& view) {
   const double z0 = std::max(nearest, -box.max().z()), z1 = std::min(farthest, -box.min().z());
   double left = 1e300, right = -1e300, bottom = 1e300, top = -1e300;
   for (const double z : {z0, z1}) {
+    const double half = half_height(view.camera, z);
     for (const double x : {box.min().x(), box.max().x()}) {
-      left = std::min(left, x / (z * tan_half * aspect));
-      right = std::max(right, x / (z * tan_half * aspect));
+      left = std::min(left, x / (half * aspect));
+      right = std::max(right, x / (half * aspect));
     }
     for (const double y : {box.min().y(), box.max().y()}) {
-      bottom = std::min(bottom, y / (z * tan_half));
-      top = std::max(top, y / (z * tan_half));
+      bottom = std::min(bottom, y / half);
+      top = std::max(top, y / half);
     }
   }
   if (left > 1 || right < -1 || bottom > 1 || top < -1) return std::nullopt;

@@ -36,40 +36,45 @@ TEST(Navigation, AFullTurnComesBack) {
 }
 
 TEST(Navigation, PanningTakesTheTargetWithThePointer) {
-  const Vec2 before = *Lens(camera(), width, height).pixel(camera().target);
-  const Camera moved = panned(camera(), 30, -20, height);
-  const Vec2 after = *Lens(moved, width, height).pixel(camera().target);
-  EXPECT_LT((after - before - Vec2(30, -20)).norm(), 1e-9);
+  for (const Camera& from : {camera(), projected_otherwise(camera())}) {
+    const Vec2 before = *Lens(from, width, height).pixel(from.target);
+    const Camera moved = panned(from, 30, -20, height);
+    const Vec2 after = *Lens(moved, width, height).pixel(from.target);
+    EXPECT_LT((after - before - Vec2(30, -20)).norm(), 1e-9);
+  }
 }
 
 TEST(Navigation, ZoomingKeepsThePointUnderThePointer) {
   const Vec3 point(0.8, 0.4, -0.5);
-  const Vec2 before = *Lens(camera(), width, height).pixel(point);
-  Camera moved = camera();
-  for (int k = 0; k < 10; ++k) moved = zoomed(moved, point, 0.8);
-  EXPECT_LT((*Lens(moved, width, height).pixel(point) - before).norm(), 1e-7);
-  EXPECT_NEAR((moved.eye - point).norm(), (camera().eye - point).norm() * std::pow(0.8, 10), 1e-12);
-  // For ever so long: it ends before numbers do.
-  for (int k = 0; k < 1000; ++k) moved = zoomed(moved, point, 0.5);
-  EXPECT_GT((moved.eye - moved.target).norm(), 0);
+  for (const Camera& from : {camera(), projected_otherwise(camera())}) {
+    const Vec2 before = *Lens(from, width, height).pixel(point);
+    Camera moved = from;
+    for (int k = 0; k < 10; ++k) moved = zoomed(moved, point, 0.8);
+    EXPECT_LT((*Lens(moved, width, height).pixel(point) - before).norm(), 1e-7);
+    EXPECT_NEAR(Lens(moved, width, height).unit(point), Lens(from, width, height).unit(point) * std::pow(0.8, 10),
+                1e-15);
+    // For ever so long: it ends before numbers do.
+    for (int k = 0; k < 1000; ++k) moved = zoomed(moved, point, 0.5);
+    EXPECT_NO_THROW(check(moved));
+  }
 }
 
 TEST(Navigation, FramingShowsAllOfABoxAtAnyAspect) {
   const Box box(Vec3(-3, -1, -2), Vec3(1, 0.5, 0));
-  for (const double aspect : {0.3, 1.0, 3.0}) {
-    const Camera moved = framed(camera(), box, aspect);
-    const Lens lens(moved, static_cast<int>(600 * aspect), 600);
-    for (int corner = 0; corner < 8; ++corner) {
-      const auto pixel = lens.pixel(box.corner(static_cast<Box::CornerType>(corner)));
-      ASSERT_TRUE(pixel);
-      EXPECT_GE(pixel->minCoeff(), 0);
-      EXPECT_LE(pixel->x(), 600 * aspect);
-      EXPECT_LE(pixel->y(), 600);
+  for (const Camera& from : {camera(), projected_otherwise(camera())})
+    for (const double aspect : {0.3, 1.0, 3.0}) {
+      const Lens lens(framed(from, box, aspect), static_cast<int>(600 * aspect), 600);
+      for (int corner = 0; corner < 8; ++corner) {
+        const auto pixel = lens.pixel(box.corner(static_cast<Box::CornerType>(corner)));
+        ASSERT_TRUE(pixel);
+        EXPECT_GE(pixel->minCoeff(), 0);
+        EXPECT_LE(pixel->x(), 600 * aspect);
+        EXPECT_LE(pixel->y(), 600);
+      }
     }
-  }
 }
 
-TEST(Navigation, AxisViewsAndFlatViewsKeepTheTargetsSize) {
+TEST(Navigation, AxisViewsLookAlongThem) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {-1.0, 1.0}) {
       const Camera moved = along_axis(camera(), sign * Vec3::Unit(axis));
@@ -78,9 +83,26 @@ TEST(Navigation, AxisViewsAndFlatViewsKeepTheTargetsSize) {
       // Turning goes on from there.
       EXPECT_TRUE(orbited(moved, 10, 10, height).eye.allFinite());
     }
-  const Camera flat = with_field_of_view(camera(), 0.5);
-  const Lens near(camera(), width, height), far(flat, width, height);
-  EXPECT_NEAR(near.unit(camera().target), far.unit(camera().target), 1e-12);
+}
+
+TEST(Navigation, AnotherProjectionKeepsTheTargetsSizeAndComesBack) {
+  const Camera flat = projected_otherwise(camera());
+  ASSERT_TRUE(flat.orthographic());
+  EXPECT_NO_THROW(check(flat));
+  EXPECT_NEAR(Lens(camera(), width, height).unit(camera().target), Lens(flat, width, height).unit(camera().target),
+              1e-15);
+  const Camera back = projected_otherwise(flat);
+  EXPECT_FALSE(back.orthographic());
+  EXPECT_LT((back.eye - camera().eye).norm(), 1e-12);
+  // However near people go, nothing is cut off before the eye's plane, and the picture stays as it is.
+  const Box box(Vec3(-1, -1, -1), Vec3(1, 1, 1));
+  const Camera close = zoomed(flat, flat.target, 1e-3), cleared = with_depth_for(close, box);
+  EXPECT_EQ(cleared.ortho_height, close.ortho_height);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 point = box.corner(static_cast<Box::CornerType>(corner));
+    EXPECT_GT(Lens(cleared, width, height).depth(point), cleared.near_plane);
+    EXPECT_LT((*Lens(cleared, width, height).pixel(point) - *Lens(close, width, height).pixel(point)).norm(), 1e-6);
+  }
 }
 
 TEST(Navigation, DepthRangesHoldTheSceneFromAnywhere) {
@@ -95,13 +117,19 @@ TEST(Navigation, DepthRangesHoldTheSceneFromAnywhere) {
 }
 
 TEST(Lens, PixelAndRayAreInverse) {
-  const Lens lens(camera(), width, height);
-  for (const Vec2& pixel : {Vec2(0, 0), Vec2(320, 240), Vec2(637.5, 12.25)}) {
-    const Vec3 point = lens.eye() + 3 * lens.ray(pixel);
-    EXPECT_LT((*lens.pixel(point) - pixel).norm(), 1e-9);
-    EXPECT_NEAR(lens.depth(point), 3, 1e-12);
+  for (const Camera& from : {camera(), projected_otherwise(camera())}) {
+    const Lens lens(from, width, height);
+    for (const Vec2& pixel : {Vec2(0, 0), Vec2(320, 240), Vec2(637.5, 12.25)}) {
+      const ViewRay ray = lens.ray(pixel);
+      const Vec3 point = ray.origin + 3 * ray.direction;
+      EXPECT_LT((*lens.pixel(point) - pixel).norm(), 1e-9);
+      EXPECT_NEAR(lens.depth(point), 3, 1e-12);
+      EXPECT_LT((*lens.pixel(point + lens.motion(point, {7, -5})) - pixel - Vec2(7, -5)).norm(), 1e-9);
+      EXPECT_LT(ray.direction.normalized().dot(lens.towards_eye(point)), -1 + 1e-12);
+    }
+    const ViewRay middle = lens.ray({320, 240});
+    EXPECT_EQ(lens.pixel(middle.origin - middle.direction).has_value(), from.orthographic());
   }
-  EXPECT_FALSE(lens.pixel(lens.eye() - lens.ray({320, 240})));
 }
 
 }  // namespace

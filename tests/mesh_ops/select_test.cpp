@@ -226,6 +226,30 @@ TEST(Select, WhatIsSeenIsTheNearSide) {
   EXPECT_GT(count(near), 0U);
 }
 
+TEST(Select, ParallelRaysSeeTheNearHalf) {
+  const Scene scene = scene_of(made_object({.holes = false}));
+  Picture picture = front_picture();
+  picture.camera.ortho_height = 2.5;
+  const Projector project(picture);
+  const auto objects = placed_nodes(scene);
+  const TriangleSet seen = triangles_seen(objects, project, full_mask(800, 800), 0, 100)[0];
+  const Soup& soup = objects[0].node->object->sets[0].soup;
+  for (std::size_t f = 0; f < soup.triangle_count(); ++f) {
+    Vec3 centre = Vec3::Zero();
+    for (const std::uint32_t v : soup.faces()[f]) centre += soup.positions()[v] / 3;
+    // A facet's width either way of the half that a camera at infinity sees.
+    if (std::abs(centre.z()) > 0.25) {
+      EXPECT_EQ(seen[f] != 0, centre.z() > 0) << centre.transpose();
+    }
+    // Through the pixel that a point falls on, it is looked at.
+    Projector::At at;
+    ASSERT_TRUE(project(centre, at));
+    const ViewRay ray = project.ray(at.x, at.y);
+    EXPECT_LT((ray.origin + at.depth * ray.direction - centre).norm(), 2.5 / 800);
+    EXPECT_LT((project.eye_for(centre) + at.depth * ray.direction - centre).norm(), 1e-12);
+  }
+}
+
 TEST(Select, ObjectsHideEachOtherAndHolesLetThrough) {
   Node node;
   node.object = made_object({.holes = false});

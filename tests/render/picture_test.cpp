@@ -83,6 +83,18 @@ TEST_P(PictureBySamples, OneRayForAllSamplesOfANarrowPixel) {
   expect_as_cast(scene, view);
 }
 
+View orthographic_view(int samples) {
+  View view = view_from({0.5, 1.5, 3}, samples);
+  view.camera.ortho_height = 2.2;
+  return view;
+}
+
+TEST_P(PictureBySamples, Orthographic) {
+  const Scene scene = scene_of(made_object());
+  EXPECT_FALSE(plan(scene, orthographic_view(GetParam())).runs("ray per sample"));
+  expect_as_cast(scene, orthographic_view(GetParam()));
+}
+
 TEST_P(PictureBySamples, TwoDecodersMixedAtPixels) {
   expect_as_cast(together({placed(made_object({.seed = 1}), moved(-0.4, 0, 0)),
                            placed(made_object({.seed = 2}), moved(0.5, 0.2, 0.3))}),
@@ -99,6 +111,7 @@ TEST_P(PictureBySamples, TurnedTriangles) {
                  Affine(Eigen::Translation3d(0.4, 0.1, 0) * Eigen::AngleAxisd(0.8, Vec3(1, 2, 0).normalized())));
   ASSERT_TRUE(turned->any_turns());
   expect_as_cast(scene_of(turned), view_from({0.5, 1.5, 4}, GetParam()));
+  expect_as_cast(scene_of(turned), orthographic_view(GetParam()));
 }
 
 TEST(Picture, ForwardFacingAxes) {

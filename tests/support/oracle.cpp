@@ -32,17 +32,19 @@ struct Hit {
 struct CastContext {
   RTCIntersectContext base;
   const std::vector<Surface>* surfaces;
-  Vec3 ray;  // unnormalised: its length along the view axis is 1
+  Vec3 start, ray;  // relative to the eye; unnormalised: its length along the view axis is 1
   double nearest, farthest;
+  bool parallel;  // rays, of an orthographic camera
   Hit hit;
 };
 
 // Möller–Trumbore in double; false when the ray misses by more than rounding.
-bool intersect(const Vec3& ray, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& u, double& v) {
+bool intersect(const Vec3& start, const Vec3& ray, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& u,
+               double& v) {
   const Vec3 e1 = b - a, e2 = c - a, p = ray.cross(e2);
   const double det = e1.dot(p);
   if (det == 0) return false;
-  const Vec3 s = -a, q = s.cross(e1);
+  const Vec3 s = start - a, q = s.cross(e1);
   u = s.dot(p) / det;
   v = ray.dot(q) / det;
   t = e2.dot(q) / det;
@@ -57,7 +59,8 @@ void filter(const RTCFilterFunctionNArguments* args) {
   const Soup& soup = surface.set->soup;
   const Face& face = soup.faces()[hit->primID];
   double t = 0, u = 0, v = 0;
-  if (!intersect(context.ray, surface.corners[face[0]], surface.corners[face[1]], surface.corners[face[2]], t, u, v))
+  if (!intersect(context.start, context.ray, surface.corners[face[0]], surface.corners[face[1]],
+                 surface.corners[face[2]], t, u, v))
     return;
   if (t < context.nearest || t > context.farthest) return;
   // At equal depth the later drawn wins (less or equal).
@@ -76,7 +79,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
     Vec3 sum = Vec3::Zero();
     const double weight[3] = {1 - u - v, u, v};
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 corner_ray = surface.world_to_object * surface.corners[face[k]];
+      const Vec3 corner_ray = surface.world_to_object * (context.parallel ? context.ray : surface.corners[face[k]]);
       sum += weight[k] * ((*soup.turns())[face[k]].transpose() * corner_ray);
     }
     direction = sum;
@@ -156,7 +159,9 @@ Image cast_picture(const Scene& scene, const View& view) {
   rtcCommitScene(rays);
 
   const int side = view.samples == 1 ? 1 : view.samples == 4 ? 2 : 4;
-  const double tan_half = std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180);
+  const bool parallel = view.camera.ortho_height > 0;
+  const double half =
+      parallel ? view.camera.ortho_height / 2 : std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180);
   const double aspect = static_cast<double>(view.width) / view.height;
   Image image{view.width, view.height,
               std::vector<std::uint8_t>(static_cast<std::size_t>(view.width * view.height) * 3)};
@@ -170,15 +175,21 @@ Image cast_picture(const Scene& scene, const View& view) {
       for (int k = 0; k < side * side; ++k) {
         const double sx = (x + (k % side + 0.5) / side) / view.width * 2 - 1,
                      sy = 1 - (y + (k / side + 0.5) / side) / view.height * 2;
+        const Vec3 aside = sx * half * aspect * right + sy * half * up;
         CastContext context{{},
                             &surfaces,
-                            sx * tan_half * aspect * right + sy * tan_half * up - back,
+                            parallel ? aside : Vec3(0, 0, 0),
+                            parallel ? Vec3(-back) : Vec3(aside - back),
                             view.camera.near_plane,
                             view.camera.far_plane,
+                            parallel,
                             {}};
         rtcInitIntersectContext(&context.base);
         context.base.filter = filter;
         RTCRayHit query{};
+        query.ray.org_x = static_cast<float>(context.start.x());
+        query.ray.org_y = static_cast<float>(context.start.y());
+        query.ray.org_z = static_cast<float>(context.start.z());
         query.ray.dir_x = static_cast<float>(context.ray.x());
         query.ray.dir_y = static_cast<float>(context.ray.y());
         query.ray.dir_z = static_cast<float>(context.ray.z());
