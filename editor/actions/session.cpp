@@ -61,17 +61,14 @@ std::string in_words(const std::string& name, const DeformationReport& report) {
   return line;
 }
 
-}  // namespace
-
-void Session::edit(const Edit& edit) {
+// In numbers, what an edit did to selections and triangles.
+void say_what_became(const Edit& edit, const Scene& earlier, const Scene& scene,
+                     const std::function<void(const std::string&)>& say) {
   const bool erases = std::holds_alternative<Erase>(edit);
   const bool selects = std::visit([](const auto& e) { return changes_selection<std::decay_t<decltype(e)>>(); }, edit);
-  const Numbers before = numbers_of(scene(), erases);
-  const Scene earlier = scene();
-  document.edit(edit, progress);
-  const Numbers after = numbers_of(scene(), erases);
+  const Numbers before = numbers_of(earlier, erases), after = numbers_of(scene, erases);
   const char* op = std::visit([](const auto& e) { return e.op; }, edit);
-  HiddenNodes hidden{scene(), {}};
+  HiddenNodes hidden{scene, {}};
   std::visit([&](const auto& e) { e.fields(e, hidden); }, edit);
   if (!std::holds_alternative<Hide>(edit))
     for (const std::string& name : hidden.names) say(fmt::format("note: \"{}\" is hidden", name));
@@ -79,7 +76,7 @@ void Session::edit(const Edit& edit) {
   if (erases)
     say(fmt::format("{}: {} texels cleared, {} opaque ones left", op, before.opaque_texels - after.opaque_texels,
                     after.opaque_texels));
-  for (const PlacedNode& placed : placed_nodes(scene())) {
+  for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.node->object || !placed.node->object->deformation) continue;
     const NodePtr old = find(earlier, placed.node->id);
     if (!old || !old->object || old->object->deformation == placed.node->object->deformation) continue;
@@ -87,6 +84,19 @@ void Session::edit(const Edit& edit) {
   }
   if (std::holds_alternative<DeleteSelected>(edit))
     say(fmt::format("{}: {} triangles removed, {} left", op, before.triangles - after.triangles, after.triangles));
+}
+
+}  // namespace
+
+void Session::edit(const Edit& edit) { edits({edit}); }
+
+void Session::edits(const std::vector<Edit>& edits) {
+  Scene before = scene();
+  const std::vector<Scene> after = document.edits(edits, progress);
+  for (std::size_t k = 0; k < edits.size(); ++k) {
+    say_what_became(edits[k], before, after[k], say);
+    before = after[k];
+  }
 }
 
 Renderer& Session::renderer() {

@@ -21,6 +21,8 @@ class Session {
   const Scene& scene() const { return document.scene(); }
   /// Carries an edit out and says in numbers what became of selections and triangles.
   void edit(const Edit& edit);
+  /// All of them, to be undone together, or none where one throws.
+  void edits(const std::vector<Edit>& edits);
 
   std::vector<std::string> exports;  ///< folders that export wrote
   Progress progress;

@@ -29,8 +29,14 @@ class Document {
   void keep_journal(const std::filesystem::path& path);
 
   void edit(const Edit& edit, const Progress& progress = {});
+  /// All of them, to be undone together, or none where one throws. The scene after each.
+  std::vector<Scene> edits(const std::vector<Edit>& edits, const Progress& progress = {});
+  /// One edit back or forth; false where there is none.
   bool undo();
   bool redo();
+  /// The same for all edits that were made together.
+  bool undo_step();
+  bool redo_step();
 
   /// Writes the project. Throws FileError.
   void save(const std::filesystem::path& project) const;

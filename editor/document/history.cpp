@@ -75,13 +75,19 @@ std::size_t History::kept() const {
   return result;
 }
 
-void History::add(Edit edit, Scene scene) {
+std::vector<bool> History::joined() const {
+  std::vector<bool> result;
+  for (std::size_t k = 1; k < steps_.size(); ++k) result.push_back(steps_[k].joined);
+  return result;
+}
+
+void History::add(Edit edit, Scene scene, bool joined) {
   forget_indexes(now(), scene);
   while (steps_.size() > position_ + 1) {
     drop(steps_.size() - 1);
     steps_.pop_back();
   }
-  steps_.push_back({std::move(edit), std::nullopt});
+  steps_.push_back({std::move(edit), std::nullopt, joined && position_ > 0});
   keep(++position_, std::move(scene));
   fit_budget();
 }

@@ -25,9 +25,11 @@ class History {
   std::vector<Edit> undone() const;
   std::size_t undo_count() const { return position_; }
   std::size_t redo_count() const { return steps_.size() - 1 - position_; }
+  /// For each of edits() and then of undone(), whether it was made together with the one before.
+  std::vector<bool> joined() const;
 
-  /// Adds the scene after an edit; what was undone is forgotten.
-  void add(Edit edit, Scene scene);
+  /// Adds the scene after an edit; what was undone is forgotten. With `joined` it was made together with the last one.
+  void add(Edit edit, Scene scene, bool joined = false);
   /// One step back or forth; false where there is none. A dropped value is computed again: throws Error when that fails
   /// (a source changed), and nothing changes then.
   bool undo();
@@ -42,6 +44,7 @@ class History {
   struct Step {
     std::optional<Edit> edit;  ///< that led here; none at the start
     std::optional<Scene> scene;
+    bool joined = false;
   };
   void keep(std::size_t step, Scene scene);
   void drop(std::size_t step);

@@ -41,7 +41,7 @@ Edit completed(const Edit& edit) {
   return result;
 }
 
-void write_project(const fs::path& path, const std::vector<Edit>& edits) {
+void write_project(const fs::path& path, const std::vector<Edit>& edits, const std::vector<bool>& joined) {
   const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
   json root = {{"rebake_project", version}, {"sources", json::array()}, {"edits", json::array()}};
   for (Edit edit : edits) {
@@ -53,6 +53,8 @@ void write_project(const fs::path& path, const std::vector<Edit>& edits) {
     }
     root["edits"].push_back(to_json(edit));
   }
+  for (std::size_t k = 0; k < edits.size(); ++k)
+    if (joined[k]) root["joined"].push_back(k + 1);
   write_file_atomically(path, root.dump(1) + '\n');
 }
 
@@ -89,6 +91,13 @@ ReadProject read_project(const fs::path& path) {
         throw FileError(path, fmt::format("edit {}: {}", number, error.what()));
       }
       project.scenes.push_back(scene);
+    }
+    project.joined.resize(project.edits.size());
+    for (const json& one : root.value("joined", json::array())) {
+      const auto k = one.get<std::size_t>();
+      if (k < 2 || k > project.joined.size())
+        throw FileError(path, fmt::format("joined: there is no edit {} that could be", k));
+      project.joined[k - 1] = true;
     }
   } catch (const json::exception& error) {
     throw FileError(path, std::string("is not a valid project: ") + error.what());

@@ -69,33 +69,20 @@ void Desk::edits(const std::vector<Edit>& list, std::function<void()> then) {
   if (list.empty()) return;
   worker.start(
       std::visit([](const auto& e) { return std::string(e.op); }, list.front()),
-      [list](Session& session) {
-        std::size_t done = 0;
-        try {
-          for (const Edit& one : list) {
-            session.edit(one);
-            ++done;
-          }
-        } catch (...) {
-          // All or nothing.
-          while (done-- > 0) session.document.undo();
-          throw;
-        }
-      },
-      std::move(then));
+      [list](Session& session) { session.edits(list); }, std::move(then));
 }
 
 void Desk::undo(int steps) {
   worker.start("undo", [steps](Session& session) {
     int done = 0;
-    while (done < steps && session.document.undo()) ++done;
+    while (done < steps && session.document.undo_step()) ++done;
     session.say(fmt::format("undone: {}", done));
   });
 }
 void Desk::redo(int steps) {
   worker.start("redo", [steps](Session& session) {
     int done = 0;
-    while (done < steps && session.document.redo()) ++done;
+    while (done < steps && session.document.redo_step()) ++done;
     session.say(fmt::format("done again: {}", done));
   });
 }
@@ -250,10 +237,27 @@ void Desk::frame_view() {
 std::string title_of(const Edit& edit, const Scene& scene) {
   const nlohmann::json object = to_json(edit);
   std::string title = object.at("op").get<std::string>();
+  std::replace(title.begin(), title.end(), '_', ' ');
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  if (const auto* transform = std::get_if<Transform>(&edit)) {
+    // What people call it.
+    const bool turns = !transform->rotate.value.toRotationMatrix().isIdentity(0),
+               scales = transform->scale.value != Vec3::Ones();
+    if (!turns && !scales) title = "Move";
+    if (turns && !scales) title = "Turn";
+    if (!turns && scales) title = "Scale";
+    if (transform->selection) title += " triangles of";
+  }
   if (object.contains("path")) return title + " " + folder_title(object.at("path").get<std::string>());
-  if (object.contains("node") && object.at("node").is_number_unsigned())
-    if (const NodePtr node = find(scene, static_cast<NodeId>(object.at("node").get<std::uint64_t>())))
-      title += " " + node->name;
+  if (object.contains("name") && object.at("name").is_string())
+    title += " \"" + object.at("name").get<std::string>() + "\"";
+  const auto name = [&](const nlohmann::json& id) {
+    if (!id.is_number_unsigned()) return;
+    if (const NodePtr node = find(scene, static_cast<NodeId>(id.get<std::uint64_t>()))) title += " " + node->name;
+  };
+  if (object.contains("node")) name(object.at("node"));
+  if (object.contains("nodes") && object.at("nodes").is_array())
+    for (const nlohmann::json& id : object.at("nodes")) name(id);
   return title;
 }
 

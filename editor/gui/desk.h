@@ -88,7 +88,7 @@ struct Desk {
   void update();
 
   void edit(const Edit& edit);
-  /// All of them, or none where one fails; `then` once they are done.
+  /// All of them as one step of history, or none where one fails; `then` once they are done.
   void edits(const std::vector<Edit>& list, std::function<void()> then = {});
   void undo(int steps = 1);
   void redo(int steps = 1);
@@ -123,7 +123,7 @@ struct Desk {
   bool fresh_ = true;  ///< nothing was shown yet: the first scene is framed
 };
 
-/// One line for an edit in lists: its op and what it names.
+/// An edit in words: what it does and what it names.
 std::string title_of(const Edit& edit, const Scene& scene);
 
 }  // namespace rebake

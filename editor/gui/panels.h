@@ -32,14 +32,15 @@ class PropertiesPanel {
   std::string text_, editing_, problem_;
 };
 
-/// All edits, done and undone; a click goes there.
+/// All steps, done and undone; a click goes there.
 class HistoryPanel {
  public:
   void draw(Desk& desk);
 
  private:
   std::shared_ptr<const Snapshot> of_;  ///< what the lines say
-  std::vector<std::string> lines_;
+  std::vector<std::string> lines_;      ///< the start, then one a step
+  int done_ = 0;                        ///< steps that are not undone
 };
 
 /// The edits as script lines, to be copied or saved, and a line to type one.

@@ -83,6 +83,7 @@ void Worker::publish() {
   next->scene = history.now();
   next->done = history.edits();
   next->undone = history.undone();
+  next->joined = history.joined();
   next->history_bytes = history.memory();
   const std::lock_guard lock(mutex_);
   snapshot_ = std::move(next);

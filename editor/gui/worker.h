@@ -18,6 +18,7 @@ namespace rebake {
 struct Snapshot {
   Scene scene;
   std::vector<Edit> done, undone;   ///< oldest first; the first of `undone` is what redo does
+  std::vector<bool> joined;         ///< of `done`, then of `undone`: made together with the one before
   std::uint64_t history_bytes = 0;  ///< that the kept scenes hold
 };
 

@@ -121,6 +121,39 @@ TEST_F(DocumentTest, AJournalGivesTheWorkBack) {
   EXPECT_EQ(exported(recovered.document.scene()), bytes);
 }
 
+TEST_F(DocumentTest, EditsMadeTogetherAreOneStepEverywhere) {
+  Document document;
+  document.keep_journal(path("j"));
+  import(document);
+  act(document, R"({"op": "duplicate", "node": "ball", "as": "other"})");
+  const Scene before = document.scene();
+  const auto hide = [&](const char* name) { return Edit(Hide{NodeRef{find(document.scene(), name)->id}}); };
+  document.edits({hide("ball"), hide("other")});
+  const Scene hidden = document.scene();
+  EXPECT_EQ(document.history().undo_count(), 4U);
+  EXPECT_TRUE(document.undo_step());
+  EXPECT_EQ(document.scene().roots, before.roots);
+  EXPECT_TRUE(document.redo_step());
+  EXPECT_EQ(document.scene().roots, hidden.roots);
+  EXPECT_FALSE(document.redo_step());
+
+  // Where one fails, nothing was done and nothing is forgotten.
+  document.undo_step();
+  EXPECT_THROW(document.edits({hide("ball"), Hide{NodeRef{static_cast<NodeId>(99)}}}), Error);
+  EXPECT_EQ(document.scene().roots, before.roots);
+  EXPECT_TRUE(document.redo_step());
+
+  document.save(path("p.rebake"));
+  document = Document();
+  Document recovered = Document::recover(path("j")).document, opened = Document::open(path("p.rebake"));
+  for (Document* again : {&recovered, &opened}) {
+    EXPECT_FALSE(find(again->scene(), "ball")->visible);
+    EXPECT_TRUE(again->undo_step());
+    EXPECT_EQ(again->history().undo_count(), 2U);
+    EXPECT_TRUE(find(again->scene(), "ball")->visible);
+  }
+}
+
 TEST_F(DocumentTest, ScriptJournalAndProjectGiveTheSameBytes) {
   Document document;
   document.keep_journal(path("j"));
