@@ -22,6 +22,15 @@ template <ToolKind kind>
 void take(Desk& desk) {
   desk.tool = kind;
 }
+// Blender's keys begin a drag, and come back to the tool that was in hand.
+template <ToolKind kind>
+void grab(Desk& desk) {
+  if (desk.settings.blender_keys && has_either(desk)) {
+    desk.tool_before = desk.tool;
+    desk.drag_begins = true;
+  }
+  desk.tool = kind;
+}
 template <PathQuestion question>
 void ask(Desk& desk) {
   desk.question = question;
@@ -185,9 +194,9 @@ const std::vector<Command>& command_table() {
       {"Tool", "Brush", "B", "C", always, take<ToolKind::brush>},
       {"Tool", "Flood", "O", "O", always, take<ToolKind::flood>},
       {"Tool", "Eraser", "E", "E", always, take<ToolKind::erase>},
-      {"Tool", "Move", "1", "G", always, take<ToolKind::move>},
-      {"Tool", "Turn", "2", "R", always, take<ToolKind::turn>},
-      {"Tool", "Scale", "3", "S", always, take<ToolKind::scale>},
+      {"Tool", "Move", "1", "G", always, grab<ToolKind::move>},
+      {"Tool", "Turn", "2", "R", always, grab<ToolKind::turn>},
+      {"Tool", "Scale", "3", "S", always, grab<ToolKind::scale>},
       {"Tool", "Cage", "C", "Shift+C", always, take<ToolKind::cage>},
       {"Tool", "Bend, twist, taper", "N", "Shift+N", always, take<ToolKind::bend>},
       {"Tool", "Bend by numbers...", "", "", has_scene, [](Desk& desk) { desk.form_op = Bend::op; }},
@@ -215,6 +224,7 @@ const std::vector<Command>& command_table() {
       {"View", "Show texture sets", "Alt+4", "Alt+4", always, look_at<Guides::Inspect::texture_sets>},
       {"View", "Show next feature channel", "Alt+5", "Alt+5", always, next_channel},
       {"View", "Show overdraw", "Alt+6", "Alt+6", always, look_at<Guides::Inspect::overdraw>},
+      {"View", "Restart graphics", "", "", always, [](Desk& desk) { desk.restarts_graphics = true; }},
       {"View", "Store view", "", "", has_scene, store_view},
       {"View", "Dark or light", "", "", always, [](Desk& desk) { desk.settings.dark = !desk.settings.dark; }},
       {"View", "Keys of Blender", "", "", always,

@@ -5,6 +5,31 @@
 
 namespace rebake {
 
+namespace {
+
+void draw_measured(const Desk& desk) {
+  const Desk::Costs& costs = *desk.costs;
+  const bool same = costs.view.camera == desk.camera && costs.roots == desk.scene().roots;
+  ImGui::TextDisabled("%s", fmt::format("against 64 samples, {}x{}{}", costs.view.width, costs.view.height,
+                                        same ? "" : "; of the view or scene as it was: measure again for this one")
+                                .c_str());
+  if (!ImGui::BeginTable("measured", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) return;
+  for (const char* heading : {"choice", "ms", "PSNR dB", "largest of 255"}) ImGui::TableSetupColumn(heading);
+  ImGui::TableHeadersRow();
+  for (const StudyTable::Row& row : costs.rows) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(row.choice.c_str());
+    for (const double value : row.values) {
+      ImGui::TableNextColumn();
+      ImGui::Text("%.1f", value);
+    }
+  }
+  ImGui::EndTable();
+}
+
+}  // namespace
+
 void draw_costs(Desk& desk, const FrameReport& report, bool& each_pass) {
   ImGui::Text(
       "%s", fmt::format("{:.1f} ms a picture at {} samples a pixel, {:.0f} % of the resolution; at most {:.1f} MB on "
@@ -16,16 +41,17 @@ void draw_costs(Desk& desk, const FrameReport& report, bool& each_pass) {
   ImGui::TextDisabled("%s", report.device.c_str());
   ImGui::Checkbox("time each pass (waits between them)", &each_pass);
   ImGui::SameLine();
-  // Errors against 64 samples, measured by `rebake study samples` on the sample ficus.
-  struct Choice {
-    int samples;
-    const char* label;
-  };
-  for (const Choice& choice : {Choice{1, "1 sample (35.5 dB)"}, Choice{4, "4 (44.2 dB)"}, Choice{16, "16 (52.8 dB)"}}) {
-    if (ImGui::RadioButton(choice.label, desk.samples == choice.samples)) desk.samples = choice.samples;
+  for (const int samples : {1, 4, 16}) {
+    if (ImGui::RadioButton(fmt::format("{} sample{}", samples, samples == 1 ? "" : "s").c_str(),
+                           desk.samples == samples))
+      desk.samples = samples;
     ImGui::SameLine();
   }
-  ImGui::TextDisabled("against 64, sample ficus");
+  ImGui::BeginDisabled(desk.worker.busy() || desk.scene().roots.empty());
+  if (ImGui::Button("Measure this view")) desk.measure_costs();
+  ImGui::EndDisabled();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("times each choice and compares it with 64 samples a pixel");
+  if (desk.costs) draw_measured(desk);
   if (!ImGui::BeginTable("passes", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) return;
   for (const PlannedPass& pass : report.passes) {
     ImGui::TableNextRow();

@@ -182,6 +182,23 @@ void Desk::run_script(const fs::path& path) {
   worker.start("script", [path](Session& session) { rebake::run_script(session, read_file(path), path, {}); });
 }
 
+void Desk::measure_costs() {
+  auto measured = std::make_shared<Costs>();
+  measured->view = {camera, view_width, view_height, 4};
+  measured->roots = scene().roots;
+  worker.start(
+      "measure",
+      [measured](Session& session) {
+        constexpr int frames = 3;  // the median counts
+        const StudyInput input{[&session]() -> Renderer& { return session.renderer(); }, session.scene(),
+                               measured->view, frames, session.progress};
+        for (const auto study : {study_samples, study_resolution})
+          for (StudyTable::Row& row : study(input).rows) measured->rows.push_back(std::move(row));
+        measured->device = session.renderer().device();
+      },
+      [this, measured] { costs = measured; });
+}
+
 bool Desk::unsaved() const {
   const Scene& kept = saved_ ? *saved_ : imported;
   return scene().roots != kept.roots || scene().views != kept.views || scene().background != kept.background;

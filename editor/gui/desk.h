@@ -11,6 +11,7 @@
 #include "editor/edits/deforming.h"
 #include "editor/gui/settings.h"
 #include "editor/gui/worker.h"
+#include "editor/studies/study.h"
 #include "render/frame/plan.h"
 
 namespace rebake {
@@ -54,6 +55,8 @@ struct Desk {
 
   // Tools
   ToolKind tool = ToolKind::pick;
+  bool drag_begins = false;             ///< the tool takes hold of its target at once, without a button
+  std::optional<ToolKind> tool_before;  ///< to come back to after such a drag
   bool visible_only = true;
   bool local_axes = false;
   std::set<NodeId> active;  ///< nodes that panels and gizmos work on
@@ -65,7 +68,7 @@ struct Desk {
   };
   std::vector<Line> log;
   std::string error;  ///< shown until it is read
-  bool palette_open = false, quitting = false;
+  bool palette_open = false, quitting = false, restarts_graphics = false;
   PathQuestion question = PathQuestion::none;
   std::string form_op;  ///< the edit whose form is open, empty for none
   struct LostWork {
@@ -77,12 +80,26 @@ struct Desk {
   std::vector<std::string> to_open;  ///< a project that waits for people's word
 
   // Long work that the window itself carries out, a picture a frame
+  struct Screenshot {
+    std::filesystem::path path;
+    int width = 0, height = 0;  ///< pixels
+  };
+  std::optional<Screenshot> screenshot;
   struct Turntable {
     std::filesystem::path folder;
-    int next = 0, count = 36;
+    int width = 0, height = 0, count = 36;
+    int next = 0;  ///< number of the picture that comes
   };
   std::optional<Turntable> turntable;
-  std::filesystem::path screenshot;  ///< to be written with the next picture
+
+  /// What choices cost and how wrong each is, in one view of one scene.
+  struct Costs {
+    View view;
+    std::vector<NodePtr> roots;
+    std::vector<StudyTable::Row> rows;  ///< milliseconds, dB, largest difference of 255
+    std::string device;
+  };
+  std::shared_ptr<const Costs> costs;
 
   /// Takes in what the worker did.
   void update();
@@ -101,6 +118,8 @@ struct Desk {
   void export_to(const std::filesystem::path& folder);
   void save_script(const std::filesystem::path& path);
   void run_script(const std::filesystem::path& path);
+  /// Fills `costs` for what is looked at now.
+  void measure_costs();
 
   const Scene& scene() const { return now->scene; }
   /// Whether there is something that no file holds: neither the project nor the sources.

@@ -27,7 +27,7 @@ constexpr Question questions[] = {
     {PathQuestion::save_scene, "Save scene folder", "a folder; keeps every node, not the history", ""},
     {PathQuestion::export_folder, "Export", "a folder in the MobileNeRF format", ""},
     {PathQuestion::screenshot, "Screenshot", "a PNG file of the scene, without grid and handles", ".png"},
-    {PathQuestion::turntable, "Turntable", "a folder for 36 pictures around the target", ""},
+    {PathQuestion::turntable, "Turntable", "a folder for pictures from around the target: 000.png, 001.png, ...", ""},
     {PathQuestion::save_script, "Save as script", "a file with a line an edit", ".jsonl"},
     {PathQuestion::run_script, "Run script", "a file with a line an edit", ".jsonl"},
 };
@@ -83,6 +83,8 @@ void Dialogs::draw_path(Desk& desk) {
   if (first) {
     asked_ = desk.question;
     replacing_.clear();
+    width_ = desk.view_width;
+    height_ = desk.view_height;
     std::error_code gone;
     path_ = desk.question == PathQuestion::save_project && !desk.project.empty()
                 ? desk.project.string()
@@ -103,7 +105,9 @@ void Dialogs::draw_path(Desk& desk) {
   const fs::path typed(path_);
   std::error_code error;
   const fs::path folder = fs::is_directory(typed, error) ? typed : typed.parent_path();
-  ImGui::BeginChild("entries", {0, desk.question == PathQuestion::export_folder ? 200.0F : 290.0F}, true);
+  const bool pictures = desk.question == PathQuestion::screenshot || desk.question == PathQuestion::turntable;
+  const bool roomy = desk.question != PathQuestion::export_folder && !pictures;
+  ImGui::BeginChild("entries", {0, roomy ? 290.0F : 200.0F}, true);
   if (ImGui::Selectable("..")) path_ = (folder / "..").lexically_normal().string();
   std::vector<fs::path> entries;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
@@ -125,6 +129,20 @@ void Dialogs::draw_path(Desk& desk) {
   ImGui::EndChild();
   if (desk.question == PathQuestion::export_folder)
     for (const std::string& line : losses(desk.scene())) ImGui::TextWrapped("- %s", line.c_str());
+  if (pictures) {
+    const auto pixels = [](const char* label, int& value, int least, int most) {
+      ImGui::SetNextItemWidth(110);
+      ImGui::InputInt(label, &value, 0);
+      value = std::clamp(value, least, most);
+    };
+    pixels("wide", width_, 16, 8192);
+    ImGui::SameLine();
+    pixels("high, pixels", height_, 16, 8192);
+    if (desk.question == PathQuestion::turntable) {
+      ImGui::SameLine();
+      pixels("pictures", pictures_, 2, 1000);
+    }
+  }
   done = ImGui::Button(question.title) || done;
   ImGui::SameLine();
   const bool cancelled = ImGui::Button("Cancel") || !open;
@@ -155,10 +173,10 @@ void Dialogs::draw_path(Desk& desk) {
         desk.export_to(path);
         break;
       case PathQuestion::screenshot:
-        desk.screenshot = path;
+        desk.screenshot = Desk::Screenshot{path, width_, height_};
         break;
       case PathQuestion::turntable:
-        desk.turntable = Desk::Turntable{path};
+        desk.turntable = Desk::Turntable{path, width_, height_, pictures_};
         break;
       case PathQuestion::save_script:
         desk.save_script(path);

@@ -52,24 +52,11 @@ class EditorWindow {
   explicit EditorWindow(const std::vector<std::string>& paths)
       : settings_file_(config_folder() / "settings.json"),
         kept_settings_(read_settings(settings_file_, settings_problem_)),
-        window_("Rebake", kept_settings_.window_width, kept_settings_.window_height),
-        renderer_(window_.context()),
-        viewport_(renderer_, [this] { return window_.context(); }),
+        graphics_(std::make_unique<Graphics>(system_, kept_settings_)),
         lost_(lost_work()),
-        desk_(kept_settings_, Window::wake) {
-    scale_ = window_.scale();
-    set_looks(desk_.settings.dark);
-    load_font(scale_);
+        desk_(kept_settings_, WindowSystem::wake) {
+    begin_graphics();
     if (!settings_problem_.empty()) desk_.log.push_back({settings_problem_, true});
-    // Nothing may be thrown through the window system.
-    window_.on_key = [this](const KeyPress& press) {
-      try {
-        key(press);
-      } catch (const std::exception& error) {
-        desk_.error = error.what();
-      }
-    };
-    window_.on_drop = [this](const std::vector<std::string>& dropped) { desk_.open(dropped); };
     desk_.recoverable = std::move(lost_);
     if (!paths.empty()) desk_.open(paths);
   }
@@ -77,26 +64,73 @@ class EditorWindow {
   void run() {
     int frames = frames_after_event;
     while (!dialogs_.may_quit()) {
-      const double pause = frames > 0 ? 0 : desk_.worker.busy() ? 0.1 : viewport_.next_frame_in(desk_);
-      if (window_.wait(pause) || desk_.worker.busy()) frames = frames_after_event;
+      const double pause = frames > 0 ? 0 : desk_.worker.busy() ? 0.1 : viewport().next_frame_in(desk_);
+      if (window().wait(pause) || desk_.worker.busy()) frames = frames_after_event;
       if (desk_.now != desk_.worker.snapshot()) frames = frames_after_event;
       frames = std::max(0, frames - 1);
-      if (window_.wants_to_close()) {
-        window_.stay_open();
+      if (window().wants_to_close()) {
+        window().stay_open();
         desk_.quitting = true;
         frames = frames_after_event;
       }
       desk_.update();
       draw();
+      if (desk_.restarts_graphics || window().lost()) {
+        restart_graphics();
+        frames = frames_after_event;
+      }
       keep_settings();
     }
     // The work is saved, or not wanted.
     desk_.worker.cancel();
     desk_.worker.start("end", [](Session& session) { session.document.discard_journal(); });
-    while (desk_.worker.busy()) window_.wait(0.02);
+    while (desk_.worker.busy()) window().wait(0.02);
   }
 
  private:
+  /// What lives on the GPU, and ends with its context.
+  struct Graphics {
+    Window window;
+    Renderer renderer;
+    Viewport viewport;
+    Graphics(const WindowSystem& system, const Settings& settings)
+        : window(system, "Rebake", settings.window_width, settings.window_height),
+          renderer(window.context()),
+          viewport(renderer, [this] { return window.context(); }) {}
+  };
+  Window& window() { return graphics_->window; }
+  Viewport& viewport() { return graphics_->viewport; }
+
+  void begin_graphics() {
+    scale_ = window().scale();
+    dark_ = desk_.settings.dark;
+    set_looks(dark_);
+    load_font(scale_);
+    title_.clear();
+    // Nothing may be thrown through the window system.
+    window().on_key = [this](const KeyPress& press) {
+      try {
+        key(press);
+      } catch (const std::exception& error) {
+        desk_.error = error.what();
+      }
+    };
+    window().on_drop = [this](const std::vector<std::string>& dropped) { desk_.open(dropped); };
+  }
+
+  // The document is not touched: it lives in the worker.
+  void restart_graphics() {
+    desk_.restarts_graphics = false;
+    desk_.preview.reset();
+    desk_.drag_begins = false;
+    desk_.tool_before.reset();
+    graphics_.reset();
+    graphics_ = std::make_unique<Graphics>(system_, desk_.settings);
+    begin_graphics();
+    desk_.worker.start("restart graphics", [](Session& session) { session.drop_renderer(); });
+    desk_.log.push_back({"the graphics were made anew; the work is as it was"});
+  }
+
   // What other editors left behind when they ended without saving, the latest first.
   static std::vector<Desk::LostWork> lost_work() {
     std::vector<Desk::LostWork> found;
@@ -128,8 +162,8 @@ class EditorWindow {
 
   // On the disk once nothing is held any more, so that they are there however the editor ends.
   void keep_settings() {
-    desk_.settings.window_width = static_cast<int>(window_.width() / scale_);
-    desk_.settings.window_height = static_cast<int>(window_.height() / scale_);
+    desk_.settings.window_width = static_cast<int>(window().width() / scale_);
+    desk_.settings.window_height = static_cast<int>(window().height() / scale_);
     if (desk_.settings == kept_settings_ || ImGui::IsAnyMouseDown()) return;
     kept_settings_ = desk_.settings;
     try {
@@ -148,8 +182,8 @@ class EditorWindow {
     // Text fields take what is typed; commands with Ctrl other than those of editing text go on working.
     if (ImGui::GetIO().WantTextInput && (plain || (press.key != GLFW_KEY_S && press.key != GLFW_KEY_P))) return;
     if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) return;
-    if (viewport_.key(desk_, press)) return;
-    if (viewport_.tool(desk_).busy()) return;  // nothing else happens during a drag
+    if (viewport().key(desk_, press)) return;
+    if (viewport().tool(desk_).busy()) return;  // nothing else happens during a drag
     const bool letter = press.key >= 'A' && press.key <= 'Z';
     if (desk_.flying && plain && letter &&
         std::string_view("WASDQE").find(static_cast<char>(press.key)) != std::string_view::npos)
@@ -170,7 +204,7 @@ class EditorWindow {
       desk_.turntable.reset();
     } else if (!desk_.form_op.empty()) {
       desk_.form_op.clear();
-    } else if (viewport_.cancel(desk_)) {
+    } else if (viewport().cancel(desk_)) {
       return;
     } else if (desk_.worker.busy()) {
       desk_.worker.cancel();
@@ -185,7 +219,7 @@ class EditorWindow {
       dark_ = desk_.settings.dark;
       set_looks(dark_);
     }
-    window_.begin_frame();
+    window().begin_frame();
     menu();
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float top = ImGui::GetFrameHeight(), line = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
@@ -194,10 +228,10 @@ class EditorWindow {
                 bottom = static_cast<float>(desk_.settings.bottom_height) * s;
     const float height = screen.y - top - line;  // above the status line
     panel("tool bar", {0, top}, {tools, height - bottom}, [&] { tool_bar(); });
-    panel("options", {tools, top}, {screen.x - tools - side, line}, [&] { viewport_.tool(desk_).options(desk_); });
+    panel("options", {tools, top}, {screen.x - tools - side, line}, [&] { viewport().tool(desk_).options(desk_); });
     panel(
         "picture", {tools, top + line}, {screen.x - tools - side, height - bottom - line},
-        [&] { viewport_.draw(desk_); }, true);
+        [&] { viewport().draw(desk_); }, true);
     panel("outline", {screen.x - side, top}, {side, (height - bottom) * 0.55F}, [&] {
       ImGui::TextDisabled("Outline");
       outline_.draw(desk_);
@@ -221,7 +255,7 @@ class EditorWindow {
     palette_.draw(desk_);
     form_.draw(desk_);
     dialogs_.draw(desk_);
-    window_.end_frame();
+    window().end_frame();
   }
 
   template <class Content>
@@ -270,6 +304,11 @@ class EditorWindow {
           if (ImGui::MenuItem(path.c_str())) desk_.open({path});
         ImGui::EndMenu();
       }
+      if (name == std::string_view("View") && ImGui::BeginMenu("Stored views", !desk_.scene().views.empty())) {
+        for (const auto& [view, camera] : desk_.scene().views)
+          if (ImGui::MenuItem(view.c_str())) desk_.camera = camera;
+        ImGui::EndMenu();
+      }
       ImGui::EndMenu();
     }
     ImGui::EndMainMenuBar();
@@ -303,7 +342,7 @@ class EditorWindow {
     };
     tab("History", [&] { history_.draw(desk_); });
     tab("Script", [&] { script_.draw(desk_); });
-    tab("Cost", [&] { draw_costs(desk_, viewport_.report(), viewport_.each_pass()); });
+    tab("Cost", [&] { draw_costs(desk_, viewport().report(), viewport().each_pass()); });
     tab("Log", [&] { draw_log(desk_); });
     ImGui::EndTabBar();
   }
@@ -335,15 +374,14 @@ class EditorWindow {
     std::string title = "Rebake";
     if (!desk_.project.empty()) title = desk_.project.filename().string() + " - " + title;
     if (desk_.unsaved()) title = "* " + title;
-    if (title != title_) window_.set_title(title_ = title);
+    if (title != title_) window().set_title(title_ = title);
   }
 
   fs::path settings_file_;
   std::string settings_problem_;
   Settings kept_settings_;  ///< as they are on the disk
-  Window window_;
-  Renderer renderer_;
-  Viewport viewport_;
+  WindowSystem system_;
+  std::unique_ptr<Graphics> graphics_;
   std::vector<Desk::LostWork> lost_;  ///< looked for before this editor's own journal is begun
   Desk desk_;
   OutlinePanel outline_;

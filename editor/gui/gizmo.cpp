@@ -24,7 +24,8 @@ double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
 }
 
 // A handle's line on the screen: an axis, or for turning a circle about it.
-std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, double reach, const Lens& lens) {
+std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, double reach, const Lens& lens,
+                          int number) {
   std::vector<Vec2> points;
   const auto add = [&](const Vec3& world) {
     if (const auto pixel = lens.pixel(world)) points.push_back(*pixel);
@@ -32,9 +33,10 @@ std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, do
   if (kind == ToolKind::turn) {
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
     constexpr int corners = 48;
+    const double radius = number < 3 ? reach : 1.2 * reach;  // the ring about the line of sight is outermost
     for (int k = 0; k <= corners; ++k) {
       const double angle = 2 * std::numbers::pi * k / corners;
-      add(pivot + reach * (std::cos(angle) * u + std::sin(angle) * v));
+      add(pivot + radius * (std::cos(angle) * u + std::sin(angle) * v));
     }
   } else {
     add(pivot);
@@ -45,7 +47,7 @@ std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, do
 
 }  // namespace
 
-std::optional<Gizmo::Target> Gizmo::target(const Desk& desk) const {
+std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) const {
   Target target;
   Box box;
   for (const PlacedNode& placed : placed_nodes(desk.scene())) {
@@ -65,7 +67,9 @@ std::optional<Gizmo::Target> Gizmo::target(const Desk& desk) const {
   if (target.nodes.empty()) return std::nullopt;
   const auto first = find_placed(desk.scene(), target.nodes.front());
   target.pivot = box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center());
-  if (desk.local_axes && kind_ != ToolKind::scale) target.axes = orthogonal_factor(first->to_world.linear());
+  target.local = orthogonal_factor(first->to_world.linear());
+  if (desk.local_axes && kind_ != ToolKind::scale) target.axes = target.local;
+  target.towards_eye = lens.towards_eye(target.pivot);
   return target;
 }
 
@@ -73,12 +77,13 @@ double Gizmo::reach(const Lens& lens, const Vec3& pivot) { return handle_pixels 
 
 int Gizmo::handle_at(const Target& target, const Lens& lens, const Vec2& at) const {
   const auto middle = lens.pixel(target.pivot);
-  if (!middle) return -1;
-  if (kind_ != ToolKind::turn && (*middle - at).norm() < grab_pixels) return 3;
-  int found = -1;
+  if (!middle) return none;
+  if (kind_ != ToolKind::turn && (*middle - at).norm() < grab_pixels) return all;
+  int found = none;
   double least = grab_pixels;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<Vec2> line = outline(kind_, target.pivot, target.axes.col(axis), reach(lens, target.pivot), lens);
+  for (int axis = 0; axis < (kind_ == ToolKind::turn ? 4 : 3); ++axis) {
+    const std::vector<Vec2> line =
+        outline(kind_, target.pivot, target.axis(axis), reach(lens, target.pivot), lens, axis);
     for (std::size_t k = 0; k + 1 < line.size(); ++k)
       if (const double distance = distance_to_segment(at, line[k], line[k + 1]); distance < least) {
         least = distance;
@@ -94,7 +99,7 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
   const double fine = pointer.shift ? 0.1 : 1;
   double result = 0;
   if (kind_ == ToolKind::turn) {
-    const Vec3 axis = at_.axes.col(held_);
+    const Vec3 axis = at_.axis(held_);
     const Vec2 a = from_ - *middle, b = now_ - *middle;
     double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
     // On the screen y points down; seen from behind the turn goes the other way.
@@ -102,7 +107,10 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
     result = angle * 180 / std::numbers::pi * fine;
     return pointer.control ? std::round(result / 15) * 15 : result;
   }
-  if (held_ == 3) {
+  if (by_key_ && kind_ == ToolKind::scale) {
+    // How much farther from the middle the pointer is than it was.
+    result = (now_ - *middle).norm() / std::max((from_ - *middle).norm(), 1.0) - 1;
+  } else if (held_ == all) {
     result = kind_ == ToolKind::scale ? (now_.x() - from_.x()) / handle_pixels : 1;
   } else {
     const auto end = lens.pixel(at_.pivot + reach(lens, at_.pivot) * at_.axes.col(held_));
@@ -126,13 +134,13 @@ std::vector<Edit> Gizmo::edits(const Lens& lens) const {
   transform.selection = at_.triangles;
   transform.pivot = at_.pivot;
   if (kind_ == ToolKind::turn) {
-    transform.rotate.value = Eigen::AngleAxisd(amount_ * std::numbers::pi / 180, at_.axes.col(held_));
+    transform.rotate.value = Eigen::AngleAxisd(amount_ * std::numbers::pi / 180, at_.axis(held_));
   } else if (kind_ == ToolKind::scale) {
-    if (held_ == 3)
+    if (held_ == all)
       transform.scale.value = Vec3::Constant(1 + amount_);
     else
       transform.scale.value[held_] = 1 + amount_;
-  } else if (held_ == 3) {
+  } else if (held_ == all) {
     transform.translate = amount_ * lens.motion(at_.pivot, now_ - from_);
   } else {
     transform.translate = amount_ * at_.axes.col(held_);
@@ -145,50 +153,85 @@ std::vector<Edit> Gizmo::edits(const Lens& lens) const {
   return result;
 }
 
-void Gizmo::preview(Desk& desk, const Lens& lens) {
+void Gizmo::preview(Desk& desk, const std::vector<Edit>& made) {
   try {
     Scene scene = desk.scene();
-    for (const Edit& edit : edits(lens)) scene = rebake::apply(scene, edit);
+    for (const Edit& edit : made) scene = rebake::apply(scene, edit);
     desk.preview = std::move(scene);
   } catch (const Error&) {
     desk.preview.reset();  // what cannot be done is said on release
   }
 }
 
+void Gizmo::begin(const Target& target, int handle, const Vec2& at) {
+  at_ = target;
+  held_ = handle;
+  from_ = now_ = at;
+  amount_ = 0;
+  typed_.clear();
+}
+
+void Gizmo::end(Desk& desk) {
+  held_ = none;
+  by_key_ = false;
+  typed_.clear();
+  if (desk.tool_before) desk.tool = *std::exchange(desk.tool_before, std::nullopt);
+}
+
 void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
-  if (held_ < 0) {
-    if (!pointer.pressed || !pointer.inside) return;
-    const std::optional<Target> here = target(desk);
-    if (!here) return;
-    held_ = handle_at(*here, lens, pointer.at);
-    at_ = *here;
-    from_ = now_ = pointer.at;
-    amount_ = 0;
-    typed_.clear();
+  if (held_ == none) {
+    const bool by_key = std::exchange(desk.drag_begins, false);
+    if (!by_key && (!pointer.pressed || !pointer.inside)) return;
+    const std::optional<Target> here = target(desk, lens);
+    if (!here) {
+      if (by_key) end(desk);
+      return;
+    }
+    begin(*here, by_key ? all : handle_at(*here, lens, pointer.at), pointer.at);
+    by_key_ = by_key;
     return;
   }
-  const bool moved = (now_ - pointer.at).norm() > 0;
+  const bool moved = now_ != pointer.at || std::exchange(constrained_, false);
   now_ = pointer.at;
   const double before = amount_;
   amount_ = amount(lens, pointer);
   if (!typed_.empty()) amount_ = std::strtod(typed_.c_str(), nullptr) - (kind_ == ToolKind::scale ? 1 : 0);
-  if (moved || amount_ != before) preview(desk, lens);
-  if (!pointer.released) return;
-  const std::vector<Edit> made = edits(lens);
-  const bool nothing = amount_ == 0 || (held_ == 3 && kind_ == ToolKind::move && now_ == from_);
-  held_ = -1;
-  typed_.clear();
+  const bool nothing = amount_ == 0 || (held_ == all && kind_ == ToolKind::move && now_ == from_);
+  const std::vector<Edit> made = nothing ? std::vector<Edit>{} : edits(lens);
+  if (moved || amount_ != before) preview(desk, made);
+  if (by_key_ ? !pointer.pressed && !std::exchange(entered_, false) : !pointer.released) return;
+  end(desk);
   if (nothing)
     desk.preview.reset();
   else
     desk.edits(made);
 }
 
-bool Gizmo::key(Desk& desk, const KeyPress& press) {
-  // In Blender these choose an axis here: they must not delete.
-  const bool axis_key = press.key == GLFW_KEY_X || press.key == GLFW_KEY_Y || press.key == GLFW_KEY_Z;
-  if (desk.settings.blender_keys && axis_key && !press.control && !press.alt) return true;
-  if (held_ < 0 || (held_ == 3 && kind_ == ToolKind::move)) return false;
+void Gizmo::constrain(int axis) {
+  const bool local = at_.axes == at_.local && at_.local != Mat3::Identity();
+  if (held_ != axis) {
+    held_ = axis;
+    at_.axes = Mat3::Identity();
+  } else if (!local && kind_ != ToolKind::scale && at_.local != Mat3::Identity()) {
+    at_.axes = at_.local;
+  } else {
+    held_ = all;
+  }
+  constrained_ = true;
+}
+
+bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
+  if (held_ == none || press.control || press.alt) return false;
+  if (press.key >= GLFW_KEY_X && press.key <= GLFW_KEY_Z) {
+    constrain(press.key - GLFW_KEY_X);
+    return true;
+  }
+  if (by_key_ && (press.key == GLFW_KEY_ENTER || press.key == GLFW_KEY_KP_ENTER)) {
+    entered_ = true;
+    return true;
+  }
+  // A move in the view's plane has no one number.
+  if (held_ == all && kind_ == ToolKind::move) return false;
   if (press.key >= GLFW_KEY_0 && press.key <= GLFW_KEY_9) {
     typed_ += static_cast<char>(press.key);
   } else if (press.key >= GLFW_KEY_KP_0 && press.key <= GLFW_KEY_KP_9) {
@@ -207,14 +250,14 @@ bool Gizmo::key(Desk& desk, const KeyPress& press) {
 
 void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
                  const ImVec2& origin) const {
-  const std::optional<Target> here = held_ >= 0 ? std::optional(at_) : target(desk);
+  const std::optional<Target> here = held_ != none ? std::optional(at_) : target(desk, lens);
   if (!here) return;
   const auto middle = lens.pixel(here->pivot);
   if (!middle) return;
-  const int hot = held_ >= 0 ? held_ : pointer.inside ? handle_at(*here, lens, pointer.at) : -1;
-  for (int axis = 0; axis < 3; ++axis) {
+  const int hot = held_ != none ? held_ : pointer.inside ? handle_at(*here, lens, pointer.at) : none;
+  for (int axis = 0; axis < (kind_ == ToolKind::turn ? 4 : 3); ++axis) {
     std::vector<ImVec2> line;
-    for (const Vec2& p : outline(kind_, here->pivot, here->axes.col(axis), reach(lens, here->pivot), lens))
+    for (const Vec2& p : outline(kind_, here->pivot, here->axis(axis), reach(lens, here->pivot), lens, axis))
       line.push_back(on_screen(p, origin));
     if (line.size() < 2) continue;
     const ImU32 color = axis == hot ? IM_COL32(255, 230, 60, 255) : axis_colors[axis];
@@ -225,13 +268,14 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
       list.AddRectFilled({line.back().x - 6, line.back().y - 6}, {line.back().x + 6, line.back().y + 6}, color);
   }
   if (kind_ != ToolKind::turn)
-    list.AddCircleFilled(on_screen(*middle, origin), 6, hot == 3 ? IM_COL32(255, 230, 60, 255) : axis_colors[3]);
-  if (held_ < 0) return;
-  const char* const names[] = {"X", "Y", "Z", kind_ == ToolKind::move ? "view" : "all"};
+    list.AddCircleFilled(on_screen(*middle, origin), 6, hot == all ? IM_COL32(255, 230, 60, 255) : axis_colors[3]);
+  if (held_ == none) return;
+  const char* const names[] = {"X", "Y", "Z", kind_ == ToolKind::scale ? "all" : "view"};
   std::string text = kind_ == ToolKind::turn    ? fmt::format("{} {:.2f} deg", names[held_], amount_)
                      : kind_ == ToolKind::scale ? fmt::format("{} x {:.3f}", names[held_], 1 + amount_)
-                     : held_ == 3               ? std::string(names[held_])
+                     : held_ == all             ? std::string(names[held_])
                                                 : fmt::format("{} {:.4g}", names[held_], amount_);
+  if (held_ != all && at_.axes != Mat3::Identity()) text = "local " + text;
   if (!typed_.empty()) text += "  [" + typed_ + "]";
   const ImVec2 at = on_screen(now_ + Vec2(16, 16), origin);
   list.AddRectFilled({at.x - 4, at.y - 2},
@@ -245,17 +289,18 @@ void Gizmo::options(Desk& desk) {
     ImGui::Checkbox("local axes", &desk.local_axes);
     ImGui::SameLine();
   }
-  const std::optional<Target> here = target(desk);
+  const Lens lens(desk.camera, desk.view_width, desk.view_height);
+  const std::optional<Target> here = target(desk, lens);
   if (!here)
     ImGui::TextDisabled("pick a node in the outline, or select triangles");
   else
-    ImGui::TextDisabled("%s: drag a handle; type a number meanwhile; Ctrl snaps, Shift is fine, Esc lets go",
-                        here->triangles ? "the selected triangles" : "the picked nodes");
+    ImGui::TextDisabled("%s: %s; X Y Z take an axis, digits a number, Ctrl snaps, Shift is fine, Esc lets go",
+                        here->triangles ? "the selected triangles" : "the picked nodes",
+                        by_key_ ? "move the pointer, click or Enter ends" : "drag a handle");
 }
 
 void Gizmo::cancel(Desk& desk) {
-  held_ = -1;
-  typed_.clear();
+  end(desk);
   desk.preview.reset();
 }
 

@@ -19,7 +19,8 @@ std::string lower(std::string text) {
 
 struct Entry {
   std::string title, keys, help;
-  const Command* command = nullptr;  ///< null: the form of the edit `title`
+  const Command* command = nullptr;  ///< null: the form of the edit `title`, or
+  const Camera* view = nullptr;      ///< a stored view
 };
 
 std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
@@ -27,6 +28,8 @@ std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
   for (const Command& command : command_table())
     all.push_back({std::string(command.menu) + ": " + command.title, command.keys_of(desk), "", &command});
   for_each_type<Edit>([&](const auto& edit) { all.push_back({edit.op, "", edit.help}); });
+  for (const auto& [name, camera] : desk.scene().views)
+    all.push_back({"Stored view: " + name, "", "", nullptr, &camera});
   const std::string wanted = lower(filter);
   std::erase_if(
       all, [&](const Entry& entry) { return lower(entry.title + " " + entry.help).find(wanted) == std::string::npos; });
@@ -76,6 +79,8 @@ void PalettePanel::draw(Desk& desk) {
     desk.palette_open = false;
     if (entry.command != nullptr)
       entry.command->run(desk);
+    else if (entry.view != nullptr)
+      desk.camera = *entry.view;
     else
       desk.form_op = entry.title;
     break;

@@ -113,6 +113,8 @@ class Dialogs {
   std::string path_;
   PathQuestion asked_ = PathQuestion::none;
   std::filesystem::path replacing_;  ///< is there already: asked for once
+  int width_ = 0, height_ = 0;       ///< of pictures, in pixels
+  int pictures_ = 36;                ///< of a turntable
   bool may_quit_ = false, closes_ = false;
 };
 

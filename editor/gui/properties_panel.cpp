@@ -59,9 +59,11 @@ void PropertiesPanel::draw(Desk& desk) {
   const char* const axes[] = {"X", "Y", "Z"};
   ImGui::TextDisabled("centre, world");
   for (int axis = 0; axis < 3; ++axis) {
-    double value = center[axis];
+    // What is nothing beside the object is shown as nothing.
+    double value = std::abs(center[axis]) > 1e-12 * box.diagonal().norm() ? center[axis] : 0;
+    const double shown = value;
     if (number(fmt::format("{}##centre", axes[axis]).c_str(), value, "{:.5g}"))
-      transform_all([&](Transform& transform) { transform.translate[axis] = value - center[axis]; });
+      transform_all([&](Transform& transform) { transform.translate[axis] = value - shown; });
     if (axis < 2) ImGui::SameLine();
   }
   ImGui::TextDisabled("turn about the centre, degrees");

@@ -32,7 +32,9 @@ void ScriptPanel::draw(Desk& desk) {
       line_.clear();
       problem_.clear();
     } catch (const nlohmann::json::exception& error) {
-      problem_ = std::string("no valid JSON: ") + error.what();
+      // Behind the library's own name for it.
+      const std::string what = error.what();
+      problem_ = "no valid JSON: " + what.substr(what.find("] ") == std::string::npos ? 0 : what.find("] ") + 2);
     } catch (const Error& error) {
       problem_ = error.what();
     }

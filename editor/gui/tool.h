@@ -14,6 +14,7 @@ struct Pointer {
   bool inside = false;                                   ///< over the viewport, nothing above it
   bool pressed = false, down = false, released = false;  ///< left button: just now, held, just now
   bool double_clicked = false;
+  bool let_go = false;  ///< right button, just now
   bool shift = false, control = false;
 };
 

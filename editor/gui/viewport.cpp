@@ -84,7 +84,7 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
   const bool picks = desk.tool == ToolKind::pick;
   if (pointer.inside) {
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) (io.KeyShift ? panning_ : orbiting_) = true;
-    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) panning_ = true;
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && !pointer.let_go) panning_ = true;
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) && (io.KeyAlt || (picks && !io.KeyShift && !io.KeyCtrl)))
       orbiting_ = true;
     if (io.MouseWheel != 0) {
@@ -106,25 +106,27 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
     desk.camera = panned(desk.camera, dx, dy, desk.view_height);
 }
 
+void Viewport::add_grid(const Desk& desk, std::vector<Guides::Line>& lines) {
+  // On the ground; squares of the power of ten that fits the scene.
+  const Box box = world_bounds(desk.scene());
+  const double size = box.isEmpty() || !(box.diagonal().norm() > 0) ? 1 : box.diagonal().norm();
+  const double step = std::pow(10, std::floor(std::log10(size)));
+  const double floor = box.isEmpty() ? 0 : box.min().y();
+  constexpr int half = 10;
+  for (int k = -half; k <= half; ++k) {
+    const double at = k * step, end = half * step;
+    const Color grey(0.5, 0.5, 0.5);
+    lines.push_back({{at, floor, -end}, {at, floor, end}, k == 0 ? Color(0.25, 0.45, 0.95) : grey, 0.45, 0});
+    lines.push_back({{-end, floor, at}, {end, floor, at}, k == 0 ? Color(0.9, 0.3, 0.3) : grey, 0.45, 0});
+  }
+}
+
 Guides Viewport::guides(const Desk& desk) const {
   Guides result;
   result.selection = desk.show_selection;
   result.inspect = desk.inspect;
   result.channel = desk.channel;
-  if (desk.settings.grid) {
-    // On the ground; squares of the power of ten that fits the scene.
-    const Box box = world_bounds(desk.scene());
-    const double size = box.isEmpty() || !(box.diagonal().norm() > 0) ? 1 : box.diagonal().norm();
-    const double step = std::pow(10, std::floor(std::log10(size)));
-    const double floor = box.isEmpty() ? 0 : box.min().y();
-    constexpr int half = 10;
-    for (int k = -half; k <= half; ++k) {
-      const double at = k * step, end = half * step;
-      const Color grey(0.5, 0.5, 0.5);
-      result.lines.push_back({{at, floor, -end}, {at, floor, end}, k == 0 ? Color(0.25, 0.45, 0.95) : grey, 0.45, 0});
-      result.lines.push_back({{-end, floor, at}, {end, floor, at}, k == 0 ? Color(0.9, 0.3, 0.3) : grey, 0.45, 0});
-    }
-  }
+  if (desk.settings.grid) add_grid(desk, result.lines);
   for (const NodeId id : desk.active) {
     const Box box = subtree_bounds(desk.preview ? *desk.preview : desk.scene(), id);
     if (box.isEmpty()) continue;
@@ -176,7 +178,11 @@ void Viewport::picture(Desk& desk) {
   } else {
     // A renderer of its own keeps what the scene was on the GPU, as long as it is compared with.
     if (!before_) before_ = std::make_unique<Renderer>(window_context_());
-    before_texture_ = before_->show(desk.imported, view, {}, {}, false).texture;
+    Guides before;
+    before.inspect = desk.inspect;
+    before.channel = desk.channel;
+    if (desk.settings.grid) add_grid(desk, before.lines);
+    before_texture_ = before_->show(desk.imported, view, {}, before, false).texture;
   }
   texture_ = shown.texture;
 }
@@ -197,6 +203,36 @@ bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, con
   list.AddText({x - 60, origin.y + 8}, IM_COL32(0, 0, 0, 255), "before");
   list.AddText({x + 12, origin.y + 8}, IM_COL32(0, 0, 0, 255), "after");
   return hot || wiping_;
+}
+
+// What the colours mean when they are not the scene's.
+void Viewport::draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin) {
+  std::string text;
+  switch (desk.inspect) {
+    case Guides::Inspect::none:
+      return;
+    case Guides::Inspect::wireframe:
+      text = "Wireframe: every triangle, a colour for each texture set";
+      break;
+    case Guides::Inspect::opacity:
+      text = "Opacity: grey shows, dark red is transparent";
+      break;
+    case Guides::Inspect::texture_sets:
+      text = "Texture sets: a colour for each";
+      break;
+    case Guides::Inspect::channel:
+      text = fmt::format("Feature channel {}{}: black is 0, white 255", desk.channel,
+                         desk.channel == 0 ? " (opacity)" : "");
+      break;
+    case Guides::Inspect::overdraw:
+      text = "Overdraw: the brighter, the more triangles behind each other";
+      break;
+  }
+  const ImVec2 at{origin.x + 10, origin.y + static_cast<float>(desk.view_height) - ImGui::GetFontSize() - 12};
+  list.AddRectFilled({at.x - 4, at.y - 3},
+                     {at.x + ImGui::CalcTextSize(text.c_str()).x + 4, at.y + ImGui::GetFontSize() + 3},
+                     IM_COL32(0, 0, 0, 200));
+  list.AddText(at, IM_COL32(255, 255, 255, 255), text.c_str());
 }
 
 bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner) {
@@ -245,26 +281,22 @@ bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner) {
 }
 
 void Viewport::write_pictures(Desk& desk) {
-  View view;
-  view.camera = with_depth_for(desk.camera, world_bounds(desk.scene()));
-  view.width = desk.view_width;
-  view.height = desk.view_height;
-  view.samples = desk.samples;
+  const auto written = [&](const Camera& camera, int width, int height, const std::filesystem::path& path) {
+    made_.reset();
+    const View view{with_depth_for(camera, world_bounds(desk.scene())), width, height, desk.samples};
+    write_png(renderer_.render(desk.scene(), view), path);
+  };
   try {
-    if (!desk.screenshot.empty()) {
-      const std::filesystem::path path = std::exchange(desk.screenshot, {});
-      made_.reset();
-      write_png(renderer_.render(desk.scene(), view), path);
-      desk.log.push_back({"screenshot " + path.string()});
+    if (const auto shot = std::exchange(desk.screenshot, std::nullopt)) {
+      written(desk.camera, shot->width, shot->height, shot->path);
+      desk.log.push_back({"screenshot " + shot->path.string()});
     }
     if (desk.turntable) {
       Desk::Turntable& turntable = *desk.turntable;
       std::filesystem::create_directories(turntable.folder);
-      made_.reset();
-      view.camera = with_depth_for(
-          orbited(desk.camera, 2.0 * desk.view_height * turntable.next / turntable.count, 0, desk.view_height),
-          world_bounds(desk.scene()));
-      write_png(renderer_.render(desk.scene(), view), turntable.folder / fmt::format("{:03}.png", turntable.next));
+      const double turn = 2.0 * desk.view_height * turntable.next / turntable.count;
+      written(orbited(desk.camera, turn, 0, desk.view_height), turntable.width, turntable.height,
+              turntable.folder / fmt::format("{:03}.png", turntable.next));
       if (++turntable.next == turntable.count) {
         desk.log.push_back({fmt::format("turntable of {} pictures in {}", turntable.count, turntable.folder.string())});
         desk.turntable.reset();
@@ -296,12 +328,16 @@ void Viewport::draw(Desk& desk) {
   pointer.down = io.MouseDown[0];
   pointer.released = ImGui::IsMouseReleased(ImGuiMouseButton_Left);
   pointer.double_clicked = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+  // In the midst of a drag the right button lets go of it, as Escape does.
+  pointer.let_go = tool(desk).busy() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
+  if (pointer.let_go) tool(desk).cancel(desk);
   pointer.shift = io.KeyShift;
   pointer.control = io.KeyCtrl;
 
   list.PushClipRect(origin, {origin.x + size.x, origin.y + size.y}, true);
   list.ChannelsSplit(2);
   list.ChannelsSetCurrent(1);
+  draw_legend(desk, list, origin);
   const bool on_axes = draw_axes(desk, list, {origin.x + size.x, origin.y});
   if (on_axes || (desk.wipe && draw_wipe(desk, list, origin, pointer))) {
     pointer.inside = false;

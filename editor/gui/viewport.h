@@ -43,7 +43,9 @@ class Viewport {
   void fly(Desk& desk);
   void picture(Desk& desk);
   Guides guides(const Desk& desk) const;
+  static void add_grid(const Desk& desk, std::vector<Guides::Line>& lines);
   bool draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer);
+  static void draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin);
   bool draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner);
   void write_pictures(Desk& desk);
   bool moving() const;

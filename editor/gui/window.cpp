@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "mesh_ops/error.h"
@@ -15,6 +17,8 @@ namespace rebake {
 namespace {
 
 std::string last_error = "unknown";  // GLFW tells it to a plain function only
+
+constexpr double nowhere = -std::numeric_limits<float>::max();  // as Dear ImGui has it
 
 constexpr const char* without_window = "without a window there are: rebake run, render, export, batch";
 
@@ -29,27 +33,38 @@ class WindowContext final : public gl::Context {
 
 }  // namespace
 
-/// GLFW's callbacks, which carry a pointer to the window. They are there before Dear ImGui's, which call them.
+/// GLFW's callbacks, which carry a pointer to the window. Input waits for the frame that may see it.
 class Window::Callbacks {
  public:
   static void install(GLFWwindow* window) {
-    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int modifiers) {
-      Window& self = of(w);
-      if (action == GLFW_RELEASE || !self.on_key) return;
-      self.on_key({key, (modifiers & GLFW_MOD_SHIFT) != 0, (modifiers & GLFW_MOD_CONTROL) != 0,
-                   (modifiers & GLFW_MOD_ALT) != 0, action == GLFW_REPEAT});
+    using Kind = InputEvent::Kind;
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
+      of(w).waiting_.push_back(
+          {action == GLFW_REPEAT ? Kind::repeat : Kind::key, key, scancode, action != GLFW_RELEASE, modifiers, 0, 0});
+    });
+    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned character) {
+      of(w).waiting_.push_back({Kind::text, static_cast<int>(character), 0, true, 0, 0, 0});
+    });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+      of(w).waiting_.push_back({Kind::move, 0, 0, false, 0, x, y});
+    });
+    glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int inside) { of(w).pointer_inside_ = inside == GLFW_TRUE; });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int modifiers) {
+      of(w).waiting_.push_back({Kind::button, button, 0, action == GLFW_PRESS, modifiers, 0, 0});
+    });
+    glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) {
+      of(w).waiting_.push_back({Kind::wheel, 0, 0, false, 0, x, y});
     });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
       Window& self = of(w);
       if (self.on_drop) self.on_drop(std::vector<std::string>(paths, paths + count));
     });
-    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { of(w); });
-    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) { of(w); });
-    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { of(w); });
-    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned) { of(w); });
     glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w); });
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w); });
-    glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { of(w); });
+    glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
+      of(w);
+      ImGui_ImplGlfw_WindowFocusCallback(w, focused);
+    });
     glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w); });
   }
 
@@ -61,20 +76,26 @@ class Window::Callbacks {
   }
 };
 
-Window::Window(const std::string& title, int width, int height) {
+WindowSystem::WindowSystem() {
   glfwSetErrorCallback([](int, const char* text) { last_error = text; });
   if (glfwInit() != GLFW_TRUE)
     throw DeviceError(fmt::format("no window can be opened here ({}); {}", last_error, without_window));
+}
+WindowSystem::~WindowSystem() { glfwTerminate(); }
+void WindowSystem::wake() { glfwPostEmptyEvent(); }
+
+Window::Window(const WindowSystem& /*system*/, const std::string& title, int width, int height)
+    : pointer_x_(nowhere), pointer_y_(nowhere) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  // Where the driver can, it says when it was reset; else nobody would know why nothing is drawn any more.
+  glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
-  if (window_ == nullptr) {
-    glfwTerminate();
+  if (window_ == nullptr)
     throw DeviceError(
         fmt::format("no window with OpenGL 3.3 core can be opened here ({}); {}", last_error, without_window));
-  }
   glfwSetWindowSizeLimits(window_, 640, 480, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwSetWindowUserPointer(window_, this);
   glfwMakeContextCurrent(window_);
@@ -83,7 +104,7 @@ Window::Window(const std::string& title, int width, int height) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // the layout is kept in the settings
-  ImGui_ImplGlfw_InitForOpenGL(window_, true);
+  ImGui_ImplGlfw_InitForOpenGL(window_, false);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
@@ -93,7 +114,6 @@ Window::~Window() {
   ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
   glfwDestroyWindow(window_);
-  glfwTerminate();
 }
 
 std::unique_ptr<gl::Context> Window::context() { return std::make_unique<WindowContext>(window_); }
@@ -119,19 +139,55 @@ double Window::scale() const {
 }
 
 bool Window::wait(double seconds) {
+  if (!waiting_.empty()) seconds = 0;
   if (seconds < 0)
     glfwWaitEvents();
   else if (seconds > 0)
     glfwWaitEventsTimeout(seconds);
   else
     glfwPollEvents();
-  return std::exchange(events_, 0) > 0;
+  return std::exchange(events_, 0) > 0 || !waiting_.empty();
 }
-void Window::wake() { glfwPostEmptyEvent(); }
+bool Window::lost() const { return gl::context_lost(); }
 
 void Window::begin_frame() {
+  using Kind = InputEvent::Kind;
+  for (std::size_t count = events_of_frame(waiting_); count > 0; --count) {
+    const InputEvent event = waiting_.front();
+    waiting_.pop_front();
+    switch (event.kind) {
+      case Kind::move:
+        pointer_x_ = event.x;
+        pointer_y_ = event.y;
+        break;
+      case Kind::button:
+        if (static_cast<std::size_t>(event.code) < buttons_.size())
+          buttons_[static_cast<std::size_t>(event.code)] = event.down;
+        break;
+      case Kind::wheel:
+        ImGui_ImplGlfw_ScrollCallback(window_, event.x, event.y);
+        break;
+      case Kind::text:
+        ImGui_ImplGlfw_CharCallback(window_, static_cast<unsigned>(event.code));
+        break;
+      case Kind::key:
+      case Kind::repeat:
+        // Before Dear ImGui knows of it.
+        if (event.down && on_key)
+          on_key({event.code, (event.modifiers & GLFW_MOD_SHIFT) != 0, (event.modifiers & GLFW_MOD_CONTROL) != 0,
+                  (event.modifiers & GLFW_MOD_ALT) != 0, event.kind == Kind::repeat});
+        ImGui_ImplGlfw_KeyCallback(window_, event.code, event.scancode, event.down ? GLFW_PRESS : GLFW_RELEASE,
+                                   event.modifiers);
+    }
+  }
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  // It took both as they are now, not as they were at the event.
+  ImGuiIO& io = ImGui::GetIO();
+  const bool held = std::find(buttons_.begin(), buttons_.end(), true) != buttons_.end();
+  const bool here = pointer_inside_ || held;
+  io.MousePos = {static_cast<float>(here ? pointer_x_ : nowhere), static_cast<float>(here ? pointer_y_ : nowhere)};
+  std::copy(buttons_.begin(), buttons_.end(), io.MouseDown);
   ImGui::NewFrame();
 }
 void Window::end_frame() {

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "editor/gui/input_queue.h"
 #include "render/gl/context.h"
 
 struct GLFWwindow;
@@ -21,11 +24,23 @@ struct KeyPress {
   }
 };
 
+/// The connection to the display. Windows must not outlive it.
+class WindowSystem {
+ public:
+  /// Throws DeviceError where there is no display; the message names what works without.
+  WindowSystem();
+  ~WindowSystem();
+  WindowSystem(const WindowSystem&) = delete;
+  WindowSystem& operator=(const WindowSystem&) = delete;
+  /// Wakes Window::wait() up, from any thread.
+  static void wake();
+};
+
 /// A desktop window with an OpenGL context and Dear ImGui in it.
 class Window {
  public:
-  /// Throws DeviceError where there is no display or the driver is too old; the message names what works without.
-  Window(const std::string& title, int width, int height);
+  /// Throws DeviceError where the driver is too old; the message names what works without.
+  Window(const WindowSystem& system, const std::string& title, int width, int height);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -42,11 +57,11 @@ class Window {
   /// How much larger than on a plain screen text and buttons are to be.
   double scale() const;
 
-  /// Sleeps until something happens, at most so many seconds (for ever when negative), and handles it. True when
-  /// something came.
+  /// Sleeps until something happens, at most so many seconds (for ever when negative). True when something came, or
+  /// input waits for a frame.
   bool wait(double seconds);
-  /// Wakes wait() up, from any thread.
-  static void wake();
+  /// Whether the driver has lost what was on the GPU (it was reset): the window must be made anew.
+  bool lost() const;
 
   void begin_frame();
   void end_frame();
@@ -57,7 +72,11 @@ class Window {
  private:
   class Callbacks;
   GLFWwindow* window_ = nullptr;
-  int events_ = 0;
+  int events_ = 0;  ///< since the last wait()
+  std::deque<InputEvent> waiting_;
+  std::array<bool, 5> buttons_{};
+  double pointer_x_, pointer_y_;
+  bool pointer_inside_ = false;
 };
 
 }  // namespace rebake

@@ -11,6 +11,7 @@ StudyTable study_samples(const StudyInput& input) {
     view.samples = samples;
     table.rows.push_back(
         measured(input, std::to_string(samples) + (samples == 1 ? " sample" : " samples"), view, {}, reference));
+    input.progress.at("samples", static_cast<double>(table.rows.size()) / 3);
   }
   return table;
 }

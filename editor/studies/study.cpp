@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +15,33 @@
 #include "render/compare.h"
 
 namespace rebake {
+
+namespace {
+
+Image enlarged(const Image& image, int width, int height) {
+  Image result{width, height, {}};
+  const auto coordinate = [](int to, int to_size, int from_size) {
+    return std::clamp((to + 0.5) * from_size / to_size - 0.5, 0.0, from_size - 1.0);
+  };
+  const auto at = [&](int x, int y, int c) {
+    const int column = std::min(x, image.width - 1), row = std::min(y, image.height - 1);
+    return static_cast<double>(image.rgb[static_cast<std::size_t>((row * image.width + column) * 3 + c)]);
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double u = coordinate(x, width, image.width), v = coordinate(y, height, image.height);
+      const int left = static_cast<int>(u), top = static_cast<int>(v);
+      const double right = u - left, down = v - top;
+      for (int c = 0; c < 3; ++c) {
+        const double upper = std::lerp(at(left, top, c), at(left + 1, top, c), right);
+        const double lower = std::lerp(at(left, top + 1, c), at(left + 1, top + 1, c), right);
+        result.rgb.push_back(static_cast<std::uint8_t>(std::lround(std::lerp(upper, lower, down))));
+      }
+    }
+  return result;
+}
+
+}  // namespace
 
 StudyTable picture_table() {
   return {{"milliseconds a frame", "PSNR dB (100: equal)", "largest of 255"}, {}, 0, 1, false, false};
@@ -27,7 +55,10 @@ StudyTable::Row measured(const StudyInput& input, const std::string& choice, con
   for (int i = 0; i < input.frames; ++i)
     times.push_back(renderer.time_frame(input.scene, view, options, false).frame_ms);
   std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
-  const Difference difference = compare(picture, reference, 2);
+  const Difference difference = compare(picture.width == reference.width && picture.height == reference.height
+                                            ? picture
+                                            : enlarged(picture, reference.width, reference.height),
+                                        reference, 2);
   return {choice,
           {times[times.size() / 2], std::min(difference.psnr_db, 100.0), static_cast<double>(difference.largest)}};
 }

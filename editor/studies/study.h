@@ -41,6 +41,7 @@ struct Study {
 };
 
 StudyTable study_samples(const StudyInput& input);
+StudyTable study_resolution(const StudyInput& input);
 StudyTable study_decoder(const StudyInput& input);
 StudyTable study_cage(const StudyInput& input);
 StudyTable study_rotation(const StudyInput& input);
@@ -49,6 +50,7 @@ StudyTable study_wrap(const StudyInput& input);
 /// The one table of studies.
 inline constexpr Study study_table[] = {
     {"samples", "samples a pixel, against 64 samples", study_samples},
+    {"resolution", "share of the resolution, enlarged, against 64 samples", study_resolution},
     {"decoder", "precision and place of the decoder's weights, against 32-bit constants", study_decoder},
     {"cage", "cage coordinates, their precision and resolution", study_cage},
     {"rotation", "local rotations, against exact gradients and SVD", study_rotation},
@@ -57,7 +59,8 @@ inline constexpr Study study_table[] = {
 
 /// Table of a study of pictures: milliseconds a frame, PSNR and the largest difference of a channel in 1/255.
 StudyTable picture_table();
-/// Times a choice and compares its picture with the reference.
+/// Times a choice and compares its picture, enlarged where it is smaller (bilinear, as a screen does), with the
+/// reference.
 StudyTable::Row measured(const StudyInput& input, const std::string& choice, const View& view,
                          const RenderOptions& options, const Image& reference);
 

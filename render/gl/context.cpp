@@ -12,6 +12,12 @@ void clear_window(int width, int height) {
   glClear(GL_COLOR_BUFFER_BIT);
 }
 
+bool context_lost() {
+  if (epoxy_gl_version() >= 45) return glGetGraphicsResetStatus() != GL_NO_ERROR;
+  if (epoxy_has_gl_extension("GL_ARB_robustness")) return glGetGraphicsResetStatusARB() != GL_NO_ERROR;
+  return false;
+}
+
 std::string device_name() {
   const auto text = [](GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); };
   return fmt::format("{}, OpenGL {}.{}", text(GL_RENDERER), epoxy_gl_version() / 10, epoxy_gl_version() % 10);

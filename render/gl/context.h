@@ -12,6 +12,9 @@ class Context {
   virtual void make_current() = 0;
 };
 
+/// Whether the current context was lost, and with it all that was made in it; false where the driver cannot say.
+bool context_lost();
+
 /// Clears the window of the current context, `width` × `height` pixels.
 void clear_window(int width, int height);
 

@@ -2,11 +2,15 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <set>
 #include <sstream>
+#include <thread>
 
 #include "editor/gui/commands.h"
+#include "editor/gui/desk.h"
 #include "editor/gui/expression.h"
+#include "editor/gui/input_queue.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/files.h"
 #include "tests/support/made_scenes.h"
@@ -45,6 +49,54 @@ TEST(Expression, IsWhatACalculatorSays) {
   EXPECT_NEAR(*evaluated("pi/2"), 1.5707963267948966, 1e-15);
   for (const char* text : {"", "1+", "(1", "1/0", "x", "1 2", "--"}) EXPECT_FALSE(evaluated(text)) << text;
   EXPECT_FALSE(evaluated(std::string(100000, '('))) << "however deep";
+}
+
+TEST(Input, AFrameSeesOneChangeWhereItHappened) {
+  using Kind = InputEvent::Kind;
+  const auto shares = [](std::deque<InputEvent> waiting) {
+    std::vector<std::size_t> result;
+    while (!waiting.empty()) {
+      result.push_back(events_of_frame(waiting));
+      waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(result.back()));
+    }
+    return result;
+  };
+  const InputEvent move{Kind::move}, press{Kind::button, 0, 0, true}, release{Kind::button},
+      key{Kind::key, 65, 0, true}, up{Kind::key, 65}, text{Kind::text, 'a'}, repeat{Kind::repeat, 65, 0, true},
+      wheel{Kind::wheel};
+  using Shares = std::vector<std::size_t>;
+  EXPECT_EQ(shares({move, move, move}), Shares{3});
+  EXPECT_EQ(shares({press, release}), (Shares{1, 1})) << "a click within one frame is seen";
+  EXPECT_EQ(shares({move, press, move, move, release}), (Shares{2, 3})) << "and pressed where the pointer was";
+  EXPECT_EQ(shares({key, text, up, key, text, up}), (Shares{2, 1, 2, 1})) << "text stays with its key";
+  EXPECT_EQ(shares({key, repeat, repeat, wheel, move}), (Shares{4, 1})) << "what is held makes no frame wait";
+}
+
+TEST(Desk, CostsAreMeasuredInTheView) {
+  const TemporaryFolder home;  // for the journal
+  ::setenv("XDG_STATE_HOME", home.path().c_str(), 1);
+  Desk desk({}, [] {});
+  desk.view_width = 160;
+  desk.view_height = 120;
+  const auto wait = [&desk] {
+    while (desk.worker.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    desk.update();
+    ASSERT_EQ(desk.error, "");
+  };
+  desk.open({REBAKE_SOURCE "/samples/scenes/ficus"});
+  wait();
+  desk.measure_costs();
+  wait();
+  ASSERT_TRUE(desk.costs);
+  ASSERT_EQ(desk.costs->rows.size(), 7U);
+  const auto decibels = [&](std::size_t row) { return desk.costs->rows[row].values[1]; };
+  EXPECT_GT(decibels(2), decibels(1)) << "16 samples are nearer to 64 than 4";
+  EXPECT_GT(decibels(1), decibels(0));
+  EXPECT_NEAR(decibels(3), decibels(0), 0.01) << "all of the resolution at 1 sample is 1 sample";
+  EXPECT_GT(decibels(3), decibels(6)) << "a third of the resolution is worse than all of it";
+  for (const StudyTable::Row& row : desk.costs->rows) EXPECT_GT(row.values[0], 0) << row.choice;
+  desk.worker.start("end", [](Session& session) { session.document.discard_journal(); });
+  wait();
 }
 
 TEST(SettingsFile, ComesBackAndABadOneIsSaid) {

@@ -12,9 +12,10 @@ from screen import Editor, Screen, until
 PROGRAM = sys.argv.pop(1)
 HERE = pathlib.Path(__file__).resolve().parent
 FICUS = HERE.parents[1] / "samples" / "scenes" / "ficus"
+KETTLE = FICUS.parent / "kettle"
 # Where things stand in a window of 1280 x 800.
 LEAVES = [(560, 160), (700, 160), (700, 300), (560, 300)]
-NODE_IN_OUTLINE = (1060, 57)
+NODE_IN_OUTLINE, SECOND_NODE = (1030, 74), (1030, 92)
 MAKE_CAGE = (475, 38)
 RECOVER = (490, 406)
 DEGREES = (960, 231)
@@ -110,7 +111,6 @@ class EditorTest(unittest.TestCase):
         editor.key("ctrl+s")
         editor.settle()
         editor.key("ctrl+a")
-        time.sleep(0.5)
         editor.type(str(project))
         editor.key("Return")
         until(project.is_file, "the project")
@@ -156,6 +156,126 @@ class EditorTest(unittest.TestCase):
         editor.key("Return")
         editor.until_ops("import", "transform", "transform", "transform")
         self.assertNotEqual(editor.journal()[-1]["edit"]["translate"][0], 0)
+
+    def test_keys_of_blender_begin_a_drag(self):
+        settings = self.screen.home / "config/rebake/settings.json"
+        settings.parent.mkdir(parents=True)
+        settings.write_text('{"blender_keys": true}')
+        editor = self.open_ficus()
+        editor.click(*NODE_IN_OUTLINE)
+        editor.move(500, 300)
+        editor.key("g", "x", "1", "period", "5", "Return")
+        editor.until_ops("import", "transform")
+        self.assertEqual(editor.journal()[-1]["edit"]["translate"], [1.5, 0, 0])
+        editor.key("r")
+        editor.move(560, 400)
+        editor.key("Escape", "s")
+        editor.move(450, 400)
+        editor.tool("click", 3)
+        editor.settle()
+        self.assertEqual(editor.ops(), ["import", "transform"], "Escape and the right button let go")
+        # About the line of sight, with a click at the end.
+        editor.key("r")
+        editor.move(400, 350)
+        editor.tool("click", 1)
+        editor.until_ops("import", "transform", "transform")
+        self.assertLess(editor.journal()[-1]["edit"]["rotate"][0], 0.999)
+        # X alone deletes, as in Blender.
+        editor.key("x")
+        editor.until_ops("import", "transform", "transform", "remove")
+
+    def test_several_nodes_are_one_step(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        editor.click(*NODE_IN_OUTLINE)
+        editor.tool("keydown", "shift")
+        editor.click(*SECOND_NODE)
+        editor.tool("keyup", "shift")
+        editor.key("h")
+        editor.until_ops("import", "import", "hide", "hide")
+        self.assertLess(leaf_pixels(editor), 1000, "but for the green axis")
+        editor.key("ctrl+z")
+        editor.until_ops("import", "import", "hide", "hide", "undo", "undo")
+        self.assertGreater(leaf_pixels(editor), 1000)
+
+    def test_stored_views_and_turntable(self):
+        editor = self.open_ficus()
+        editor.command("store view")
+        editor.until_ops("import", "view")
+        before = editor.picture()[60:570, 75:850]
+        editor.drag(2, [(400, 500), (600, 400)])
+        editor.settle()
+        self.assertGreater((abs(editor.picture()[60:570, 75:850] - before).max(axis=2) > 30).sum(), 10000)
+        editor.command("view 1")
+        editor.settle()
+        self.assertLess((abs(editor.picture()[60:570, 75:850] - before).max(axis=2) > 30).sum(), 100)
+        around = self.folder / "around"
+        editor.command("turntable")
+        editor.key("ctrl+a")
+        editor.type(str(around))
+        editor.key("Return")
+        until(lambda: len(list(around.glob("*.png"))) == 36, "36 pictures", 60)
+        editor.settle()
+        compared = lambda a, b: subprocess.run([PROGRAM, "compare", around / a, around / b, "--min-psnr", "30"],
+                                                capture_output=True).returncode
+        self.assertNotEqual(compared("000.png", "009.png"), 0, "a quarter turn shows")
+
+    def test_graphics_made_anew_lose_nothing(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+a")
+        editor.until_ops("import", "select")
+        editor.key("shift+t")
+        editor.settle()
+        before = editor.picture()[:570]
+        editor.command("restart graphics")
+        time.sleep(1)
+        editor.settle()
+        self.assertLess((abs(editor.picture()[:570] - before).max(axis=2) > 30).sum(), 500)
+        editor.window = editor.tool("search", "--onlyvisible", "--name", "Rebake").split()[0]
+        editor.tool("windowfocus", "--sync", editor.window)
+        editor.key("ctrl+i")
+        editor.until_ops("import", "select", "select")
+
+    def test_windows_of_any_size(self):
+        editor = self.open_ficus()
+        for width, height in ((700, 500), (1000, 790), (640, 480)):
+            editor.resize(width, height)
+            picture = editor.picture()[:height, :width]
+            green = (picture[..., 1] > picture[..., 0] + 25) & (picture[..., 1] > picture[..., 2] + 25)
+            self.assertGreater(green.sum(), 300, f"the plant is seen at {width} x {height}")
+        editor.resize(1280, 800)
+        self.expect_like("opened", 40)
+
+    def test_a_full_disk_is_said_and_nothing_is_lost(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+a")
+        editor.until_ops("import", "select")
+        project = self.folder / "plant.rebake"
+
+        def save():
+            editor.key("ctrl+s", "ctrl+a")
+            editor.type(str(project))
+            editor.key("Return")
+            editor.settle()
+
+        calm = editor.picture()
+        editor.fill_disk()
+        save()
+        said = (abs(editor.picture() - calm).max(axis=2) > 30)[200:600, 200:1000].sum()
+        self.assertGreater(said, 3000, "it is said in the window")
+        self.assertEqual(list(self.folder.glob("plant*")), [], "no half of a file")
+        editor.key("Escape")
+        # What cannot be kept safe is not done.
+        editor.key("ctrl+i")
+        editor.settle()
+        self.assertEqual(editor.ops(), ["import", "select"])
+        editor.key("Escape")
+        editor.settle()
+        editor.fill_disk(False)
+        save()
+        until(project.is_file, "the project")
+        editor.key("ctrl+i")
+        editor.until_ops("import", "select", "select")
 
     def test_bend_by_a_cage(self):
         editor = self.open_ficus()

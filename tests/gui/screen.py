@@ -51,7 +51,9 @@ class Editor:
 
     def __init__(self, program, screen, *paths):
         self.screen = screen
-        self.process = subprocess.Popen([program, "edit", *map(str, paths)], env=screen.environment)
+        # Python ignores SIGXFSZ, and so does the editor then: a limit of file size is an error of writing, like a full
+        # disk.
+        self.process = subprocess.Popen([program, "edit", *map(str, paths)], env=screen.environment, restore_signals=False)
         self.window = until(lambda: self.tool("search", "--onlyvisible", "--name", "Rebake").split(), "a window")[0]
         self.tool("windowfocus", "--sync", self.window)
         self.settle()
@@ -103,6 +105,14 @@ class Editor:
         self.key("ctrl+p")
         self.type(name)
         self.key("Return")
+
+    def fill_disk(self, full=True):
+        subprocess.run(["prlimit", f"--pid={self.process.pid}", "--fsize=" + ("16:unlimited" if full else "unlimited")],
+                       check=True)
+
+    def resize(self, width, height):
+        self.tool("windowsize", "--sync", self.window, width, height)
+        self.settle()
 
     # What is there
 
