@@ -7,13 +7,13 @@ namespace rebake {
 
 struct Transform {
   static constexpr const char* op = "transform";
-  static constexpr const char* help =
-      "Scales, then turns, then moves a node or its selected triangles about a pivot, in world axes.";
+  static constexpr const char* help = "Scales, then turns, then moves a node or its selected triangles about a pivot.";
   NodeRef node;
   bool selection = false;
   Vec3 translate{0, 0, 0};
   Rotation rotate;
   Scale scale;
+  Rotation scale_axes;
   std::optional<Vec3> pivot;
 
   template <class Self, class Visitor>
@@ -23,10 +23,18 @@ struct Transform {
     visit("translate", self.translate, Need::optional, "in scene units");
     visit("rotate", self.rotate, Need::optional, "rotation");
     visit("scale", self.scale, Need::optional, "factor; negative mirrors, 0 is refused");
+    visit("scale_axes", self.scale_axes, Need::optional, "turn of the axes along which scale acts, from the world's");
     visit("pivot", self.pivot, Need::optional,
           "world point that scale and rotation keep; left out: the centre of the box of what is transformed");
   }
 };
+
+inline Mat3 scaling(const Transform& edit) {
+  // Without a turn the scale stays exact.
+  if (edit.scale_axes.value.vec().isZero(0)) return edit.scale.value.asDiagonal();
+  const Mat3 axes = edit.scale_axes.value.toRotationMatrix();
+  return axes * edit.scale.value.asDiagonal() * axes.transpose();
+}
 
 inline Scene apply(const Scene& scene, const Transform& edit) {
   const PlacedNode placed = editable_with_children(scene, edit.node.id);
@@ -40,7 +48,7 @@ inline Scene apply(const Scene& scene, const Transform& edit) {
                      : box.isEmpty() ? Vec3(placed.to_world.translation())
                                      : Vec3(box.center());
   Affine motion = Affine::Identity();
-  const Mat3 linear = edit.rotate.value.toRotationMatrix() * edit.scale.value.asDiagonal();
+  const Mat3 linear = edit.rotate.value.toRotationMatrix() * scaling(edit);
   motion.linear() = linear;
   // A pure move adds just the distance: no rounding from the pivot.
   motion.translation() = linear.isIdentity(0) ? edit.translate : Vec3(pivot + edit.translate - linear * pivot);

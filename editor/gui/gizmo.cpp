@@ -68,7 +68,7 @@ std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) c
   const auto first = find_placed(desk.scene(), target.nodes.front());
   target.pivot = box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center());
   target.local = orthogonal_factor(first->to_world.linear());
-  if (desk.local_axes && kind_ != ToolKind::scale) target.axes = target.local;
+  if (desk.local_axes) target.axes = target.local;
   target.towards_eye = lens.towards_eye(target.pivot);
   return target;
 }
@@ -140,6 +140,8 @@ std::vector<Edit> Gizmo::edits(const Lens& lens) const {
       transform.scale.value = Vec3::Constant(1 + amount_);
     else
       transform.scale.value[held_] = 1 + amount_;
+    // Axes serve a scale as well turned round; a mirrored node's would be no turn.
+    transform.scale_axes.value = Eigen::Quaterniond(at_.axes.determinant() < 0 ? Mat3(-at_.axes) : at_.axes);
   } else if (held_ == all) {
     transform.translate = amount_ * lens.motion(at_.pivot, now_ - from_);
   } else {
@@ -212,7 +214,7 @@ void Gizmo::constrain(int axis) {
   if (held_ != axis) {
     held_ = axis;
     at_.axes = Mat3::Identity();
-  } else if (!local && kind_ != ToolKind::scale && at_.local != Mat3::Identity()) {
+  } else if (!local && at_.local != Mat3::Identity()) {
     at_.axes = at_.local;
   } else {
     held_ = all;
@@ -285,10 +287,8 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
 }
 
 void Gizmo::options(Desk& desk) {
-  if (kind_ != ToolKind::scale) {  // sizes are along the world's axes
-    ImGui::Checkbox("local axes", &desk.local_axes);
-    ImGui::SameLine();
-  }
+  ImGui::Checkbox("local axes", &desk.local_axes);
+  ImGui::SameLine();
   const Lens lens(desk.camera, desk.view_width, desk.view_height);
   const std::optional<Target> here = target(desk, lens);
   if (!here)

@@ -170,14 +170,15 @@ class Document:
 
         color: display red, green, blue from 0 to 1
         """
-    def transform(self, *, node: Node, selection: bool = False, translate: Vector = [0.0,0.0,0.0], rotate: Rotation = [1.0,0.0,0.0,0.0], scale: float | Vector = [1.0,1.0,1.0], pivot: Vector | None = None) -> None:
-        """Scales, then turns, then moves a node or its selected triangles about a pivot, in world axes.
+    def transform(self, *, node: Node, selection: bool = False, translate: Vector = [0.0,0.0,0.0], rotate: Rotation = [1.0,0.0,0.0,0.0], scale: float | Vector = [1.0,1.0,1.0], scale_axes: Rotation = [1.0,0.0,0.0,0.0], pivot: Vector | None = None) -> None:
+        """Scales, then turns, then moves a node or its selected triangles about a pivot.
 
         node: node to transform
         selection: only the selected triangles
         translate: in scene units
         rotate: rotation
         scale: factor; negative mirrors, 0 is refused
+        scale_axes: turn of the axes along which scale acts, from the world's
         pivot: world point that scale and rotation keep; left out: the centre of the box of what is transformed
         """
     def select(self, *, node: Node | None = None, all: bool = False, none: bool = False, invert: bool = False, box: Box | None = None, sphere: Sphere | None = None, half_space: HalfSpace | None = None, connected: Vector | None = None, texture_set: int | None = None, saved: str = "", mode: Literal["set", "add", "remove", "intersect"] = "set", frame: Literal["world", "node", "bounds"] = "world") -> dict[str, NDArray[np.bool_]]:

@@ -37,10 +37,14 @@ void make_clusters(GpuMesh& mesh) {
   });
 }
 
+// Whether the same triangles of both show something.
+bool same_faces(const MeshKey& a, const MeshKey& b) {
+  return a.uvs == b.uvs && a.faces == b.faces && a.texels == b.texels;
+}
+
 // Whether a mesh is a set's but for its positions, as while something is dragged.
 bool differs_in_place(const MeshKey& held, const MeshKey& wanted) {
-  return held.uvs == wanted.uvs && held.faces == wanted.faces && held.texels == wanted.texels &&
-         held.turns == nullptr && wanted.turns == nullptr;
+  return same_faces(held, wanted) && held.turns == nullptr && wanted.turns == nullptr;
 }
 
 // New positions into a mesh that is there.
@@ -53,7 +57,8 @@ void move_vertices(GpuMesh& mesh, const TextureSet& set) {
   make_clusters(mesh);
 }
 
-GpuMesh upload(const TextureSet& set) {
+// `shown` are the faces that show something where they are known, else it is empty.
+GpuMesh upload(const TextureSet& set, std::vector<Face> shown) {
   const Soup& soup = set.soup;
   GpuMesh mesh;
   mesh.source = soup;
@@ -81,9 +86,12 @@ GpuMesh upload(const TextureSet& set) {
     }
   }
   // Faces that show nothing are not worth a draw.
-  const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
-  for (std::size_t f = 0; f < shows.size(); ++f)
-    if (shows[f] != 0) mesh.faces.push_back(soup.faces()[f]);
+  mesh.faces = std::move(shown);
+  if (mesh.faces.empty()) {
+    const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
+    for (std::size_t f = 0; f < shows.size(); ++f)
+      if (shows[f] != 0) mesh.faces.push_back(soup.faces()[f]);
+  }
   mesh.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, mesh.faces.data(), mesh.faces.size() * sizeof(Face));
   glBindVertexArray(0);
   make_clusters(mesh);
@@ -125,9 +133,17 @@ void GpuScene::update(const Scene& scene) {
     meshes_.insert(std::move(node));
     return true;
   });
+  // Bent triangles show what they showed: that is not worked out again.
+  std::vector<std::vector<Face>> shown;
+  for (const TextureSet& set : change.meshes) {
+    const auto same = std::find_if(meshes_.begin(), meshes_.end(),
+                                   [&](const auto& held) { return same_faces(held.first, mesh_key(set)); });
+    shown.push_back(same != meshes_.end() ? same->second.faces : std::vector<Face>{});
+  }
   for (const MeshKey& key : change.released_meshes) meshes_.erase(key);
   for (const TextureKey key : change.released_textures) textures_.erase(key);
-  for (const TextureSet& set : change.meshes) meshes_.emplace(mesh_key(set), upload(set));
+  for (std::size_t k = 0; k < change.meshes.size(); ++k)
+    meshes_.emplace(mesh_key(change.meshes[k]), upload(change.meshes[k], std::move(shown[k])));
   for (const auto& texture : change.textures) textures_.emplace(texture.get(), upload(texture));
 }
 

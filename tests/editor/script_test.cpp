@@ -105,6 +105,15 @@ TEST_F(Script, ThrownEditLeavesTheSceneAsItWas) {
   EXPECT_TRUE(session.scene().roots.empty());
 }
 
+TEST_F(Script, AScaleActsAlongTurnedAxes) {
+  run(import +
+      R"({"op": "transform", "node": "ball", "scale": [1, 3, 1], "scale_axes": {"axis": [0, 0, 1], "degrees": 30}})");
+  const Mat3 linear = find_placed(session.scene(), node("ball")->id)->to_world.linear();
+  const Vec3 along(-0.5, std::sqrt(3) / 2, 0), across(std::sqrt(3) / 2, 0.5, 0);
+  EXPECT_LT((linear * along - 3 * along).norm(), 1e-14);
+  EXPECT_LT((linear * across - across).norm(), 1e-14);
+}
+
 TEST_F(Script, TurningAllTrianglesOfAStretchedNodeTurnsItsColoursLikeTheNode) {
   run(import + R"({"op": "transform", "node": "ball", "scale": [4, 1, 1]})");
   const Mat3 before = find_placed(session.scene(), node("ball")->id)->to_world.linear();
