@@ -31,6 +31,12 @@ class Memo {
     return value_;
   }
 
+  /// Null while there is no value, or it is being made.
+  std::shared_ptr<const T> if_there() const {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    return lock ? value_ : nullptr;
+  }
+
  private:
   mutable std::mutex mutex_;
   mutable std::shared_ptr<const T> value_;

@@ -40,6 +40,7 @@ std::string cost_of_bends(Session& session, const Scene& flat) {
 }  // namespace
 
 void run(Session& session, const ExportAction& action) {
+  session.check_not_a_source("out", action.out);
   const ExportReport report = export_scene(session.scene(), action.out, {action.layout}, session.progress);
   session.exports.push_back(action.out);
   for (const std::string& note : report.notes) session.say("note: " + note);

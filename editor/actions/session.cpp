@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "mesh_ops/deform/deform_object.h"
 #include "render/picture.h"
 
@@ -97,6 +99,16 @@ void Session::edits(const std::vector<Edit>& edits) {
     say_what_became(edits[k], before, after[k], say);
     before = after[k];
   }
+}
+
+void Session::check_not_a_source(const char* field, const std::string& folder) const {
+  std::error_code error;
+  for (const Edit& edit : document.history().edits())
+    if (const auto* import = std::get_if<Import>(&edit);
+        import != nullptr && std::filesystem::equivalent(import->path, folder, error))
+      throw FieldError(field, "\"" + folder +
+                                  "\" is what was imported: write to another folder, else it could not be undone, nor "
+                                  "a project of it opened");
 }
 
 Renderer& Session::renderer() {

@@ -24,6 +24,10 @@ class Session {
   /// All of them, to be undone together, or none where one throws.
   void edits(const std::vector<Edit>& edits);
 
+  /// Throws FieldError when a folder that is to be written is a source of the document: it would not be what was
+  /// imported any more, and undo and projects want it again.
+  void check_not_a_source(const char* field, const std::string& folder) const;
+
   std::vector<std::string> exports;  ///< folders that export wrote
   Progress progress;
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< one line for people

@@ -114,7 +114,10 @@ View ViewOptions::view(const Scene& scene) const {
   }
   if (!target.empty()) view.camera.target = parse_vec3(target, "--target");
   if (!up.empty()) view.camera.up = parse_vec3(up, "--up");
-  if (fov) view.camera.fov_degrees = *fov;
+  if (fov) {
+    view.camera.fov_degrees = *fov;
+    view.camera.ortho_height = 0;  // who asks for a field of view wants perspective
+  }
   if (!eye.empty()) {
     view.camera.eye = parse_vec3(eye, "--eye");
     // The framing's planes belong to the framing's eye.

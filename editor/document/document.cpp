@@ -12,11 +12,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-json entry_of(const Edit& edit, bool joined) {
-  json entry = {{"edit", to_json(edit)}};
-  if (joined) entry["joined"] = true;
+// One line for what was made together: a torn journal holds all of it or nothing.
+json entry_of(const std::vector<Edit>& edits) {
+  if (edits.size() == 1) return {{"edit", to_json(edits.front())}};
+  json entry = {{"edits", json::array()}};
+  for (const Edit& edit : edits) entry["edits"].push_back(to_json(edit));
   return entry;
 }
+
+// Journals of earlier versions say true for one.
+std::size_t count_in(const json& value) { return value.is_boolean() ? 1 : value.get<std::size_t>(); }
 
 }  // namespace
 
@@ -40,15 +45,22 @@ Document::Recovered Document::recover(const fs::path& path) {
   for (const json& entry : contents.entries) {
     ++number;
     try {
-      if (entry.contains("edit")) {
-        Edit edit = read_edit(entry.at("edit"), result.document.scene());
-        Scene scene = rebake::apply(result.document.scene(), edit);
-        result.document.history_.add(std::move(edit), std::move(scene), entry.value("joined", false));
+      if (entry.contains("edit") || entry.contains("edits")) {
+        bool joined = false;
+        for (const json& one : entry.contains("edit") ? json::array({entry.at("edit")}) : entry.at("edits")) {
+          Edit edit = read_edit(one, result.document.scene());
+          Scene scene = rebake::apply(result.document.scene(), edit);
+          result.document.history_.add(std::move(edit), std::move(scene), joined);
+          joined = true;
+        }
       } else if (!entry.contains("undo") && !entry.contains("redo")) {
         throw Error("is neither an edit nor undo or redo");
-      } else if (entry.contains("undo") ? !result.document.history_.undo() : !result.document.history_.redo()) {
+      } else if (entry.contains("undo") ? !result.document.history_.undo(count_in(entry.at("undo")))
+                                        : !result.document.history_.redo(count_in(entry.at("redo")))) {
         throw Error("there is nothing to undo or redo");
       }
+    } catch (const json::exception& error) {
+      throw FileError(path, fmt::format("line {}: {}", number, error.what()));
     } catch (const Error& error) {
       throw FileError(path, fmt::format("line {}: {}", number, error.what()));
     }
@@ -63,7 +75,13 @@ void Document::keep_journal(const fs::path& path) {
   std::vector<json> entries;
   const std::vector<Edit> edits = history_.edits();
   const std::vector<bool> joined = history_.joined();
-  for (std::size_t k = 0; k < edits.size(); ++k) entries.push_back(entry_of(edits[k], joined[k]));
+  for (std::size_t first = 0; first < edits.size();) {
+    std::size_t end = first + 1;
+    while (end < edits.size() && joined[end]) ++end;
+    entries.push_back(entry_of(
+        {edits.begin() + static_cast<std::ptrdiff_t>(first), edits.begin() + static_cast<std::ptrdiff_t>(end)}));
+    first = end;
+  }
   journal_ = Journal::create(fs::absolute(path).lexically_normal(), json::object(), std::move(entries));
 }
 
@@ -72,52 +90,40 @@ void Document::edit(const Edit& edit, const Progress& progress) { edits({edit}, 
 std::vector<Scene> Document::edits(const std::vector<Edit>& edits, const Progress& progress) {
   std::vector<Scene> scenes;
   std::vector<Edit> whole;
-  std::vector<json> entries;
   for (const Edit& edit : edits) {
     whole.push_back(completed(edit));
     scenes.push_back(rebake::apply(scenes.empty() ? scene() : scenes.back(), whole.back(), progress));
-    entries.push_back(entry_of(whole.back(), !entries.empty()));
   }
-  if (journal_) journal_->append(std::move(entries));
+  if (whole.empty()) return scenes;
+  if (journal_) journal_->append(entry_of(whole));
   for (std::size_t k = 0; k < whole.size(); ++k) history_.add(std::move(whole[k]), scenes[k], k > 0);
   return scenes;
 }
 
-bool Document::undo() {
-  if (!history_.undo()) return false;
+bool Document::undo(std::size_t edits) {
+  if (!history_.undo(edits)) return false;
   try {
-    if (journal_) journal_->append({json{{"undo", true}}});
+    if (journal_) journal_->append({{"undo", edits}});
   } catch (...) {
-    history_.redo();
+    history_.redo(edits);
     throw;
   }
   return true;
 }
 
-bool Document::redo() {
-  if (!history_.redo()) return false;
+bool Document::redo(std::size_t edits) {
+  if (!history_.redo(edits)) return false;
   try {
-    if (journal_) journal_->append({json{{"redo", true}}});
+    if (journal_) journal_->append({{"redo", edits}});
   } catch (...) {
-    history_.undo();
+    history_.undo(edits);
     throw;
   }
   return true;
 }
 
-bool Document::undo_step() {
-  for (bool joined = true; joined;) {
-    joined = history_.undo_count() > 0 && history_.joined()[history_.undo_count() - 1];
-    if (!undo()) return false;
-  }
-  return true;
-}
-
-bool Document::redo_step() {
-  if (!redo()) return false;
-  while (history_.redo_count() > 0 && history_.joined()[history_.undo_count()]) redo();
-  return true;
-}
+bool Document::undo_step() { return history_.undo_count() > 0 && undo(history_.undo_step()); }
+bool Document::redo_step() { return history_.redo_count() > 0 && redo(history_.redo_step()); }
 
 void Document::save(const fs::path& project) const {
   if (!starts_empty_) throw Error("only what was imported by edits can be saved as a project");

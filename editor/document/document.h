@@ -31,10 +31,10 @@ class Document {
   void edit(const Edit& edit, const Progress& progress = {});
   /// All of them, to be undone together, or none where one throws. The scene after each.
   std::vector<Scene> edits(const std::vector<Edit>& edits, const Progress& progress = {});
-  /// One edit back or forth; false where there is none.
-  bool undo();
-  bool redo();
-  /// The same for all edits that were made together.
+  /// So many edits back or forth, or none; false where there are fewer.
+  bool undo(std::size_t edits = 1);
+  bool redo(std::size_t edits = 1);
+  /// All that was made together with the last edit, or with the next one; false where there is none.
   bool undo_step();
   bool redo_step();
 

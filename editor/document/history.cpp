@@ -92,15 +92,29 @@ void History::add(Edit edit, Scene scene, bool joined) {
   fit_budget();
 }
 
-bool History::undo() {
-  if (position_ == 0) return false;
-  go_to(position_ - 1);
+std::size_t History::undo_step() const {
+  if (position_ == 0) return 0;
+  std::size_t edits = 1;
+  while (steps_[position_ + 1 - edits].joined) ++edits;
+  return edits;
+}
+
+std::size_t History::redo_step() const {
+  if (redo_count() == 0) return 0;
+  std::size_t edits = 1;
+  while (edits < redo_count() && steps_[position_ + 1 + edits].joined) ++edits;
+  return edits;
+}
+
+bool History::undo(std::size_t edits) {
+  if (edits > position_) return false;
+  go_to(position_ - edits);
   return true;
 }
 
-bool History::redo() {
-  if (redo_count() == 0) return false;
-  go_to(position_ + 1);
+bool History::redo(std::size_t edits) {
+  if (edits > redo_count()) return false;
+  go_to(position_ + edits);
   return true;
 }
 

@@ -27,13 +27,16 @@ class History {
   std::size_t redo_count() const { return steps_.size() - 1 - position_; }
   /// For each of edits() and then of undone(), whether it was made together with the one before.
   std::vector<bool> joined() const;
+  /// How many edits were made together with the last one, and with the next one to redo; 0 where there is none.
+  std::size_t undo_step() const;
+  std::size_t redo_step() const;
 
   /// Adds the scene after an edit; what was undone is forgotten. With `joined` it was made together with the last one.
   void add(Edit edit, Scene scene, bool joined = false);
-  /// One step back or forth; false where there is none. A dropped value is computed again: throws Error when that fails
-  /// (a source changed), and nothing changes then.
-  bool undo();
-  bool redo();
+  /// So many edits back or forth; false where there are fewer. A dropped value is computed again: throws Error when
+  /// that fails (a source changed), and nothing changes then.
+  bool undo(std::size_t edits = 1);
+  bool redo(std::size_t edits = 1);
 
   /// Bytes that the kept scenes hold, what is shared counted once.
   std::uint64_t memory() const { return memory_; }

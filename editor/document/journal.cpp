@@ -180,7 +180,7 @@ Journal Journal::resume(const fs::path& path, Contents& contents) {
   return journal;
 }
 
-void Journal::append(std::vector<json> entries) { file_->append(std::move(entries)); }
+void Journal::append(json entry) { file_->append({std::move(entry)}); }
 const fs::path& Journal::path() const { return file_->path(); }
 
 void Journal::discard() {

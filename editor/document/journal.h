@@ -13,8 +13,8 @@ namespace rebake {
 ///
 ///     <16 hexadecimal digits: XXH64 of the rest of the line> {"rebake_journal": 1, …}
 ///     <digits> {"n": 1, "edit": {"op": "import", …}}
-///     <digits> {"n": 2, "edit": {"op": "hide", …}, "joined": true}     made together with the one before
-///     <digits> {"n": 3, "undo": true}
+///     <digits> {"n": 2, "edits": [{"op": "hide", …}, {"op": "hide", …}]}     made together
+///     <digits> {"n": 3, "undo": 2}     so many edits; true: one
 class Journal {
  public:
   /// Begins a journal. Throws FileError when there is a file already (it may hold work) or it cannot be written.
@@ -30,8 +30,8 @@ class Journal {
   Journal(Journal&&) noexcept;
   Journal& operator=(Journal&&) noexcept;
 
-  /// Appends entries and waits until they are on the disk. Throws FileError; the journal then ends before them.
-  void append(std::vector<nlohmann::json> entries);
+  /// Appends one entry and waits until it is on the disk. Throws FileError; the journal then ends before the entry.
+  void append(nlohmann::json entry);
   const std::filesystem::path& path() const;
   /// Removes the file: the work is safe elsewhere.
   void discard();

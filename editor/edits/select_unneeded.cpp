@@ -27,23 +27,24 @@ Scene apply(const Scene& scene, const SelectUnneeded& edit) {
     throw FieldError("transparent", "at least one of transparent, duplicates, unseen and unseen_from must be given");
   if (edit.unseen < 0 || edit.unseen > 100000) throw FieldError("unseen", "must lie between 0 and 100000");
   if (!(edit.distance > 1)) throw FieldError("distance", "must be above 1: the eyes are outside the box");
-  std::vector<Vec3> world_eyes;
+  std::vector<Camera> cameras;
   for (const std::string& name : edit.unseen_from) {
     const auto found = scene.views.find(name);
     if (found == scene.views.end()) throw FieldError("unseen_from", fmt::format("there is no view \"{}\"", name));
-    // An orthographic view's parallel rays come from as good as nowhere.
-    const Camera& camera = found->second;
-    const double away = camera.orthographic() ? 1000 * world_bounds(scene).diagonal().norm() : 0;
-    world_eyes.push_back(camera.eye + away * world_to_camera(camera).row(2).transpose());
+    cameras.push_back(found->second);
   }
   return with_selected(scene, selectable(scene, edit.node), edit.mode, [&](const PlacedNode& placed) {
     const BakedObject& object = *placed.node->object;
     TriangleSet flags(object.triangle_count(), 0);
     if (edit.transparent) add(flags, transparent_triangles(object));
     if (edit.duplicates) add(flags, duplicate_triangles(object));
-    std::vector<Vec3> eyes;
+    std::vector<Standpoint> eyes;
     if (edit.unseen > 0) eyes = eyes_around(object.bounds(), edit.unseen, edit.distance);
-    for (const Vec3& eye : world_eyes) eyes.push_back(placed.to_world.inverse() * eye);
+    for (const Camera& camera : cameras) {
+      const Affine to_object = placed.to_world.inverse();
+      const Vec3 back = to_object.linear() * world_to_camera(camera).row(2).transpose();
+      eyes.push_back({to_object * camera.eye, camera.orthographic() ? Vec3(back.normalized()) : Vec3::Zero()});
+    }
     if (!eyes.empty()) add(flags, triangles_unseen(object, eyes));
     return flags;
   });

@@ -30,10 +30,12 @@ struct Transform {
 };
 
 inline Mat3 scaling(const Transform& edit) {
-  // Without a turn the scale stays exact.
-  if (edit.scale_axes.value.vec().isZero(0)) return edit.scale.value.asDiagonal();
+  // Where axes do not matter the scale stays exact.
+  const Vec3& scale = edit.scale.value;
+  if (edit.scale_axes.value.vec().isZero(0) || (scale.array() == scale[0]).all()) return scale.asDiagonal();
   const Mat3 axes = edit.scale_axes.value.toRotationMatrix();
-  return axes * edit.scale.value.asDiagonal() * axes.transpose();
+  const Mat3 product = axes * scale.asDiagonal() * axes.transpose();
+  return (product + product.transpose()) / 2;
 }
 
 inline Scene apply(const Scene& scene, const Transform& edit) {

@@ -1,5 +1,7 @@
 #include "editor/gui/bend_tool.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -17,9 +19,27 @@ std::optional<BendTool::Spine> BendTool::spine(const Desk& desk) const {
   const std::optional<DeformTarget> target = desk.deform_target();
   if (!target) return std::nullopt;
   const Box box = desk.deform_bounds(*target);
-  if (box.isEmpty() || !(box.sizes()[axis_] > 0)) return std::nullopt;
-  Spine spine{*target, box.center(), Vec3::Unit(axis_), box.sizes()[axis_]};
-  spine.foot[axis_] = box.min()[axis_];
+  if (box.isEmpty()) return std::nullopt;
+  int axis = axis_ - 1;
+  if (axis < 0) {
+    axis = 1;  // objects stand
+    if (target->selection) box.sizes().maxCoeff(&axis);
+  }
+  const double length = box.sizes()[axis];
+  if (!(length > 0)) return std::nullopt;
+  Spine spine{*target, box.center(), Vec3::Unit(axis), length};
+  spine.foot[axis] = box.min()[axis];
+  // A selected part is held at the end where the rest is: a branch at the stem.
+  if (axis_ == 0 && target->selection) {
+    Box whole;
+    for (const PlacedNode& placed : placed_nodes(desk.scene()))
+      if (placed.visible && !placed.locked && placed.node->selection && count(*placed.node->selection) > 0)
+        whole.extend(subtree_bounds(desk.scene(), placed.node->id));
+    if (whole.center()[axis] > box.center()[axis]) {
+      spine.along = -spine.along;
+      spine.foot[axis] = box.max()[axis];
+    }
+  }
   return spine;
 }
 
@@ -54,26 +74,26 @@ std::optional<Edit> BendTool::edit(const Lens& lens) const {
       const Vec3 away = -lens.towards_eye(bent_->at(0.5));
       const Vec3 side = away.cross(bent_->along);
       if (!(side.norm() > 0.05)) return std::nullopt;  // the axis points at the eye
-      bend.degrees = std::abs(angle) * 2 * 180 / std::numbers::pi;
+      bend.degrees = typed_.value() ? *typed_.value() : std::abs(angle) * 2 * 180 / std::numbers::pi;
       bend.direction = (angle > 0 ? 1.0 : -1.0) * side.normalized();
-      if (bend.degrees < 0.1) return std::nullopt;
+      if (std::abs(bend.degrees) < 0.1) return std::nullopt;
       return fill(bend);
     }
     case Kind::twist: {
       Twist twist;
-      twist.degrees = now_.x() - began_.x();
+      twist.degrees = typed_.value().value_or(now_.x() - began_.x());
       if (twist.degrees == 0) return std::nullopt;
       return fill(twist);
     }
     case Kind::taper: {
       Taper taper;
-      taper.factor = std::max(0.01, 1 + (now_.x() - began_.x()) / 150);
+      taper.factor = typed_.value().value_or(std::max(0.01, 1 + (now_.x() - began_.x()) / 150));
       if (taper.factor == 1) return std::nullopt;
       return fill(taper);
     }
     default: {
       Stretch stretch;
-      stretch.factor = std::max(0.01, after.dot(before) / before.squaredNorm());
+      stretch.factor = typed_.value().value_or(std::max(0.01, after.dot(before) / before.squaredNorm()));
       if (!std::isfinite(stretch.factor) || stretch.factor == 1) return std::nullopt;
       return fill(stretch);
     }
@@ -87,12 +107,16 @@ void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     if (!bent_) return;
     held_ = handle_at(*bent_, lens, pointer.at);
     began_ = now_ = pointer.at;
+    typed_.clear();
+    typed_text_.clear();
     return;
   }
-  const bool moved = now_ != pointer.at;
+  const bool moved = now_ != pointer.at || typed_text_ != typed_.text();
+  typed_text_ = typed_.text();
   now_ = pointer.at;
   if (held_ == Handle::tip) {
     const std::optional<Edit> made = edit(lens);
+    readout_ = made ? readout(*made) : "";
     if (pointer.released) {
       held_ = Handle::none;
       if (made)
@@ -122,6 +146,16 @@ void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   if (pointer.released) held_ = Handle::none;
 }
 
+bool BendTool::key(Desk& /*desk*/, const KeyPress& press) { return held_ == Handle::tip && typed_.key(press); }
+
+std::string BendTool::readout(const Edit& edit) {
+  if (const auto* bend = std::get_if<Bend>(&edit)) return fmt::format("bend {:.1f} deg", bend->degrees);
+  if (const auto* twist = std::get_if<Twist>(&edit)) return fmt::format("twist {:.1f} deg", twist->degrees);
+  if (const auto* taper = std::get_if<Taper>(&edit)) return fmt::format("taper x {:.3f}", taper->factor);
+  if (const auto* stretch = std::get_if<Stretch>(&edit)) return fmt::format("stretch x {:.3f}", stretch->factor);
+  return "";
+}
+
 void BendTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
                     const ImVec2& origin) const {
   const std::optional<Spine> here = held_ != Handle::none ? bent_ : spine(desk);
@@ -138,6 +172,9 @@ void BendTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, 
                          : handle == Handle::tip ? IM_COL32(255, 120, 200, 255)
                                                  : IM_COL32(120, 190, 255, 255));
   }
+  if (held_ != Handle::tip) return;
+  draw_label(list, on_screen(now_ + Vec2(16, 16), origin),
+             readout_ + (typed_.text().empty() ? "" : "  [" + typed_.text() + "]"));
 }
 
 void BendTool::add_guides(const Desk& desk, std::vector<Guides::Line>& lines) const {
@@ -151,18 +188,17 @@ void BendTool::options(Desk& desk) {
   int kind = static_cast<int>(kind_);
   ImGui::SetNextItemWidth(90);
   if (ImGui::Combo("##kind", &kind, "bend\0twist\0taper\0stretch\0")) kind_ = static_cast<Kind>(kind);
-  ImGui::SameLine();
-  ImGui::SetNextItemWidth(60);
-  ImGui::Combo("axis", &axis_, "X\0Y\0Z\0");
-  ImGui::SameLine();
+  flow(150);
+  ImGui::SetNextItemWidth(95);
+  ImGui::Combo("axis", &axis_, "automatic\0X\0Y\0Z\0");
+  flow(150);
   ImGui::SetNextItemWidth(80);
   auto falloff = static_cast<float>(falloff_);
   if (ImGui::InputFloat("falloff", &falloff)) falloff_ = std::max(0.0, static_cast<double>(falloff));
-  ImGui::SameLine();
   if (spine(desk))
-    ImGui::TextDisabled("drag the pink end; the blue ends are its limits");
+    flow_text("drag the pink end, or type a number meanwhile; the blue ends are its limits");
   else
-    ImGui::TextDisabled("there is nothing to bend");
+    flow_text("there is nothing to bend");
 }
 
 void BendTool::cancel(Desk& desk) {

@@ -231,36 +231,36 @@ void CageTool::options(Desk& desk) {
   ImGui::SetNextItemWidth(90);
   int kind = wraps_ ? 1 : 0;
   if (ImGui::Combo("##kind", &kind, "lattice\0wrap\0")) wraps_ = kind == 1;
-  ImGui::SameLine();
+  flow(130);
   ImGui::SetNextItemWidth(110);
   if (wraps_)
     ImGui::SliderFloat("coarseness", &coarseness_, 0.02F, 0.5F, "%.2f");
   else
     ImGui::InputInt3("cells", cells_);
-  ImGui::SameLine();
+  flow(130);
   ImGui::SetNextItemWidth(110);
   int coordinates = static_cast<int>(edit_.coordinates);
   if (ImGui::Combo("##coordinates", &coordinates, "mean value\0Green\0harmonic\0"))
     edit_.coordinates = static_cast<CageCoordinates>(coordinates);
-  ImGui::SameLine();
+  flow(75);
   if (ImGui::Button("Make cage")) make(desk);
-  ImGui::SameLine();
   if (!bound_) {
-    ImGui::TextDisabled("around the selected triangles, else the picked node");
+    flow_text("around the selected triangles, else the picked node");
     return;
   }
+  flow(130);
   ImGui::SetNextItemWidth(90);
   ImGui::SliderFloat("soft", &softness_, 0, 1, "%.2f");
-  ImGui::SameLine();
+  flow(130);
   ImGui::SetNextItemWidth(80);
   auto falloff = static_cast<float>(edit_.target.falloff);
   if (ImGui::InputFloat("falloff", &falloff)) edit_.target.falloff = std::max(0.0, static_cast<double>(falloff));
-  ImGui::SameLine();
+  flow(50);
   if (ImGui::Button("Reset")) {
     moved_ = bound_->cage.vertices;
     desk.preview.reset();
   }
-  ImGui::SameLine();
+  flow(50);
   if (ImGui::Button("Apply")) apply(desk);
 }
 

@@ -27,7 +27,7 @@ template <ToolKind kind>
 void grab(Desk& desk) {
   if (desk.settings.blender_keys && has_either(desk)) {
     desk.tool_before = desk.tool;
-    desk.drag_begins = true;
+    desk.drag_begins = kind;
   }
   desk.tool = kind;
 }
@@ -55,7 +55,7 @@ void each_active(Desk& desk) {
   desk.edits(list);
 }
 
-// The copies are picked then: they are what is moved next.
+// The copies are picked then: they are what is moved next, in Blender's keymap at once.
 void duplicate(Desk& desk) {
   std::set<NodeId> before;
   for (const PlacedNode& placed : placed_nodes(desk.scene())) before.insert(placed.node->id);
@@ -69,6 +69,7 @@ void duplicate(Desk& desk) {
     desk.active.clear();
     for (const PlacedNode& placed : placed_nodes(desk.scene()))
       if (!before.contains(placed.node->id)) desk.active.insert(placed.node->id);
+    if (desk.settings.blender_keys) grab<ToolKind::move>(desk);
   });
 }
 

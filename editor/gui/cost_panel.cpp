@@ -9,10 +9,13 @@ namespace {
 
 void draw_measured(const Desk& desk) {
   const Desk::Costs& costs = *desk.costs;
-  const bool same = costs.view.camera == desk.camera && costs.roots == desk.scene().roots;
-  ImGui::TextDisabled("%s", fmt::format("against 64 samples, {}x{}{}", costs.view.width, costs.view.height,
-                                        same ? "" : "; of the view or scene as it was: measure again for this one")
-                                .c_str());
+  const bool same = costs.view.camera == desk.camera && costs.view.width == desk.view_width &&
+                    costs.view.height == desk.view_height && costs.roots == desk.scene().roots &&
+                    costs.background == desk.scene().background;
+  ImGui::TextDisabled("%s",
+                      fmt::format("against 64 samples, {}x{}, {}{}", costs.view.width, costs.view.height, costs.device,
+                                  same ? "" : "; of the view or scene as it was: measure again for this one")
+                          .c_str());
   if (!ImGui::BeginTable("measured", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) return;
   for (const char* heading : {"choice", "ms", "PSNR dB", "largest of 255"}) ImGui::TableSetupColumn(heading);
   ImGui::TableHeadersRow();

@@ -37,8 +37,11 @@ Desk::Desk(Settings with, std::function<void()> wake)
 }
 
 void Desk::update() {
-  for (Worker::Message& message : worker.take_messages()) {
-    if (message.failed) error = message.text;
+  std::vector<Worker::Message> messages = worker.take_messages();
+  const bool said = !messages.empty();
+  for (Worker::Message& message : messages) {
+    // Of several none is lost.
+    if (message.failed) error += (error.empty() ? "" : "\n\n") + message.text;
     log.push_back({std::move(message.text), message.failed});
   }
   // Before the snapshot, which is then at least as new.
@@ -46,6 +49,8 @@ void Desk::update() {
   const std::shared_ptr<const Snapshot> next = worker.snapshot();
   if (next != now) {
     const bool other = next->scene.roots != scene().roots;
+    // The last line tells of the last thing that was done.
+    if (!said && next->done.size() > now->done.size()) log.push_back({title_of(next->done.back(), next->scene)});
     now = next;
     if (other) preview.reset();
     std::erase_if(active, [&](NodeId id) { return find(scene(), id) == nullptr; });
@@ -60,7 +65,13 @@ void Desk::update() {
       camera = framing_of(scene(), static_cast<double>(view_width) / view_height);
     }
   }
-  for (const std::function<void()>& then : finished) then();
+  for (const std::function<void()>& then : finished) {
+    try {
+      then();
+    } catch (const std::exception& problem) {
+      error = problem.what();
+    }
+  }
 }
 
 void Desk::edit(const Edit& one) { edits({one}); }
@@ -186,6 +197,7 @@ void Desk::measure_costs() {
   auto measured = std::make_shared<Costs>();
   measured->view = {camera, view_width, view_height, 4};
   measured->roots = scene().roots;
+  measured->background = scene().background;
   worker.start(
       "measure",
       [measured](Session& session) {
@@ -195,6 +207,7 @@ void Desk::measure_costs() {
         for (const auto study : {study_samples, study_resolution})
           for (StudyTable::Row& row : study(input).rows) measured->rows.push_back(std::move(row));
         measured->device = session.renderer().device();
+        session.drop_renderer();  // a second copy of the scene on the GPU
       },
       [this, measured] { costs = measured; });
 }

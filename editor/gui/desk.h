@@ -55,7 +55,7 @@ struct Desk {
 
   // Tools
   ToolKind tool = ToolKind::pick;
-  bool drag_begins = false;             ///< the tool takes hold of its target at once, without a button
+  std::optional<ToolKind> drag_begins;  ///< takes hold of its target at once, without a button
   std::optional<ToolKind> tool_before;  ///< to come back to after such a drag
   bool visible_only = true;
   bool local_axes = false;
@@ -96,6 +96,7 @@ struct Desk {
   struct Costs {
     View view;
     std::vector<NodePtr> roots;
+    Color background;
     std::vector<StudyTable::Row> rows;  ///< milliseconds, dB, largest difference of 255
     std::string device;
   };

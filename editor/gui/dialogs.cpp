@@ -149,8 +149,9 @@ void Dialogs::draw_path(Desk& desk) {
   fs::path path(path_);
   if (!path.has_filename()) path = path.parent_path();
   if (question.ending[0] != '\0' && path.extension() != question.ending) path += question.ending;
-  const bool replaces = desk.question != PathQuestion::open && desk.question != PathQuestion::run_script &&
-                        path != desk.project && fs::is_regular_file(path, error);
+  const bool writes = desk.question != PathQuestion::open && desk.question != PathQuestion::run_script;
+  const bool filled = fs::is_directory(path, error) && !fs::is_empty(path, error);
+  const bool replaces = writes && path != desk.project && (fs::is_regular_file(path, error) || filled);
   if (done && replaces && replacing_ != path) {
     replacing_ = path;
     done = false;

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <thread>
 #include <utility>
 
 #include "editor/document/journal.h"
@@ -39,7 +40,9 @@ void load_font(double scale) {
   constexpr const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
   const auto size = static_cast<float>(14 * scale);
   // The font that comes with Dear ImGui is a picture of 13 pixels.
-  if (!fs::exists(font) || io.Fonts->AddFontFromFileTTF(font, size) == nullptr) {
+  // Latin, punctuation and mathematical signs.
+  static constexpr ImWchar ranges[] = {0x20, 0xFF, 0x2010, 0x2026, 0x2190, 0x2193, 0x2200, 0x22FF, 0};
+  if (!fs::exists(font) || io.Fonts->AddFontFromFileTTF(font, size, nullptr, ranges) == nullptr) {
     io.Fonts->AddFontDefault();
     io.FontGlobalScale = static_cast<float>(scale);
   }
@@ -52,7 +55,8 @@ class EditorWindow {
   explicit EditorWindow(const std::vector<std::string>& paths)
       : settings_file_(config_folder() / "settings.json"),
         kept_settings_(read_settings(settings_file_, settings_problem_)),
-        graphics_(std::make_unique<Graphics>(system_, kept_settings_)),
+        tools_(make_tools()),
+        graphics_(std::make_unique<Graphics>(system_, kept_settings_, tools_)),
         lost_(lost_work()),
         desk_(kept_settings_, WindowSystem::wake) {
     begin_graphics();
@@ -93,10 +97,10 @@ class EditorWindow {
     Window window;
     Renderer renderer;
     Viewport viewport;
-    Graphics(const WindowSystem& system, const Settings& settings)
+    Graphics(const WindowSystem& system, const Settings& settings, Tools& tools)
         : window(system, "Rebake", settings.window_width, settings.window_height),
           renderer(window.context()),
-          viewport(renderer, [this] { return window.context(); }) {}
+          viewport(renderer, tools, [this] { return window.context(); }) {}
   };
   Window& window() { return graphics_->window; }
   Viewport& viewport() { return graphics_->viewport; }
@@ -115,19 +119,33 @@ class EditorWindow {
         desk_.error = error.what();
       }
     };
-    window().on_drop = [this](const std::vector<std::string>& dropped) { desk_.open(dropped); };
+    window().on_drop = [this](const std::vector<std::string>& dropped) {
+      try {
+        desk_.open(dropped);
+      } catch (const std::exception& error) {
+        desk_.error = error.what();
+      }
+    };
   }
 
-  // The document is not touched: it lives in the worker.
+  // The document is not touched: it lives in the worker. Nor are the tools.
   void restart_graphics() {
     desk_.restarts_graphics = false;
-    desk_.preview.reset();
-    desk_.drag_begins = false;
-    desk_.tool_before.reset();
     graphics_.reset();
-    graphics_ = std::make_unique<Graphics>(system_, desk_.settings);
+    // A driver that was reset may need a while.
+    constexpr int tries = 20;
+    for (int k = 1; !graphics_; ++k) {
+      try {
+        graphics_ = std::make_unique<Graphics>(system_, desk_.settings, tools_);
+      } catch (const DeviceError& error) {
+        if (k == tries)
+          throw DeviceError(
+              fmt::format("{}; the work is in the journal: start \"rebake edit\" again to get it back", error.what()));
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      }
+    }
     begin_graphics();
-    desk_.worker.start("restart graphics", [](Session& session) { session.drop_renderer(); });
+    desk_.worker.drop_renderer();
     desk_.log.push_back({"the graphics were made anew; the work is as it was"});
   }
 
@@ -198,9 +216,15 @@ class EditorWindow {
 
   void escape() {
     if (dialogs_.escape(desk_)) return;
+    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) {
+      dialogs_.close_popups();  // a menu or a list of choices
+      return;
+    }
     if (desk_.palette_open) {
       desk_.palette_open = false;
     } else if (desk_.turntable) {
+      desk_.log.push_back({fmt::format("turntable stopped: {} of {} pictures are in {}", desk_.turntable->next,
+                                       desk_.turntable->count, desk_.turntable->folder.string())});
       desk_.turntable.reset();
     } else if (!desk_.form_op.empty()) {
       desk_.form_op.clear();
@@ -224,13 +248,18 @@ class EditorWindow {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float top = ImGui::GetFrameHeight(), line = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
     const auto s = static_cast<float>(scale_);
-    const float side = static_cast<float>(desk_.settings.side_width) * s, tools = 66 * s,
-                bottom = static_cast<float>(desk_.settings.bottom_height) * s;
     const float height = screen.y - top - line;  // above the status line
+    // In a small window the picture comes first.
+    const float side = std::min(static_cast<float>(desk_.settings.side_width) * s, 0.4F * screen.x), tools = 66 * s,
+                bottom = std::min(static_cast<float>(desk_.settings.bottom_height) * s, 0.3F * height);
+    const float options = std::max(line, options_height_);
     panel("tool bar", {0, top}, {tools, height - bottom}, [&] { tool_bar(); });
-    panel("options", {tools, top}, {screen.x - tools - side, line}, [&] { viewport().tool(desk_).options(desk_); });
+    panel("options", {tools, top}, {screen.x - tools - side, options}, [&] {
+      viewport().tool(desk_).options(desk_);
+      options_height_ = ImGui::GetItemRectMax().y - ImGui::GetWindowPos().y + ImGui::GetStyle().WindowPadding.y;
+    });
     panel(
-        "picture", {tools, top + line}, {screen.x - tools - side, height - bottom - line},
+        "picture", {tools, top + options}, {screen.x - tools - side, height - bottom - options},
         [&] { viewport().draw(desk_); }, true);
     panel("outline", {screen.x - side, top}, {side, (height - bottom) * 0.55F}, [&] {
       ImGui::TextDisabled("Outline");
@@ -381,6 +410,7 @@ class EditorWindow {
   std::string settings_problem_;
   Settings kept_settings_;  ///< as they are on the disk
   WindowSystem system_;
+  Tools tools_;
   std::unique_ptr<Graphics> graphics_;
   std::vector<Desk::LostWork> lost_;  ///< looked for before this editor's own journal is begun
   Desk desk_;
@@ -392,6 +422,7 @@ class EditorWindow {
   EditForm form_;
   Dialogs dialogs_;
   double scale_ = 1;
+  float options_height_ = 0;  ///< that the tool's options took in the last frame
   bool dark_ = true;
   std::string title_;
 };

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 #include "editor/edits/support.h"
@@ -175,29 +174,35 @@ void Gizmo::begin(const Target& target, int handle, const Vec2& at) {
 
 void Gizmo::end(Desk& desk) {
   held_ = none;
-  by_key_ = false;
+  constrained_ = entered_ = false;
+  axis_presses_ = 0;
   typed_.clear();
-  if (desk.tool_before) desk.tool = *std::exchange(desk.tool_before, std::nullopt);
+  if (!std::exchange(by_key_, false)) return;
+  const std::optional<ToolKind> before = std::exchange(desk.tool_before, std::nullopt);
+  if (before && desk.tool == kind_) desk.tool = *before;
 }
 
 void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   if (held_ == none) {
-    const bool by_key = std::exchange(desk.drag_begins, false);
+    const bool by_key = std::exchange(desk.drag_begins, std::nullopt).has_value();
     if (!by_key && (!pointer.pressed || !pointer.inside)) return;
     const std::optional<Target> here = target(desk, lens);
     if (!here) {
-      if (by_key) end(desk);
+      by_key_ = by_key;
+      end(desk);
       return;
     }
     begin(*here, by_key ? all : handle_at(*here, lens, pointer.at), pointer.at);
     by_key_ = by_key;
     return;
   }
-  const bool moved = now_ != pointer.at || std::exchange(constrained_, false);
+  // A view turned meanwhile changes what the same way of the pointer means.
+  const bool moved = now_ != pointer.at || std::exchange(constrained_, false) || !(camera_ == desk.camera);
+  camera_ = desk.camera;
   now_ = pointer.at;
   const double before = amount_;
   amount_ = amount(lens, pointer);
-  if (!typed_.empty()) amount_ = std::strtod(typed_.c_str(), nullptr) - (kind_ == ToolKind::scale ? 1 : 0);
+  if (typed_.value()) amount_ = *typed_.value() - (kind_ == ToolKind::scale ? 1 : 0);
   const bool nothing = amount_ == 0 || (held_ == all && kind_ == ToolKind::move && now_ == from_);
   const std::vector<Edit> made = nothing ? std::vector<Edit>{} : edits(lens);
   if (moved || amount_ != before) preview(desk, made);
@@ -210,22 +215,17 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
 }
 
 void Gizmo::constrain(int axis) {
-  const bool local = at_.axes == at_.local && at_.local != Mat3::Identity();
-  if (held_ != axis) {
-    held_ = axis;
-    at_.axes = Mat3::Identity();
-  } else if (!local && at_.local != Mat3::Identity()) {
-    at_.axes = at_.local;
-  } else {
-    held_ = all;
-  }
+  // As in Blender: along the world's, then the local one, then free again.
+  axis_presses_ = held_ == axis ? (axis_presses_ + 1) % 3 : 1;
+  held_ = axis_presses_ == 0 ? all : axis;
+  at_.axes = axis_presses_ == 2 ? at_.local : Mat3::Identity();
   constrained_ = true;
 }
 
 bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
   if (held_ == none || press.control || press.alt) return false;
   if (press.key >= GLFW_KEY_X && press.key <= GLFW_KEY_Z) {
-    constrain(press.key - GLFW_KEY_X);
+    if (!press.repeated) constrain(press.key - GLFW_KEY_X);
     return true;
   }
   if (by_key_ && (press.key == GLFW_KEY_ENTER || press.key == GLFW_KEY_KP_ENTER)) {
@@ -234,20 +234,7 @@ bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
   }
   // A move in the view's plane has no one number.
   if (held_ == all && kind_ == ToolKind::move) return false;
-  if (press.key >= GLFW_KEY_0 && press.key <= GLFW_KEY_9) {
-    typed_ += static_cast<char>(press.key);
-  } else if (press.key >= GLFW_KEY_KP_0 && press.key <= GLFW_KEY_KP_9) {
-    typed_ += static_cast<char>('0' + press.key - GLFW_KEY_KP_0);
-  } else if (press.key == GLFW_KEY_PERIOD || press.key == GLFW_KEY_KP_DECIMAL) {
-    typed_ += '.';
-  } else if (press.key == GLFW_KEY_MINUS || press.key == GLFW_KEY_KP_SUBTRACT) {
-    typed_ = typed_.starts_with('-') ? typed_.substr(1) : "-" + typed_;
-  } else if (press.key == GLFW_KEY_BACKSPACE && !typed_.empty()) {
-    typed_.pop_back();
-  } else {
-    return false;
-  }
-  return true;
+  return typed_.key(press);
 }
 
 void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
@@ -278,25 +265,21 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
                      : held_ == all             ? std::string(names[held_])
                                                 : fmt::format("{} {:.4g}", names[held_], amount_);
   if (held_ != all && at_.axes != Mat3::Identity()) text = "local " + text;
-  if (!typed_.empty()) text += "  [" + typed_ + "]";
-  const ImVec2 at = on_screen(now_ + Vec2(16, 16), origin);
-  list.AddRectFilled({at.x - 4, at.y - 2},
-                     {at.x + ImGui::CalcTextSize(text.c_str()).x + 4, at.y + ImGui::GetFontSize() + 2},
-                     IM_COL32(0, 0, 0, 200));
-  list.AddText(at, IM_COL32(255, 255, 255, 255), text.c_str());
+  if (!typed_.text().empty()) text += "  [" + typed_.text() + "]";
+  draw_label(list, on_screen(now_ + Vec2(16, 16), origin), text);
 }
 
 void Gizmo::options(Desk& desk) {
   ImGui::Checkbox("local axes", &desk.local_axes);
-  ImGui::SameLine();
   const Lens lens(desk.camera, desk.view_width, desk.view_height);
   const std::optional<Target> here = target(desk, lens);
   if (!here)
-    ImGui::TextDisabled("pick a node in the outline, or select triangles");
+    flow_text("pick a node in the outline, or select triangles");
   else
-    ImGui::TextDisabled("%s: %s; X Y Z take an axis, digits a number, Ctrl snaps, Shift is fine, Esc lets go",
-                        here->triangles ? "the selected triangles" : "the picked nodes",
-                        by_key_ ? "move the pointer, click or Enter ends" : "drag a handle");
+    flow_text(fmt::format("{}: {}; X Y Z take an axis, digits a number, Ctrl snaps, Shift is fine, Esc lets go",
+                          here->triangles ? "the selected triangles" : "the picked nodes",
+                          by_key_ ? "move the pointer, click or Enter ends" : "drag a handle")
+                  .c_str());
 }
 
 void Gizmo::cancel(Desk& desk) {

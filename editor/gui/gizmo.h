@@ -1,6 +1,7 @@
 #pragma once
 
 #include "editor/gui/tool.h"
+#include "editor/gui/typed_number.h"
 
 namespace rebake {
 
@@ -47,7 +48,9 @@ class Gizmo final : public ViewTool {
   Target at_;            ///< as it was when the drag began
   Vec2 from_{0, 0}, now_{0, 0};
   double amount_ = 0;
-  std::string typed_;         ///< numbers typed during the drag
+  Camera camera_;  ///< that amount_ was worked out with
+  TypedNumber typed_;
+  int axis_presses_ = 0;      ///< of the key of the axis that is held
   bool constrained_ = false;  ///< another axis was taken since the last preview
   bool entered_ = false;      ///< Enter was typed during a drag begun by a key
 };

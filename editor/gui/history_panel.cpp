@@ -12,14 +12,17 @@ void HistoryPanel::draw(Desk& desk) {
     of_ = desk.now;
     lines_ = {"Start"};
     done_ = 0;
+    bool was_undone = false;
     const auto add = [&](const Edit& edit, bool joined, bool undone) {
       const std::string title = title_of(edit, now.scene);
-      if (joined) {
+      // What was made together can have been undone in parts, by a script.
+      if (joined && undone == was_undone) {
         // Many are one line still.
         constexpr std::size_t longest = 80;
         if (lines_.back().size() < longest) lines_.back() += ", " + title;
         return;
       }
+      was_undone = undone;
       lines_.push_back(fmt::format("{}  {}{}", lines_.size(), undone ? "(undone) " : "", title));
       if (!undone) ++done_;
     };

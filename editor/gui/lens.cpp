@@ -30,15 +30,16 @@ Vec3 Lens::motion(const Vec3& world, const Vec2& pixels) const {
   return unit(world) * (rows_.transpose() * Vec3(pixels.x(), -pixels.y(), 0));
 }
 
-std::optional<Picked> pick(const Scene& scene, const Lens& lens, const Vec2& pixel) {
+std::optional<Picked> pick(const Scene& scene, const Lens& lens, const Vec2& pixel, bool waits) {
   std::optional<Picked> nearest;
   const ViewRay ray = lens.ray(pixel);
   double least = std::numeric_limits<double>::infinity();
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.visible || !placed.node->object) continue;
+    const auto rays = waits ? rays_of(*placed.node->object) : rays_if_there(*placed.node->object);
+    if (!rays) continue;
     const Affine to_object = placed.to_world.inverse();
-    const auto hit =
-        rays_of(*placed.node->object)->nearest(to_object * ray.origin, to_object.linear() * ray.direction, 0, least);
+    const auto hit = rays->nearest(to_object * ray.origin, to_object.linear() * ray.direction, 0, least);
     if (!hit || hit->t >= least) continue;
     least = hit->t;
     nearest = Picked{placed.node->id, hit->triangle, ray.origin + hit->t * ray.direction};

@@ -29,12 +29,13 @@ class Lens {
   Vec2 middle_;
 };
 
-/// What the pointer is over: the nearest opaque triangle of a visible node.
+/// What the pointer is over: the nearest opaque triangle of a visible node. With `waits` false, nodes that were not
+/// looked through yet (up to a second for a million triangles) are passed over.
 struct Picked {
   NodeId node;
   std::uint32_t triangle;
   Vec3 world;
 };
-std::optional<Picked> pick(const Scene& scene, const Lens& lens, const Vec2& pixel);
+std::optional<Picked> pick(const Scene& scene, const Lens& lens, const Vec2& pixel, bool waits = true);
 
 }  // namespace rebake

@@ -121,7 +121,9 @@ Camera with_depth_for(const Camera& camera, const Box& box) {
   if (camera.orthographic() && !box.isEmpty()) {
     const Vec3 back = (camera.eye - camera.target).normalized();
     const double before = back.dot(box.center() - camera.target) + box.diagonal().norm();
-    if (before > (camera.eye - camera.target).norm()) result.eye = camera.target + before * back;
+    // How far it stands changes nothing but what depths can be told apart.
+    const double distance = std::max(before, 0.01 * box.diagonal().norm());
+    if (distance > 0) result.eye = camera.target + distance * back;
   }
   const double target = (result.target - result.eye).norm();
   double farthest = 2 * target;

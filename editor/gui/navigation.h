@@ -23,7 +23,7 @@ Camera looked(const Camera& camera, double right_pixels, double down_pixels, int
 Camera along_axis(const Camera& camera, const Vec3& axis);
 /// Orthographic where it was perspective and the reverse, with the target as large as before.
 Camera projected_otherwise(const Camera& camera);
-/// Near and far planes that hold the box, whatever lies around it; an orthographic camera steps back before the box.
+/// Near and far planes that hold the box, whatever lies around it; an orthographic camera stands before the box.
 Camera with_depth_for(const Camera& camera, const Box& box);
 
 }  // namespace rebake

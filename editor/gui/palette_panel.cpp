@@ -2,6 +2,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "editor/fields/variants.h"
 #include "editor/gui/commands.h"
@@ -11,9 +12,9 @@ namespace rebake {
 
 namespace {
 
-std::string lower(std::string text) {
+std::string plain(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+                 [](unsigned char c) { return c == '_' ? ' ' : static_cast<char>(std::tolower(c)); });
   return text;
 }
 
@@ -30,15 +31,21 @@ std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
   for_each_type<Edit>([&](const auto& edit) { all.push_back({edit.op, "", edit.help}); });
   for (const auto& [name, camera] : desk.scene().views)
     all.push_back({"Stored view: " + name, "", "", nullptr, &camera});
-  const std::string wanted = lower(filter);
-  std::erase_if(
-      all, [&](const Entry& entry) { return lower(entry.title + " " + entry.help).find(wanted) == std::string::npos; });
+  // All words, in any order; edits are written with underscores.
+  const std::string wanted = plain(filter);
+  std::erase_if(all, [&](const Entry& entry) {
+    const std::string text = plain(entry.title + " " + entry.help);
+    std::istringstream words(wanted);
+    for (std::string word; words >> word;)
+      if (text.find(word) == std::string::npos) return true;
+    return false;
+  });
   // Those whose name holds it come before those whose help does.
   std::stable_partition(all.begin(), all.end(),
-                        [&](const Entry& entry) { return lower(entry.title).find(wanted) != std::string::npos; });
+                        [&](const Entry& entry) { return plain(entry.title).find(wanted) != std::string::npos; });
   std::stable_partition(all.begin(), all.end(), [&](const Entry& entry) {
     const std::size_t colon = entry.title.find(": ");
-    return lower(colon == std::string::npos ? entry.title : entry.title.substr(colon + 2)).starts_with(wanted);
+    return plain(colon == std::string::npos ? entry.title : entry.title.substr(colon + 2)).starts_with(wanted);
   });
   return all;
 }

@@ -101,6 +101,8 @@ class Dialogs {
   void draw(Desk& desk);
   /// Answers the question that is open with "not now"; false when none is.
   bool escape(Desk& desk);
+  /// Closes what Dear ImGui has open, with the next frame.
+  void close_popups() { closes_ = true; }
   /// True once the window may close.
   bool may_quit() const { return may_quit_; }
 

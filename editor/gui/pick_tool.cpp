@@ -1,14 +1,13 @@
 #include "editor/gui/pick_tool.h"
 
+#include <memory>
+
 namespace rebake {
 
-void PickTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
-  constexpr double click_reach = 4;  // pixels; farther is a drag
-  if (pointer.pressed && pointer.inside) pressed_at_ = pointer.at;
-  if (!pointer.released || (pressed_at_ - pointer.at).norm() > click_reach) return;
-  pressed_at_ = Vec2(-1e9, -1e9);
-  const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at);
-  if (floods_) {
+namespace {
+
+void take(Desk& desk, const std::optional<Picked>& picked, const Pointer& pointer, bool floods) {
+  if (floods) {
     if (!picked) return;
     SelectLike like;
     like.node = NodeRef{picked->node};
@@ -26,17 +25,30 @@ void PickTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     desk.active.insert(picked->node);
 }
 
+}  // namespace
+
+void PickTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
+  constexpr double click_reach = 4;  // pixels; farther is a drag
+  if (pointer.pressed && pointer.inside) pressed_at_ = pointer.at;
+  if (!pointer.released || (pressed_at_ - pointer.at).norm() > click_reach) return;
+  pressed_at_ = Vec2(-1e9, -1e9);
+  // On the worker: what was not looked through yet takes its time.
+  auto picked = std::make_shared<std::optional<Picked>>();
+  desk.worker.start(
+      "pick", [picked, lens, at = pointer.at](Session& session) { *picked = pick(session.scene(), lens, at); },
+      [&desk, picked, pointer, floods = floods_] { take(desk, *picked, pointer, floods); });
+}
+
 void PickTool::options(Desk& desk) {
   if (!floods_) {
-    ImGui::TextDisabled("click picks a node, dragging turns the view; Shift adds, Ctrl removes");
+    flow_text("click picks a node, dragging turns the view; Shift adds, Ctrl removes");
     return;
   }
   auto likeness = static_cast<float>(desk.settings.likeness);
   ImGui::SetNextItemWidth(160);
   if (ImGui::SliderFloat("difference of colour", &likeness, 0, 1))
     desk.settings.likeness = static_cast<double>(likeness);
-  ImGui::SameLine();
-  ImGui::TextDisabled("click what it shall be like; Shift adds, Ctrl removes, both intersect");
+  flow_text("click what it shall be like; Shift adds, Ctrl removes, both intersect");
 }
 
 }  // namespace rebake

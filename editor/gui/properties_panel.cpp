@@ -60,7 +60,7 @@ void PropertiesPanel::draw(Desk& desk) {
   ImGui::TextDisabled("centre, world");
   for (int axis = 0; axis < 3; ++axis) {
     // What is nothing beside the object is shown as nothing.
-    double value = std::abs(center[axis]) > 1e-12 * box.diagonal().norm() ? center[axis] : 0;
+    double value = !box.isEmpty() && std::abs(center[axis]) < 1e-12 * box.diagonal().norm() ? 0 : center[axis];
     const double shown = value;
     if (number(fmt::format("{}##centre", axes[axis]).c_str(), value, "{:.5g}"))
       transform_all([&](Transform& transform) { transform.translate[axis] = value - shown; });
@@ -79,13 +79,16 @@ void PropertiesPanel::draw(Desk& desk) {
   for (int axis = 0; axis < 3; ++axis) {
     const double size = box.isEmpty() ? 0 : box.sizes()[axis];
     double value = size;
-    if (number(fmt::format("{}##size", axes[axis]).c_str(), value, "{:.5g}") && size > 0)
+    const bool changed = number(fmt::format("{}##size", axes[axis]).c_str(), value, "{:.5g}");
+    if (changed && !(value > 0)) problem_ = "a size must be above 0";
+    if (changed && value > 0 && size > 0)
       transform_all([&](Transform& transform) { transform.scale.value[axis] = value / size; });
     if (axis < 2) ImGui::SameLine();
   }
   double factor = 1;
-  if (number("all sizes", factor, "x {:.5g}"))
-    transform_all([&](Transform& transform) { transform.scale.value = Vec3::Constant(factor); });
+  const bool sized = number("all sizes", factor, "x {:.5g}");
+  if (sized && !(factor > 0)) problem_ = "a factor must be above 0";
+  if (sized && factor > 0) transform_all([&](Transform& transform) { transform.scale.value = Vec3::Constant(factor); });
   if (!list.empty()) desk.edits(list);
   if (!problem_.empty()) ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
   std::size_t triangles = 0, sets = 0;

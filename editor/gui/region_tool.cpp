@@ -103,15 +103,14 @@ void RegionTool::options(Desk& desk) {
   ImGui::Checkbox("visible only", &desk.visible_only);
   if (paints()) {
     auto radius = static_cast<float>(desk.settings.brush_radius);
-    ImGui::SameLine();
+    flow(150);
     ImGui::SetNextItemWidth(120);
     if (ImGui::SliderFloat("size", &radius, 1, 200, "%.0f px"))
       desk.settings.brush_radius = static_cast<double>(radius);
   }
-  ImGui::SameLine();
-  ImGui::TextDisabled("%s", kind_ == ToolKind::erase     ? "clears opacity under the stroke"
-                            : kind_ == ToolKind::polygon ? "click corners; Enter or the first corner closes"
-                                                         : "Shift adds, Ctrl removes, both intersect");
+  flow_text(kind_ == ToolKind::erase     ? "clears opacity under the stroke"
+            : kind_ == ToolKind::polygon ? "click corners; Enter or the first corner closes"
+                                         : "Shift adds, Ctrl removes, both intersect");
 }
 
 void RegionTool::cancel(Desk& /*desk*/) { points_.clear(); }

@@ -32,9 +32,7 @@ void ScriptPanel::draw(Desk& desk) {
       line_.clear();
       problem_.clear();
     } catch (const nlohmann::json::exception& error) {
-      // Behind the library's own name for it.
-      const std::string what = error.what();
-      problem_ = "no valid JSON: " + what.substr(what.find("] ") == std::string::npos ? 0 : what.find("] ") + 2);
+      problem_ = "no valid JSON: " + said_by(error);
     } catch (const Error& error) {
       problem_ = error.what();
     }

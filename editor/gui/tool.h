@@ -2,6 +2,10 @@
 
 #include <imgui.h>
 
+#include <map>
+#include <memory>
+#include <string>
+
 #include "editor/gui/desk.h"
 #include "editor/gui/lens.h"
 #include "editor/gui/window.h"
@@ -37,8 +41,34 @@ class ViewTool {
   virtual void cancel(Desk& desk) = 0;
 };
 
+/// All of them. They hold nothing of the GPU.
+using Tools = std::map<ToolKind, std::unique_ptr<ViewTool>>;
+Tools make_tools();
+
 inline ImVec2 on_screen(const Vec2& pixel, const ImVec2& origin) {
   return {origin.x + static_cast<float>(pixel.x()), origin.y + static_cast<float>(pixel.y())};
+}
+
+/// A line of text that can be read over any picture.
+inline void draw_label(ImDrawList& list, const ImVec2& at, const std::string& text) {
+  if (text.empty()) return;
+  list.AddRectFilled({at.x - 4, at.y - 3},
+                     {at.x + ImGui::CalcTextSize(text.c_str()).x + 4, at.y + ImGui::GetFontSize() + 3},
+                     IM_COL32(0, 0, 0, 200));
+  list.AddText(at, IM_COL32(255, 255, 255, 255), text.c_str());
+}
+
+/// Puts the next item, about so wide, beside the last one where there is room, else on a line of its own.
+inline void flow(float width) {
+  const float right = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
+  if (right < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+}
+/// The same for a text, in a muted colour.
+inline void flow_text(const char* text) {
+  flow(ImGui::CalcTextSize(text).x);
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+  ImGui::TextWrapped("%s", text);
+  ImGui::PopStyleColor();
 }
 
 /// How modifiers join a new selection to the present one.

@@ -28,17 +28,22 @@ bool same_view(const View& a, const View& b) {
 
 }  // namespace
 
-Viewport::Viewport(Renderer& renderer, std::function<std::unique_ptr<gl::Context>()> window_context)
-    : renderer_(renderer), window_context_(std::move(window_context)) {
-  tools_[ToolKind::pick] = std::make_unique<PickTool>(false);
-  tools_[ToolKind::flood] = std::make_unique<PickTool>(true);
+Tools make_tools() {
+  Tools tools;
+  tools[ToolKind::pick] = std::make_unique<PickTool>(false);
+  tools[ToolKind::flood] = std::make_unique<PickTool>(true);
   for (const ToolKind kind :
        {ToolKind::rectangle, ToolKind::lasso, ToolKind::polygon, ToolKind::brush, ToolKind::erase})
-    tools_[kind] = std::make_unique<RegionTool>(kind);
+    tools[kind] = std::make_unique<RegionTool>(kind);
   for (const ToolKind kind : {ToolKind::move, ToolKind::turn, ToolKind::scale})
-    tools_[kind] = std::make_unique<Gizmo>(kind);
-  tools_[ToolKind::bend] = std::make_unique<BendTool>();
-  tools_[ToolKind::cage] = std::make_unique<CageTool>();
+    tools[kind] = std::make_unique<Gizmo>(kind);
+  tools[ToolKind::bend] = std::make_unique<BendTool>();
+  tools[ToolKind::cage] = std::make_unique<CageTool>();
+  return tools;
+}
+
+Viewport::Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_ptr<gl::Context>()> window_context)
+    : renderer_(renderer), window_context_(std::move(window_context)), tools_(tools) {
   report_.device = renderer.device();
 }
 Viewport::~Viewport() = default;
@@ -48,6 +53,11 @@ bool Viewport::key(Desk& desk, const KeyPress& press) { return tool(desk).key(de
 bool Viewport::cancel(Desk& desk) {
   if (desk.flying) {
     desk.flying = false;
+    return true;
+  }
+  if (std::exchange(desk.drag_begins, std::nullopt)) {
+    desk.tool = desk.tool_before.value_or(desk.tool);
+    desk.tool_before.reset();
     return true;
   }
   const bool held = tool(desk).busy();
@@ -75,8 +85,12 @@ void Viewport::fly(Desk& desk) {
   if (io.WantTextInput || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) return;
   const double right = held(GLFW_KEY_RIGHT, 'D') - held(GLFW_KEY_LEFT, 'A'), up = held('E', 'E') - held('Q', 'Q'),
                forward = held(GLFW_KEY_UP, 'W') - held(GLFW_KEY_DOWN, 'S');
-  if (right != 0 || up != 0 || forward != 0)
-    desk.camera = flown(desk.camera, right * speed * seconds, up * speed * seconds, forward * speed * seconds);
+  if (right == 0 && up == 0 && forward == 0) return;
+  const bool parallel = desk.camera.orthographic();
+  desk.camera =
+      flown(desk.camera, right * speed * seconds, up * speed * seconds, parallel ? 0 : forward * speed * seconds);
+  // Where nothing grows by coming nearer, forward enlarges.
+  if (parallel) desk.camera = zoomed(desk.camera, desk.camera.target, std::exp(-2 * forward * seconds));
 }
 
 void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
@@ -89,7 +103,7 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
       orbiting_ = true;
     if (io.MouseWheel != 0) {
       // Towards what lies under the pointer; beside everything, towards the target's depth there.
-      const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at);
+      const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false);
       const ViewRay ray = lens.ray(pointer.at);
       const Vec3 at = picked ? picked->world : Vec3(ray.origin + ray.direction * lens.depth(desk.camera.target));
       desk.camera = zoomed(desk.camera, at, std::pow(0.85, static_cast<double>(io.MouseWheel)));
@@ -104,6 +118,15 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
         desk.flying ? looked(desk.camera, dx, dy, desk.view_height) : orbited(desk.camera, dx, dy, desk.view_height);
   else if (panning_)
     desk.camera = panned(desk.camera, dx, dy, desk.view_height);
+}
+
+// Of all that is drawn. An orthographic camera stands before it; for a perspective one the scene does.
+Box Viewport::drawn_bounds(const Desk& desk) const {
+  Box box = world_bounds(desk.scene());
+  if (!desk.camera.orthographic()) return box;
+  if (desk.preview) box.extend(world_bounds(*desk.preview));
+  for (const Guides::Line& line : guides(desk).lines) box.extend(line.from).extend(line.to);
+  return box;
 }
 
 void Viewport::add_grid(const Desk& desk, std::vector<Guides::Line>& lines) {
@@ -228,14 +251,10 @@ void Viewport::draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& ori
       text = "Overdraw: the brighter, the more triangles behind each other";
       break;
   }
-  const ImVec2 at{origin.x + 10, origin.y + static_cast<float>(desk.view_height) - ImGui::GetFontSize() - 12};
-  list.AddRectFilled({at.x - 4, at.y - 3},
-                     {at.x + ImGui::CalcTextSize(text.c_str()).x + 4, at.y + ImGui::GetFontSize() + 3},
-                     IM_COL32(0, 0, 0, 200));
-  list.AddText(at, IM_COL32(255, 255, 255, 255), text.c_str());
+  draw_label(list, {origin.x + 10, origin.y + static_cast<float>(desk.view_height) - ImGui::GetFontSize() - 12}, text);
 }
 
-bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner) {
+bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, bool over) {
   constexpr float arm = 34, knob = 9;
   const ImVec2 middle{corner.x - arm - 16, corner.y + arm + 16};
   const Mat3 rows = world_to_camera(desk.camera);
@@ -273,7 +292,7 @@ bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner) {
       list.AddText({one.at.x - size.x / 2, one.at.y - size.y / 2}, IM_COL32(0, 0, 0, 255), letter);
     }
     const float dx = mouse.x - one.at.x, dy = mouse.y - one.at.y;
-    if (dx * dx + dy * dy > knob * knob || !ImGui::IsWindowHovered()) continue;
+    if (dx * dx + dy * dy > knob * knob || !over) continue;
     hovered = true;
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) desk.camera = along_axis(desk.camera, one.axis);
   }
@@ -312,6 +331,11 @@ void Viewport::draw(Desk& desk) {
   const ImVec2 size = ImGui::GetContentRegionAvail(), origin = ImGui::GetCursorScreenPos();
   desk.view_width = std::max(16, static_cast<int>(size.x));
   desk.view_height = std::max(16, static_cast<int>(size.y));
+  if (desk.drag_begins && *desk.drag_begins != desk.tool) {
+    // Another tool was taken before the drag could begin.
+    desk.drag_begins.reset();
+    desk.tool_before.reset();
+  }
   if (desk.tool != last_tool_) {
     tools_.at(last_tool_)->cancel(desk);
     last_tool_ = desk.tool;
@@ -338,7 +362,7 @@ void Viewport::draw(Desk& desk) {
   list.ChannelsSplit(2);
   list.ChannelsSetCurrent(1);
   draw_legend(desk, list, origin);
-  const bool on_axes = draw_axes(desk, list, {origin.x + size.x, origin.y});
+  const bool on_axes = draw_axes(desk, list, {origin.x + size.x, origin.y}, pointer.inside && !tool(desk).busy());
   if (on_axes || (desk.wipe && draw_wipe(desk, list, origin, pointer))) {
     pointer.inside = false;
     pointer.pressed = false;
@@ -350,10 +374,11 @@ void Viewport::draw(Desk& desk) {
   }
   if (desk.flying) fly(desk);
   // What edits select through this camera is what is drawn through it.
-  desk.camera = with_depth_for(desk.camera, world_bounds(desk.scene()));
+  desk.camera = with_depth_for(desk.camera, drawn_bounds(desk));
   const Lens lens(desk.camera, desk.view_width, desk.view_height);
   try {
     if (!desk.worker.busy() || tool(desk).busy()) tool(desk).pointer(desk, lens, pointer);
+    last_tool_ = desk.tool;  // a drag that a key began ends with the tool before it, and what it did stays
   } catch (const std::exception& error) {
     desk.error = error.what();
     tool(desk).cancel(desk);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <map>
 #include <memory>
 
 #include "editor/gui/panels.h"
@@ -13,7 +12,7 @@ namespace rebake {
 class Viewport {
  public:
   /// `window_context` makes contexts for further renderers, in the same window.
-  Viewport(Renderer& renderer, std::function<std::unique_ptr<gl::Context>()> window_context);
+  Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_ptr<gl::Context>()> window_context);
   ~Viewport();
 
   /// Draws into the present Dear ImGui window, over all of its content.
@@ -43,10 +42,12 @@ class Viewport {
   void fly(Desk& desk);
   void picture(Desk& desk);
   Guides guides(const Desk& desk) const;
+  Box drawn_bounds(const Desk& desk) const;
   static void add_grid(const Desk& desk, std::vector<Guides::Line>& lines);
   bool draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer);
   static void draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin);
-  bool draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner);
+  /// `over`: the pointer may take a knob. True while it is on one.
+  bool draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, bool over);
   void write_pictures(Desk& desk);
   bool moving() const;
 
@@ -54,7 +55,7 @@ class Viewport {
   std::function<std::unique_ptr<gl::Context>()> window_context_;
   std::unique_ptr<Renderer> before_;  ///< of the scene as imported; null while it is not compared with
   unsigned before_texture_ = 0;
-  std::map<ToolKind, std::unique_ptr<ViewTool>> tools_;
+  Tools& tools_;
   ToolKind last_tool_ = ToolKind::pick;
   std::optional<Made> made_;
   unsigned texture_ = 0;

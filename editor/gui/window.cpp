@@ -7,7 +7,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "mesh_ops/error.h"
@@ -17,8 +16,6 @@ namespace rebake {
 namespace {
 
 std::string last_error = "unknown";  // GLFW tells it to a plain function only
-
-constexpr double nowhere = -std::numeric_limits<float>::max();  // as Dear ImGui has it
 
 constexpr const char* without_window = "without a window there are: rebake run, render, export, batch";
 
@@ -48,7 +45,6 @@ class Window::Callbacks {
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
       of(w).waiting_.push_back({Kind::move, 0, 0, false, 0, x, y});
     });
-    glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int inside) { of(w).pointer_inside_ = inside == GLFW_TRUE; });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int modifiers) {
       of(w).waiting_.push_back({Kind::button, button, 0, action == GLFW_PRESS, modifiers, 0, 0});
     });
@@ -84,8 +80,7 @@ WindowSystem::WindowSystem() {
 WindowSystem::~WindowSystem() { glfwTerminate(); }
 void WindowSystem::wake() { glfwPostEmptyEvent(); }
 
-Window::Window(const WindowSystem& /*system*/, const std::string& title, int width, int height)
-    : pointer_x_(nowhere), pointer_y_(nowhere) {
+Window::Window(const WindowSystem& /*system*/, const std::string& title, int width, int height) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -100,6 +95,8 @@ Window::Window(const WindowSystem& /*system*/, const std::string& title, int wid
   glfwSetWindowUserPointer(window_, this);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
+  glfwGetCursorPos(window_, &pointer_x_, &pointer_y_);
+  gl::context_lost();  // how to ask is found out while there is something to ask
   Callbacks::install(window_);
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
@@ -184,9 +181,7 @@ void Window::begin_frame() {
   ImGui_ImplGlfw_NewFrame();
   // It took both as they are now, not as they were at the event.
   ImGuiIO& io = ImGui::GetIO();
-  const bool held = std::find(buttons_.begin(), buttons_.end(), true) != buttons_.end();
-  const bool here = pointer_inside_ || held;
-  io.MousePos = {static_cast<float>(here ? pointer_x_ : nowhere), static_cast<float>(here ? pointer_y_ : nowhere)};
+  io.MousePos = {static_cast<float>(pointer_x_), static_cast<float>(pointer_y_)};
   std::copy(buttons_.begin(), buttons_.end(), io.MouseDown);
   ImGui::NewFrame();
 }

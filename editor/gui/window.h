@@ -75,8 +75,7 @@ class Window {
   int events_ = 0;  ///< since the last wait()
   std::deque<InputEvent> waiting_;
   std::array<bool, 5> buttons_{};
-  double pointer_x_, pointer_y_;
-  bool pointer_inside_ = false;
+  double pointer_x_ = 0, pointer_y_ = 0;  ///< where it was last, as seen by the frame
 };
 
 }  // namespace rebake

@@ -106,6 +106,7 @@ void Worker::loop() {
     }
     std::string failed;
     const std::size_t before = session_.document.history().undo_count();
+    if (drops_renderer_.exchange(false)) session_.drop_renderer();
     try {
       next.job(session_);
     } catch (const Cancelled&) {

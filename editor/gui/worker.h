@@ -38,6 +38,8 @@ class Worker {
   bool busy() const;
   /// Asks the present job to stop and forgets those that wait.
   void cancel();
+  /// Before the next job: what its renderer holds may be lost.
+  void drop_renderer() { drops_renderer_ = true; }
 
   struct Status {
     std::string title, what;  ///< the job, and what it is at
@@ -68,7 +70,7 @@ class Worker {
   };
   std::deque<Waiting> waiting_;
   bool running_ = false, ending_ = false;
-  std::atomic<bool> cancel_ = false;
+  std::atomic<bool> cancel_ = false, drops_renderer_ = false;
   Status status_;
   std::shared_ptr<const Snapshot> snapshot_ = std::make_shared<const Snapshot>();
   std::vector<Message> messages_;

@@ -65,6 +65,12 @@ json with_variables(json line, const std::map<std::string, std::string>& variabl
   return line;
 }
 
+std::string said_by(const json::exception& error) {
+  const std::string what = error.what();
+  const std::size_t end = what.find("] ");
+  return end == std::string::npos ? what : what.substr(end + 2);
+}
+
 json read_line(std::string_view text) {
   // Deeper lines mean nothing and could exhaust the stack.
   static constexpr int deepest = 32;
@@ -93,7 +99,7 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
       else
         std::visit([&](const auto& action) { run(session, action); }, std::get<Action>(command));
     } catch (const json::exception& error) {
-      fail(std::string("is not valid JSON: ") + error.what());
+      fail("is not valid JSON: " + said_by(error));
     } catch (const Cancelled&) {
       throw;
     } catch (const std::filesystem::filesystem_error& error) {

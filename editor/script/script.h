@@ -25,6 +25,9 @@ Command read_command(const nlohmann::json& line, const Scene& scene);
 /// Puts variables into all texts of a line: "{name}" becomes the value. Throws Error for one that has no value.
 nlohmann::json with_variables(nlohmann::json line, const std::map<std::string, std::string>& variables);
 
+/// What is wrong with a text that is no JSON, without the library's own name for it.
+std::string said_by(const nlohmann::json::exception& error);
+
 /// Parses one line of JSON, nested 32 levels at most. Throws Error, and nlohmann's exceptions for what is not JSON.
 nlohmann::json read_line(std::string_view text);
 

@@ -188,7 +188,7 @@ Mat3 orthogonal_factor(const Mat3& linear) {
   Mat3 factor = svd.matrixU() * svd.matrixV().transpose();
   // A pure axis-aligned scale has an exact factor; rounding noise in it would needlessly turn every direction.
   const Mat3 rounded = factor.array().round();
-  if ((factor - rounded).cwiseAbs().maxCoeff() < 4e-16) factor = rounded;
+  if ((factor - rounded).cwiseAbs().maxCoeff() < 1e-15) factor = rounded;
   return factor;
 }
 

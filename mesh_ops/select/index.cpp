@@ -79,6 +79,8 @@ std::shared_ptr<const RayTree> rays_of(const BakedObject& object) {
   return index_of(object)->rays.get([&] { return std::make_shared<const RayTree>(object); });
 }
 
+std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object) { return index_of(object)->rays.if_there(); }
+
 void prepare_index(const BakedObject& object, const Progress& progress) {
   progress.at("indexing", 0);
   traits_of(object);

@@ -15,6 +15,8 @@ std::shared_ptr<const WeldedCorners> corners_of(const BakedObject& object, doubl
 std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tolerance = 0);
 std::shared_ptr<const Components> components_of(const BakedObject& object, const Joining& joining = {});
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object);
+/// Null where they are not there yet: for who must not wait.
+std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object);
 
 /// Computes all of the above with their defaults, to be called off the window's thread before anything is selected.
 void prepare_index(const BakedObject& object, const Progress& progress = {});

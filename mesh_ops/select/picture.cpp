@@ -186,7 +186,7 @@ std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, 
   return flags;
 }
 
-TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Vec3>& eyes) {
+TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standpoint>& standpoints) {
   const auto rays = rays_of(object);
   const double size = object.bounds().diagonal().norm();
   TriangleSet flags(object.triangle_count(), 0);
@@ -208,7 +208,9 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Vec3>&
       bool seen = false;
       for (std::size_t k = 0; k < tried && !seen; ++k) {
         const Vec3& point = opaque[k * opaque.size() / tried];
-        for (const Vec3& eye : eyes) {
+        for (const Standpoint& from : standpoints) {
+          // Parallel rays begin just outside the object: nothing of it lies farther off.
+          const Vec3 eye = from.back.isZero(0) ? from.eye : Vec3(point + 1.5 * size * from.back);
           // Stops short of the point by more than the tree's rounding.
           const Vec3 way = point - eye;
           const double distance = way.norm();
@@ -224,14 +226,14 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Vec3>&
   return flags;
 }
 
-std::vector<Vec3> eyes_around(const Box& box, int count, double distance) {
+std::vector<Standpoint> eyes_around(const Box& box, int count, double distance) {
   // A Fibonacci lattice.
-  std::vector<Vec3> eyes;
+  std::vector<Standpoint> eyes;
   const double radius = distance * box.diagonal().norm() / 2;
   for (int i = 0; i < count; ++i) {
     const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z);
     const double angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    eyes.push_back(box.center() + radius * Vec3(r * std::cos(angle), z, r * std::sin(angle)));
+    eyes.push_back({box.center() + radius * Vec3(r * std::cos(angle), z, r * std::sin(angle)), Vec3::Zero()});
   }
   return eyes;
 }

@@ -63,12 +63,18 @@ TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, c
 std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, const Projector& project,
                                         const PixelMask& mask, double nearest, double farthest);
 
-/// Triangles of which no opaque part (up to 16 texels of each are tried) is seen from any of the eyes, in object space.
+/// From where an object is looked at, in its space: from a point, or from as good as nowhere by parallel rays.
+struct Standpoint {
+  Vec3 eye{0, 0, 0};
+  Vec3 back{0, 0, 0};  ///< of parallel rays the way to where they come from, of length 1; else 0
+};
+
+/// Triangles of which no opaque part (up to 16 texels of each are tried) is seen from any of the standpoints.
 /// Errs on the side of seen only as far as those texels reach: a triangle seen through a gap smaller than their spacing
 /// counts as unseen.
-TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Vec3>& eyes);
+TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standpoint>& standpoints);
 
 /// `count` points spread evenly on a sphere around a box, at `distance` times its half diagonal from its centre.
-std::vector<Vec3> eyes_around(const Box& box, int count, double distance);
+std::vector<Standpoint> eyes_around(const Box& box, int count, double distance);
 
 }  // namespace rebake

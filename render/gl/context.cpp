@@ -13,9 +13,12 @@ void clear_window(int width, int height) {
 }
 
 bool context_lost() {
-  if (epoxy_gl_version() >= 45) return glGetGraphicsResetStatus() != GL_NO_ERROR;
-  if (epoxy_has_gl_extension("GL_ARB_robustness")) return glGetGraphicsResetStatusARB() != GL_NO_ERROR;
-  return false;
+  enum class Ask { core, extension, nobody };
+  static const Ask ask = epoxy_gl_version() >= 45                      ? Ask::core
+                         : epoxy_has_gl_extension("GL_ARB_robustness") ? Ask::extension
+                                                                       : Ask::nobody;
+  if (ask == Ask::nobody) return false;
+  return (ask == Ask::core ? glGetGraphicsResetStatus() : glGetGraphicsResetStatusARB()) != GL_NO_ERROR;
 }
 
 std::string device_name() {

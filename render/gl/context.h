@@ -12,7 +12,8 @@ class Context {
   virtual void make_current() = 0;
 };
 
-/// Whether the current context was lost, and with it all that was made in it; false where the driver cannot say.
+/// Whether the current context was lost, and with it all that was made in it; false where the driver cannot say. To be
+/// called once while the context is sound: a lost one does not tell what it can do.
 bool context_lost();
 
 /// Clears the window of the current context, `width` × `height` pixels.

@@ -109,8 +109,9 @@ Texture make_texture(unsigned internal_format, int width, int height, int bytes_
       break;
   }
   glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal_format), width, height, 0, format, type, nullptr);
+  const GLint filter = internal_format == GL_RGBA8 ? GL_LINEAR : GL_NEAREST;
   for (const GLenum parameter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    glTexParameteri(GL_TEXTURE_2D, parameter, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, parameter, filter);
   for (const GLenum parameter : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     glTexParameteri(GL_TEXTURE_2D, parameter, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);

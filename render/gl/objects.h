@@ -64,7 +64,8 @@ using Program = Handle<ProgramTraits>;
 
 /// A buffer with these bytes, for use as `target` (GL_ARRAY_BUFFER, …). Throws DeviceError when memory is out.
 Buffer make_buffer(unsigned target, const void* data, std::size_t bytes);
-/// A 2-D texture without mipmaps, nearest sampling, clamped. Throws DeviceError when too large.
+/// A 2-D texture without mipmaps, clamped; sampled linearly where it is a picture (GL_RGBA8), else the nearest texel.
+/// Throws DeviceError when too large.
 Texture make_texture(unsigned internal_format, int width, int height, int bytes_a_texel);
 /// A texture that reads `buffer` as RGBA32F.
 Texture make_buffer_texture(const Buffer& buffer);

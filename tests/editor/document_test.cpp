@@ -143,6 +143,13 @@ TEST_F(DocumentTest, EditsMadeTogetherAreOneStepEverywhere) {
   EXPECT_EQ(document.scene().roots, before.roots);
   EXPECT_TRUE(document.redo_step());
 
+  // A script may stop in the midst of a step; what was done of it comes back as it is.
+  EXPECT_TRUE(document.undo());
+  EXPECT_TRUE(document.redo_step());
+  EXPECT_EQ(document.scene().roots, hidden.roots);
+  EXPECT_FALSE(document.undo(9)) << "all that was asked for, or nothing";
+  EXPECT_EQ(document.scene().roots, hidden.roots);
+
   document.save(path("p.rebake"));
   document = Document();
   Document recovered = Document::recover(path("j")).document, opened = Document::open(path("p.rebake"));

@@ -11,6 +11,7 @@
 #include "editor/gui/desk.h"
 #include "editor/gui/expression.h"
 #include "editor/gui/input_queue.h"
+#include "editor/gui/typed_number.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/files.h"
 #include "tests/support/made_scenes.h"
@@ -51,6 +52,24 @@ TEST(Expression, IsWhatACalculatorSays) {
   EXPECT_FALSE(evaluated(std::string(100000, '('))) << "however deep";
 }
 
+TEST(Input, ANumberTypedDuringADragIsAnExpression) {
+  TypedNumber number;
+  const auto type = [&](std::initializer_list<int> keys) {
+    for (const int key : keys) EXPECT_TRUE(number.key({key})) << key;
+  };
+  EXPECT_FALSE(number.value());
+  type({GLFW_KEY_MINUS});
+  EXPECT_FALSE(number.value()) << "half typed";
+  type({GLFW_KEY_3, GLFW_KEY_SLASH});
+  EXPECT_EQ(number.value(), -3.0) << "what was whole counts on";
+  type({GLFW_KEY_KP_4});
+  EXPECT_EQ(number.value(), -0.75);
+  type({GLFW_KEY_BACKSPACE, GLFW_KEY_BACKSPACE, GLFW_KEY_BACKSPACE, GLFW_KEY_BACKSPACE});
+  EXPECT_FALSE(number.value()) << "without a text the pointer counts again";
+  EXPECT_FALSE(number.key({GLFW_KEY_X}));
+  EXPECT_FALSE(number.key({GLFW_KEY_1, false, true})) << "Ctrl is for commands";
+}
+
 TEST(Input, AFrameSeesOneChangeWhereItHappened) {
   using Kind = InputEvent::Kind;
   const auto shares = [](std::deque<InputEvent> waiting) {
@@ -69,7 +88,8 @@ TEST(Input, AFrameSeesOneChangeWhereItHappened) {
   EXPECT_EQ(shares({press, release}), (Shares{1, 1})) << "a click within one frame is seen";
   EXPECT_EQ(shares({move, press, move, move, release}), (Shares{2, 3})) << "and pressed where the pointer was";
   EXPECT_EQ(shares({key, text, up, key, text, up}), (Shares{2, 1, 2, 1})) << "text stays with its key";
-  EXPECT_EQ(shares({key, repeat, repeat, wheel, move}), (Shares{4, 1})) << "what is held makes no frame wait";
+  EXPECT_EQ(shares({key, repeat, repeat, wheel, wheel}), Shares{5}) << "what is held makes no frame wait";
+  EXPECT_EQ(shares({move, wheel, move}), (Shares{2, 1})) << "it zooms to where the pointer was";
 }
 
 TEST(Desk, CostsAreMeasuredInTheView) {

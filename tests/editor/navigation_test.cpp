@@ -94,6 +94,14 @@ TEST(Navigation, AnotherProjectionKeepsTheTargetsSizeAndComesBack) {
   const Camera back = projected_otherwise(flat);
   EXPECT_FALSE(back.orthographic());
   EXPECT_LT((back.eye - camera().eye).norm(), 1e-12);
+  // Far in and out again is where it began, depths included.
+  const Box around(Vec3(-1, -1, -1), Vec3(1, 1, 1));
+  const Camera begun = with_depth_for(flat, around);
+  Camera there = begun;
+  for (int k = 0; k < 40; ++k) there = with_depth_for(zoomed(there, {0.1, 0.2, 0.3}, 0.8), around);
+  for (int k = 0; k < 40; ++k) there = with_depth_for(zoomed(there, {0.1, 0.2, 0.3}, 1.25), around);
+  EXPECT_LT((there.eye - begun.eye).norm(), 1e-9);
+  EXPECT_NEAR(there.far_plane, begun.far_plane, 1e-9);
   // However near people go, nothing is cut off before the eye's plane, and the picture stays as it is.
   const Box box(Vec3(-1, -1, -1), Vec3(1, 1, 1));
   const Camera close = zoomed(flat, flat.target, 1e-3), cleared = with_depth_for(close, box);

@@ -165,7 +165,11 @@ class Editor:
         return [line for line in lines if "rebake_journal" not in line]
 
     def ops(self):
-        return [line["edit"]["op"] if "edit" in line else "undo" if "undo" in line else "redo" for line in self.journal()]
+        names = []
+        for line in self.journal():
+            edits = line.get("edits", [line["edit"]] if "edit" in line else [])
+            names += [edit["op"] for edit in edits] or ["undo" if "undo" in line else "redo"]
+        return names
 
     def until_ops(self, *ops):
         until(lambda: self.ops() == list(ops), f"edits {ops}, not {self.ops()}")

@@ -270,6 +270,28 @@ TEST(Select, WhatIsInsideIsUnseenFromOutside) {
   for (std::size_t f = 0; f < unseen.size(); ++f) EXPECT_EQ(unseen[f] != 0, f >= outer) << f;
 }
 
+TEST(Select, ParallelRaysPassNoThinGap) {
+  // Two shells a two-hundredth of the object apart, and another object far away that must not matter.
+  auto object = std::make_shared<BakedObject>(*made_object({.holes = false}));
+  object->sets.push_back(made_object({.radius = 0.98, .holes = false})->sets[0]);
+  const std::size_t outer = object->sets[0].soup.triangle_count();
+  std::vector<Standpoint> all_round;
+  for (const Standpoint& from : eyes_around(object->bounds(), 64, 3))
+    all_round.push_back({Vec3::Zero(), from.eye.normalized()});
+  const TriangleSet unseen = triangles_unseen(*object, all_round);
+  for (std::size_t f = 0; f < unseen.size(); ++f) EXPECT_EQ(unseen[f] != 0, f >= outer) << f;
+  // From one side the near half is seen.
+  const TriangleSet behind = triangles_unseen(*object, std::vector<Standpoint>{{Vec3::Zero(), Vec3::UnitZ()}});
+  const Soup& soup = object->sets[0].soup;
+  for (std::size_t f = 0; f < outer; ++f) {
+    Vec3 centre = Vec3::Zero();
+    for (const std::uint32_t v : soup.faces()[f]) centre += soup.positions()[v] / 3;
+    if (std::abs(centre.z()) > 0.3) {
+      EXPECT_EQ(behind[f] != 0, centre.z() < 0) << centre.transpose();
+    }
+  }
+}
+
 TEST(Select, OnlyTheEarlierOfEqualTrianglesIsADuplicate) {
   BakedObject object = strip(2, 0, everywhere);
   const Soup& soup = object.sets[0].soup;
