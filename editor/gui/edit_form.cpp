@@ -105,8 +105,9 @@ void EditForm::draw(Desk& desk) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   // Beside the picture, so that what the edit does can be seen.
   ImGui::SetNextWindowPos({screen.x - 10, 40}, ImGuiCond_Appearing, {1, 0});
-  ImGui::SetNextWindowSize({420, 0}, ImGuiCond_Appearing);
-  ImGui::Begin((op_ + "###form").c_str(), &open, ImGuiWindowFlags_NoCollapse);
+  // As high as what it says, so that no button is cut off.
+  ImGui::SetNextWindowSizeConstraints({420, 0}, {420, screen.y - 60});
+  ImGui::Begin((op_ + "###form").c_str(), &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
   std::string help;
   const std::vector<FieldLine> fields = fields_of(op_, help);
   ImGui::TextWrapped("%s", help.c_str());

@@ -78,7 +78,10 @@ class EditorWindow {
         frames = frames_after_event;
       }
       desk_.update();
+      const auto begun = std::chrono::steady_clock::now();
       draw();
+      viewport().frame_took(
+          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count());
       if (desk_.restarts_graphics || window().lost()) {
         restart_graphics();
         frames = frames_after_event;

@@ -19,7 +19,7 @@ namespace rebake {
 namespace {
 
 constexpr auto settle_time = std::chrono::milliseconds(200);  // after the last move the picture is drawn in full
-constexpr double wanted_ms = 45;                              // a picture while moving
+constexpr double wanted_ms = 58;                              // a frame while moving
 
 bool same_scene(const Scene& a, const Scene& b) { return a.roots == b.roots && a.background == b.background; }
 bool same_view(const View& a, const View& b) {
@@ -166,12 +166,13 @@ Guides Viewport::guides(const Desk& desk) const {
 
 void Viewport::picture(Desk& desk) {
   const bool still = !moving() && !desk.flying;
+  const double wanted_picture_ms = std::max(10.0, wanted_ms - rest_ms_);
   View view;
   const Scene& scene = desk.preview ? *desk.preview : desk.scene();
   view.camera = desk.camera;
   view.samples = desk.samples;
   double scale = 1;
-  if (!still && full_ms_ > wanted_ms) {
+  if (!still && full_ms_ > wanted_picture_ms) {
     view.samples = 1;
     scale = moving_scale_;
   }
@@ -188,7 +189,8 @@ void Viewport::picture(Desk& desk) {
   const double ms = shown.times.frame_ms;
   if (view.width == desk.view_width && view.samples == desk.samples) full_ms_ = ms;
   // The time goes with the pixels, as far as it goes with anything that can be chosen here.
-  if (!still && full_ms_ > wanted_ms) moving_scale_ = std::clamp(scale * std::sqrt(wanted_ms / ms), 0.35, 1.0);
+  if (!still && full_ms_ > wanted_picture_ms)
+    moving_scale_ = std::clamp(scale * std::sqrt(wanted_picture_ms / ms), 0.35, 1.0);
   // Of pictures that follow each other in one movement.
   const Clock::time_point now = Clock::now();
   const double since = std::chrono::duration<double>(now - drawn_at_).count();
@@ -208,6 +210,13 @@ void Viewport::picture(Desk& desk) {
     before_texture_ = before_->show(desk.imported, view, {}, before, false).texture;
   }
   texture_ = shown.texture;
+  drew_ = true;
+}
+
+void Viewport::frame_took(double ms) {
+  if (!std::exchange(drew_, false)) return;
+  const double rest = std::max(0.0, ms - report_.times.frame_ms);
+  rest_ms_ = rest_ms_ > 0 ? 0.7 * rest_ms_ + 0.3 * rest : rest;
 }
 
 // The line between before and after, which the pointer moves. True while it does, or is about to.

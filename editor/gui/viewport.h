@@ -25,6 +25,8 @@ class Viewport {
 
   /// Seconds until there is something to draw without any event; negative for never.
   double next_frame_in(const Desk& desk) const;
+  /// How long the whole frame took of the window in which the last picture was drawn.
+  void frame_took(double ms);
   const FrameReport& report() const { return report_; }
   bool& each_pass() { return each_pass_; }
 
@@ -64,6 +66,8 @@ class Viewport {
   Camera last_camera_;
   Clock::time_point moved_at_{}, flown_at_{}, drawn_at_{};
   double full_ms_ = 0;       ///< of a picture at full quality
+  double rest_ms_ = 0;       ///< of a frame beside its picture
+  bool drew_ = false;        ///< a picture in this frame
   double moving_scale_ = 1;  ///< of the resolution while the camera moves
   bool orbiting_ = false, panning_ = false, wiping_ = false;
   Vec3 zoom_at_{0, 0, 0};
