@@ -123,7 +123,9 @@ Camera with_depth_for(const Camera& camera, const Box& box) {
     const double before = back.dot(box.center() - camera.target) + box.diagonal().norm();
     // How far it stands changes nothing but what depths can be told apart.
     const double distance = std::max(before, 0.01 * box.diagonal().norm());
-    if (distance > 0) result.eye = camera.target + distance * back;
+    const double now = (camera.eye - camera.target).norm();
+    // A camera that stands there stays, bit for bit: a picture of it is not drawn again.
+    if (distance > 0 && std::abs(distance - now) > 1e-9 * distance) result.eye = camera.target + distance * back;
   }
   const double target = (result.target - result.eye).norm();
   double farthest = 2 * target;

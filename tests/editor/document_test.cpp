@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -159,6 +160,32 @@ TEST_F(DocumentTest, EditsMadeTogetherAreOneStepEverywhere) {
     EXPECT_EQ(again->history().undo_count(), 2U);
     EXPECT_TRUE(find(again->scene(), "ball")->visible);
   }
+}
+
+TEST_F(DocumentTest, AStepThatNoJournalTakesIsNotUndone) {
+  Document document;
+  document.keep_journal(path("j"));
+  import(document);
+  const Edit hide = Hide{NodeRef{find(document.scene(), "ball")->id}},
+             show = Show{NodeRef{find(document.scene(), "ball")->id}};
+  document.edits({hide, show, hide});
+  const Scene before = document.scene();
+  // As on a full disk.
+  rlimit limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit full{fs::file_size(path("j")), limit.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+  EXPECT_THROW(document.undo_step(), FileError);
+  EXPECT_THROW(document.edits({show, hide}), FileError);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  ::signal(SIGXFSZ, handler);
+  EXPECT_EQ(document.scene().roots, before.roots);
+  EXPECT_TRUE(document.undo_step());
+  document = Document();
+  const Document::Recovered recovered = Document::recover(path("j"));
+  EXPECT_EQ(recovered.edits, 1U);
+  EXPECT_TRUE(find(recovered.document.scene(), "ball")->visible);
 }
 
 TEST_F(DocumentTest, ScriptJournalAndProjectGiveTheSameBytes) {

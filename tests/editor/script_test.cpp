@@ -105,6 +105,18 @@ TEST_F(Script, ThrownEditLeavesTheSceneAsItWas) {
   EXPECT_TRUE(session.scene().roots.empty());
 }
 
+TEST_F(Script, AnOrthographicViewErasesTheHalfThatItSees) {
+  run(import +
+      R"({"op": "view", "name": "flat", "camera": {"eye": [0, 0, 4], "target": [0, 0, 0], "ortho_height": 3}})");
+  const auto opaque = [&] { return static_cast<double>(node("ball")->object->opaque_texel_count()); };
+  const double all = opaque();
+  const std::string whole = R"("view": "flat", "polygon": [[0, 0], [800, 0], [800, 800], [0, 800]])";
+  run(R"({"op": "erase", )" + whole + "}");
+  EXPECT_NEAR(opaque() / all, 0.5, 0.1) << "the far half of a sphere, but for what shows through its holes";
+  run(R"({"op": "erase", "through": true, )" + whole + "}");
+  EXPECT_EQ(opaque(), 0);
+}
+
 TEST_F(Script, AScaleActsAlongTurnedAxes) {
   run(import +
       R"({"op": "transform", "node": "ball", "scale": [1, 3, 1], "scale_axes": {"axis": [0, 0, 1], "degrees": 30}})");

@@ -9,16 +9,17 @@
 namespace rebake::test {
 namespace {
 
-// The object with its corners moved, and all else shared: as while something is dragged.
-Scene bent(const Scene& scene, double amount) {
+// The object with its corners moved, and turned where `turns`, and all else shared: as while something is dragged.
+Scene bent(const Scene& scene, double amount, bool turns = false) {
   return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
     auto object = std::make_shared<BakedObject>(*node.object);
     std::size_t first = 0;
     const TriangleSet all(object->triangle_count(), 1);
     for (TextureSet& set : object->sets) {
       const std::size_t count = set.soup.triangle_count();
-      set.soup = change_vertices(set.soup, all, first, [&](std::uint32_t, Vec3& position, Mat3&) {
+      set.soup = change_vertices(set.soup, all, first, [&](std::uint32_t, Vec3& position, Mat3& turn) {
         position.x() += amount * position.y() * position.y();
+        if (turns) turn = Eigen::AngleAxisd(amount * position.y(), Vec3::UnitZ()).toRotationMatrix();
       });
       first += count;
     }
@@ -39,6 +40,20 @@ TEST(GpuScene, WhatOnlyMovedIsDrawnAsIfItWereNew) {
     const Scene moved = bent(scene, amount);
     Renderer fresh;
     EXPECT_EQ(kept.render(moved, view).rgb, fresh.render(moved, view).rgb) << amount;
+  }
+  // The same triangles with turned colours; and again, when fewer show something.
+  Scene turned = bent(scene, 0.3, true);
+  ASSERT_TRUE(turned.roots[0]->object->any_turns());
+  for (int k = 0; k < 2; ++k) {
+    Renderer fresh;
+    const Image drawn = kept.render(turned, view);
+    EXPECT_EQ(drawn.rgb, fresh.render(turned, view).rgb);
+    EXPECT_NE(drawn.rgb, kept.render(bent(scene, 0.3), view).rgb) << "turns are seen";
+    turned = with_changed(turned, turned.roots[0]->id, [&](Node& node) {
+      auto object = std::make_shared<BakedObject>(*node.object);
+      object->sets[0].texels = made_object({.columns = 64, .rows = 40, .seed = 9})->sets[0].texels;
+      node.object = object;
+    });
   }
   EXPECT_EQ(kept.render(scene, view).rgb, first.rgb);
   // Beside a copy of itself that stays.
