@@ -2,9 +2,10 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include <numbers>
+#include <cmath>
 
 #include "editor/edits/support.h"
+#include "editor/gui/euler.h"
 #include "editor/gui/expression.h"
 #include "editor/gui/panels.h"
 
@@ -66,12 +67,18 @@ void PropertiesPanel::draw(Desk& desk) {
       transform_all([&](Transform& transform) { transform.translate[axis] = value - shown; });
     if (axis < 2) ImGui::SameLine();
   }
-  ImGui::TextDisabled("turn about the centre, degrees");
+  // One node shows how it stands; several are turned from where they are. A mirrored one has no angles.
+  const Mat3 linear = placed->to_world.linear();
+  const bool stands = desk.active.size() == 1 && linear.determinant() > 0;
+  const Vec3 angles = stands ? euler_degrees(orthogonal_factor(linear)) : Vec3(0, 0, 0);
+  ImGui::TextDisabled(stands ? "turned, degrees" : "turn by, degrees");
   for (int axis = 0; axis < 3; ++axis) {
-    double value = 0;
-    if (number(fmt::format("{}##turn", axes[axis]).c_str(), value, "{:.5g}"))
+    Vec3 wanted = angles;
+    // Rounding is no angle.
+    wanted[axis] = std::abs(angles[axis]) < 1e-10 ? 0 : angles[axis];
+    if (number(fmt::format("{}##turn", axes[axis]).c_str(), wanted[axis], "{:.5g}"))
       transform_all([&](Transform& transform) {
-        transform.rotate.value = Eigen::AngleAxisd(value * std::numbers::pi / 180, Vec3::Unit(axis));
+        transform.rotate.value = Eigen::Quaterniond(rotation_of(wanted) * rotation_of(angles).transpose());
       });
     if (axis < 2) ImGui::SameLine();
   }

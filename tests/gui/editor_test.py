@@ -1,5 +1,6 @@
 """The editor as people use it: each test asserts the edits that arrived in the document, and what is seen."""
 
+import math
 import pathlib
 import shutil
 import subprocess
@@ -159,6 +160,18 @@ class EditorTest(unittest.TestCase):
         editor.key("Return")
         editor.until_ops("import", "transform", "transform", "transform")
         self.assertNotEqual(editor.journal()[-1]["edit"]["translate"][0], 0)
+        # Angles say how the node stands: 90 and then 0 is there and back.
+        for angle, half in (("90", 45), ("0", -45)):
+            editor.click(1093, 438)
+            editor.key("ctrl+a")
+            editor.type(angle)
+            editor.key("Return")
+            editor.settle()
+            w, x, y, z = editor.journal()[-1]["edit"]["rotate"]
+            self.assertAlmostEqual(w, math.cos(math.radians(half)), places=12)
+            self.assertAlmostEqual(y, math.sin(math.radians(half)), places=12)
+            self.assertEqual([x, z], [0, 0])
+        self.assertEqual(len(editor.ops()), 6)
 
     def test_keys_of_blender_begin_a_drag(self):
         settings = self.screen.home / "config/rebake/settings.json"
