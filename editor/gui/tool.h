@@ -41,7 +41,7 @@ class ViewTool {
   virtual void cancel(Desk& desk) = 0;
 };
 
-/// All of them. They hold nothing of the GPU.
+/// All of them, as tools.cpp lists them. They hold nothing of the GPU.
 using Tools = std::map<ToolKind, std::unique_ptr<ViewTool>>;
 Tools make_tools();
 

@@ -6,12 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "editor/gui/bend_tool.h"
-#include "editor/gui/cage_tool.h"
-#include "editor/gui/gizmo.h"
 #include "editor/gui/navigation.h"
-#include "editor/gui/pick_tool.h"
-#include "editor/gui/region_tool.h"
 #include "render/image.h"
 
 namespace rebake {
@@ -27,20 +22,6 @@ bool same_view(const View& a, const View& b) {
 }
 
 }  // namespace
-
-Tools make_tools() {
-  Tools tools;
-  tools[ToolKind::pick] = std::make_unique<PickTool>(false);
-  tools[ToolKind::flood] = std::make_unique<PickTool>(true);
-  for (const ToolKind kind :
-       {ToolKind::rectangle, ToolKind::lasso, ToolKind::polygon, ToolKind::brush, ToolKind::erase})
-    tools[kind] = std::make_unique<RegionTool>(kind);
-  for (const ToolKind kind : {ToolKind::move, ToolKind::turn, ToolKind::scale})
-    tools[kind] = std::make_unique<Gizmo>(kind);
-  tools[ToolKind::bend] = std::make_unique<BendTool>();
-  tools[ToolKind::cage] = std::make_unique<CageTool>();
-  return tools;
-}
 
 Viewport::Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_ptr<gl::Context>()> window_context)
     : renderer_(renderer), window_context_(std::move(window_context)), tools_(tools) {
