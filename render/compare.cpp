@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

@@ -5,8 +5,8 @@
 
 #include <string_view>
 
-#include "mesh_ops/error.h"
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 
 namespace rebake {
 
@@ -28,7 +28,8 @@ Image read_image(const std::filesystem::path& path) {
   return image;
 }
 
-void write_png(const Image& image, const std::filesystem::path& path) {
+void write_png(const Image& image, const std::filesystem::path& path, const SourceGuard& guard) {
+  guard.check_file(path);  // before the work
   std::vector<unsigned char> encoded;
   OIIO::Filesystem::IOVecOutput sink(encoded);
   const auto output = OIIO::ImageOutput::create("png");
@@ -38,7 +39,7 @@ void write_png(const Image& image, const std::filesystem::path& path) {
   if (!output || !output->open("picture.png", spec) || !output->write_image(OIIO::TypeDesc::UINT8, image.rgb.data()) ||
       !output->close())
     throw FileError(path, "cannot be encoded as PNG: " + (output ? output->geterror() : OIIO::geterror()));
-  write_file_atomically(path, std::string_view(reinterpret_cast<const char*>(encoded.data()), encoded.size()));
+  write_file_atomically(path, std::string_view(reinterpret_cast<const char*>(encoded.data()), encoded.size()), guard);
 }
 
 }  // namespace rebake

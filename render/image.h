@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "mesh_ops/base/source_guard.h"
+
 namespace rebake {
 
 /// An 8-bit RGB picture in display colours, row 0 at the top.
@@ -16,7 +18,7 @@ struct Image {
 
 /// Throws FileError. Alpha, where there is one, is dropped; grey becomes RGB.
 Image read_image(const std::filesystem::path& path);
-/// Writes a PNG, whole or not at all. Throws FileError.
-void write_png(const Image& image, const std::filesystem::path& path);
+/// Writes a PNG, whole or not at all. Throws FileError; `guard` says where nothing may be written.
+void write_png(const Image& image, const std::filesystem::path& path, const SourceGuard& guard);
 
 }  // namespace rebake

@@ -5,10 +5,10 @@
 #include <chrono>
 #include <cstring>
 
-#include "mesh_ops/error.h"
-#include "render/frame/passes.h"
+#include "mesh_ops/base/error.h"
 #include "render/gl/context.h"
 #include "render/gpu_scene/gpu_scene.h"
+#include "render/graph/passes.h"
 
 namespace rebake {
 
@@ -81,14 +81,17 @@ void fit(FrameTargets& targets, const FramePlan& plan) {
 class Renderer::Impl {
  public:
   explicit Impl(std::unique_ptr<gl::Context> context) : context_(std::move(context)) {
-    context_->make_current();
+    const gl::Current current(*context_);
+    device_ = gl::device_name();
     state_.empty_array = gl::make_vertex_array();
   }
 
   // What members delete are names in this context, whichever was used last.
   ~Impl() {
     try {
-      context_->make_current();
+      const gl::Current current(*context_);
+      state_ = {};
+      gpu_ = {};
     } catch (const Error&) {
       // Lost, and its names with it.
     }
@@ -98,7 +101,7 @@ class Renderer::Impl {
 
   FrameTimes draw(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass,
                   const Guides* guides = nullptr, std::vector<PlannedPass>* passes = nullptr) {
-    context_->make_current();
+    const gl::Current current(*context_);
     const Clock::time_point start = Clock::now();
     const FramePlan frame_plan = plan(scene, view, options, guides);
     if (passes != nullptr) *passes = frame_plan.passes;
@@ -131,10 +134,11 @@ class Renderer::Impl {
     return times;
   }
 
+  const std::string& device() const { return device_; }
   unsigned texture() const { return state_.targets.picture.name(); }
 
   Image read_back() {
-    context_->make_current();
+    const gl::Current current(*context_);
     const View& view = shown_;
     Image image{
         view.width, view.height,
@@ -155,6 +159,7 @@ class Renderer::Impl {
   GpuScene gpu_;
   PassState state_;
   View shown_;
+  std::string device_;
 };
 
 Renderer::Renderer() : Renderer(gl::make_headless_context()) {}
@@ -179,7 +184,7 @@ Renderer::Shown Renderer::show(const Scene& scene, const View& view, const Rende
 }
 Image Renderer::shown_image() { return impl_->read_back(); }
 
-std::string Renderer::device() const { return gl::device_name(); }
+std::string Renderer::device() const { return impl_->device(); }
 std::uint64_t Renderer::peak_gpu_bytes() const { return gl::memory_use().peak; }
 
 }  // namespace rebake

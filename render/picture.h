@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/frame/plan.h"
+#include "render/graph/plan.h"
 #include "render/image.h"
 
 namespace rebake {

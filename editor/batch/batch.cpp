@@ -15,8 +15,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/scene_files.h"
 
 extern char** environ;
 
@@ -248,7 +251,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
               fmt::format("{} is the export of {} too: put {{name}} into the script's path", folder, other->second);
         }
       if (result.status == BatchResult::Status::done)
-        write_file_atomically(state_folder(options) / (result.name + ".done"), job.key + '\n' + exports);
+        write_file_atomically(state_folder(options) / (result.name + ".done"), job.key + '\n' + exports, {});
     } else {
       result.message = last_error(state_folder(options) / (result.name + ".log"), status);
     }

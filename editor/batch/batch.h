@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/progress.h"
+#include "mesh_ops/base/progress.h"
 
 namespace rebake {
 

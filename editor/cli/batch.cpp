@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <fstream>
 #include <memory>
@@ -9,7 +8,7 @@
 #include "editor/batch/batch.h"
 #include "editor/cli/commands.h"
 #include "editor/cli/terminal.h"
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/base/files.h"
 
 namespace rebake {
 
@@ -50,34 +49,25 @@ void print_table(const std::vector<BatchResult>& results) {
 
 }  // namespace
 
-void add_batch(CLI::App& program) {
+void describe_batch(CommandDescription& command) {
   struct Options {
     BatchOptions batch;
     std::string script, out, report, shard = "1/1";
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
-      "batch", "runs one script on many scenes, each imported first as the node \"scene\" and exported at the end");
-  command->add_option("script", options->script, "script; {name} and {path} of the scene may stand in its texts")
-      ->required()
-      ->option_text("SCRIPT.jsonl");
-  command->add_option("--scenes", options->batch.scenes, "scene folders or patterns that match them")
-      ->required()
-      ->option_text("GLOB...");
-  command->add_option("-o,--out", options->out, "results go to FOLDER/{name}, unless the script exports itself")
-      ->required()
-      ->option_text("FOLDER");
-  command->add_option("--var", options->batch.variables, "gives {name} in the script's texts a value")
-      ->option_text("name=value...");
-  command->add_option("--jobs", options->batch.jobs, "scenes at a time")
-      ->check(CLI::Range(1, 1024))
-      ->option_text("N [1]");
-  command->add_flag("--resume", options->batch.resume, "leave out what was done before with this script and scene");
-  command->add_option("--shard", options->shard, "only the i-th of n parts, for a scheduler to run all of them")
-      ->option_text("i/n");
-  command->add_option("--report", options->report, "one JSON object a line for each scene")
-      ->option_text("FILE [FOLDER/report.jsonl]");
-  command->callback([options] {
+  command
+      .option("script", options->script, "script; {name} and {path} of the scene may stand in its texts",
+              "SCRIPT.jsonl")
+      .required();
+  command.option("--scenes", options->batch.scenes, "scene folders or patterns that match them", "GLOB...").required();
+  command.option("-o,--out", options->out, "results go to FOLDER/{name}, unless the script exports itself", "FOLDER")
+      .required();
+  command.option("--var", options->batch.variables, "gives {name} in the script's texts a value", "name=value...");
+  command.option("--jobs", options->batch.jobs, "scenes at a time", "N [1]").between(1, 1024);
+  command.flag("--resume", options->batch.resume, "leave out what was done before with this script and scene");
+  command.option("--shard", options->shard, "only the i-th of n parts, for a scheduler to run all of them", "i/n");
+  command.option("--report", options->report, "one JSON object a line for each scene", "FILE [FOLDER/report.jsonl]");
+  command.does([options] {
     BatchOptions& batch = options->batch;
     parse_shard(options->shard, batch);
     batch.script = options->script;

@@ -1,33 +1,30 @@
 #pragma once
 
-namespace CLI {
-class App;
-}
+#include "editor/cli/command.h"
 
 namespace rebake {
 
-/// A subcommand: adds itself, its options and what it does to the program.
-struct Subcommand {
-  void (*add)(CLI::App& program);
-};
-
-void add_info(CLI::App& program);
-void add_render(CLI::App& program);
-void add_edit(CLI::App& program);
-void add_run(CLI::App& program);
-void add_export(CLI::App& program);
-void add_batch(CLI::App& program);
-void add_recover(CLI::App& program);
-void add_compare(CLI::App& program);
-void add_study(CLI::App& program);
+void describe_edit(CommandDescription& command);
+void describe_info(CommandDescription& command);
+void describe_render(CommandDescription& command);
+void describe_run(CommandDescription& command);
+void describe_export(CommandDescription& command);
+void describe_batch(CommandDescription& command);
+void describe_recover(CommandDescription& command);
+void describe_compare(CommandDescription& command);
+void describe_study(CommandDescription& command);
 
 /// The one table of subcommands, in the order of help.
-inline constexpr Subcommand subcommand_table[] = {{add_edit},  {add_info},    {add_render},  {add_run},  {add_export},
-                                                  {add_batch}, {add_recover}, {add_compare}, {add_study}};
-
-/// Says what main is to return after a command that ran, but whose answer is "no" (compare below its bar).
-struct ExitWith {
-  int code;
-};
+inline constexpr Subcommand subcommand_table[] = {
+    {"edit", "opens the editor's window", describe_edit},
+    {"info", "says what a folder or scene holds", describe_info},
+    {"render", "draws one or several folders or scenes into a PNG", describe_render},
+    {"run", "runs a script of edits and actions, one JSON object a line", describe_run},
+    {"export", "writes a folder or scene in the MobileNeRF format", describe_export},
+    {"batch", "runs one script on many scenes, each imported first as the node \"scene\" and exported at the end",
+     describe_batch},
+    {"recover", "gets the work of a run that was killed back from its journal, as a project", describe_recover},
+    {"compare", "says how much two pictures differ", describe_compare},
+    {"study", "measures accuracy against time: a table (CSV) and a plot (SVG, PNG)", describe_study}};
 
 }  // namespace rebake

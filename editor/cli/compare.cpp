@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,7 +10,7 @@
 
 namespace rebake {
 
-void add_compare(CLI::App& program) {
+void describe_compare(CommandDescription& command) {
   struct Options {
     std::string a, b;
     int tolerance = 2;
@@ -19,15 +18,15 @@ void add_compare(CLI::App& program) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("compare", "says how much two pictures differ");
-  command->add_option("a", options->a, "picture")->required()->option_text("A.png");
-  command->add_option("b", options->b, "picture of the same size")->required()->option_text("B.png");
-  command->add_option("--tolerance", options->tolerance, "difference of a channel that still counts as equal, in 1/255")
-      ->check(CLI::Range(0, 255))
-      ->option_text("N [2]");
-  command->add_option("--min-psnr", options->least_psnr, "exit with 3 below this")->option_text("dB");
-  command->add_flag("--json", options->json, "machine-readable; psnr_db is null for equal pictures");
-  command->callback([options] {
+  command.option("a", options->a, "picture", "A.png").required();
+  command.option("b", options->b, "picture of the same size", "B.png").required();
+  command
+      .option("--tolerance", options->tolerance, "difference of a channel that still counts as equal, in 1/255",
+              "N [2]")
+      .between(0, 255);
+  command.option("--min-psnr", options->least_psnr, "exit with 3 below this", "dB");
+  command.flag("--json", options->json, "machine-readable; psnr_db is null for equal pictures");
+  command.does([options] {
     const Difference d = compare(read_image(options->a), read_image(options->b), options->tolerance);
     if (options->json) {
       nlohmann::json out = {{"ssim", d.ssim},

@@ -1,41 +1,39 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
-#include "editor/actions/export.h"
 #include "editor/cli/commands.h"
 #include "editor/cli/options.h"
 #include "editor/cli/terminal.h"
+#include "editor/commands/export.h"
+#include "editor/commands/session.h"
+#include "editor/fields/codec.h"
 
 namespace rebake {
 
-void add_export(CLI::App& program) {
+void describe_export(CommandDescription& command) {
   struct Options {
     std::string folder, out, layout;
-    Axes axes = Axes::y_up;
+    std::string axes = "360";
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("export", "writes a folder or scene in the MobileNeRF format");
-  command->add_option("folder", options->folder, "what to export")->required()->option_text("FOLDER|SCENE");
-  command->add_option("-o,--out", options->out, "folder to write; replaced whole or not at all")
-      ->required()
-      ->option_text("FOLDER");
-  command->add_option("--layout", options->layout, "convert the layout")
-      ->check(CLI::IsMember({"split", "chunked", "unsplit"}))
-      ->option_text("split|chunked|unsplit [as read]");
-  add_axes_option(*command, options->axes);
-  command->callback([options] {
+  command.option("folder", options->folder, "what to export", "FOLDER|SCENE").required();
+  command.option("-o,--out", options->out, "folder to write; replaced whole or not at all", "FOLDER").required();
+  command.option("--layout", options->layout, "convert the layout", "split|chunked|unsplit [as read]")
+      .one_of(std::vector<std::string>{"split", "chunked", "unsplit"});
+  add_axes_option(command, options->axes);
+  command.does([options] {
     Session session;
     session.progress = progress_bar();
-    session.say = [](const std::string& line) {
-      clear_progress_bar();
-      fmt::print(stderr, "{}\n", line);
-    };
-    session.document = Document(read_all({options->folder}, options->axes, session.progress));
+    session.say = say_line;
+    Opened opened = read_all({options->folder}, options->axes, session.progress);
+    session.document = Document(std::move(opened.scene));
+    // What names the folders must stay as well as they.
+    opened.sources.check_folder(options->out);
     ExportAction action;
     action.out = options->out;
-    if (!options->layout.empty()) action.layout = Codec<Layout>::read(options->layout, session.scene());
+    if (!options->layout.empty()) action.layout = Codec<Layout>::read(nlohmann::json(options->layout), session.scene());
     run(session, action);
   });
 }

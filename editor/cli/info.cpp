@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -8,7 +7,7 @@
 #include "editor/cli/commands.h"
 #include "editor/cli/options.h"
 #include "editor/cli/terminal.h"
-#include "editor/fields/fields.h"
+#include "editor/fields/codec.h"
 
 namespace rebake {
 
@@ -92,7 +91,7 @@ std::string megabytes(double bytes) { return fmt::format("{:.1f} MB", bytes / 1e
 void print(const json& info) {
   for (const json& o : info.at("objects")) {
     const json &low = o.at("bounds").at("min"), &high = o.at("bounds").at("max");
-    fmt::print("{}{}\n", o.at("name").get<std::string>(), o.at("visible").get<bool>() ? "" : "  (hidden)");
+    fmt::print("{}{}\n", printable(o.at("name").get<std::string>()), o.at("visible").get<bool>() ? "" : "  (hidden)");
     fmt::print("  layout         {}, {} texture set(s), {} geometry file(s)\n", o.at("layout").get<std::string>(),
                o.at("texture_sets").get<std::size_t>(), o.at("chunks").get<std::size_t>());
     fmt::print("  geometry       {} vertices, {} triangles\n", o.at("vertices").get<std::size_t>(),
@@ -116,21 +115,18 @@ void print(const json& info) {
 
 }  // namespace
 
-void add_info(CLI::App& program) {
+void describe_info(CommandDescription& command) {
   struct Options {
     std::string folder;
-    Axes axes = Axes::y_up;
+    std::string axes = "360";
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("info", "says what a folder or scene holds");
-  command->add_option("folder", options->folder, "MobileNeRF folder or Rebake scene")
-      ->required()
-      ->option_text("FOLDER|SCENE");
-  command->add_flag("--json", options->json, "machine-readable; memory in bytes");
-  add_axes_option(*command, options->axes);
-  command->callback([options] {
-    const nlohmann::json info = scene_info(read_all({options->folder}, options->axes, progress_bar()));
+  command.option("folder", options->folder, "MobileNeRF folder or Rebake scene", "FOLDER|SCENE").required();
+  command.flag("--json", options->json, "machine-readable; memory in bytes");
+  add_axes_option(command, options->axes);
+  command.does([options] {
+    const nlohmann::json info = scene_info(read_all({options->folder}, options->axes, progress_bar()).scene);
     if (options->json)
       fmt::print("{}\n", info.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
     else

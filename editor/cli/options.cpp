@@ -4,14 +4,18 @@
 
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "editor/commands/views.h"
 #include "editor/document/document.h"
 #include "editor/document/project.h"
 #include "editor/edits/support.h"
-#include "mesh_ops/error.h"
+#include "editor/fields/codec.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/camera_json.h"
-#include "mesh_ops/formats/files.h"
 #include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/scene_files.h"
 
 namespace rebake {
 
@@ -42,51 +46,56 @@ Vec3 parse_vec3(const std::string& text, const char* option) {
   return {values[0], values[1], values[2]};
 }
 
-void add_axes_option(CLI::App& command, Axes& axes) {
-  command.add_option("--axes", axes, "which way MobileNeRF folders are oriented: 360 or forward")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Axes>{{"360", Axes::y_up}, {"forward", Axes::forward}})
-                      .description(""))
-      ->option_text("360|forward [360]");
+void add_axes_option(CommandDescription& command, std::string& axes) {
+  command.option("--axes", axes, "which way MobileNeRF folders are oriented: 360 or forward", "360|forward [360]")
+      .one_of(Codec<Axes>::type().choices);
 }
+Axes axes_of(const std::string& word) { return Codec<Axes>::read(word, {}); }
 
-Scene read_all(const std::vector<std::string>& folders, Axes axes, const Progress& progress) {
-  Scene scene;
+Opened read_all(const std::vector<std::string>& folders, const std::string& axes, const Progress& progress) {
+  Opened opened;
+  Scene& scene = opened.scene;
   for (const std::string& folder : folders) {
-    const Scene read = is_project_file(folder) ? Document::open(folder).scene() : read_any(folder, axes, progress);
-    if (folders.size() == 1) return read;
-    for (const NodePtr& root : read.roots) {
-      scene = with_added(scene, without_ids(*root), NodeId::none, scene.roots.size());
+    Scene read;
+    if (is_project_file(folder)) {
+      const Document document = Document::open(folder, {}, progress);
+      read = document.scene();
+      add_sources(opened.sources, document.history().edits());
+    } else {
+      read = read_any(folder, axes_of(axes), progress);
+      opened.sources.add(scene_folder_of(folder));
     }
+    add_sources(opened.sources, read);
+    if (folders.size() == 1) {
+      scene = std::move(read);
+      return opened;
+    }
+    for (const NodePtr& root : read.roots)
+      scene = with_added(scene, without_ids(*root), NodeId::none, scene.roots.size());
     for (const auto& [name, camera] : read.views) scene.views.try_emplace(name, camera);
   }
-  return scene;
+  return opened;
 }
 
-void ViewOptions::add_to(CLI::App& command) {
-  command.add_option("--size", size, "picture size in pixels")->option_text("WxH [800x800]");
-  command.add_option("--eye", eye, "camera position")->option_text("x,y,z");
-  command.add_option("--target", target, "point that the camera looks at")->option_text("x,y,z");
-  command.add_option("--up", up, "up direction")->option_text("x,y,z [0,1,0]");
-  command.add_option("--fov", fov, "vertical field of view")->option_text("degrees [39]");
-  command.add_option("--near", near_plane, "near plane")->option_text("n");
-  command.add_option("--far", far_plane, "far plane")->option_text("f");
-  command
-      .add_option("--camera", camera_file,
-                  "JSON file with eye, target, up, fov, ortho_height, near, far; or the name of a view of the scene")
-      ->option_text("FILE|VIEW");
-  command.add_option("--samples", samples, "samples a pixel")
-      ->check(CLI::IsMember({1, 4, 16}))
-      ->option_text("1|4|16 [4]");
-  command.add_option("--background", background, "display colour, 0 to 1")->option_text("r,g,b [1,1,1]");
-  command.add_option("--weights", weights, "decoder weights in the shader")
-      ->check(CLI::IsMember({"automatic", "constants", "buffer"}))
-      ->option_text("automatic|constants|buffer");
-  command.add_option("--shading", shading, "forward decodes while drawing, at 1 sample only")
-      ->check(CLI::IsMember({"automatic", "deferred", "forward"}))
-      ->option_text("automatic|deferred|forward");
-  command.add_option("--precision", precision, "decoder weights as 32- or 16-bit floats")
-      ->check(CLI::IsMember({"full", "half"}))
-      ->option_text("full|half");
+void ViewOptions::add_to(CommandDescription& command) {
+  command.option("--size", size, "picture size in pixels", "WxH [800x800]");
+  command.option("--eye", eye, "camera position", "x,y,z");
+  command.option("--target", target, "point that the camera looks at", "x,y,z");
+  command.option("--up", up, "up direction", "x,y,z [0,1,0]");
+  command.option("--fov", fov, "vertical field of view", "degrees [39]");
+  command.option("--near", near_plane, "near plane", "n");
+  command.option("--far", far_plane, "far plane", "f");
+  command.option("--camera", camera_file,
+                 "JSON file with eye, target, up, fov, ortho_height, near, far; or the name of a view of the scene",
+                 "FILE|VIEW");
+  command.option("--samples", samples, "samples a pixel", "1|4|16 [4]").one_of(std::vector<int>{1, 4, 16});
+  command.option("--background", background, "display colour, 0 to 1", "r,g,b [1,1,1]");
+  command.option("--weights", weights, "decoder weights in the shader", "automatic|constants|buffer")
+      .one_of(std::vector<std::string>{"automatic", "constants", "buffer"});
+  command.option("--shading", shading, "forward decodes while drawing, at 1 sample only", "automatic|deferred|forward")
+      .one_of(std::vector<std::string>{"automatic", "deferred", "forward"});
+  command.option("--precision", precision, "decoder weights as 32- or 16-bit floats", "full|half")
+      .one_of(std::vector<std::string>{"full", "half"});
 }
 
 View ViewOptions::view(const Scene& scene) const {

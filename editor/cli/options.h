@@ -1,14 +1,14 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "editor/actions/session.h"
-#include "mesh_ops/scene/camera.h"
-#include "render/frame/plan.h"
+#include "editor/cli/command.h"
+#include "mesh_ops/base/progress.h"
+#include "mesh_ops/base/source_guard.h"
+#include "mesh_ops/scene/scene.h"
+#include "render/graph/plan.h"
 
 namespace rebake {
 
@@ -16,10 +16,15 @@ namespace rebake {
 Vec3 parse_vec3(const std::string& text, const char* option);
 
 /// --axes 360|forward
-void add_axes_option(CLI::App& command, Axes& axes);
+void add_axes_option(CommandDescription& command, std::string& axes);
+Axes axes_of(const std::string& word);
 
-/// Reads folders into one scene, names made unique.
-Scene read_all(const std::vector<std::string>& folders, Axes axes, const Progress& progress);
+/// What a command line names, in one scene; names made unique.
+struct Opened {
+  Scene scene;
+  SourceGuard sources;  ///< where nothing may be written
+};
+Opened read_all(const std::vector<std::string>& folders, const std::string& axes, const Progress& progress);
 
 /// Camera and raster options of commands that render.
 struct ViewOptions {
@@ -28,7 +33,7 @@ struct ViewOptions {
   int samples = 4;
   std::string weights = "automatic", shading = "automatic", precision = "full";
 
-  void add_to(CLI::App& command);
+  void add_to(CommandDescription& command);
   /// The view on `scene`: the options over the camera file, or over a camera that frames the scene. Throws FieldError,
   /// FileError.
   View view(const Scene& scene) const;

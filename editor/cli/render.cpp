@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,7 +8,7 @@
 #include "editor/cli/commands.h"
 #include "editor/cli/options.h"
 #include "editor/cli/terminal.h"
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 #include "render/picture.h"
 
 namespace rebake {
@@ -21,7 +20,7 @@ using nlohmann::json;
 struct Options {
   std::vector<std::string> folders;
   std::string out;
-  Axes axes = Axes::y_up;
+  std::string axes = "360";
   ViewOptions view;
   bool plan = false, json = false;
   int time = 0;
@@ -73,7 +72,7 @@ void execute(const Options& options) {
     throw FieldError("-o", "is missing: name a PNG to write (or give --plan or --time)");
   if (!options.out.empty() && std::filesystem::path(options.out).extension() == ".jpg")
     throw FieldError("-o", "pictures are written as PNG; name a .png file");
-  Scene scene = read_all(options.folders, options.axes, progress_bar());
+  auto [scene, sources] = read_all(options.folders, options.axes, progress_bar());
   options.view.set_background(scene);
   const View view = options.view.view(scene);
   const RenderOptions how = options.view.render_options();
@@ -87,7 +86,7 @@ void execute(const Options& options) {
   }
   if (!options.out.empty() || options.time > 0) {
     Renderer renderer;
-    if (!options.out.empty()) write_png(renderer.render(scene, view, how), options.out);
+    if (!options.out.empty()) write_png(renderer.render(scene, view, how), options.out, sources);
     if (options.time > 0) {
       const json times = measure(renderer, scene, view, how, options.time);
       if (!options.json) print_times(times);
@@ -99,19 +98,16 @@ void execute(const Options& options) {
 
 }  // namespace
 
-void add_render(CLI::App& program) {
+void describe_render(CommandDescription& command) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("render", "draws one or several folders or scenes into a PNG");
-  command->add_option("folders", options->folders, "what to draw, together in one scene")
-      ->required()
-      ->option_text("FOLDER|SCENE...");
-  command->add_option("-o,--out", options->out, "PNG to write")->option_text("OUT.png");
-  options->view.add_to(*command);
-  add_axes_option(*command, options->axes);
-  command->add_flag("--plan", options->plan, "print which passes run, which do not, and why");
-  command->add_option("--time", options->time, "time this many frames")->check(CLI::Range(1, 100000))->option_text("N");
-  command->add_flag("--json", options->json, "plan and times as JSON");
-  command->callback([options] { execute(*options); });
+  command.option("folders", options->folders, "what to draw, together in one scene", "FOLDER|SCENE...").required();
+  command.option("-o,--out", options->out, "PNG to write", "OUT.png");
+  options->view.add_to(command);
+  add_axes_option(command, options->axes);
+  command.flag("--plan", options->plan, "print which passes run, which do not, and why");
+  command.option("--time", options->time, "time this many frames", "N").between(1, 100000);
+  command.flag("--json", options->json, "plan and times as JSON");
+  command.does([options] { execute(*options); });
 }
 
 }  // namespace rebake

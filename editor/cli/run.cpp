@@ -3,20 +3,22 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <memory>
 #include <optional>
 
 #include "editor/cli/commands.h"
 #include "editor/cli/terminal.h"
+#include "editor/commands/export.h"
+#include "editor/commands/session.h"
+#include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
-void add_run(CLI::App& program) {
+void describe_run(CommandDescription& command) {
   struct Options {
     std::string script, journal, scene, out, exports;
     std::vector<std::string> variables;
@@ -24,30 +26,22 @@ void add_run(CLI::App& program) {
     int threads = 0, parent = 0;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("run", "runs a script of edits and actions, one JSON object a line");
-  command->add_option("script", options->script, "script; relative paths in it start at the current folder")
-      ->option_text("SCRIPT.jsonl");
-  command->add_option("--var", options->variables, "gives {name} in the script's texts a value")
-      ->option_text("name=value...");
-  command->add_option("--journal", options->journal, "keep every edit safe in this file until the script is done")
-      ->option_text("FILE");
-  command->add_option("--scene", options->scene, "import this first as the node \"scene\"; gives {name} and {path}")
-      ->option_text("FOLDER");
-  command->add_option("--out", options->out, "export there at the end, unless the script exports itself")
-      ->option_text("FOLDER");
-  command->add_option("--list-exports", options->exports, "write the folders that were exported there, one a line")
-      ->option_text("FILE");
-  command->add_option("--threads", options->threads, "use at most so many threads")
-      ->check(CLI::Range(1, 4096))
-      ->option_text("N [one a core]");
-  command->add_option("--parent", options->parent, "end when the process with this number does")->option_text("PID");
-  command->add_flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
-  command->callback([options] {
+  command.option("script", options->script, "script; relative paths in it start at the current folder", "SCRIPT.jsonl");
+  command.option("--var", options->variables, "gives {name} in the script's texts a value", "name=value...");
+  command.option("--journal", options->journal, "keep every edit safe in this file until the script is done", "FILE");
+  command.option("--scene", options->scene, "import this first as the node \"scene\"; gives {name} and {path}",
+                 "FOLDER");
+  command.option("--out", options->out, "export there at the end, unless the script exports itself", "FOLDER");
+  command.option("--list-exports", options->exports, "write the folders that were exported there, one a line", "FILE");
+  command.option("--threads", options->threads, "use at most so many threads", "N [one a core]").between(1, 4096);
+  command.option("--parent", options->parent, "end when the process with this number does", "PID");
+  command.flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
+  command.does([options] {
     if (options->fields) {
       fmt::print("{}", command_reference());
       return;
     }
-    if (options->script.empty()) throw CLI::RequiredError("script");
+    if (options->script.empty()) throw FieldError("script", "is missing: name a script to run");
     if (options->parent != 0) {
       ::prctl(PR_SET_PDEATHSIG, SIGTERM);
       if (::getppid() != options->parent) throw Error("the process that started this one has ended");
@@ -58,17 +52,13 @@ void add_run(CLI::App& program) {
     std::map<std::string, std::string> variables;
     for (const std::string& pair : options->variables) {
       const std::size_t equals = pair.find('=');
-      if (equals == std::string::npos || equals == 0)
-        throw CLI::ValidationError("--var", "\"" + pair + "\" must be name=value");
+      if (equals == std::string::npos || equals == 0) throw FieldError("--var", "\"" + pair + "\" must be name=value");
       variables[pair.substr(0, equals)] = pair.substr(equals + 1);
     }
     Session session;
     session.progress = progress_bar();
-    session.say = [](const std::string& line) {
-      clear_progress_bar();
-      fmt::print(stderr, "{}\n", line);
-    };
-    const std::string script = read_file(options->script);
+    session.say = say_line;
+    const std::string script = read_input(options->script);
     if (!options->journal.empty()) session.document.keep_journal(options->journal);
     if (!options->scene.empty()) {
       variables["name"] = folder_title(options->scene);
@@ -89,7 +79,7 @@ void add_run(CLI::App& program) {
         std::string lines;
         for (const std::string& folder : session.exports)
           lines += std::filesystem::absolute(folder).lexically_normal().string() + '\n';
-        write_file_atomically(options->exports, lines);
+        write_file_atomically(options->exports, lines, session.document.sources());
       }
     } catch (const Error&) {
       if (!options->journal.empty())

@@ -2,45 +2,39 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "editor/cli/commands.h"
 #include "editor/cli/options.h"
 #include "editor/cli/terminal.h"
 #include "editor/studies/default_scene.h"
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 
-void add_study(CLI::App& program) {
+void describe_study(CommandDescription& command) {
   struct Options {
     std::string name, out;
     std::vector<std::string> scenes;
     int frames = 9;
-    Axes axes = Axes::y_up;
+    std::string axes = "360";
     ViewOptions view;
   };
   auto options = std::make_shared<Options>();
   std::string names;
   for (const Study& study : study_table) names += fmt::format("\n  {:<10} {}", study.name, study.help);
-  CLI::App* command =
-      program.add_subcommand("study", "measures accuracy against time: a table (CSV) and a plot (SVG, PNG)");
-  command->footer("Studies:" + names);
-  command->add_option("name", options->name, "which study")->required()->option_text("NAME");
-  command->add_option("-o,--out", options->out, "folder to write to")->required()->option_text("FOLDER");
-  command->add_option("--scene", options->scenes, "what to study it on")
-      ->option_text("FOLDER|SCENE... [the sample ficus]");
-  command->add_option("--frames", options->frames, "frames timed for each choice")
-      ->check(CLI::Range(1, 1000))
-      ->option_text("N [9]");
-  options->view.add_to(*command);
-  add_axes_option(*command, options->axes);
-  command->callback([options] {
+  command.footer("Studies:" + names);
+  command.option("name", options->name, "which study", "NAME").required();
+  command.option("-o,--out", options->out, "folder to write to", "FOLDER").required();
+  command.option("--scene", options->scenes, "what to study it on", "FOLDER|SCENE... [the sample ficus]");
+  command.option("--frames", options->frames, "frames timed for each choice", "N [9]").between(1, 1000);
+  options->view.add_to(command);
+  add_axes_option(command, options->axes);
+  command.does([options] {
     for (const Study& study : study_table) {
       if (options->name != study.name) continue;
       if (options->scenes.empty()) options->scenes.push_back(default_study_scene().string());
-      Scene scene = read_all(options->scenes, options->axes, progress_bar());
+      auto [scene, sources] = read_all(options->scenes, options->axes, progress_bar());
       options->view.set_background(scene);
       std::unique_ptr<Renderer> renderer;
       const auto on_demand = [&]() -> Renderer& {
@@ -61,7 +55,7 @@ void add_study(CLI::App& program) {
           fmt::print("  {:>{}.4g}", row.values[k], table.columns[k].size());
         fmt::print("\n");
       }
-      write_study(study, table, options->out);
+      write_study(study, table, options->out, sources);
       return;
     }
     throw FieldError("name", fmt::format("there is no study \"{}\"; rebake study --help lists them", options->name));

@@ -58,4 +58,25 @@ void clear_progress_bar() {
   if (is_interactive()) fmt::print(stderr, "\r\033[K");
 }
 
+std::string printable(std::string_view text) {
+  std::string result;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const auto c = static_cast<unsigned char>(text[k]);
+    // C1 controls are two bytes in UTF-8.
+    const bool c1 = c == 0xC2 && k + 1 < text.size() && static_cast<unsigned char>(text[k + 1]) < 0xA0;
+    if (c1)
+      result += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[++k]));
+    else if ((c < 32 && c != '\n' && c != '\t') || c == 127)
+      result += fmt::format("\\x{:02x}", c);
+    else
+      result += static_cast<char>(c);
+  }
+  return result;
+}
+
+void say_line(const std::string& line) {
+  clear_progress_bar();
+  fmt::print(stderr, "{}\n", printable(line));
+}
+
 }  // namespace rebake

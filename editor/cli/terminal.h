@@ -1,8 +1,9 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
-#include "mesh_ops/progress.h"
+#include "mesh_ops/base/progress.h"
 
 namespace rebake {
 
@@ -17,5 +18,10 @@ void stop_on_interrupt();
 /// A one-line bar that is redrawn at most ten times a second and removed when done.
 Progress progress_bar();
 void clear_progress_bar();
+
+/// Text that may hold anything (names, paths), fit for a terminal: control characters but line ends are written out.
+std::string printable(std::string_view text);
+/// A line on standard error, beside the progress bar.
+void say_line(const std::string& line);
 
 }  // namespace rebake

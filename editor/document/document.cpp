@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "editor/document/project.h"
-#include "mesh_ops/formats/files.h"
+#include "editor/edits/nodes/import.h"
 
 namespace rebake {
 
@@ -28,46 +30,101 @@ std::size_t count_in(const json& value) { return value.is_boolean() ? 1 : value.
 Document::Document(Scene start, std::uint64_t memory_budget)
     : starts_empty_(start.roots.empty()), history_(std::move(start), memory_budget) {}
 
-Document Document::open(const fs::path& project, std::uint64_t memory_budget) {
+Document Document::open(const fs::path& project, const Relinked& links, const Progress& progress,
+                        std::uint64_t memory_budget) {
   Document document({}, memory_budget);
-  ReadProject read = read_project(project);
+  ReadProject read = read_project(project, links, progress);
   for (std::size_t k = 0; k < read.edits.size(); ++k)
     document.history_.add(std::move(read.edits[k]), std::move(read.scenes[k]), read.joined[k]);
   return document;
 }
 
-Document::Recovered Document::recover(const fs::path& path) {
+namespace {
+
+// The edits of a journal's line; empty for undo and redo.
+json edits_in(const json& entry) {
+  if (entry.contains("edit")) return json::array({entry.at("edit")});
+  return entry.contains("edits") ? entry.at("edits") : json::array();
+}
+
+// "line 7: bend", for lists of what was lost.
+std::string named(std::size_t line, const json& entry) {
+  std::string what;
+  for (const json& edit : edits_in(entry)) what += (what.empty() ? "" : ", ") + edit.value("op", std::string("?"));
+  if (what.empty()) what = entry.contains("undo") ? "undo" : "redo";
+  return fmt::format("line {}: {}", line, what);
+}
+
+}  // namespace
+
+Document::Recovered Document::recover(const fs::path& path, const Relinked& links, const Progress& progress) {
   Journal::Contents contents;
   Journal journal = Journal::resume(path, contents);
   Recovered result;
+  History& history = result.document.history_;
   result.torn = contents.torn;
-  std::size_t number = 1;
-  for (const json& entry : contents.entries) {
-    ++number;
-    try {
-      if (entry.contains("edit") || entry.contains("edits")) {
-        bool joined = false;
-        for (const json& one : entry.contains("edit") ? json::array({entry.at("edit")}) : entry.at("edits")) {
-          Edit edit = read_edit(one, result.document.scene());
-          Scene scene = rebake::apply(result.document.scene(), edit);
-          result.document.history_.add(std::move(edit), std::move(scene), joined);
-          joined = true;
-        }
-      } else if (!entry.contains("undo") && !entry.contains("redo")) {
-        throw Error("is neither an edit nor undo or redo");
-      } else if (entry.contains("undo") ? !result.document.history_.undo(count_in(entry.at("undo")))
-                                        : !result.document.history_.redo(count_in(entry.at("redo")))) {
+  // One line: all of it, or nothing.
+  const auto replay = [&](const json& entry) {
+    if (!entry.contains("edit") && !entry.contains("edits")) {
+      if (!entry.contains("undo") && !entry.contains("redo")) throw Error("is neither an edit nor undo or redo");
+      if (entry.contains("undo") ? !history.undo(count_in(entry.at("undo")), progress)
+                                 : !history.redo(count_in(entry.at("redo")), progress))
         throw Error("there is nothing to undo or redo");
+      return;
+    }
+    std::vector<std::pair<Edit, Scene>> made;
+    for (json one : edits_in(entry)) {
+      const Scene& before = made.empty() ? result.document.scene() : made.back().second;
+      if (one.value("op", "") == Import::op) {
+        const fs::path where = relinked(one.at("path").get<std::string>(), links);
+        one["path"] = where.string();
+        if (const std::string trouble = trouble_with(where, one.value("content", "")); !trouble.empty()) {
+          result.gone.push_back({where, trouble});
+          throw FileError(where, trouble);
+        }
       }
-    } catch (const json::exception& error) {
-      throw FileError(path, fmt::format("line {}: {}", number, error.what()));
-    } catch (const Error& error) {
-      throw FileError(path, fmt::format("line {}: {}", number, error.what()));
+      Edit edit = read_edit(one, before);
+      Scene scene = rebake::apply(before, edit, progress).scene;
+      made.emplace_back(std::move(edit), std::move(scene));
+    }
+    for (std::size_t k = 0; k < made.size(); ++k)
+      history.add(std::move(made[k].first), std::move(made[k].second), k > 0);
+  };
+  std::size_t line = 1;
+  for (const std::string& text : contents.entries) {
+    progress.at("recovering", static_cast<double>(line) / static_cast<double>(contents.entries.size() + 1));
+    ++line;
+    const json entry = json::parse(text);
+    // What follows a lost edit would not be what people made.
+    if (!result.lost.empty()) {
+      result.lost.push_back(named(line, entry));
+      continue;
+    }
+    try {
+      replay(entry);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const std::exception& error) {
+      result.lost.push_back(fmt::format("{}: {}", named(line, entry), error.what()));
     }
   }
-  result.edits = result.document.history_.undo_count();
-  result.document.journal_ = std::move(journal);
+  if (contents.damaged_line > 1) result.lost.push_back(fmt::format("line {} is damaged", contents.damaged_line));
+  for (const Journal::Contents::Line& after : contents.after)
+    result.lost.push_back(named(after.number, json::parse(after.entry)) + " (behind the damage)");
+  result.edits = history.undo_count();
+  if (result.lost.empty() && links.empty() && contents.damaged_line == 0)
+    result.document.journal_ = std::move(journal);
+  else
+    result.journal = std::move(journal);
   return result;
+}
+
+SourceGuard Document::sources() const {
+  SourceGuard guard;
+  add_sources(guard, history_.edits());
+  add_sources(guard, history_.undone());
+  add_sources(guard, scene());
+  return guard;
 }
 
 void Document::keep_journal(const fs::path& path) {
@@ -82,26 +139,33 @@ void Document::keep_journal(const fs::path& path) {
         {edits.begin() + static_cast<std::ptrdiff_t>(first), edits.begin() + static_cast<std::ptrdiff_t>(end)}));
     first = end;
   }
-  journal_ = Journal::create(fs::absolute(path).lexically_normal(), json::object(), std::move(entries));
+  sources().check_file(path);
+  journal_ = Journal::create(fs::absolute(path).lexically_normal(), entries);
 }
 
 void Document::edit(const Edit& edit, const Progress& progress) { edits({edit}, progress); }
 
-std::vector<Scene> Document::edits(const std::vector<Edit>& edits, const Progress& progress) {
+std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progress& progress) {
   std::vector<Scene> scenes;
+  std::vector<Report> reports;
   std::vector<Edit> whole;
   for (const Edit& edit : edits) {
-    whole.push_back(completed(edit));
-    scenes.push_back(rebake::apply(scenes.empty() ? scene() : scenes.back(), whole.back(), progress));
+    const Scene& before = scenes.empty() ? scene() : scenes.back();
+    // What is carried out is what journals and projects will read, to the last bit: nothing can be accepted now and
+    // refused, or done otherwise, later.
+    whole.push_back(read_edit(to_json(completed(edit)), before));
+    Outcome outcome = rebake::apply(before, whole.back(), progress);
+    scenes.push_back(std::move(outcome.scene));
+    reports.push_back(std::move(outcome.report));
   }
-  if (whole.empty()) return scenes;
+  if (whole.empty()) return reports;
   if (journal_) journal_->append(entry_of(whole));
-  for (std::size_t k = 0; k < whole.size(); ++k) history_.add(std::move(whole[k]), scenes[k], k > 0);
-  return scenes;
+  for (std::size_t k = 0; k < whole.size(); ++k) history_.add(std::move(whole[k]), std::move(scenes[k]), k > 0);
+  return reports;
 }
 
-bool Document::undo(std::size_t edits) {
-  if (!history_.undo(edits)) return false;
+bool Document::undo(std::size_t edits, const Progress& progress) {
+  if (!history_.undo(edits, progress)) return false;
   try {
     if (journal_) journal_->append({{"undo", edits}});
   } catch (...) {
@@ -111,8 +175,8 @@ bool Document::undo(std::size_t edits) {
   return true;
 }
 
-bool Document::redo(std::size_t edits) {
-  if (!history_.redo(edits)) return false;
+bool Document::redo(std::size_t edits, const Progress& progress) {
+  if (!history_.redo(edits, progress)) return false;
   try {
     if (journal_) journal_->append({{"redo", edits}});
   } catch (...) {
@@ -122,12 +186,16 @@ bool Document::redo(std::size_t edits) {
   return true;
 }
 
-bool Document::undo_step() { return history_.undo_count() > 0 && undo(history_.undo_step()); }
-bool Document::redo_step() { return history_.redo_count() > 0 && redo(history_.redo_step()); }
+bool Document::undo_step(const Progress& progress) {
+  return history_.undo_count() > 0 && undo(history_.undo_step(), progress);
+}
+bool Document::redo_step(const Progress& progress) {
+  return history_.redo_count() > 0 && redo(history_.redo_step(), progress);
+}
 
-void Document::save(const fs::path& project) const {
+void Document::save(const fs::path& project, const Progress& progress) const {
   if (!starts_empty_) throw Error("only what was imported by edits can be saved as a project");
-  write_project(project, history_.edits(), history_.joined());
+  write_project(project, history_.edits(), history_.joined(), sources(), progress);
 }
 
 void Document::discard_journal() {

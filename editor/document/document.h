@@ -5,41 +5,49 @@
 
 #include "editor/document/history.h"
 #include "editor/document/journal.h"
+#include "editor/document/sources.h"
 
 namespace rebake {
 
 /// What people work on: a scene with its history, on disk as a project, and kept safe by a journal. A thrown edit
-/// leaves everything as it was.
+/// leaves everything as it was. What can take long takes a Progress, and throws Cancelled when it says so.
 class Document {
  public:
   explicit Document(Scene start = {}, std::uint64_t memory_budget = History::default_budget);
 
-  /// Opens a project. Throws FileError.
-  static Document open(const std::filesystem::path& project, std::uint64_t memory_budget = History::default_budget);
-  /// Gets the work of a journal back, and goes on writing it. Throws FileError.
+  /// Opens a project. Throws FileError, SourcesGone.
+  static Document open(const std::filesystem::path& project, const Relinked& links = {}, const Progress& progress = {},
+                       std::uint64_t memory_budget = History::default_budget);
+  /// Gets the work of a journal back, as far as it can be: what stands behind damage, or wants a source that is gone,
+  /// is listed. Where all is there and nothing was relinked, it goes on writing the journal. Throws FileError for a
+  /// file that is no journal.
   struct Recovered;
-  static Recovered recover(const std::filesystem::path& journal);
+  static Recovered recover(const std::filesystem::path& journal, const Relinked& links = {},
+                           const Progress& progress = {});
 
   const Scene& scene() const { return history_.now(); }
   const History& history() const { return history_; }
+  /// Everything that was imported, undone or not, and where the present objects came from.
+  SourceGuard sources() const;
 
   /// From here on every edit is in a journal and on the disk before edit() returns. What was done before is written
   /// first. Throws FileError when there is a journal at that path already, and Error for a document that did not start
   /// from an empty scene: its start could not be got back.
   void keep_journal(const std::filesystem::path& path);
+  bool keeps_journal() const { return journal_.has_value(); }
 
   void edit(const Edit& edit, const Progress& progress = {});
-  /// All of them, to be undone together, or none where one throws. The scene after each.
-  std::vector<Scene> edits(const std::vector<Edit>& edits, const Progress& progress = {});
+  /// All of them, to be undone together, or none where one throws. What each did.
+  std::vector<Report> edits(const std::vector<Edit>& edits, const Progress& progress = {});
   /// So many edits back or forth, or none; false where there are fewer.
-  bool undo(std::size_t edits = 1);
-  bool redo(std::size_t edits = 1);
+  bool undo(std::size_t edits = 1, const Progress& progress = {});
+  bool redo(std::size_t edits = 1, const Progress& progress = {});
   /// All that was made together with the last edit, or with the next one; false where there is none.
-  bool undo_step();
-  bool redo_step();
+  bool undo_step(const Progress& progress = {});
+  bool redo_step(const Progress& progress = {});
 
   /// Writes the project. Throws FileError.
-  void save(const std::filesystem::path& project) const;
+  void save(const std::filesystem::path& project, const Progress& progress = {}) const;
   /// Removes the journal: the work is not wanted, or safe elsewhere.
   void discard_journal();
 
@@ -51,8 +59,11 @@ class Document {
 
 struct Document::Recovered {
   Document document;
-  std::size_t edits = 0;  ///< that the journal held, undone ones not counted
-  bool torn = false;      ///< an edit was being written when the program ended: it is lost
+  std::size_t edits = 0;                  ///< that were got back, undone ones not counted
+  bool torn = false;                      ///< an edit was being written when the program ended: it is lost
+  std::vector<std::string> lost;          ///< what could not be got back, a sentence each
+  std::vector<SourcesGone::Source> gone;  ///< sources that it wants, and that are not as they were
+  std::optional<Journal> journal;         ///< the file itself, where the document does not go on writing it
 };
 
 }  // namespace rebake

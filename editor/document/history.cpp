@@ -106,25 +106,25 @@ std::size_t History::redo_step() const {
   return edits;
 }
 
-bool History::undo(std::size_t edits) {
+bool History::undo(std::size_t edits, const Progress& progress) {
   if (edits > position_) return false;
-  go_to(position_ - edits);
+  go_to(position_ - edits, progress);
   return true;
 }
 
-bool History::redo(std::size_t edits) {
+bool History::redo(std::size_t edits, const Progress& progress) {
   if (edits > redo_count()) return false;
-  go_to(position_ + edits);
+  go_to(position_ + edits, progress);
   return true;
 }
 
-void History::go_to(std::size_t step) {
+void History::go_to(std::size_t step, const Progress& progress) {
   std::size_t from = step;
   while (!steps_[from].scene) --from;
   // The last values on the way are kept too: whoever undoes once usually undoes again.
   std::deque<Scene> scenes{*steps_[from].scene};
   for (std::size_t k = from + 1; k <= step; ++k) {
-    scenes.push_back(rebake::apply(scenes.back(), *steps_[k].edit));
+    scenes.push_back(rebake::apply(scenes.back(), *steps_[k].edit, progress).scene);
     if (scenes.size() > checkpoint_distance) scenes.pop_front();
   }
   forget_indexes(now(), scenes.back());

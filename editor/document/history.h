@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "editor/edits/table.h"
+#include "editor/edits/edit.h"
 
 namespace rebake {
 
@@ -35,8 +35,8 @@ class History {
   void add(Edit edit, Scene scene, bool joined = false);
   /// So many edits back or forth; false where there are fewer. A dropped value is computed again: throws Error when
   /// that fails (a source changed), and nothing changes then.
-  bool undo(std::size_t edits = 1);
-  bool redo(std::size_t edits = 1);
+  bool undo(std::size_t edits = 1, const Progress& progress = {});
+  bool redo(std::size_t edits = 1, const Progress& progress = {});
 
   /// Bytes that the kept scenes hold, what is shared counted once.
   std::uint64_t memory() const { return memory_; }
@@ -52,7 +52,7 @@ class History {
   void keep(std::size_t step, Scene scene);
   void drop(std::size_t step);
   void fit_budget();
-  void go_to(std::size_t step);
+  void go_to(std::size_t step, const Progress& progress);
 
   std::vector<Step> steps_;
   std::size_t position_ = 0;

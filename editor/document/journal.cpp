@@ -7,9 +7,13 @@
 
 #include <cerrno>
 #include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
 
-#include "mesh_ops/error.h"
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/file_calls.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 
 namespace rebake {
 
@@ -18,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int version = 1;
+constexpr int version = 2;
 constexpr std::size_t digits = 16;
 
 std::string line_of(const json& entry) {
@@ -28,65 +32,67 @@ std::string line_of(const json& entry) {
   } catch (const json::type_error&) {
     throw Error("the journal holds text only: a name or path has bytes that are not UTF-8");
   }
-  return fmt::format("{:016x} {}\n", content_hash(text), text);
+  return fmt::format("{} {}\n", hash_text(content_hash(text)), text);
 }
-
-void sync_folder_of(const fs::path& path) {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;  // the file itself is synced; some file systems refuse this for folders
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
-
-}  // namespace
-
-namespace {
 
 struct Parsed {
   Journal::Contents contents;
-  std::uint64_t good_bytes = 0;  // where the last whole line ends
+  std::uint64_t good_bytes = 0;  // where the last whole line before any damage ends
+  bool begun = false;            // the first line is whole
 };
 
-// The first line as create() begins it; a file that holds a piece of it only was being begun.
-std::string first_line() { return line_of({{"rebake_journal", version}}); }
+std::string first_line(int of) { return line_of({{"rebake_journal", of}}); }
+
+// The JSON behind a line's checksum, where that is right.
+std::optional<json> whole(std::string_view line) {
+  if (line.size() <= digits + 1 || hash_text(content_hash(line.substr(digits + 1))) != line.substr(0, digits))
+    return std::nullopt;
+  json entry = json::parse(line.substr(digits + 1), nullptr, false);
+  return entry.is_object() ? std::optional(std::move(entry)) : std::nullopt;
+}
 
 Parsed parse(const fs::path& path, std::string_view bytes) {
   Parsed parsed;
-  std::size_t number = 0;
-  for (std::size_t begin = 0; begin < bytes.size();) {
-    const std::size_t end = bytes.find('\n', begin);
-    const std::string_view line = bytes.substr(begin, end == std::string_view::npos ? end : end - begin);
-    const bool last = end == std::string_view::npos || end + 1 == bytes.size();
-    const bool whole = end != std::string_view::npos && line.size() > digits + 1 &&
-                       fmt::format("{:016x}", content_hash(line.substr(digits + 1))) == line.substr(0, digits);
-    json entry = whole ? json::parse(line.substr(digits + 1), nullptr, false) : json();
-    if (number == 0) {
-      if (!whole && first_line().starts_with(bytes)) {
-        parsed.contents.torn = true;
-        return parsed;
-      }
-      if (!whole || !entry.is_object() || !entry.contains("rebake_journal"))
-        throw FileError(path, "is not a journal of Rebake");
-      if (entry.at("rebake_journal") != version)
-        throw FileError(path, "was written by a newer version of Rebake; open it with that one");
-      parsed.contents.about = std::move(entry);
-    } else if (!whole) {
-      if (!last)
-        throw FileError(path,
-                        fmt::format("line {} is damaged; the {} lines of work before it are whole: cut the file off "
-                                    "there to get them back",
-                                    number + 1, number - 1));
-      parsed.contents.torn = true;
+  Journal::Contents& contents = parsed.contents;
+  // A piece of a first line: the journal was being begun.
+  for (const int of : {1, version})
+    if (bytes.size() < first_line(of).size() && first_line(of).starts_with(bytes)) {
+      contents.torn = true;
       return parsed;
-    } else if (!entry.is_object() || entry.value("n", json()) != number) {
-      throw FileError(path, fmt::format("line {} does not follow the one before", number + 1));
-    } else {
-      parsed.contents.entries.push_back(std::move(entry));
     }
-    begin = end + 1;
-    parsed.good_bytes = begin;
-    ++number;
+  std::size_t number = 0, whole_lines = 0;
+  for (std::size_t begin = 0; begin < bytes.size(); ++number) {
+    const std::size_t end = bytes.find('\n', begin);
+    const bool ends = end != std::string_view::npos;
+    const std::string_view line = bytes.substr(begin, ends ? end - begin : end);
+    const std::optional<json> entry = ends ? whole(line) : std::nullopt;
+    begin = ends ? end + 1 : bytes.size();
+    if (number == 0 && entry && entry->contains("rebake_journal")) {
+      const json& of = entry->at("rebake_journal");
+      if (!of.is_number_unsigned() || of.get<std::uint64_t>() > version)
+        throw FileError(path, "was written by a newer version of Rebake; open it with that one");
+      parsed.begun = true;
+      parsed.good_bytes = begin;
+      continue;
+    }
+    const bool follows = entry && entry->value("n", json()) == number;
+    whole_lines += follows ? 1 : 0;
+    const std::string text = follows ? entry->dump() : "";
+    if (contents.damaged_line != 0) {
+      if (follows) contents.after.push_back({number + 1, text});
+    } else if (follows && number > 0) {
+      contents.entries.push_back(text);
+      parsed.good_bytes = begin;
+    } else if (number > 0 && begin == bytes.size()) {
+      contents.torn = true;  // the last line: it was being written
+    } else if (number > 0) {
+      contents.damaged_line = number + 1;
+    }
+  }
+  if (!parsed.begun) {
+    // Only its first line is damaged, where others are whole: what it says beyond its version is not needed.
+    if (whole_lines == 0) throw FileError(path, "is not a journal of Rebake");
+    if (contents.damaged_line == 0) contents.damaged_line = 1;
   }
   return parsed;
 }
@@ -96,11 +102,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
 class Journal::File {
  public:
   // Opens and locks.
-  File(fs::path path, int flags) : path_(std::move(path)), descriptor_{::open(path_.c_str(), flags | O_CLOEXEC, 0666)} {
-    if (descriptor_.value < 0 && errno == EEXIST)
-      throw FileError(path_, "is there already and may hold work: get it back with \"rebake recover\", or remove it");
-    if (descriptor_.value < 0)
-      throw FileError(path_, std::string("cannot be opened for writing: ") + std::strerror(errno));
+  File(fs::path path, int flags) : path_(std::move(path)), descriptor_(open(path_, flags)) {
     if (::flock(descriptor_.value, LOCK_EX | LOCK_NB) != 0)
       throw FileError(path_, "is being written by another Rebake");
   }
@@ -108,48 +110,58 @@ class Journal::File {
   Contents resume() {
     Parsed parsed = parse(path_, read_file(path_));
     end_ = parsed.good_bytes;
-    next_ = parsed.contents.entries.size() + (end_ > 0 ? 1 : 0);
-    if (::ftruncate(descriptor_.value, static_cast<off_t>(end_)) != 0) fail();
-    if (end_ == 0) append({json{{"rebake_journal", version}}});
+    next_ = parsed.contents.entries.size() + (parsed.begun ? 1 : 0);
+    damaged_ = parsed.contents.damaged_line != 0;
+    if (damaged_) return std::move(parsed.contents);
+    if (file_calls().ftruncate(descriptor_.value, static_cast<off_t>(end_)) != 0) fail();
+    if (!parsed.begun) append({json{{"rebake_journal", version}}});
     return std::move(parsed.contents);
   }
 
-  void append(std::vector<json> entries) {
+  void append(const std::vector<json>& entries) {
+    if (damaged_) throw FileError(path_, "is damaged: nothing can be written behind that");
     std::string lines;
     std::uint64_t next = next_;
-    for (json& entry : entries) {
+    for (json entry : entries) {
       if (next > 0) entry["n"] = next;
       lines += line_of(entry);
       ++next;
     }
     std::string_view rest = lines;
     while (!rest.empty()) {
-      const ssize_t written =
-          ::pwrite(descriptor_.value, rest.data(), rest.size(), static_cast<off_t>(end_ + lines.size() - rest.size()));
+      const ssize_t written = file_calls().pwrite(descriptor_.value, rest.data(), rest.size(),
+                                                  static_cast<off_t>(end_ + lines.size() - rest.size()));
       if (written < 0 && errno == EINTR) continue;
+      if (written == 0) errno = ENOSPC;
       if (written <= 0) fail();
       rest.remove_prefix(static_cast<std::size_t>(written));
     }
-    if (::fdatasync(descriptor_.value) != 0 && errno != EINVAL) fail();
+    if (file_calls().fsync(descriptor_.value) != 0 && errno != EINVAL) fail();
     end_ += lines.size();
     next_ = next;
   }
   const fs::path& path() const { return path_; }
 
  private:
+  static int open(const fs::path& path, int flags) {
+    const int descriptor = file_calls().open(path.c_str(), flags | O_CLOEXEC, 0666);
+    if (descriptor < 0 && errno == EEXIST)
+      throw FileError(path, "is there already and may hold work: get it back with \"rebake recover\", or remove it");
+    if (descriptor < 0) throw FileError(path, std::string("cannot be opened for writing: ") + std::strerror(errno));
+    return descriptor;
+  }
+
   // Leaves the file as it was before the entry.
   [[noreturn]] void fail() {
     const std::string reason = std::strerror(errno);
-    [[maybe_unused]] const int ignored = ::ftruncate(descriptor_.value, static_cast<off_t>(end_));
+    [[maybe_unused]] const int ignored = file_calls().ftruncate(descriptor_.value, static_cast<off_t>(end_));
     throw FileError(path_, "the journal cannot be written: " + reason);
   }
 
   struct Descriptor {
     int value;
     explicit Descriptor(int opened) : value(opened) {}
-    ~Descriptor() {
-      if (value >= 0) ::close(value);
-    }
+    ~Descriptor() { file_calls().close(value); }
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
   };
@@ -157,6 +169,7 @@ class Journal::File {
   Descriptor descriptor_;
   std::uint64_t end_ = 0;
   std::uint64_t next_ = 0;
+  bool damaged_ = false;
 };
 
 Journal::Journal(std::unique_ptr<File> file) : file_(std::move(file)) {}
@@ -164,12 +177,18 @@ Journal::~Journal() = default;
 Journal::Journal(Journal&&) noexcept = default;
 Journal& Journal::operator=(Journal&&) noexcept = default;
 
-Journal Journal::create(const fs::path& path, json about, std::vector<json> entries) {
+Journal Journal::create(const fs::path& path, const std::vector<json>& entries) {
   Journal journal(std::make_unique<File>(path, O_WRONLY | O_CREAT | O_EXCL));
-  about["rebake_journal"] = version;
-  entries.insert(entries.begin(), std::move(about));
-  journal.file_->append(std::move(entries));
-  sync_folder_of(path);
+  std::vector<json> lines{json{{"rebake_journal", version}}};
+  lines.insert(lines.end(), entries.begin(), entries.end());
+  try {
+    journal.file_->append(lines);
+    sync_folder(path.parent_path());
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+    throw;
+  }
   return journal;
 }
 
@@ -180,16 +199,12 @@ Journal Journal::resume(const fs::path& path, Contents& contents) {
   return journal;
 }
 
-void Journal::append(json entry) { file_->append({std::move(entry)}); }
+void Journal::append(const json& entry) { file_->append({entry}); }
 const fs::path& Journal::path() const { return file_->path(); }
-
-void Journal::discard() {
-  std::error_code ignored;
-  fs::remove(file_->path(), ignored);
-}
+void Journal::discard() { remove_file(file_->path()); }
 
 bool Journal::in_use(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return false;
   const bool free = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
   ::close(descriptor);

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -11,18 +11,20 @@ namespace rebake {
 /// A file of what was done, a checksummed line each, for getting work back after a crash. A line is on the disk before
 /// append() returns.
 ///
-///     <16 hexadecimal digits: XXH64 of the rest of the line> {"rebake_journal": 1, …}
+///     <16 hexadecimal digits: XXH64 of the rest of the line> {"rebake_journal": 2}
 ///     <digits> {"n": 1, "edit": {"op": "import", …}}
 ///     <digits> {"n": 2, "edits": [{"op": "hide", …}, {"op": "hide", …}]}     made together
 ///     <digits> {"n": 3, "undo": 2}     so many edits; true: one
+///
+/// Version 1 had no lines of several edits; it is still read.
 class Journal {
  public:
-  /// Begins a journal. Throws FileError when there is a file already (it may hold work) or it cannot be written.
-  /// `about` is kept in the first line; `entries` come behind it, all on the disk before this returns.
-  static Journal create(const std::filesystem::path& path, nlohmann::json about,
-                        std::vector<nlohmann::json> entries = {});
-  /// Opens a journal to go on where it ends: what is torn behind the last whole line is cut off. No other process can
-  /// write it meanwhile. Throws FileError as read() does; the file is left as it was then.
+  /// Begins a journal with these lines, all on the disk before this returns. Throws FileError when there is a file
+  /// already (it may hold work) or it cannot be written.
+  static Journal create(const std::filesystem::path& path, const std::vector<nlohmann::json>& entries);
+  /// Opens a journal to go on where it ends: what is torn behind the last whole line is cut off. One that is damaged is
+  /// left as it is, and takes no more entries. No other process can write it meanwhile. Throws FileError as read()
+  /// does.
   struct Contents;
   static Journal resume(const std::filesystem::path& path, Contents& contents);
 
@@ -31,20 +33,25 @@ class Journal {
   Journal& operator=(Journal&&) noexcept;
 
   /// Appends one entry and waits until it is on the disk. Throws FileError; the journal then ends before the entry.
-  void append(nlohmann::json entry);
+  void append(const nlohmann::json& entry);
   const std::filesystem::path& path() const;
-  /// Removes the file: the work is safe elsewhere.
+  /// Removes the file: the work is safe elsewhere. Throws FileError.
   void discard();
 
   /// What a journal holds, in order.
   struct Contents {
-    nlohmann::json about;
-    std::vector<nlohmann::json> entries;
-    bool torn = false;  ///< something followed that was being written when the program ended
+    std::vector<std::string> entries;  ///< as JSON: all that are whole, before the first that is not
+    bool torn = false;                 ///< something followed that was being written when the program ended
+    std::size_t damaged_line = 0;      ///< the first that is not what was written, from 1; 0 for none
+    struct Line {
+      std::size_t number;
+      std::string entry;  ///< as JSON
+    };
+    std::vector<Line> after;  ///< whole lines behind the damage
   };
   /// Whether another process is writing it now.
   static bool in_use(const std::filesystem::path& path);
-  /// Throws FileError for a file that is no journal, is from a newer version, or is damaged before its last line.
+  /// Throws FileError for a file that is no journal or is from a newer version.
   static Contents read(const std::filesystem::path& path);
 
  private:

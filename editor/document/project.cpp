@@ -2,7 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "mesh_ops/formats/files.h"
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "editor/edits/nodes/import.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 
 namespace rebake {
 
@@ -11,13 +17,33 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int version = 1;
+constexpr int version = 2;
 
-// What is wrong with a source, empty when it is as it was.
-std::string trouble_with(const fs::path& path, const std::string& content) {
-  std::error_code error;
-  if (!fs::exists(path, error)) return "is not there any more";
-  return fmt::format("{:016x}", folder_hash(path)) == content ? "" : "has changed since it was imported";
+std::string checksum(json root) {
+  root.erase("checksum");
+  return hash_text(content_hash(root.dump()));
+}
+
+// Where links lead: relative paths mean the same however the file is named.
+fs::path real_folder_of(const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)).parent_path(); }
+
+fs::path source_path(const fs::path& folder, const json& name, const Relinked& links) {
+  return relinked((folder / name.get<std::string>()).lexically_normal(), links);
+}
+
+void check_form(const fs::path& path, const json& root) {
+  if (!root.is_object() || !root.contains("rebake_project")) throw FileError(path, "is not a project of Rebake");
+  const json& of = root.at("rebake_project");
+  if (!of.is_number_unsigned() || of.get<std::uint64_t>() > version)
+    throw FileError(path, "was written by a newer version of Rebake; open it with that one");
+  for (const auto& [key, value] : root.items())
+    if (key != "rebake_project" && key != "sources" && key != "edits" && key != "joined" && key != "checksum")
+      throw FileError(path, fmt::format("is damaged: \"{}\" is no part of a project", key));
+  if (root.contains("checksum") && root.at("checksum") != checksum(root))
+    throw FileError(
+        path,
+        "is damaged, or was changed by hand: its checksum does not fit. Take \"checksum\" out of the file to "
+        "open it as it is");
 }
 
 }  // namespace
@@ -27,66 +53,63 @@ bool is_project_file(const fs::path& path) {
   return path.extension() == ".rebake" && fs::is_regular_file(path, error);
 }
 
-Edit completed(const Edit& edit) {
-  Edit result = edit;
-  if (auto* import = std::get_if<Import>(&result)) {
-    import->path = fs::absolute(import->path).lexically_normal().string();
-    // What is not there is reported by the import itself.
-    const fs::path folder = fs::path(import->path).filename() == "scene.json" ? fs::path(import->path).parent_path()
-                                                                              : fs::path(import->path);
-    std::error_code error;
-    if (import->content.empty() && fs::is_directory(folder, error))
-      import->content = fmt::format("{:016x}", folder_hash(import->path));
-  }
-  return result;
-}
-
-void write_project(const fs::path& path, const std::vector<Edit>& edits, const std::vector<bool>& joined) {
-  const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
+void write_project(const fs::path& path, const std::vector<Edit>& edits, const std::vector<bool>& joined,
+                   const SourceGuard& guard, const Progress& progress) {
+  const fs::path folder = real_folder_of(path);
   json root = {{"rebake_project", version}, {"sources", json::array()}, {"edits", json::array()}};
-  for (Edit edit : edits) {
-    if (auto* import = std::get_if<Import>(&edit)) {
-      import->path = fs::path(import->path).lexically_proximate(folder).generic_string();
-      const json source = {{"path", import->path}, {"content", import->content}};
-      if (std::find(root["sources"].begin(), root["sources"].end(), source) == root["sources"].end())
-        root["sources"].push_back(source);
-    }
-    root["edits"].push_back(to_json(edit));
+  for (std::size_t k = 0; k < edits.size(); ++k) {
+    progress.at("saving", static_cast<double>(k) / static_cast<double>(edits.size()));
+    root["edits"].push_back(to_json(edits[k]));
+    const auto* import = edits[k].as<Import>();
+    if (import == nullptr) continue;
+    const fs::path source = fs::weakly_canonical(import->path);
+    const std::string relative = source.lexically_proximate(folder).generic_string();
+    root["edits"].back()["path"] = relative;
+    const json entry = {{"path", relative}, {"content", import->content}};
+    if (std::find(root["sources"].begin(), root["sources"].end(), entry) == root["sources"].end())
+      root["sources"].push_back(entry);
   }
   for (std::size_t k = 0; k < edits.size(); ++k)
     if (joined[k]) root["joined"].push_back(k + 1);
-  write_file_atomically(path, root.dump(1) + '\n');
+  try {
+    root["checksum"] = checksum(root);
+    write_file_atomically(path, root.dump(1) + '\n', guard);
+  } catch (const json::type_error&) {
+    throw FileError(path, "holds text only: a name or path has bytes that are not UTF-8");
+  }
 }
 
-ReadProject read_project(const fs::path& path) {
-  const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
+ReadProject read_project(const fs::path& path, const Relinked& links, const Progress& progress) {
+  const fs::path folder = real_folder_of(path);
   ReadProject project;
   try {
     const json root = json::parse(read_file(path));
-    if (!root.is_object() || !root.contains("rebake_project")) throw FileError(path, "is not a project of Rebake");
-    if (root.at("rebake_project") != version)
-      throw FileError(path, "was written by a newer version of Rebake; open it with that one");
+    check_form(path, root);
     std::string troubles;
+    std::vector<SourcesGone::Source> gone;
     for (const json& source : root.at("sources")) {
-      const auto name = source.at("path").get<std::string>();
-      if (const std::string trouble = trouble_with((folder / name).lexically_normal(), source.at("content"));
-          !trouble.empty())
-        troubles += fmt::format("\n  {} {}", name, trouble);
+      const fs::path where = source_path(folder, source.at("path"), links);
+      const std::string trouble = trouble_with(where, source.at("content"));
+      if (trouble.empty()) continue;
+      troubles += fmt::format("\n  {} {}", where.string(), trouble);
+      gone.push_back({where, trouble});
     }
-    if (!troubles.empty())
-      throw FileError(path,
-                      "its sources are not as they were; put them back, or change their paths in the file:" + troubles);
+    if (!gone.empty())
+      throw SourcesGone(path, "its sources are not as they were; put them back, or say where they lie now:" + troubles,
+                        gone);
     Scene scene;
     std::size_t number = 0;
     for (json line : root.at("edits")) {
-      ++number;
+      progress.at("opening", static_cast<double>(number++) / static_cast<double>(root.at("edits").size()));
       try {
         if (line.is_object() && line.value("op", "") == Import::op)
-          line["path"] = (folder / line.at("path").get<std::string>()).lexically_normal().string();
+          line["path"] = source_path(folder, line.at("path"), links).string();
         project.edits.push_back(read_edit(line, scene));
-        if (const auto* import = std::get_if<Import>(&project.edits.back()); import && import->content.empty())
+        if (const auto* import = project.edits.back().as<Import>(); import != nullptr && import->content.empty())
           throw FieldError("content", "is missing: without it a changed source would not be noticed");
-        scene = rebake::apply(scene, project.edits.back());
+        scene = rebake::apply(scene, project.edits.back(), progress).scene;
+      } catch (const Cancelled&) {
+        throw;
       } catch (const Error& error) {
         throw FileError(path, fmt::format("edit {}: {}", number, error.what()));
       }

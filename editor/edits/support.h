@@ -2,7 +2,9 @@
 
 #include <vector>
 
-#include "editor/fields/fields.h"
+#include "editor/edits/edit.h"
+#include "editor/fields/values.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

@@ -1,38 +1,64 @@
-#include "editor/edits/table.h"
+#include <fmt/format.h>
 
-#include "editor/fields/variants.h"
+#include <nlohmann/json.hpp>
+
+#include "editor/edits/edit.h"
+#include "mesh_ops/base/error.h"
+
+// The one table of edits, in the order of help. An edit is a line here and a file of its own.
+#define REBAKE_EDITS(X)                                                                                                \
+  X(Import)                                                                                                            \
+  X(Remove) X(Rename) X(Duplicate) X(Group) X(Reorder) X(Show) X(Hide) X(Lock) X(Unlock) X(StoreView) X(Background)    \
+      X(Transform) X(Select) X(SelectPicture) X(SelectConnected) X(SelectLike) X(SelectFloaters) X(SelectUnneeded)     \
+          X(SelectTriangles) X(SelectFolded) X(Grow) X(Shrink) X(Fill) X(StoreSelection) X(DeleteSelected) X(Separate) \
+              X(Merge) X(Erase) X(CageDeform) X(HandlesDeform) X(Bend) X(Twist) X(Taper) X(Stretch)
 
 namespace rebake {
+
+#define REBAKE_DECLARE(Type) \
+  struct Type;               \
+  template <>                \
+  const EditType& edit_type<Type>();
+REBAKE_EDITS(REBAKE_DECLARE)
+#undef REBAKE_DECLARE
+
+std::span<const EditType* const> edit_types() {
+#define REBAKE_ENTRY(Type) &edit_type<Type>(),
+  static const EditType* const table[] = {REBAKE_EDITS(REBAKE_ENTRY)};
+#undef REBAKE_ENTRY
+  return table;
+}
 
 Edit read_edit(const nlohmann::json& object, const Scene& scene) {
   if (!object.is_object() || !object.contains("op") || !object.at("op").is_string())
     throw FieldError("op", "must name an edit");
-  std::vector<std::string> known;
-  if (auto edit = read_as<Edit>(object.at("op").get<std::string>(), object, scene, known)) return std::move(*edit);
-  throw FieldError("op", "\"" + object.at("op").get<std::string>() + "\" is no edit");
+  const auto& op = object.at("op").get_ref<const std::string&>();
+  for (const EditType* type : edit_types())
+    if (op == type->op) return type->read(object, scene);
+  throw FieldError("op", "\"" + op + "\" is no edit");
 }
 
-Scene apply(const Scene& scene, const Edit& edit, const Progress& progress) {
-  return std::visit(
-      [&]<class T>(const T& one) {
-        // By its exact type: any edit would do as an Edit too.
-        if constexpr (requires { static_cast<Scene (*)(const Scene&, const T&, const Progress&)>(apply); })
-          return apply(scene, one, progress);
-        else
-          return apply(scene, one);
-      },
-      edit);
+Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress) {
+  Outcome outcome = edit.type().apply(scene, edit.value(), progress);
+  std::vector<std::string> lines;
+  // What is done to hidden nodes is not seen.
+  for (const NodeId id : edit.type().named_nodes(edit.value()))
+    if (const auto before = find_placed(scene, id); before && !before->visible)
+      if (const auto placed = find_placed(outcome.scene, id); placed && !placed->visible)
+        lines.push_back(fmt::format("note: \"{}\" is hidden", placed->node->name));
+  if (edit.type().selects) {
+    std::size_t triangles = 0, selected = 0;
+    for (const PlacedNode& placed : placed_nodes(outcome.scene)) {
+      if (placed.node->object) triangles += placed.node->object->triangle_count();
+      if (placed.node->selection) selected += count(*placed.node->selection);
+    }
+    lines.push_back(fmt::format("{}: {} of {} triangles selected", edit.type().op, selected, triangles));
+  }
+  for (std::string& line : outcome.report.lines) line.insert(0, std::string(edit.type().op) + ": ");
+  outcome.report.lines.insert(outcome.report.lines.begin(), lines.begin(), lines.end());
+  return outcome;
 }
 
-nlohmann::json to_json(const Edit& edit) {
-  return std::visit(
-      [](const auto& one) {
-        nlohmann::json object = {{"op", one.op}};
-        FieldWriter writer(object);
-        one.fields(one, writer);
-        return object;
-      },
-      edit);
-}
+nlohmann::json to_json(const Edit& edit) { return edit.type().write(edit.value()); }
 
 }  // namespace rebake

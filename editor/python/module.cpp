@@ -6,10 +6,21 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "editor/actions/session.h"
+#include <mutex>
+#include <optional>
+
+#include "editor/commands/export.h"
+#include "editor/commands/save.h"
+#include "editor/commands/save_project.h"
+#include "editor/commands/session.h"
+#include "editor/commands/views.h"
 #include "editor/document/project.h"
-#include "editor/fields/variants.h"
+#include "editor/edits/deform/cage.h"
+#include "editor/edits/nodes/import.h"
+#include "editor/edits/select/select_triangles.h"
+#include "editor/python/json_python.h"
 #include "editor/python/stub.h"
+#include "editor/python/work.h"
 #include "mesh_ops/deform/cage_deformation.h"
 #include "mesh_ops/deform/wrap.h"
 #include "mesh_ops/formats/export.h"
@@ -23,58 +34,6 @@ namespace rebake {
 
 namespace {
 
-json to_json(const py::handle& value) {
-  if (value.is_none()) return nullptr;
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
-  if (py::isinstance<py::int_>(value)) {
-    const auto number = value.cast<std::int64_t>();
-    return number < 0 ? json(number) : json(static_cast<std::uint64_t>(number));
-  }
-  if (py::isinstance<py::float_>(value)) return value.cast<double>();
-  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-  if (py::hasattr(value, "__fspath__")) return value.attr("__fspath__")().cast<std::string>();
-  if (py::isinstance<py::dict>(value)) {
-    json object = json::object();
-    for (const auto& [key, entry] : value.cast<py::dict>())
-      if (!entry.is_none()) object[key.cast<std::string>()] = to_json(entry);
-    return object;
-  }
-  if (py::isinstance<py::array>(value) || py::hasattr(value, "tolist")) return to_json(value.attr("tolist")());
-  if (py::isinstance<py::sequence>(value)) {
-    json list = json::array();
-    for (const auto& entry : value.cast<py::sequence>()) list.push_back(to_json(entry));
-    return list;
-  }
-  throw py::type_error("a field cannot be a " + py::str(value.get_type()).cast<std::string>());
-}
-
-py::object to_python(const json& value) {
-  switch (value.type()) {
-    case json::value_t::boolean:
-      return py::bool_(value.get<bool>());
-    case json::value_t::number_integer:
-      return py::int_(value.get<std::int64_t>());
-    case json::value_t::number_unsigned:
-      return py::int_(value.get<std::uint64_t>());
-    case json::value_t::number_float:
-      return py::float_(value.get<double>());
-    case json::value_t::string:
-      return py::str(value.get<std::string>());
-    case json::value_t::array: {
-      py::list list;
-      for (const json& entry : value) list.append(to_python(entry));
-      return list;
-    }
-    case json::value_t::object: {
-      py::dict object;
-      for (const auto& [key, entry] : value.items()) object[py::str(key)] = to_python(entry);
-      return object;
-    }
-    default:
-      return py::none();
-  }
-}
-
 // A read-only view of rows that `owner` keeps alive.
 template <class T, class Owner>
 py::array view_of(const T* data, std::vector<py::ssize_t> shape, Owner owner) {
@@ -84,75 +43,108 @@ py::array view_of(const T* data, std::vector<py::ssize_t> shape, Owner owner) {
   return array;
 }
 
-// Guarded by Python's own lock, which no method gives up: a document may be used from several threads in turn.
+// A document may be used from any thread. What works on it takes the lock, after Python's own was let go; what only
+// looks copies the scene, which is cheap.
 class PyDocument {
  public:
   PyDocument() = default;
   explicit PyDocument(Document document) { session_.document = std::move(document); }
 
-  Session& session() { return session_; }
-  const Scene& scene() const { return session_.scene(); }
+  py::object progress = py::none();  ///< called while something long is done
 
-  Edit edit(const json& line) {
-    Edit edit = read_edit(line, scene());
-    session_.edit(edit);
-    return edit;
-  }
-
-  PlacedNode node(const py::object& name) const {
-    const PlacedNode placed = *find_placed(scene(), Codec<NodeRef>::read(to_json(name), scene()).id);
-    if (!placed.node->object) throw EditError("node \"" + placed.node->name + "\" is a group: it has no triangles");
-    return placed;
-  }
-  TextureSet set(const py::object& name, std::size_t index) const {
-    const PlacedNode placed = node(name);
-    const auto& sets = placed.node->object->sets;
-    if (index >= sets.size())
-      throw FieldError("texture_set", fmt::format("\"{}\" has {}, counted from 0", placed.node->name, sets.size()));
-    return sets[index];
+  /// Does work on the session; see do_work(). What the callback asks of the document waits until the work is done.
+  void work(const std::function<void(Session&)>& job) {
+    do_work(progress, [&](const Progress& on_the_way) {
+      const std::scoped_lock lock(mutex_);
+      session_.progress = on_the_way;
+      try {
+        job(session_);
+      } catch (...) {
+        session_.progress = {};
+        throw;
+      }
+      session_.progress = {};
+    });
   }
 
-  py::dict selections() const {
-    py::dict result;
-    for (const PlacedNode& placed : placed_nodes(scene()))
-      if (placed.node->object) result[py::str(placed.node->name)] = mask(placed);
-    return result;
+  Scene scene() {
+    const py::gil_scoped_release others;
+    const std::scoped_lock lock(mutex_);
+    return session_.scene();
   }
-  static py::array mask(const PlacedNode& placed) {
-    const std::size_t count = placed.node->object->triangle_count();
-    py::array_t<bool> result(static_cast<py::ssize_t>(count));
-    auto flags = result.mutable_unchecked<1>();
-    for (std::size_t f = 0; f < count; ++f)
-      flags(static_cast<py::ssize_t>(f)) = placed.node->selection && (*placed.node->selection)[f] != 0;
-    return result;
+  SourceGuard sources() {
+    const py::gil_scoped_release others;
+    const std::scoped_lock lock(mutex_);
+    return session_.document.sources();
   }
-
-  py::array render(int width, int height, int samples, const py::object& camera, const std::string& view_name) {
-    View view;
-    view.width = width;
-    view.height = height;
-    view.samples = samples;
-    if (!camera.is_none() && !view_name.empty()) throw FieldError("view", "contradicts camera");
-    if (!camera.is_none())
-      view.camera = Codec<Camera>::read(to_json(camera), scene());
-    else if (view_name.empty())
-      view.camera = framing_of(scene(), static_cast<double>(width) / std::max(height, 1));
-    else if (const auto found = scene().views.find(view_name); found != scene().views.end())
-      view.camera = found->second;
-    else
-      throw FieldError("view", "there is no view \"" + view_name + "\"");
-    const Image image = session_.renderer().render(scene(), view);
-    return py::array_t<std::uint8_t>({image.height, image.width, 3}, image.rgb.data());
+  std::vector<Edit> edits() {
+    const py::gil_scoped_release others;
+    const std::scoped_lock lock(mutex_);
+    return session_.document.history().edits();
   }
 
  private:
+  std::mutex mutex_;
   Session session_;
 };
 
-py::list nodes_of(const PyDocument& document) {
+PlacedNode node_in(const Scene& scene, const py::object& name) {
+  const PlacedNode placed = *find_placed(scene, Codec<NodeRef>::read(to_json(name), scene).id);
+  if (!placed.node->object) throw EditError("node \"" + placed.node->name + "\" is a group: it has no triangles");
+  return placed;
+}
+
+TextureSet set_in(const Scene& scene, const py::object& name, std::size_t index) {
+  const PlacedNode placed = node_in(scene, name);
+  const auto& sets = placed.node->object->sets;
+  if (index >= sets.size())
+    throw FieldError("texture_set", fmt::format("\"{}\" has {}, counted from 0", placed.node->name, sets.size()));
+  return sets[index];
+}
+
+py::array mask_of(const PlacedNode& placed) {
+  const std::size_t count = placed.node->object->triangle_count();
+  py::array_t<bool> result(static_cast<py::ssize_t>(count));
+  auto flags = result.mutable_unchecked<1>();
+  for (std::size_t f = 0; f < count; ++f)
+    flags(static_cast<py::ssize_t>(f)) = placed.node->selection && (*placed.node->selection)[f] != 0;
+  return result;
+}
+
+py::dict selections_of(PyDocument& document) {
+  py::dict result;
+  for (const PlacedNode& placed : placed_nodes(document.scene()))
+    if (placed.node->object) result[py::str(placed.node->name)] = mask_of(placed);
+  return result;
+}
+
+Edit edit_once(PyDocument& document, const json& line) {
+  std::optional<Edit> made;
+  document.work([&](Session& session) {
+    made = read_edit(line, session.scene());
+    session.edit(*made);
+  });
+  return *made;
+}
+
+py::array render_picture(PyDocument& document, int width, int height, int samples, const py::object& camera,
+                         const std::string& view_name) {
+  const json wanted = to_json(camera);
+  Image image;
+  document.work([&](Session& session) {
+    const std::optional<Camera> given =
+        wanted.is_null() ? std::nullopt : std::optional(Codec<Camera>::read(wanted, session.scene()));
+    image = session.renderer().render(session.scene(),
+                                      chosen_view(session.scene(), given, view_name, width, height, samples));
+  });
+  return py::array_t<std::uint8_t>({image.height, image.width, 3}, image.rgb.data());
+}
+
+py::list nodes_of(PyDocument& document) {
   py::list result;
-  for (const PlacedNode& placed : placed_nodes(document.scene())) {
-    const NodeId parent = parent_of(document.scene(), placed.node->id);
+  const Scene scene = document.scene();
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    const NodeId parent = parent_of(scene, placed.node->id);
     py::array_t<double> to_world({4, 4});
     auto matrix = to_world.mutable_unchecked<2>();
     for (int row = 0; row < 4; ++row)
@@ -160,7 +152,7 @@ py::list nodes_of(const PyDocument& document) {
     py::dict node;
     node["id"] = static_cast<std::uint64_t>(placed.node->id);
     node["name"] = placed.node->name;
-    node["parent"] = parent == NodeId::none ? py::object(py::none()) : py::str(find(document.scene(), parent)->name);
+    node["parent"] = parent == NodeId::none ? py::object(py::none()) : py::str(find(scene, parent)->name);
     node["visible"] = placed.visible;
     node["locked"] = placed.locked;
     node["triangles"] = placed.node->object ? placed.node->object->triangle_count() : 0;
@@ -170,8 +162,8 @@ py::list nodes_of(const PyDocument& document) {
   return result;
 }
 
-py::list tiles_of(const PyDocument& document, const py::object& name, std::size_t index) {
-  const TextureSet set = document.set(name, index);
+py::list tiles_of(PyDocument& document, const py::object& name, std::size_t index) {
+  const TextureSet set = set_in(document.scene(), name, index);
   py::list rows;
   for (int row = 0; row < set.texels->tile_rows(); ++row) {
     py::list columns;
@@ -185,8 +177,8 @@ py::list tiles_of(const PyDocument& document, const py::object& name, std::size_
   return rows;
 }
 
-py::array texture_of(const PyDocument& document, const py::object& name, std::size_t index) {
-  const TextureSet set = document.set(name, index);
+py::array texture_of(PyDocument& document, const py::object& name, std::size_t index) {
+  const TextureSet set = set_in(document.scene(), name, index);
   const int width = set.texels->width(), height = set.texels->height();
   py::array_t<std::uint8_t> result({height, width, 8});
   for (int y = 0; y < height; ++y)
@@ -200,20 +192,18 @@ py::array texture_of(const PyDocument& document, const py::object& name, std::si
 py::object edit_with(PyDocument& document, const std::string& op, const py::dict& fields) {
   json line = to_json(fields);
   line["op"] = op;
-  const Edit edit = document.edit(line);
-  const bool selects =
-      std::visit([](const auto& one) { return changes_selection<std::decay_t<decltype(one)>>(); }, edit);
-  return selects ? py::object(document.selections()) : py::none();
+  const Edit edit = edit_once(document, line);
+  return edit.type().selects ? py::object(selections_of(document)) : py::none();
 }
 
 py::object select_mask(PyDocument& document, const py::object& node, const py::array_t<bool>& mask,
                        const std::string& mode) {
-  const PlacedNode placed = document.node(node);
+  const PlacedNode placed = node_in(document.scene(), node);
   const std::size_t count = placed.node->object->triangle_count();
   if (mask.ndim() != 1 || static_cast<std::size_t>(mask.size()) != count)
     throw FieldError("mask",
                      fmt::format("must be one row of {} values, one a triangle of \"{}\"", count, placed.node->name));
-  SelectTriangles edit{{placed.node->id}, {}, Codec<SelectMode>::read(mode, document.scene())};
+  SelectTriangles edit{{placed.node->id}, {}, Codec<SelectMode>::read(json(mode), {})};
   const auto flags = mask.unchecked<1>();
   for (std::uint64_t f = 0; f < count; ++f) {
     if (!flags(static_cast<py::ssize_t>(f))) continue;
@@ -223,8 +213,8 @@ py::object select_mask(PyDocument& document, const py::object& node, const py::a
     else
       ranges.emplace_back(f, f);
   }
-  document.session().edit(edit);
-  return document.selections();
+  document.work([&](Session& session) { session.edit(edit); });
+  return selections_of(document);
 }
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -257,8 +247,13 @@ py::array_t<double> move_by_cage(const Array& points, const Array& vertices,
   const std::vector<Vec3> places = points_from(points, "points"), targets = points_from(moved, "moved");
   Cage cage = checked_cage({points_from(vertices, "vertices"), faces_from(faces)});
   if (targets.size() != cage.vertices.size()) throw FieldError("moved", "must hold as many points as vertices");
-  const CageCoordinates coordinates = Codec<CageCoordinates>::read(kind, {});
-  return array_of(deform_points(*coordinates_of(cage, coordinates, resolution), cage, targets, places, false).points);
+  const CageCoordinates coordinates = Codec<CageCoordinates>::read(json(kind), {});
+  std::vector<Vec3> moved_places;
+  do_work(py::none(), [&](const Progress& progress) {
+    const auto weights = coordinates_of(cage, coordinates, resolution, progress);
+    moved_places = deform_points(*weights, cage, targets, places, false, progress).points;
+  });
+  return array_of(moved_places);
 }
 
 py::tuple wrap_triangles(const Array& points,
@@ -268,20 +263,43 @@ py::tuple wrap_triangles(const Array& points,
   for (const Face& face : triangles.faces)
     if (std::max({face[0], face[1], face[2]}) >= triangles.points.size())
       throw FieldError("faces", "must name points by number, from 0");
-  const Cage cage = wrap(triangles, coarseness);
+  Cage cage;
+  do_work(py::none(), [&](const Progress& progress) { cage = wrap(triangles, coarseness, progress); });
   py::array_t<std::uint32_t> numbers({static_cast<py::ssize_t>(cage.faces.size()), py::ssize_t{3}});
   if (!cage.faces.empty()) std::memcpy(numbers.mutable_data(), cage.faces.data(), cage.faces.size() * sizeof(Face));
   return py::make_tuple(array_of(cage.vertices), numbers);
 }
 
-std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, const std::string& axes) {
-  if (is_project_file(path)) return std::make_unique<PyDocument>(Document::open(path));
-  Document document;
+std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, const std::string& axes,
+                                          const py::object& callback) {
+  std::optional<Document> opened;
   Import import;
   import.path = path.string();
-  import.axes = Codec<Axes>::read(axes, {});
-  document.edit(import);
-  return std::make_unique<PyDocument>(std::move(document));
+  import.axes = Codec<Axes>::read(json(axes), {});
+  do_work(callback, [&](const Progress& progress) {
+    if (is_project_file(path)) {
+      opened = Document::open(path, {}, progress);
+      return;
+    }
+    opened.emplace();
+    opened->edit(import, progress);
+  });
+  auto document = std::make_unique<PyDocument>(std::move(*opened));
+  document->progress = callback;
+  return document;
+}
+
+std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journal, const py::dict& sources,
+                                             const py::object& callback) {
+  Relinked links;
+  for (const auto& [from, to] : sources) links[from.cast<std::filesystem::path>()] = to.cast<std::filesystem::path>();
+  std::optional<Document::Recovered> recovered;
+  do_work(callback, [&](const Progress& progress) { recovered = Document::recover(journal, links, progress); });
+  for (const std::string& lost : recovered->lost)
+    if (PyErr_WarnEx(PyExc_UserWarning, ("not got back: " + lost).c_str(), 1) != 0) throw py::error_already_set();
+  auto document = std::make_unique<PyDocument>(std::move(recovered->document));
+  document->progress = callback;
+  return document;
 }
 
 }  // namespace
@@ -299,71 +317,92 @@ PYBIND11_MODULE(rebake, module) {
                               "A scene with its history. An edit that raises leaves everything as it was.");
   type.def(py::init<>());
   type.def_property_readonly("nodes", &nodes_of, "Every node: id, name, parent, visible, locked, triangles, to_world.");
+  type.def_readwrite("progress", &PyDocument::progress,
+                     "None, or a function called with what is being done and its share, 0 to 1; raising stops it.");
   type.def(
-      "edit", [](PyDocument& document, const py::dict& line) { document.edit(to_json(line)); }, py::arg("edit"),
+      "edit", [](PyDocument& document, const py::dict& line) { edit_once(document, to_json(line)); }, py::arg("edit"),
       "Carries out one edit, given as a line of a script.");
   type.def(
       "edits",
       [](PyDocument& document) {
         py::list lines;
-        for (const Edit& edit : document.session().document.history().edits())
-          lines.append(to_python(rebake::to_json(edit)));
+        for (const Edit& edit : document.edits()) lines.append(to_python(rebake::to_json(edit)));
         return lines;
       },
       "What was done, as lines of a script; nodes by number.");
   type.def(
-      "undo", [](PyDocument& document) { return document.session().document.undo(); },
+      "undo",
+      [](PyDocument& document) {
+        bool done = false;
+        document.work([&](Session& session) { done = session.document.undo(1, session.progress); });
+        return done;
+      },
       "False where there is nothing to undo.");
   type.def(
-      "redo", [](PyDocument& document) { return document.session().document.redo(); },
+      "redo",
+      [](PyDocument& document) {
+        bool done = false;
+        document.work([&](Session& session) { done = session.document.redo(1, session.progress); });
+        return done;
+      },
       "False where there is nothing to redo.");
   type.def(
       "keep_journal",
-      [](PyDocument& document, const std::filesystem::path& path) { document.session().document.keep_journal(path); },
+      [](PyDocument& document, const std::filesystem::path& path) {
+        document.work([&](Session& session) { session.document.keep_journal(path); });
+      },
       py::arg("path"), "From here on every edit is on the disk before it returns.");
-  type.def("discard_journal", [](PyDocument& document) { document.session().document.discard_journal(); });
+  type.def("discard_journal",
+           [](PyDocument& document) { document.work([](Session& session) { session.document.discard_journal(); }); });
   type.def(
       "save",
       [](PyDocument& document, const std::filesystem::path& path) {
-        if (path.extension() == ".rebake")
-          document.session().document.save(path);
-        else
-          save_scene_folder(document.scene(), path);
+        document.work([&](Session& session) {
+          if (path.extension() == ".rebake")
+            run(session, SaveProjectAction{path.string()});
+          else
+            run(session, SaveAction{path.string()});
+        });
       },
       py::arg("path"), "Writes a project (.rebake), or a scene folder that keeps every node.");
   type.def(
       "export",
       [](PyDocument& document, const std::filesystem::path& path, const py::object& layout) {
-        ExportOptions options;
-        if (!layout.is_none()) options.layout = Codec<Layout>::read(to_json(layout), {});
-        return export_scene(document.scene(), path, options).notes;
+        std::optional<Layout> wanted;
+        if (!layout.is_none()) wanted = Codec<Layout>::read(to_json(layout), {});
+        std::vector<std::string> notes;
+        document.work([&](Session& session) {
+          const ExportOptions options{wanted, session.document.sources()};
+          notes = export_scene(session.scene(), path, options, session.progress).notes;
+        });
+        return notes;
       },
       py::arg("path"), py::arg("layout") = py::none(),
       "Writes the MobileNeRF format; returns what the result cannot hold or was converted.");
-  type.def("render", &PyDocument::render, py::arg("width") = 800, py::arg("height") = 800, py::arg("samples") = 4,
+  type.def("render", &render_picture, py::arg("width") = 800, py::arg("height") = 800, py::arg("samples") = 4,
            py::arg("camera") = py::none(), py::arg("view") = "", "A picture, height × width × 3.");
   type.def(
       "selection",
-      [](const PyDocument& document, const py::object& node) { return PyDocument::mask(document.node(node)); },
+      [](PyDocument& document, const py::object& node) { return mask_of(node_in(document.scene(), node)); },
       py::arg("node"), "Which of an object's triangles are selected.");
   type.def(
       "vertices",
-      [](const PyDocument& document, const py::object& node, std::size_t index) {
-        const auto positions = document.set(node, index).soup.shared_positions();
+      [](PyDocument& document, const py::object& node, std::size_t index) {
+        const auto positions = set_in(document.scene(), node, index).soup.shared_positions();
         return view_of(positions->data()->data(), {static_cast<py::ssize_t>(positions->size()), 3}, positions);
       },
       py::arg("node"), py::arg("texture_set") = 0, "Positions in the object's own space, n × 3; a read-only view.");
   type.def(
       "uvs",
-      [](const PyDocument& document, const py::object& node, std::size_t index) {
-        const auto uvs = document.set(node, index).soup.shared_uvs();
+      [](PyDocument& document, const py::object& node, std::size_t index) {
+        const auto uvs = set_in(document.scene(), node, index).soup.shared_uvs();
         return view_of(uvs->data()->data(), {static_cast<py::ssize_t>(uvs->size()), 2}, uvs);
       },
       py::arg("node"), py::arg("texture_set") = 0, "Texture coordinates, n × 2, v up; a read-only view.");
   type.def(
       "faces",
-      [](const PyDocument& document, const py::object& node, std::size_t index) {
-        const auto faces = document.set(node, index).soup.shared_faces();
+      [](PyDocument& document, const py::object& node, std::size_t index) {
+        const auto faces = set_in(document.scene(), node, index).soup.shared_faces();
         return view_of(faces->data()->data(), {static_cast<py::ssize_t>(faces->size()), 3}, faces);
       },
       py::arg("node"), py::arg("texture_set") = 0, "Vertex numbers, n × 3; a read-only view.");
@@ -380,19 +419,17 @@ PYBIND11_MODULE(rebake, module) {
   scope["__name__"] = "rebake";
   py::exec(python_methods(), scope);
   const py::object edits = scope["Edits"];
-  for_each_type<Edit>([&](const auto& edit) {
-    const std::string name = python_name(edit.op);
+  for (const EditType* edit : edit_types()) {
+    const std::string name = python_name(edit->op);
     type.attr(name.c_str()) = edits.attr(name.c_str());
-  });
+  }
 
-  module.def("open", &open_document, py::arg("path"), py::arg("axes") = "360",
+  module.def("open", &open_document, py::arg("path"), py::arg("axes") = "360", py::arg("progress") = py::none(),
              "A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project.");
-  module.def(
-      "recover",
-      [](const std::filesystem::path& journal) {
-        return std::make_unique<PyDocument>(std::move(Document::recover(journal).document));
-      },
-      py::arg("journal"), "The work that a journal kept; goes on writing it.");
+  module.def("recover", &recover_document, py::arg("journal"), py::arg("sources") = py::dict(),
+             py::arg("progress") = py::none(),
+             "The work that a journal kept; `sources` says where folders lie now that were moved. What cannot be got "
+             "back is warned of.");
   module.def("move_by_cage", &move_by_cage, py::arg("points"), py::arg("vertices"), py::arg("faces"), py::arg("moved"),
              py::arg("coordinates") = "mean_value", py::arg("resolution") = 32,
              "Where points go when a closed cage's vertices move.");

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "editor/edits/table.h"
-#include "editor/fields/variants.h"
+#include <nlohmann/json.hpp>
+
+#include "editor/edits/edit.h"
+#include "editor/fields/field_line.h"
 
 namespace rebake {
 
@@ -13,58 +15,27 @@ std::string python_name(std::string_view name) {
 
 namespace {
 
-// What a field's type is called in Python.
-std::string python_type(bool) { return "bool"; }
-std::string python_type(int) { return "int"; }
-std::string python_type(double) { return "float"; }
-std::string python_type(const std::string&) { return "str"; }
-std::string python_type(const Vec3&) { return "Vector"; }
-std::string python_type(const NodeRef&) { return "Node"; }
-std::string python_type(const std::vector<NodeRef>&) { return "Sequence[Node]"; }
-std::string python_type(const std::vector<std::string>&) { return "Sequence[str]"; }
-std::string python_type(const Rotation&) { return "Rotation"; }
-std::string python_type(const Scale&) { return "float | Vector"; }
-std::string python_type(const BoxRegion&) { return "Box"; }
-std::string python_type(const SphereRegion&) { return "Sphere"; }
-std::string python_type(const HalfSpaceRegion&) { return "HalfSpace"; }
-std::string python_type(const PixelPolygon&) { return "Sequence[Sequence[float]]"; }
-std::string python_type(const BrushStroke&) { return "Brush"; }
-std::string python_type(const Interval&) { return "Sequence[float]"; }
-std::string python_type(const NumberRanges&) { return "Sequence[int | Sequence[int]]"; }
-std::string python_type(const PixelSize&) { return "Sequence[int]"; }
-std::string python_type(const std::vector<int>&) { return "Sequence[int]"; }
-std::string python_type(const CageMoves&) { return "Sequence[dict[str, Any]]"; }
-std::string python_type(const Cage&) { return "str | dict[str, Any]"; }
-std::string python_type(CageCoordinates) { return R"(Literal["mean_value", "green", "harmonic"])"; }
-std::string python_type(SelectMode) { return R"(Literal["set", "add", "remove", "intersect"])"; }
-std::string python_type(CoordinateFrame) { return R"(Literal["world", "node", "bounds"])"; }
-std::string python_type(Axes) { return R"(Literal["360", "forward"])"; }
-std::string python_type(const Camera&) { return "Camera"; }
-template <class T>
-std::string python_type(const std::optional<T>&) {
-  return python_type(T{}) + " | None";
-}
-
 std::string python_value(const nlohmann::json& value) {
   if (value.is_null()) return "None";
   if (value.is_boolean()) return value.get<bool>() ? "True" : "False";
   return value.dump();
 }
 
-// Collects the parameters of one edit: required ones first, as Python wants them.
+// The parameters of one edit: required ones first, as Python wants them.
 struct Signature {
-  std::vector<std::string> required, optional, lines, fields;
-  template <class T>
-  void operator()(const char* field, const T& value, Need need, const char* help) {
-    const std::string name = python_name(field);
-    fields.emplace_back(field);
-    if (need == Need::required)
-      required.push_back(fmt::format("{}: {}", name, python_type(value)));
-    else if (const auto initial = Codec<T>::write(value); initial.is_null() && !python_type(value).ends_with("None"))
-      optional.push_back(fmt::format("{}: {} | None = None", name, python_type(value)));
-    else
-      optional.push_back(fmt::format("{}: {} = {}", name, python_type(value), python_value(initial)));
-    lines.push_back(fmt::format("{}: {}", name, help));
+  std::vector<std::string> required, optional, lines;
+  explicit Signature(const std::vector<FieldLine>& fields) {
+    for (const FieldLine& field : fields) {
+      const std::string name = python_name(field.name);
+      if (field.required)
+        required.push_back(fmt::format("{}: {}", name, field.type.python));
+      else if (field.initial.empty())
+        optional.push_back(fmt::format("{}: {} | None = None", name, field.type.python));
+      else
+        optional.push_back(
+            fmt::format("{}: {} = {}", name, field.type.python, python_value(nlohmann::json::parse(field.initial))));
+      lines.push_back(fmt::format("{}: {}", name, field.help));
+    }
   }
 };
 
@@ -173,38 +144,35 @@ class Document:
 )";
 
 // One edit as a typed method, with further parameters last; indented as inside a class.
-template <class T>
-std::string method(const T& edit, const char* last = nullptr) {
-  Signature signature;
-  edit.fields(edit, signature);
+std::string method(const EditType& edit, const char* last = nullptr) {
+  const Signature signature(edit.fields());
   std::vector<std::string> parameters = signature.required;
   parameters.insert(parameters.end(), signature.optional.begin(), signature.optional.end());
   std::string list = parameters.empty() ? "" : fmt::format(", *, {}", fmt::join(parameters, ", "));
   if (last != nullptr) list += fmt::format(", {}", last);
   return fmt::format("    def {}(self{}) -> {}:\n        \"\"\"{}\n\n        {}\n        \"\"\"\n",
-                     python_name(edit.op), list, changes_selection<T>() ? "dict[str, NDArray[np.bool_]]" : "None",
-                     edit.help, fmt::join(signature.lines, "\n        "));
+                     python_name(edit.op), list, edit.selects ? "dict[str, NDArray[np.bool_]]" : "None", edit.help,
+                     fmt::join(signature.lines, "\n        "));
 }
 
 }  // namespace
 
 std::string python_stub() {
   std::string out = head;
-  for_each_type<Edit>([&](const auto& edit) { out += method(edit); });
+  for (const EditType* type : edit_types()) out += method(*type);
   return out;
 }
 
 std::string python_methods() {
   std::string out = "from __future__ import annotations\nclass Edits:\n";
-  for_each_type<Edit>([&](const auto& edit) {
-    Signature signature;
-    edit.fields(edit, signature);
+  for (const EditType* type : edit_types()) {
     std::string fields;
-    for (const std::string& field : signature.fields) fields += fmt::format("\"{}\": {}, ", field, python_name(field));
+    for (const FieldLine& field : type->fields())
+      fields += fmt::format("\"{}\": {}, ", field.name, python_name(field.name));
     // Fields that it does not know go along, so that the error can suggest what was meant.
-    out += method(edit, "**unknown") +
-           fmt::format("        return self._edit(\"{}\", {{{}**unknown}})\n", edit.op, fields);
-  });
+    out += method(*type, "**unknown") +
+           fmt::format("        return self._edit(\"{}\", {{{}**unknown}})\n", type->op, fields);
+  }
   return out;
 }
 

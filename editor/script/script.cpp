@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "editor/fields/variants.h"
+#include "editor/commands/session.h"
+#include "editor/fields/codec.h"
+#include "editor/fields/field_line.h"
 
 namespace rebake {
 
@@ -26,15 +29,10 @@ std::string filled_in(const std::string& text, const std::map<std::string, std::
   return out;
 }
 
-template <class Command>
-std::string reference_of(const Command& command) {
-  std::string out = fmt::format("### `{}`\n{}\n\n| field | value | default | meaning |\n|---|---|---|---|\n",
-                                command.op, command.help);
-  std::vector<FieldLine> lines;
-  FieldLister lister(lines);
-  Command::fields(command, lister);
+std::string reference_of(const char* op, const char* help, const std::vector<FieldLine>& lines) {
+  std::string out = fmt::format("### `{}`\n{}\n\n| field | value | default | meaning |\n|---|---|---|---|\n", op, help);
   for (const FieldLine& line : lines)
-    out += fmt::format("| `{}` | {} | {} | {} |\n", line.name, line.type,
+    out += fmt::format("| `{}` | {} | {} | {} |\n", line.name, line.type.words,
                        line.required                                    ? "required"
                        : line.initial.empty() || line.initial == "\"\"" ? "–"
                                                                         : "`" + line.initial + "`",
@@ -44,15 +42,21 @@ std::string reference_of(const Command& command) {
 
 }  // namespace
 
-Command read_command(const json& line, const Scene& scene) {
+ScriptCommand read_command(const json& line, const Scene& scene) {
   if (!line.is_object()) throw Error("must be a JSON object such as {\"op\": \"select\", …}");
   const auto op = line.find("op");
   if (op == line.end()) throw FieldError("op", "is missing");
   if (!op->is_string()) throw FieldError("op", "must be text");
   const auto& name = op->get_ref<const std::string&>();
   std::vector<std::string> known;
-  if (auto edit = read_as<Edit>(name, line, scene, known)) return *edit;
-  if (auto action = read_as<Action>(name, line, scene, known)) return *action;
+  for (const EditType* type : edit_types()) {
+    if (name == type->op) return type->read(line, scene);
+    known.emplace_back(type->op);
+  }
+  for (const ActionType* type : action_types()) {
+    if (name == type->op) return type->read(line, scene);
+    known.emplace_back(type->op);
+  }
   const std::string near = nearest_word(name, known);
   throw FieldError("op", near.empty() ? fmt::format("\"{}\" is not known (known: {})", name, fmt::join(known, ", "))
                                       : fmt::format("\"{}\" is not known; did you mean \"{}\"?", name, near));
@@ -65,7 +69,7 @@ json with_variables(json line, const std::map<std::string, std::string>& variabl
   return line;
 }
 
-std::string said_by(const json::exception& error) {
+std::string said_by(const std::exception& error) {
   const std::string what = error.what();
   const std::size_t end = what.find("] ");
   return end == std::string::npos ? what : what.substr(end + 2);
@@ -93,11 +97,11 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
     };
     try {
       const json object = read_line(std::string_view(line).substr(first));
-      const Command command = read_command(with_variables(object, variables), session.scene());
+      const ScriptCommand command = read_command(with_variables(object, variables), session.scene());
       if (const Edit* edit = std::get_if<Edit>(&command))
         session.edit(*edit);
       else
-        std::visit([&](const auto& action) { run(session, action); }, std::get<Action>(command));
+        std::get<Action>(command)(session);
     } catch (const json::exception& error) {
       fail("is not valid JSON: " + said_by(error));
     } catch (const Cancelled&) {
@@ -112,9 +116,9 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
 
 std::string command_reference() {
   std::string out = "## Edits\n\n";
-  for_each_type<Edit>([&](const auto& command) { out += reference_of(command); });
+  for (const EditType* type : edit_types()) out += reference_of(type->op, type->help, type->fields());
   out += "## Actions\n\n";
-  for_each_type<Action>([&](const auto& command) { out += reference_of(command); });
+  for (const ActionType* type : action_types()) out += reference_of(type->op, type->help, type->fields());
   return out;
 }
 

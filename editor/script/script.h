@@ -2,16 +2,18 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <variant>
 
-#include "editor/actions/table.h"
-#include "editor/edits/table.h"
+#include "editor/commands/action.h"
+#include "editor/edits/edit.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 
-using Command = std::variant<Edit, Action>;
+using ScriptCommand = std::variant<Edit, Action>;
 
 /// A script error; says the file, the line and the field.
 class ScriptError : public Error {
@@ -20,13 +22,13 @@ class ScriptError : public Error {
 };
 
 /// Reads one command. Names of nodes are looked up in `scene`. Throws Error.
-Command read_command(const nlohmann::json& line, const Scene& scene);
+ScriptCommand read_command(const nlohmann::json& line, const Scene& scene);
 
 /// Puts variables into all texts of a line: "{name}" becomes the value. Throws Error for one that has no value.
 nlohmann::json with_variables(nlohmann::json line, const std::map<std::string, std::string>& variables);
 
 /// What is wrong with a text that is no JSON, without the library's own name for it.
-std::string said_by(const nlohmann::json::exception& error);
+std::string said_by(const std::exception& error);
 
 /// Parses one line of JSON, nested 32 levels at most. Throws Error, and nlohmann's exceptions for what is not JSON.
 nlohmann::json read_line(std::string_view text);

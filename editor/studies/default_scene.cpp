@@ -1,6 +1,6 @@
 #include "editor/studies/default_scene.h"
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

@@ -2,9 +2,9 @@
 
 #include <map>
 
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/deform/closed_form.h"
-#include "mesh_ops/error.h"
-#include "mesh_ops/select/index.h"
+#include "mesh_ops/index/index.h"
 
 namespace rebake {
 

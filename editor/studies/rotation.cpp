@@ -6,8 +6,8 @@
 
 #include "editor/studies/deforming.h"
 #include "editor/studies/study.h"
+#include "mesh_ops/base/polar.h"
 #include "mesh_ops/deform/cage_deformation.h"
-#include "mesh_ops/deform/rotation.h"
 
 namespace rebake {
 

@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "mesh_ops/error.h"
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 #include "render/compare.h"
 
 namespace rebake {
@@ -74,7 +74,9 @@ double median_milliseconds(int repeats, const std::function<void()>& run) {
   return times[times.size() / 2];
 }
 
-void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder) {
+void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
+                 const SourceGuard& guard) {
+  guard.check_file(folder / study.name);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder, "cannot be created: " + error.message());
@@ -92,7 +94,7 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
   const std::string base = (folder / study.name).string();
   std::string quoted;  // for gnuplot, which doubles single quotes
   for (const char c : base) quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  write_file_atomically(base + ".csv", csv);
+  write_file_atomically(base + ".csv", csv, guard);
   std::string plot = fmt::format(
       "$rows << EOD\n{}EOD\nset title \"{}\"\nset xlabel \"{}\"\nset ylabel \"{}\"\n{}{}"
       "set grid\nset key outside right top\nset offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n",

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/progress.h"
+#include "mesh_ops/base/progress.h"
 #include "mesh_ops/scene/scene.h"
 #include "render/picture.h"
 
@@ -68,6 +68,8 @@ StudyTable::Row measured(const StudyInput& input, const std::string& choice, con
 double median_milliseconds(int repeats, const std::function<void()>& run);
 
 /// Writes NAME.csv, NAME.svg and NAME.png (plots need gnuplot; throws Error without it).
-void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder);
+/// `guard` says where nothing may be written.
+void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
+                 const SourceGuard& guard);
 
 }  // namespace rebake

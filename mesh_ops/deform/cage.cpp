@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "mesh_ops/deform/rotation.h"
+#include "mesh_ops/base/polar.h"
 #include "mesh_ops/deform/row_sums.h"
 
 namespace rebake {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

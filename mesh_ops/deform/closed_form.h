@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh_ops/scene/types.h"
+#include "mesh_ops/base/types.h"
 
 namespace rebake {
 

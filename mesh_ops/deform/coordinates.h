@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
+#include "mesh_ops/base/progress.h"
 #include "mesh_ops/deform/cage_frame.h"
 #include "mesh_ops/deform/dual.h"
 #include "mesh_ops/deform/mean_value_batch.h"
-#include "mesh_ops/progress.h"
 
 namespace rebake {
 

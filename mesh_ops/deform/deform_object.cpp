@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh_ops/deform/rotation.h"
-#include "mesh_ops/select/index.h"
+#include "mesh_ops/base/polar.h"
+#include "mesh_ops/index/index.h"
 
 namespace rebake {
 
@@ -55,7 +55,7 @@ void fade(const std::vector<Vec3>& rest, const std::vector<Vec3>& border, double
 }  // namespace
 
 DeformedObject deformed(const BakedObject& object, const Affine& to_world, const TriangleSet& flags, double falloff,
-                        const SpaceDeformation& deformation, std::vector<std::string> notes) {
+                        const SpaceDeformation& deformation) {
   const auto corners = corners_of(object);
   // Places of flagged triangles, numbered anew; and which of them others share.
   std::vector<std::uint32_t> number(corners->place_count, none);
@@ -89,7 +89,6 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
   DeformedObject result;
   DeformationReport& report = result.report;
   report.points = rest.size();
-  report.notes = std::move(notes);
   const Affine to_object = to_world.inverse();
   // Turns live in the object's own frame: orthogonal, whatever its transform scales.
   const Mat3 frame = orthogonal_factor(to_world.linear());
@@ -150,7 +149,7 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
   }
 
   auto made = std::make_shared<BakedObject>(object);
-  report.folded_triangles.assign(flags.size(), 0);
+  auto folded = std::make_shared<TriangleSet>(flags.size(), std::uint8_t{0});
   std::size_t first = 0;
   for (TextureSet& set : made->sets) {
     const std::size_t total = set.soup.triangle_count();
@@ -160,7 +159,7 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
         if (flags[first + f] == 0) continue;
         const std::uint32_t i = number[corners->places[(first + f) * 3 + k]];
         place_of[set.soup.faces()[f][k]] = i;
-        if (determinants[i] <= 0) report.folded_triangles[first + f] = 1;
+        if (determinants[i] <= 0) (*folded)[first + f] = 1;
       }
     set.soup = change_vertices(set.soup, flags, first, [&](std::uint32_t v, Vec3& position, Mat3& turn) {
       const std::uint32_t i = place_of[v];
@@ -169,7 +168,7 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
     });
     first += total;
   }
-  made->deformation = std::make_shared<const DeformationReport>(report);
+  made->folded = report.folded > 0 ? std::move(folded) : nullptr;
   result.object = std::move(made);
   return result;
 }

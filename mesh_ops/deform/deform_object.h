@@ -18,8 +18,6 @@ struct DeformationReport {
   std::size_t opaque_outside = 0;  ///< of them, corners of triangles that show something
   std::size_t not_finite = 0;      ///< those whose position is no number, or would be none; they stay
   double least_determinant = 1;    ///< of J, over all points that have one
-  std::vector<std::string> notes;  ///< what else people should know of the deformation
-  TriangleSet folded_triangles;    ///< of the object: a corner lies at a folded place
 };
 
 /// A deformation of space: where points go, and its Jacobian there.
@@ -30,10 +28,10 @@ using SpaceDeformation = std::function<DeformedPoints(const std::vector<Vec3>& w
 /// units) of corners that unflagged triangles share, the deformation fades out, smoothly and without cracks; with 0 it
 /// ends at the border, where shared corners are split. Turns get the local rotations' change.
 struct DeformedObject {
-  std::shared_ptr<const BakedObject> object;
+  std::shared_ptr<const BakedObject> object;  ///< `folded` says which triangles have a corner at a folded place
   DeformationReport report;
 };
 DeformedObject deformed(const BakedObject& object, const Affine& to_world, const TriangleSet& flags, double falloff,
-                        const SpaceDeformation& deformation, std::vector<std::string> notes = {});
+                        const SpaceDeformation& deformation);
 
 }  // namespace rebake

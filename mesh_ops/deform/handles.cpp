@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/deform/coordinates.h"
-#include "mesh_ops/error.h"
 
 namespace rebake {
 

@@ -5,7 +5,7 @@
 #include <CGAL/alpha_wrap_3.h>
 #include <fmt/format.h>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "mesh_ops/base/progress.h"
 #include "mesh_ops/deform/cage.h"
-#include "mesh_ops/progress.h"
 
 namespace rebake {
 

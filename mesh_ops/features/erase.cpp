@@ -3,7 +3,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "mesh_ops/features/footprint.h"
+#include "mesh_ops/index/footprint.h"
 
 namespace rebake {
 

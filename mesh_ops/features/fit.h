@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh_ops/features/decoder.h"
-#include "mesh_ops/progress.h"
+#include "mesh_ops/base/progress.h"
+#include "mesh_ops/texture/decoder.h"
 
 namespace rebake {
 

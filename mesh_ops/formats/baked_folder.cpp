@@ -5,9 +5,10 @@
 
 #include <atomic>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/feature_png.h"
-#include "mesh_ops/formats/files.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
 #include "mesh_ops/formats/turns_json.h"

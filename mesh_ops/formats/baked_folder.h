@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "mesh_ops/progress.h"
+#include "mesh_ops/base/progress.h"
 #include "mesh_ops/scene/object.h"
 
 namespace rebake {
@@ -15,6 +15,9 @@ std::shared_ptr<const BakedObject> read_baked_folder(const std::filesystem::path
 /// The names of a layout's files.
 std::string geometry_name(Layout layout, std::size_t set, std::size_t chunk);
 std::string feature_name(Layout layout, std::size_t set, int image);
+
+/// More than any capture has: what claims more is damaged.
+inline constexpr std::size_t most_texture_sets = 4096;
 
 /// Chunk viewers load exactly this many chunks a set.
 inline constexpr std::size_t chunks_a_set = 8;

@@ -6,8 +6,8 @@
 #include <cctype>
 #include <sstream>
 
-#include "mesh_ops/error.h"
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 
 namespace rebake {
 
@@ -63,7 +63,7 @@ Cage read_cage(const std::filesystem::path& path) {
   }
 }
 
-void write_cage(const Cage& cage, const std::filesystem::path& path) {
+void write_cage(const Cage& cage, const std::filesystem::path& path, const SourceGuard& guard) {
   const std::string format = format_of(path);
   Mesh mesh;
   std::vector<Mesh::VertexHandle> handles;
@@ -72,7 +72,7 @@ void write_cage(const Cage& cage, const std::filesystem::path& path) {
   std::ostringstream text;
   if (!OpenMesh::IO::write_mesh(mesh, text, format, OpenMesh::IO::Options::Default, 17))
     throw FileError(path, "the cage cannot be written");
-  write_file_atomically(path, text.str());
+  write_file_atomically(path, text.str(), guard);
 }
 
 }  // namespace rebake

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/deform/cage.h"
 
 namespace rebake {
@@ -10,6 +11,6 @@ namespace rebake {
 Cage read_cage(const std::filesystem::path& path);
 
 /// Writes one, in the format that the name ends with.
-void write_cage(const Cage& cage, const std::filesystem::path& path);
+void write_cage(const Cage& cage, const std::filesystem::path& path, const SourceGuard& guard);
 
 }  // namespace rebake

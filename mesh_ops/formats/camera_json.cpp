@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

@@ -6,8 +6,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "mesh_ops/deform/rotation.h"
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/polar.h"
+#include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "mesh_ops/formats/write_baked_folder.h"
 
@@ -234,7 +235,7 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
         "objects of one decoder are drawn together now: where surfaces of two objects coincide exactly, another of "
         "them "
         "may show");
-  AtomicFolder out(folder);
+  AtomicFolder out(folder, options.sources, refuse_foreign_content);
   if (report.one_folder) {
     const BakedObject& object = *nodes.front().object;
     if (!scene.background.isOnes(0)) report.notes.emplace_back("the format has no background: viewers show white");

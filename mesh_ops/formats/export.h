@@ -5,13 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/progress.h"
+#include "mesh_ops/base/progress.h"
+#include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {
 
 struct ExportOptions {
   std::optional<Layout> layout;  ///< nothing: as the objects were read
+  SourceGuard sources;           ///< where nothing may be written
 };
 
 struct ExportReport {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "mesh_ops/features/texels.h"
+#include "mesh_ops/texture/texels.h"
 
 namespace rebake {
 

@@ -1,6 +1,6 @@
 #include "mesh_ops/formats/formats.h"
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/scene_folder.h"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "mesh_ops/progress.h"
+#include "mesh_ops/base/progress.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {

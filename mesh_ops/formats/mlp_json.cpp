@@ -5,7 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/baked_folder.h"
 
 namespace rebake {
 
@@ -14,7 +15,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t widest_layer = 512;
-constexpr int most_sets = 4096;
 
 const json& member(const json& root, const char* key, const std::filesystem::path& name) {
   const auto found = root.find(key);
@@ -92,8 +92,9 @@ MlpFile read_mlp_json(std::string_view text, const std::filesystem::path& name) 
   d.weights1 = read_weights(root, "1_weights", d.bias0.size(), d.bias1.size(), name);
   d.weights2 = read_weights(root, "2_weights", d.bias1.size(), 3, name);
   if (const auto found = root.find("obj_num"); found != root.end()) {
-    if (!found->is_number_integer() || found->get<std::int64_t>() < 1 || found->get<std::int64_t>() > most_sets)
-      throw FileError(name, fmt::format("\"obj_num\" must be a whole number from 1 to {}", most_sets));
+    if (!found->is_number_integer() || found->get<std::int64_t>() < 1 ||
+        found->get<std::int64_t>() > std::int64_t{most_texture_sets})
+      throw FileError(name, fmt::format("\"obj_num\" must be a whole number from 1 to {}", most_texture_sets));
     file.obj_num = found->get<int>();
   }
   return file;

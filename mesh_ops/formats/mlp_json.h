@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "mesh_ops/features/decoder.h"
+#include "mesh_ops/texture/decoder.h"
 
 namespace rebake {
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh_ops/scene/types.h"
+#include "mesh_ops/base/types.h"
 
 namespace rebake {
 

@@ -7,10 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/camera_json.h"
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/formats/write_baked_folder.h"
 
 namespace rebake {
@@ -149,14 +150,15 @@ Scene read_scene_folder(const fs::path& folder, const Progress& progress) {
   return SceneReader(folder, progress).run();
 }
 
-std::vector<std::string> save_scene_folder(const Scene& scene, const fs::path& folder, const Progress& progress) {
+std::vector<std::string> save_scene_folder(const Scene& scene, const fs::path& folder, const SourceGuard& guard,
+                                           const Progress& progress) {
   std::vector<std::string> notes, taken;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (!placed.node->saved_selections.empty())
       notes.push_back(
           fmt::format("the stored selections of \"{}\" are left out; a project keeps them", placed.node->name));
   std::map<const BakedObject*, std::string> folder_of;
-  AtomicFolder out(folder);
+  AtomicFolder out(folder, guard, refuse_foreign_content);
   for (const PlacedNode& placed : placed_nodes(scene)) {
     const auto& object = placed.node->object;
     if (!object || folder_of.contains(object.get())) continue;

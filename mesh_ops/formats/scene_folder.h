@@ -2,7 +2,8 @@
 
 #include <filesystem>
 
-#include "mesh_ops/progress.h"
+#include "mesh_ops/base/progress.h"
+#include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {
@@ -13,7 +14,7 @@ Scene read_scene_folder(const std::filesystem::path& folder, const Progress& pro
 /// Writes every node as it is: scene.json, and one MobileNeRF folder for each distinct object. Replaces the folder
 /// whole or not at all. Returns sentences for people. Throws FileError.
 std::vector<std::string> save_scene_folder(const Scene& scene, const std::filesystem::path& folder,
-                                           const Progress& progress = {});
+                                           const SourceGuard& guard, const Progress& progress = {});
 
 /// The text of scene.json; `folder_of` names each object's folder.
 std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of);

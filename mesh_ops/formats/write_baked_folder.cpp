@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/features/atlas.h"
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/feature_png.h"

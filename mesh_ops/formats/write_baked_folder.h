@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/formats/files.h"
-#include "mesh_ops/progress.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/progress.h"
 #include "mesh_ops/scene/object.h"
 
 namespace rebake {

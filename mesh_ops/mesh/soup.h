@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "mesh_ops/scene/types.h"
+#include "mesh_ops/base/types.h"
 
 namespace rebake {
 

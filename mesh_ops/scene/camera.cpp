@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/features/decoder.h"
-#include "mesh_ops/features/texels.h"
-#include "mesh_ops/memo.h"
+#include "mesh_ops/base/memo.h"
 #include "mesh_ops/mesh/soup.h"
+#include "mesh_ops/texture/decoder.h"
+#include "mesh_ops/texture/texels.h"
 
 namespace rebake {
 
@@ -47,8 +47,10 @@ struct Origin {
   std::shared_ptr<const Decoder> decoder;
 };
 
+/// A flag for each triangle of an object, numbered through its sets in order.
+using TriangleSet = std::vector<std::uint8_t>;
+
 class ObjectIndex;
-struct DeformationReport;
 
 /// One baked scene: texture sets that share a decoder. Immutable once made; nodes share it.
 struct BakedObject {
@@ -58,8 +60,8 @@ struct BakedObject {
   Layout layout = Layout::split;
   std::shared_ptr<const Origin> origin;  ///< null for objects that were not read from a folder
   Memo<ObjectIndex> index;               ///< see select/index.h
-  /// What the last deformation did, until other triangles come or go; null before. See deform/deform_object.h.
-  std::shared_ptr<const DeformationReport> deformation;
+  /// Which triangles the last deformation folded or collapsed, until others come or go; null where none.
+  std::shared_ptr<const TriangleSet> folded;
 
   std::size_t triangle_count() const;
   std::size_t vertex_count() const;
@@ -68,9 +70,6 @@ struct BakedObject {
   bool any_turns() const;
   std::uint64_t memory() const;
 };
-
-/// A flag for each triangle of an object, numbered through its sets in order.
-using TriangleSet = std::vector<std::uint8_t>;
 
 std::size_t count(const TriangleSet& triangles);
 

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "mesh_ops/features/footprint.h"
+#include "mesh_ops/index/footprint.h"
 
 namespace rebake {
 

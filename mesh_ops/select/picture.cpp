@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include "mesh_ops/error.h"
-#include "mesh_ops/features/footprint.h"
-#include "mesh_ops/select/index.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/index/footprint.h"
+#include "mesh_ops/index/index.h"
 
 namespace rebake {
 

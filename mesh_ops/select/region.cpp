@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "mesh_ops/select/index.h"
+#include "mesh_ops/index/index.h"
 
 namespace rebake {
 

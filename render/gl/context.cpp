@@ -12,13 +12,14 @@ void clear_window(int width, int height) {
   glClear(GL_COLOR_BUFFER_BIT);
 }
 
-bool context_lost() {
-  enum class Ask { core, extension, nobody };
-  static const Ask ask = epoxy_gl_version() >= 45                      ? Ask::core
-                         : epoxy_has_gl_extension("GL_ARB_robustness") ? Ask::extension
-                                                                       : Ask::nobody;
-  if (ask == Ask::nobody) return false;
-  return (ask == Ask::core ? glGetGraphicsResetStatus() : glGetGraphicsResetStatusARB()) != GL_NO_ERROR;
+LossCheck::LossCheck()
+    : ask_(epoxy_gl_version() >= 45                      ? Ask::core
+           : epoxy_has_gl_extension("GL_ARB_robustness") ? Ask::extension
+                                                         : Ask::nobody) {}
+
+bool LossCheck::lost() const {
+  if (ask_ == Ask::nobody) return false;
+  return (ask_ == Ask::core ? glGetGraphicsResetStatus() : glGetGraphicsResetStatusARB()) != GL_NO_ERROR;
 }
 
 std::string device_name() {

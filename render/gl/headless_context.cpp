@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 #include "render/gl/context.h"
 
 namespace rebake::gl {
@@ -62,16 +62,24 @@ class HeadlessContext final : public Context {
       if (context_ != EGL_NO_CONTEXT) break;
     }
     if (context_ == EGL_NO_CONTEXT) throw DeviceError("the OpenGL driver is too old: 3.3 core or newer is needed");
-    make_current();
   }
   ~HeadlessContext() override {
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (is_current()) release();
     eglDestroyContext(display_, context_);
   }
   HeadlessContext(const HeadlessContext&) = delete;
   HeadlessContext& operator=(const HeadlessContext&) = delete;
 
+  bool is_current() const override {
+    eglBindAPI(EGL_OPENGL_API);  // each thread has its own
+    return eglGetCurrentContext() == context_;
+  }
+  void release() override {
+    eglBindAPI(EGL_OPENGL_API);
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  }
   void make_current() override {
+    eglBindAPI(EGL_OPENGL_API);
     if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE)
       throw DeviceError(fmt::format("the OpenGL context cannot be made current (EGL error {:#x})", eglGetError()));
   }

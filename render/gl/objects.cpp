@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake::gl {
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "mesh_ops/error.h"
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 #include "render/gl/objects.h"
 
 namespace rebake::gl {

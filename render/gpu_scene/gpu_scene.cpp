@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "mesh_ops/features/opacity.h"
+#include "mesh_ops/index/opacity.h"
 
 namespace rebake {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh_ops/progress.h"
+#include "mesh_ops/base/progress.h"
 #include "samples/bakery/field.h"
 
 namespace rebake::bakery {

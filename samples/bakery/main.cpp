@@ -4,7 +4,7 @@
 #include <chrono>
 #include <fstream>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/export.h"
 #include "render/compare.h"
 #include "render/picture.h"
@@ -47,8 +47,8 @@ double make(const Model& model, const std::filesystem::path& out, const BakeOpti
     sum += psnr;
     least = std::min(least, psnr);
     if (!pictures.empty() && k % 7 == 0) {
-      write_png(truth, pictures / fmt::format("{}-{}-truth.png", model.name, k));
-      write_png(drawn, pictures / fmt::format("{}-{}-baked.png", model.name, k));
+      write_png(truth, pictures / fmt::format("{}-{}-truth.png", model.name, k), {});
+      write_png(drawn, pictures / fmt::format("{}-{}-baked.png", model.name, k), {});
     }
   }
   fmt::print(

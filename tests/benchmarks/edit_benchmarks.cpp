@@ -4,7 +4,8 @@
 
 #include "editor/document/document.h"
 #include "mesh_ops/formats/export.h"
-#include "mesh_ops/select/index.h"
+#include "mesh_ops/index/index.h"
+#include "tests/support/edits.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -140,7 +141,7 @@ void export_after_delete(benchmark::State& state) {
   Select half;
   half.half_space = HalfSpaceRegion{Vec3(0.5, 0.5, 0.5), Vec3(1, 0.1, 0)};
   half.frame = CoordinateFrame::bounds;
-  const Scene scene = rebake::apply(rebake::apply(scene_at(state.range(0)), half), DeleteSelected{});
+  const Scene scene = rebake::apply(rebake::apply(scene_at(state.range(0)), half), DeleteSelected{}).scene;
   for (auto _ : state) export_scene(scene, folder.path() / "out", {});
 }
 BENCHMARK(export_after_delete)->Arg(1)->Arg(9)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
-#include "mesh_ops/formats/files.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -76,13 +76,14 @@ TEST_F(Cli, PipedOutputHasNoColourOrBars) {
 }
 
 TEST_F(Cli, FullDiskLeavesWhatWasThere) {
-  const auto before = folder_bytes(folder_.path() / "ball");
+  std::filesystem::copy(folder_.path() / "ball", folder_.path() / "out");
+  const auto before = folder_bytes(folder_.path() / "out");
   // A file-size limit stands for a full disk: it holds for root too.
-  const Outcome o = rebake_run("export " + in("ball") + " -o " + in("ball") + " --layout unsplit", "ulimit -f 8;");
+  const Outcome o = rebake_run("export " + in("ball") + " -o " + in("out") + " --layout unsplit", "ulimit -f 8;");
   EXPECT_EQ(o.code, 1) << o.text;
   EXPECT_NE(o.text.find("cannot be written"), std::string::npos) << o.text;
-  EXPECT_EQ(folder_bytes(folder_.path() / "ball"), before);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
+  EXPECT_EQ(folder_bytes(folder_.path() / "out"), before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 2) << "nothing half-written";
 }
 
 }  // namespace

@@ -1,13 +1,16 @@
 // Deforming edits: what scripts can do, what they are told, and that pictures and files agree.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include <atomic>
 
+#include "editor/commands/session.h"
 #include "editor/script/script.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
-#include "mesh_ops/formats/files.h"
 #include "render/compare.h"
-#include "render/frame/plan.h"
+#include "render/graph/plan.h"
 #include "render/picture.h"
 #include "tests/support/made_scenes.h"
 

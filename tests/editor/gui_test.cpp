@@ -7,14 +7,17 @@
 #include <sstream>
 #include <thread>
 
-#include "editor/gui/commands.h"
-#include "editor/gui/desk.h"
-#include "editor/gui/euler.h"
-#include "editor/gui/expression.h"
-#include "editor/gui/input_queue.h"
-#include "editor/gui/typed_number.h"
+#include "editor/edits/nodes/import.h"
+#include "editor/edits/select/select.h"
+#include "editor/edits/shape/delete_selected.h"
+#include "editor/gui/panels/euler.h"
+#include "editor/gui/tools/expression.h"
+#include "editor/gui/tools/typed_number.h"
+#include "editor/gui/window/commands.h"
+#include "editor/gui/window/desk.h"
+#include "editor/gui/window/input_queue.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
-#include "mesh_ops/formats/files.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -154,12 +157,12 @@ TEST(SettingsFile, ComesBackAndABadOneIsSaid) {
   EXPECT_EQ(read.recent[0], "folder 15");
   EXPECT_EQ(read.recent[1], "folder 19");
   for (const char* text : {"{", "[]", R"({"dark": 3})", R"({"brush_radius": "wide"})"}) {
-    write_file_atomically(file, text);
+    write_file_atomically(file, text, {});
     problem.clear();
     EXPECT_TRUE(read_settings(file, problem).dark) << text;
     EXPECT_NE(problem.find(file.string()), std::string::npos) << text;
   }
-  write_file_atomically(file, R"({"side_width": -5, "window_width": 1000000, "something_newer": 1})");
+  write_file_atomically(file, R"({"side_width": -5, "window_width": 1000000, "something_newer": 1})", {});
   EXPECT_EQ(read_settings(file, problem).side_width, 200);
 }
 

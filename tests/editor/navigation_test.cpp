@@ -1,9 +1,9 @@
 // How the viewport's camera moves: what people point at stays where they point.
-#include "editor/gui/navigation.h"
+#include "editor/gui/view/navigation.h"
 
 #include <gtest/gtest.h>
 
-#include "editor/gui/lens.h"
+#include "editor/gui/view/lens.h"
 
 namespace rebake::test {
 namespace {

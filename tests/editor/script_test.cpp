@@ -1,12 +1,15 @@
 // Scripts: every edit on a made scene, errors that name line and field, the same bytes at every replay.
 #include "editor/script/script.h"
+#include "editor/commands/session.h"
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include <limits>
 
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
-#include "mesh_ops/formats/files.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -166,7 +169,7 @@ TEST_F(Script, EditsArePure) {
   const NodePtr root = before.roots[0];
   const Edit edit = std::get<Edit>(
       read_command(nlohmann::json::parse(R"({"op": "transform", "node": "ball", "translate": [1, 2, 3]})"), before));
-  const Scene a = rebake::apply(before, edit), b = rebake::apply(before, edit);
+  const Scene a = rebake::apply(before, edit).scene, b = rebake::apply(before, edit).scene;
   EXPECT_EQ(before.roots[0], root);
   EXPECT_EQ(root->to_parent.matrix(), Affine::Identity().matrix());
   EXPECT_EQ(a.roots[0]->to_parent.matrix(), b.roots[0]->to_parent.matrix());

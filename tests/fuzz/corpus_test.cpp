@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/base/files.h"
 #include "tests/fuzz/targets.h"
 
 namespace rebake::test {

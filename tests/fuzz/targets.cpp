@@ -2,8 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/camera_json.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
@@ -62,10 +63,10 @@ void read_script_bytes(std::string_view bytes) {
     const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
     try {
       const auto line = read_line(bytes.substr(begin, end - begin));
-      const Command command = read_command(with_variables(line, {{"name", "a"}}), scene);
+      const ScriptCommand command = read_command(with_variables(line, {{"name", "a"}}), scene);
       // Files stay out of it: imports and actions are read, not carried out.
-      if (const Edit* edit = std::get_if<Edit>(&command); edit != nullptr && !std::holds_alternative<Import>(*edit))
-        scene = rebake::apply(scene, *edit);
+      if (const Edit* edit = std::get_if<Edit>(&command); edit != nullptr && !edit->is<Import>())
+        scene = rebake::apply(scene, *edit).scene;
     } catch (const Error&) {
     } catch (const nlohmann::json::exception&) {
     }

@@ -4,7 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/camera_json.h"
 
 namespace rebake::test {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh_ops/features/erase.h"
-#include "mesh_ops/features/footprint.h"
+#include "mesh_ops/index/footprint.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {

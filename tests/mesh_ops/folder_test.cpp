@@ -6,12 +6,12 @@
 #include <cmath>
 #include <fstream>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/features/atlas.h"
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/feature_png.h"
-#include "mesh_ops/formats/files.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/scene_folder.h"
@@ -109,7 +109,7 @@ TEST(Folder, LayoutsConvert) {
   const TemporaryFolder temporary;
   export_scene(scene_of(made_object()), temporary.path() / "split", {});
   const Scene split = read_any(temporary.path() / "split", Axes::y_up);
-  export_scene(split, temporary.path() / "unsplit", {Layout::unsplit});
+  export_scene(split, temporary.path() / "unsplit", {.layout = Layout::unsplit, .sources = {}});
   const auto unsplit = read_any(temporary.path() / "unsplit", Axes::y_up).roots[0]->object;
   EXPECT_EQ(unsplit->layout, Layout::unsplit);
   const FeatureTexture &a = *split.roots[0]->object->sets[0].texels, &b = *unsplit->sets[0].texels;
@@ -125,7 +125,7 @@ TEST(Folder, LayoutsConvert) {
         ASSERT_EQ(b.at(x, y), empty_texel(AlphaCode::plain));
       }
     }
-  export_scene(read_any(temporary.path() / "unsplit", Axes::y_up), temporary.path() / "chunked", {Layout::chunked});
+  export_scene(read_any(temporary.path() / "unsplit", Axes::y_up), temporary.path() / "chunked", {.layout = Layout::chunked, .sources = {}});
   EXPECT_EQ(read_any(temporary.path() / "chunked", Axes::y_up).roots[0]->object->layout, Layout::chunked);
   EXPECT_EQ(folder_bytes(temporary.path() / "chunked")["shape0.pngfeat0.png"],
             folder_bytes(temporary.path() / "split")["shape0.pngfeat0.png"]);
@@ -175,7 +175,7 @@ TEST(Folder, SavedSceneKeepsEveryNode) {
   child.object = turned;
   child.name = "turned";
   scene = with_added(scene, child, NodeId::none, 9);
-  save_scene_folder(scene, temporary.path() / "s");
+  save_scene_folder(scene, temporary.path() / "s", {});
   const Scene back = read_any(temporary.path() / "s", Axes::y_up);
   const auto before = placed_nodes(scene), after = placed_nodes(back);
   ASSERT_EQ(before.size(), after.size());
@@ -348,7 +348,7 @@ TEST(Folder, TurnsOfAFewChunkedTrianglesSurvive) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 3, .rows = 1, .layout = Layout::chunked}));
   object->sets[0].soup =
       moved_part(object->sets[0].soup, {0, 0, 1, 1, 0, 0}, 0, Affine(Eigen::AngleAxisd(0.4, Vec3::UnitX())));
-  save_scene_folder(scene_of(object), temporary.path() / "s");
+  save_scene_folder(scene_of(object), temporary.path() / "s", {});
   const auto back = read_any(temporary.path() / "s", Axes::y_up).roots[0]->object;
   const Soup &a = object->sets[0].soup, &b = back->sets[0].soup;
   ASSERT_NE(b.turns(), nullptr);

@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake::test {
 namespace {

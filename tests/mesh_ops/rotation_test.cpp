@@ -1,12 +1,12 @@
 // Local rotations: right angles on any matrix, and the same as the textbook's where that is defined.
-#include "mesh_ops/deform/rotation.h"
+#include "mesh_ops/base/polar.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/deform/closed_form.h"
-#include "mesh_ops/error.h"
 
 namespace rebake::test {
 namespace {

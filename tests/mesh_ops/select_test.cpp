@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "mesh_ops/index/index.h"
 #include "mesh_ops/select/duplicates.h"
-#include "mesh_ops/select/index.h"
 #include "mesh_ops/select/picture.h"
 #include "tests/support/made_scenes.h"
 

@@ -1,5 +1,5 @@
 // What an editor draws over the picture: selected triangles and lines, in front of and behind what is there.
-#include "render/frame/guides.h"
+#include "render/graph/guides.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // The GPU's picture against the independent oracle: 45 dB and 99.5 % of pixels within 2/255, whatever the scene.
 #include "render/picture.h"
-#include "render/frame/plan.h"
+#include "render/graph/plan.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "mesh_ops/features/decoder.h"
+#include "mesh_ops/texture/decoder.h"
 #include "render/compare.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/oracle.h"
@@ -48,8 +48,8 @@ void expect_as_cast(const Scene& scene, const View& view, const RenderOptions& o
   if (d.psnr_db < least_psnr_db) {
     std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
     std::replace(name.begin(), name.end(), '/', '-');
-    write_png(drawn, std::filesystem::temp_directory_path() / (name + "-drawn.png"));
-    write_png(cast, std::filesystem::temp_directory_path() / (name + "-cast.png"));
+    write_png(drawn, std::filesystem::temp_directory_path() / (name + "-drawn.png"), {});
+    write_png(cast, std::filesystem::temp_directory_path() / (name + "-cast.png"), {});
   }
 }
 

@@ -1,9 +1,9 @@
 // The plan says what runs and why, without a GPU; what a scene does not call for must be left out.
-#include "render/frame/plan.h"
+#include "render/graph/plan.h"
 
 #include <gtest/gtest.h>
 
-#include "mesh_ops/error.h"
+#include "mesh_ops/base/error.h"
 #include "render/gpu_scene/resources.h"
 #include "tests/support/made_scenes.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "mesh_ops/formats/files.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
 

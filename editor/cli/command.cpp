@@ -1,0 +1,70 @@
+#include "editor/cli/command.h"
+
+#include <CLI/CLI.hpp>
+
+#include "editor/cli/commands.h"
+
+namespace rebake {
+
+CommandDescription::Option& CommandDescription::Option::required() {
+  option_->required();
+  return *this;
+}
+CommandDescription::Option& CommandDescription::Option::one_of(const std::vector<std::string>& words) {
+  option_->check(CLI::IsMember(words));
+  return *this;
+}
+CommandDescription::Option& CommandDescription::Option::one_of(const std::vector<int>& numbers) {
+  option_->check(CLI::IsMember(numbers));
+  return *this;
+}
+CommandDescription::Option& CommandDescription::Option::between(int least, int most) {
+  option_->check(CLI::Range(least, most));
+  return *this;
+}
+
+template <class T>
+CommandDescription::Option CommandDescription::option(const std::string& names, T& value, const std::string& help,
+                                                      const std::string& hint) {
+  CLI::Option* added = app_->add_option(names, value, help);
+  if (!hint.empty()) added->option_text(hint);
+  return Option(added);
+}
+template CommandDescription::Option CommandDescription::option(const std::string&, std::string&, const std::string&,
+                                                               const std::string&);
+template CommandDescription::Option CommandDescription::option(const std::string&, int&, const std::string&,
+                                                               const std::string&);
+template CommandDescription::Option CommandDescription::option(const std::string&, double&, const std::string&,
+                                                               const std::string&);
+template CommandDescription::Option CommandDescription::option(const std::string&, std::optional<double>&,
+                                                               const std::string&, const std::string&);
+template CommandDescription::Option CommandDescription::option(const std::string&, std::vector<std::string>&,
+                                                               const std::string&, const std::string&);
+
+void CommandDescription::flag(const std::string& names, bool& value, const std::string& help) {
+  app_->add_flag(names, value, help);
+}
+void CommandDescription::footer(const std::string& text) { app_->footer(text); }
+void CommandDescription::does(std::function<void()> run) { app_->callback(std::move(run)); }
+
+int run_program(int argc, char** argv) {
+  CLI::App program{"Rebake: loads, composes, edits, renders and exports baked NeRF scenes (MobileNeRF format).",
+                   "rebake"};
+  program.set_version_flag("--version", "rebake " REBAKE_VERSION);
+  program.require_subcommand(1);
+  program.footer(
+      "Exit codes: 0 done, 1 it could not be done (the message says why), 2 wrong use of the command line, 3 compared "
+      "pictures differ more than allowed, 130 stopped by Ctrl+C.");
+  for (const Subcommand& subcommand : subcommand_table) {
+    CommandDescription command(*program.add_subcommand(subcommand.name, subcommand.help));
+    subcommand.describe(command);
+  }
+  try {
+    program.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : 2;
+  }
+}
+
+}  // namespace rebake

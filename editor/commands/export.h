@@ -1,0 +1,20 @@
+#pragma once
+
+#include "editor/commands/action.h"
+#include "editor/commands/session.h"
+#include "editor/fields/values.h"
+
+namespace rebake {
+
+/// Writes the scene in the MobileNeRF format, or as scene.json where one folder cannot hold it.
+struct ExportAction {
+  static constexpr const char* op = "export";
+  std::string out;
+  std::optional<Layout> layout;
+};
+template <>
+const ActionType& action_type<ExportAction>();
+
+void run(Session& session, const ExportAction& action);
+
+}  // namespace rebake

@@ -1,0 +1,19 @@
+#include "editor/commands/redo.h"
+
+#include "editor/commands/describe.h"
+
+#include <fmt/format.h>
+
+namespace rebake {
+
+void run(Session& session, const RedoAction& action) {
+  if (action.steps < 1 || static_cast<std::size_t>(action.steps) > session.document.history().redo_count())
+    throw FieldError("steps", fmt::format("{} edits can be redone", session.document.history().redo_count()));
+  for (int step = 0; step < action.steps; ++step) session.document.redo(1, session.progress);
+}
+
+REBAKE_DESCRIBE_ACTION(
+    RedoAction, "Does edits again that were taken back.",
+    (auto& action, auto& visit) { visit("steps", action.steps, Need::optional, "how many"); })
+
+}  // namespace rebake

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "editor/commands/action.h"
+#include "editor/commands/session.h"
+#include "editor/fields/values.h"
+
+namespace rebake {
+
+/// Does edits again that were taken back.
+struct RedoAction {
+  static constexpr const char* op = "redo";
+  int steps = 1;
+};
+template <>
+const ActionType& action_type<RedoAction>();
+
+void run(Session& session, const RedoAction& action);
+
+}  // namespace rebake

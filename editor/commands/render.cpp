@@ -1,0 +1,30 @@
+#include "editor/commands/render.h"
+
+#include "editor/commands/describe.h"
+#include "editor/commands/views.h"
+
+#include <fmt/format.h>
+
+#include "render/picture.h"
+
+namespace rebake {
+
+void run(Session& session, const RenderAction& action) {
+  const View view =
+      chosen_view(session.scene(), action.camera, action.view, action.width, action.height, action.samples);
+  write_png(session.renderer().render(session.scene(), view), action.out, session.document.sources());
+  session.say(fmt::format("rendered {}", action.out));
+}
+
+REBAKE_DESCRIBE_ACTION(
+    RenderAction, "Draws the scene into a PNG.", (auto& action, auto& visit) {
+      visit("out", action.out, Need::required, "PNG file to write");
+      visit("view", action.view, Need::optional,
+            "name of a stored view; left out: the camera, or one that frames the scene");
+      visit("camera", action.camera, Need::optional, "the camera");
+      visit("width", action.width, Need::optional, "pixels");
+      visit("height", action.height, Need::optional, "pixels");
+      visit("samples", action.samples, Need::optional, "a pixel: 1, 4 or 16");
+    })
+
+}  // namespace rebake

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "editor/commands/action.h"
+#include "editor/commands/session.h"
+#include "editor/fields/values.h"
+
+namespace rebake {
+
+/// Writes a Rebake scene folder that keeps every node.
+struct SaveAction {
+  static constexpr const char* op = "save";
+  std::string out;
+};
+template <>
+const ActionType& action_type<SaveAction>();
+
+void run(Session& session, const SaveAction& action);
+
+}  // namespace rebake

@@ -1,0 +1,24 @@
+#include "editor/commands/session.h"
+
+#include "render/picture.h"
+
+namespace rebake {
+
+Session::Session() = default;
+Session::~Session() = default;
+
+void Session::edit(const Edit& edit) { edits({edit}); }
+
+void Session::edits(const std::vector<Edit>& edits) {
+  for (const Report& report : document.edits(edits, progress))
+    for (const std::string& line : report.lines) say(line);
+}
+
+Renderer& Session::renderer() {
+  if (!renderer_) renderer_ = std::make_unique<Renderer>();
+  return *renderer_;
+}
+
+void Session::drop_renderer() { renderer_.reset(); }
+
+}  // namespace rebake

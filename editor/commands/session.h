@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "editor/document/document.h"
+#include "mesh_ops/base/progress.h"
+
+namespace rebake {
+
+class Renderer;
+
+/// What a script or command works on: the scene now, and a renderer that is made when it is first needed.
+class Session {
+ public:
+  Session();
+  ~Session();
+
+  Document document;
+  const Scene& scene() const { return document.scene(); }
+  /// Carries an edit out and says in numbers what became of selections and triangles.
+  void edit(const Edit& edit);
+  /// All of them, to be undone together, or none where one throws.
+  void edits(const std::vector<Edit>& edits);
+
+  std::vector<std::string> exports;  ///< folders that export wrote
+  Progress progress;
+  std::function<void(const std::string&)> say = [](const std::string&) {};  ///< one line for people
+
+  /// Throws DeviceError where there is no OpenGL.
+  Renderer& renderer();
+  /// Frees it, on the thread that used it.
+  void drop_renderer();
+
+ private:
+  std::unique_ptr<Renderer> renderer_;
+};
+
+}  // namespace rebake

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "editor/commands/action.h"
+#include "editor/commands/session.h"
+#include "editor/fields/values.h"
+
+namespace rebake {
+
+/// Takes edits back.
+struct UndoAction {
+  static constexpr const char* op = "undo";
+  int steps = 1;
+};
+template <>
+const ActionType& action_type<UndoAction>();
+
+void run(Session& session, const UndoAction& action);
+
+}  // namespace rebake

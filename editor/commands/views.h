@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mesh_ops/scene/scene.h"
+#include "render/graph/view.h"
+
+namespace rebake {
+
+/// The camera that frames everything visible; forward-facing when all objects are.
+Camera framing_of(const Scene& scene, double aspect, double fov_degrees = Camera{}.fov_degrees);
+
+/// The stored view of that name. Throws FieldError that names those there are.
+const Camera& stored_view(const Scene& scene, const std::string& name);
+
+/// What the command line, scripts, the window and Python draw: the camera that is given, else the stored view of a
+/// name, else one that frames the scene. Throws FieldError when both are given, and for a size, number of samples or
+/// camera that cannot be drawn.
+View chosen_view(const Scene& scene, const std::optional<Camera>& camera, const std::string& view_name, int width,
+                 int height, int samples);
+
+}  // namespace rebake

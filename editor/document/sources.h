@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "editor/edits/edit.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/source_guard.h"
+
+namespace rebake {
+
+/// Where sources lie now that were moved: old path → new path; folders stand for all in them.
+using Relinked = std::map<std::filesystem::path, std::filesystem::path>;
+
+/// The path of a source, relinked.
+std::filesystem::path relinked(const std::filesystem::path& source, const Relinked& links);
+
+/// Sources that are not as they were: moved, removed or changed.
+class SourcesGone : public FileError {
+ public:
+  struct Source {
+    std::filesystem::path path;
+    std::string trouble;  ///< what is wrong with it
+  };
+  SourcesGone(const std::filesystem::path& file, const std::string& message, std::vector<Source> gone)
+      : FileError(file, message), sources(std::move(gone)) {}
+  std::vector<Source> sources;
+};
+
+/// What is wrong with a source of this content; empty when it is as it was.
+std::string trouble_with(const std::filesystem::path& source, const std::string& content);
+
+/// The edit with everything it needs to be repeated later: an import gets its absolute path and the hash of what lies
+/// there now. Throws FileError.
+Edit completed(const Edit& edit);
+
+/// Adds what edits imported.
+void add_sources(SourceGuard& guard, const std::vector<Edit>& edits);
+/// Adds the folders that a scene's objects were read from.
+void add_sources(SourceGuard& guard, const Scene& scene);
+
+}  // namespace rebake

@@ -1,0 +1,278 @@
+#include "editor/edits/deform/deforming.h"
+
+#include "editor/fields/visitors.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "editor/edits/select/regions.h"
+#include "editor/edits/select/selecting.h"
+#include "mesh_ops/formats/cage_file.h"
+#include "mesh_ops/index/index.h"
+
+namespace rebake {
+
+namespace {
+
+template <class Visit>
+void for_corners(const PlacedNode& placed, const TriangleSet& flags, Visit visit) {
+  std::size_t f = 0;
+  for (const TextureSet& set : placed.node->object->sets)
+    for (const Face& face : set.soup.faces())
+      if (flags[f++] != 0)
+        for (const std::uint32_t vertex : face)
+          if (const Vec3 p = placed.to_world * set.soup.positions()[vertex]; p.allFinite()) visit(p);
+}
+
+}  // namespace
+
+Box DeformSet::bounds() const {
+  Box box;
+  for (std::size_t k = 0; k < nodes.size(); ++k) for_corners(nodes[k], flags[k], [&](const Vec3& p) { box.extend(p); });
+  return box;
+}
+
+std::pair<double, double> DeformSet::extent_along(const Vec3& axis) const {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    for_corners(nodes[k], flags[k], [&](const Vec3& p) {
+      low = std::min(low, p.dot(axis));
+      high = std::max(high, p.dot(axis));
+    });
+  return {low, high};
+}
+
+TriangleList DeformSet::opaque_triangles() const {
+  TriangleList list;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const BakedObject& object = *nodes[k].node->object;
+    const auto traits = traits_of(object);
+    std::size_t f = 0;
+    for (const TextureSet& set : object.sets) {
+      const auto base = static_cast<std::uint32_t>(list.points.size());
+      for (const Vec3& p : set.soup.positions()) list.points.push_back(nodes[k].to_world * p);
+      for (const Face& face : set.soup.faces()) {
+        if (flags[k][f] != 0 && (*traits)[f].opacity > 0)
+          list.faces.push_back({face[0] + base, face[1] + base, face[2] + base});
+        ++f;
+      }
+    }
+  }
+  return list;
+}
+
+DeformSet deform_set(const Scene& scene, const DeformTarget& target) {
+  if (!(target.falloff >= 0)) throw FieldError("falloff", "must not be negative");
+  DeformSet set;
+  const bool selected = target.selection || !target.node;
+  for (PlacedNode& placed : selected ? with_selection(scene, target.node) : selectable(scene, target.node)) {
+    TriangleSet flags =
+        selected ? *placed.node->selection : TriangleSet(placed.node->object->triangle_count(), std::uint8_t{1});
+    if (target.box) {
+      const TriangleSet inside =
+          triangles_by_centre(*placed.node->object, region_of(FramePoints(target.frame, placed), *target.box).inside);
+      for (std::size_t f = 0; f < flags.size(); ++f) flags[f] &= inside[f];
+    }
+    if (count(flags) == 0) continue;
+    set.nodes.push_back(std::move(placed));
+    set.flags.push_back(std::move(flags));
+  }
+  if (set.nodes.empty()) throw EditError("no triangle lies inside the box: there is nothing to deform");
+  return set;
+}
+
+namespace {
+
+std::string in_words(const std::string& name, const DeformationReport& report) {
+  std::string line =
+      fmt::format("{} points of \"{}\" deformed, least det J {:.3g}", report.points, name, report.least_determinant);
+  if (report.folded > 0)
+    line += fmt::format("; {} lie where it folds or collapses (det J ≤ 0): select_folded selects their triangles",
+                        report.folded);
+  if (report.undefined > 0)
+    line += fmt::format("; {} have no rotation of their own and got a neighbour's", report.undefined);
+  if (report.outside > 0) line += fmt::format("; {} that show nothing lie outside the cage and stay", report.outside);
+  if (report.not_finite > 0)
+    line += fmt::format("; {} are no numbers, or would become none, and stay", report.not_finite);
+  return line;
+}
+
+}  // namespace
+
+Outcome with_deformed(const Scene& scene, const DeformSet& set, double falloff, const SpaceDeformation& deformation,
+                      const std::vector<std::string>& notes) {
+  Scene result = scene;
+  Report report;
+  for (std::size_t k = 0; k < set.nodes.size(); ++k) {
+    DeformedObject made =
+        deformed(*set.nodes[k].node->object, set.nodes[k].to_world, set.flags[k], falloff, deformation);
+    report.lines.push_back(in_words(set.nodes[k].node->name, made.report));
+    for (const std::string& note : notes) report.lines.back() += "; " + note;
+    if (made.report.opaque_outside > 0)
+      throw EditError(
+          fmt::format("{} of the {} points of \"{}\" lie outside the cage, where these coordinates hold nothing; use "
+                      "mean_value, or "
+                      "a coarser wrap or a larger cage",
+                      made.report.opaque_outside, made.report.points, set.nodes[k].node->name));
+    // Pictures and files hold positions as float.
+    constexpr double farthest = 1e30;
+    if (const Box box = transformed(made.object->bounds(), set.nodes[k].to_world);
+        !box.isEmpty() && !(box.min().cwiseAbs().maxCoeff() < farthest && box.max().cwiseAbs().maxCoeff() < farthest))
+      throw EditError(fmt::format("\"{}\" would lie beyond what numbers can hold", set.nodes[k].node->name));
+    result = with_changed(result, set.nodes[k].node->id, [&](Node& node) { node.object = std::move(made.object); });
+    check_subtree(result, set.nodes[k].node->id);
+  }
+  return {std::move(result), std::move(report)};
+}
+
+FieldType Codec<CageMoves>::type() {
+  return {FieldKind::other,
+          "list of {\"points\": numbers, or \"box\", or \"sphere\"; \"translate\", \"rotate\", \"scale\", \"pivot\"}",
+          "Sequence[dict[str, Any]]",
+          {}};
+}
+CageMoves Codec<CageMoves>::read(const nlohmann::json& value, const Scene& scene) {
+  if (!value.is_array()) throw Error("must be a list of moves");
+  CageMoves moves;
+  for (const nlohmann::json& entry : value) {
+    if (!entry.is_object()) throw Error("must be a list of objects, each one move");
+    CageMove move;
+    FieldReader reader(entry, scene);
+    CageMove::fields(move, reader);
+    reader.finish();
+    if (int{!move.points.ranges.empty()} + int{move.box.has_value()} + int{move.sphere.has_value()} != 1)
+      throw FieldError("points", "exactly one of points, box and sphere must be given");
+    moves.push_back(std::move(move));
+  }
+  return moves;
+}
+nlohmann::json Codec<CageMoves>::write(const CageMoves& value) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const CageMove& move : value) {
+    nlohmann::json object = nlohmann::json::object();
+    FieldWriter writer(object);
+    CageMove::fields(move, writer);
+    if (move.points.ranges.empty()) object.erase("points");
+    list.push_back(std::move(object));
+  }
+  return list;
+}
+
+FieldType Codec<Cage>::type() {
+  return {FieldKind::other,
+          "file, or {\"vertices\": [[x, y, z], …], \"faces\": [[a, b, c], …]}",
+          "str | dict[str, Any]",
+          {}};
+}
+Cage Codec<Cage>::read(const nlohmann::json& value, const Scene& scene) {
+  // A file's mesh goes into the edit itself, so that journals and projects need no file.
+  if (value.is_string()) return read_cage(value.get<std::string>());
+  if (!value.is_object() || !value.contains("vertices") || !value.contains("faces") ||
+      !value.at("vertices").is_array() || !value.at("faces").is_array())
+    throw Error("must be the name of a file, or an object with vertices and faces");
+  Cage cage;
+  for (const nlohmann::json& vertex : value.at("vertices")) cage.vertices.push_back(Codec<Vec3>::read(vertex, scene));
+  for (const nlohmann::json& corners : value.at("faces")) {
+    Face face{};
+    if (!corners.is_array() || corners.size() != 3) throw Error("faces must be lists of three vertex numbers");
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!corners[k].is_number_unsigned() || corners[k].get<std::uint64_t>() >= cage.vertices.size())
+        throw Error("faces must name vertices by number, from 0");
+      face[k] = corners[k].get<std::uint32_t>();
+    }
+    cage.faces.push_back(face);
+  }
+  return checked_cage(std::move(cage));
+}
+nlohmann::json Codec<Cage>::write(const Cage& value) {
+  if (value.faces.empty()) return {};
+  nlohmann::json object = {{"vertices", nlohmann::json::array()}, {"faces", nlohmann::json::array()}};
+  for (const Vec3& v : value.vertices) object["vertices"].push_back(Codec<Vec3>::write(v));
+  for (const Face& face : value.faces) object["faces"].push_back(face);
+  return object;
+}
+
+std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, bool shares) {
+  std::vector<std::uint32_t> result;
+  std::vector<std::uint8_t> taken(cage.vertices.size(), 0);
+  for (const auto& [first, last] : move.points.ranges) {
+    if (last >= cage.vertices.size())
+      throw FieldError("points", fmt::format("{} is not there: the cage has {} points", last, cage.vertices.size()));
+    std::fill(taken.begin() + static_cast<std::ptrdiff_t>(first), taken.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+              std::uint8_t{1});
+  }
+  for (std::uint32_t v = 0; v < taken.size(); ++v)
+    if (taken[v] != 0) result.push_back(v);
+  if (move.points.ranges.empty()) {
+    Box box;
+    for (const Vec3& v : cage.vertices) box.extend(v);
+    const double unit = shares ? box.diagonal().norm() : 1;
+    for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
+      Vec3 p = cage.vertices[v];
+      if (shares)
+        for (int axis = 0; axis < 3; ++axis)
+          p[axis] = box.sizes()[axis] > 0 ? (p[axis] - box.min()[axis]) / box.sizes()[axis] : 0;
+      const bool inside =
+          move.box ? (p.array() >= move.box->min.array()).all() && (p.array() <= move.box->max.array()).all() : [&] {
+            const Vec3 away = p - move.sphere->center;
+            return (shares ? Vec3(away.cwiseProduct(box.sizes())) : away).norm() <= move.sphere->radius * unit;
+          }();
+      if (inside) result.push_back(v);
+    }
+    if (result.empty()) throw FieldError(move.box ? "box" : "sphere", "no cage point lies inside");
+  }
+  return result;
+}
+
+std::vector<Vec3> moved_points(const CageMoves& moves, const Cage& cage, bool shares) {
+  std::vector<Vec3> points = cage.vertices;
+  for (const CageMove& move : moves) {
+    const std::vector<std::uint32_t> taken = points_of(move, cage, shares);
+    Box box;
+    for (const std::uint32_t v : taken) box.extend(points[v]);
+    const Vec3 pivot = move.pivot.value_or(box.center());
+    const Mat3 linear = move.rotate.matrix() * move.scale.value.asDiagonal();
+    for (const std::uint32_t v : taken) {
+      // A pure move adds just the distance.
+      points[v] = linear.isIdentity(0) ? Vec3(points[v] + move.translate)
+                                       : Vec3(pivot + linear * (points[v] - pivot) + move.translate);
+      if (!points[v].allFinite()) throw FieldError("moves", "a cage point would lie beyond what numbers can hold");
+    }
+  }
+  return points;
+}
+
+std::vector<std::string> notes_on(const Cage& cage, const std::vector<Vec3>& moved) {
+  std::vector<std::string> notes;
+  if (const std::size_t pairs = self_intersections(cage); pairs > 0)
+    notes.push_back(fmt::format("the cage cuts through itself ({} pairs of triangles)", pairs));
+  else if (const std::size_t after = self_intersections({moved, cage.faces}); after > 0)
+    notes.push_back(fmt::format("the moved cage cuts through itself ({} pairs of triangles)", after));
+  return notes;
+}
+
+Cage cage_of(const CageSource& source, const DeformSet& set, const Progress& progress) {
+  if (int{!source.lattice.empty()} + int{source.wrap.has_value()} + int{!source.mesh.faces.empty()} > 1)
+    throw FieldError("wrap", "at most one of lattice, wrap and mesh can be given");
+  if (!source.mesh.faces.empty()) return source.mesh;
+  if (source.lattice.empty()) {
+    const TriangleList opaque = set.opaque_triangles();
+    if (opaque.faces.empty()) throw EditError("no triangle shows anything, so there is nothing to wrap; use a lattice");
+    return wrap(opaque, source.wrap.value_or(0.1), progress);
+  }
+  if (source.lattice.size() != 3) throw FieldError("lattice", "must be three whole numbers: cells along x, y and z");
+  // A little larger, so that no point lies on the surface.
+  Box box = set.bounds();
+  const Vec3 margin = Vec3::Constant(0.01 * box.diagonal().norm());
+  box = Box(Vec3(box.min() - margin), Vec3(box.max() + margin));
+  try {
+    return lattice_cage(box, source.lattice[0], source.lattice[1], source.lattice[2]);
+  } catch (const FieldError&) {
+    throw;
+  } catch (const Error& error) {
+    throw FieldError("lattice", error.what());
+  }
+}
+
+}  // namespace rebake

@@ -1,0 +1,54 @@
+#include "editor/edits/deform/handles.h"
+
+#include "editor/edits/describe.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "mesh_ops/deform/handles.h"
+
+namespace rebake {
+
+Outcome apply(const Scene& scene, const HandlesDeform& edit, const Progress& progress) {
+  if (edit.iterations < 1 || edit.iterations > 1000) throw FieldError("iterations", "must lie between 1 and 1000");
+  if (edit.moves.empty()) throw FieldError("moves", "must hold at least one move");
+  const DeformSet set = deform_set(scene, edit.target);
+  const Cage cage = cage_of(edit.cage, set, progress);
+  const bool shares = edit.target.frame == CoordinateFrame::bounds;
+  const std::vector<Vec3> asked = moved_points(edit.moves, cage, shares);
+  std::map<std::uint32_t, Vec3> held;
+  for (const CageMove& move : edit.fixed)
+    for (const std::uint32_t v : points_of(move, cage, shares)) held.insert_or_assign(v, cage.vertices[v]);
+  for (const CageMove& move : edit.moves)
+    for (const std::uint32_t v : points_of(move, cage, shares)) held.insert_or_assign(v, asked[v]);
+  std::vector<HandledVertex> places;
+  for (const auto& [vertex, place] : held) places.push_back({vertex, place});
+  const HandledCage moved = as_rigid_as_possible(cage, places, edit.iterations);
+  std::vector<std::string> notes = notes_on(cage, moved.vertices);
+  if (moved.free_components > 0)
+    notes.push_back(fmt::format("{} parts of the cage hold no point and stay", moved.free_components));
+  const auto coordinates = mean_value_coordinates(cage);
+  return with_deformed(
+      scene, set, edit.target.falloff,
+      [&](const std::vector<Vec3>& points) {
+        return deform_points(*coordinates, cage, moved.vertices, points, true, progress);
+      },
+      notes);
+}
+
+REBAKE_DESCRIBE_EDIT(
+    HandlesDeform,
+    "Deforms triangles as rigidly as possible: some points of a wrap around them are held or moved, the rest "
+    "follows.",
+    (auto& edit, auto& visit) {
+      DeformTarget::fields(edit.target, visit);
+      CageSource::fields(edit.cage, visit);
+      visit("moves", edit.moves, Need::required,
+            "points of the cage that are moved; boxes and spheres in world units, with frame bounds in shares of the "
+            "cage's box");
+      visit("fixed", edit.fixed, Need::optional, "points of the cage that are held where they are");
+      visit("iterations", edit.iterations, Need::optional, "1 to 1000; more come nearer to rigid, and take longer");
+    })
+
+}  // namespace rebake

@@ -1,0 +1,21 @@
+#include "editor/edits/deform/stretch.h"
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+Outcome apply(const Scene& scene, const Stretch& edit) {
+  ClosedForm form;
+  form.kind = ClosedForm::Kind::stretch;
+  form.factor = edit.factor;
+  return with_closed_form(scene, edit.target, edit.axis, form);
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Stretch, "Makes triangles longer or shorter along an axis, between the limits.", (auto& edit, auto& visit) {
+      DeformTarget::fields(edit.target, visit);
+      visit("factor", edit.factor, Need::required, "length between the limits, as a share of now");
+      DeformAxis::fields(edit.axis, visit);
+    })
+
+}  // namespace rebake

@@ -1,0 +1,22 @@
+#include "editor/edits/deform/taper.h"
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+Outcome apply(const Scene& scene, const Taper& edit) {
+  ClosedForm form;
+  form.kind = ClosedForm::Kind::taper;
+  form.factor = edit.factor;
+  return with_closed_form(scene, edit.target, edit.axis, form);
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Taper, "Makes triangles thinner or thicker across an axis, more and more between the limits.",
+    (auto& edit, auto& visit) {
+      DeformTarget::fields(edit.target, visit);
+      visit("factor", edit.factor, Need::required, "size at the upper limit, as a share of now");
+      DeformAxis::fields(edit.axis, visit);
+    })
+
+}  // namespace rebake

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+/// Sets the colour behind everything.
+struct Background {
+  static constexpr const char* op = "background";
+  Vec3 color{1, 1, 1};
+};
+template <>
+const EditType& edit_type<Background>();
+
+Scene apply(const Scene& scene, const Background& edit);
+
+}  // namespace rebake

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+/// Adds a copy of a node and its children after it; triangles and texels stay shared.
+struct Duplicate {
+  static constexpr const char* op = "duplicate";
+  NodeRef node;
+  std::string as;
+};
+template <>
+const EditType& edit_type<Duplicate>();
+
+Scene apply(const Scene& scene, const Duplicate& edit);
+
+}  // namespace rebake

@@ -1,0 +1,35 @@
+#include "editor/edits/nodes/group.h"
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+Scene apply(const Scene& scene, const Group& edit) {
+  if (!edit.as.empty() && find(scene, edit.as) != nullptr)
+    throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+  Node group;
+  group.name = edit.as.empty() ? "group" : edit.as;
+  Scene result = scene;
+  for (const NodeRef& ref : edit.nodes) {
+    if (!find_placed(result, ref.id)) throw FieldError("nodes", "names a node twice, or one inside another");
+    const PlacedNode placed = editable(result, ref.id);
+    Node moved = *placed.node;
+    moved.to_parent = placed.to_world;
+    moved.visible = placed.visible;  // hidden by a group above stays hidden
+    group.children.push_back(std::make_shared<const Node>(std::move(moved)));
+    result = without(result, ref.id);
+  }
+  // Names of the children are free again in `result`, so they keep them.
+  NodeId id = NodeId::none;
+  result = with_added(result, std::move(group), NodeId::none, result.roots.size(), &id);
+  check_subtree(result, id);
+  return result;
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Group, "Puts nodes into a new group; they stay where they are in the world.", (auto& edit, auto& visit) {
+      visit("nodes", edit.nodes, Need::required, "nodes to put together");
+      visit("as", edit.as, Need::optional, "name of the group; empty: group");
+    })
+
+}  // namespace rebake

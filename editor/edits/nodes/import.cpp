@@ -1,0 +1,42 @@
+#include "editor/edits/nodes/import.h"
+
+#include "editor/edits/describe.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/scene_files.h"
+
+namespace rebake {
+
+Scene apply(const Scene& scene, const Import& edit, const Progress& progress) {
+  if (!edit.content.empty() && hash_text(folder_hash(edit.path)) != edit.content)
+    throw EditError(edit.path + ": has changed since it was imported; put the files back as they were");
+  const Scene read = read_any(edit.path, edit.axes, progress);
+  if (read.roots.empty()) throw EditError(edit.path + ": holds no objects");
+  Node node;
+  if (read.roots.size() == 1) {
+    node = without_ids(*read.roots.front());
+  } else {
+    node.name = folder_title(edit.path);
+    for (const NodePtr& root : read.roots) node.children.push_back(std::make_shared<const Node>(without_ids(*root)));
+  }
+  if (!edit.as.empty()) {
+    if (find(scene, edit.as) != nullptr)
+      throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+    node.name = edit.as;
+  }
+  Scene result = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
+  for (const auto& [name, camera] : read.views) result.views.try_emplace(name, camera);
+  return result;
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Import, "Reads a MobileNeRF folder or a Rebake scene into the scene.", (auto& edit, auto& visit) {
+      visit("path", edit.path, Need::required, "folder to read");
+      visit("as", edit.as, Need::optional, "name of the new node; empty: the folder's name");
+      visit("axes", edit.axes, Need::optional, "which way a MobileNeRF folder is oriented; scenes say so themselves");
+      visit("content", edit.content, Need::optional,
+            "hash of the folder's files as projects and journals record it: anything else there is refused");
+    })
+
+}  // namespace rebake

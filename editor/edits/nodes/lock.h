@@ -1,0 +1,17 @@
+#pragma once
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+/// Protects a node and its children from edits.
+struct Lock {
+  static constexpr const char* op = "lock";
+  NodeRef node;
+};
+template <>
+const EditType& edit_type<Lock>();
+
+Scene apply(const Scene& scene, const Lock& edit);
+
+}  // namespace rebake

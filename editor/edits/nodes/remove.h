@@ -1,0 +1,17 @@
+#pragma once
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+/// Takes a node and its children out of the scene.
+struct Remove {
+  static constexpr const char* op = "remove";
+  NodeRef node;
+};
+template <>
+const EditType& edit_type<Remove>();
+
+Scene apply(const Scene& scene, const Remove& edit);
+
+}  // namespace rebake

@@ -1,0 +1,22 @@
+#include "editor/edits/nodes/rename.h"
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+Scene apply(const Scene& scene, const Rename& edit) {
+  const PlacedNode placed = editable(scene, edit.node.id);
+  if (edit.name.empty()) throw FieldError("name", "is empty");
+  const NodePtr other = find(scene, edit.name);
+  if (other != nullptr && other->id != edit.node.id)
+    throw FieldError("name", "\"" + edit.name + "\" is the name of another node already");
+  return with_changed(scene, edit.node.id, [&](Node& node) { node.name = edit.name; });
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Rename, "Gives a node another name.", (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::required, "node to rename");
+      visit("name", edit.name, Need::required, "new name, not in use yet");
+    })
+
+}  // namespace rebake

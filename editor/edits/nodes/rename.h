@@ -1,0 +1,18 @@
+#pragma once
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+/// Gives a node another name.
+struct Rename {
+  static constexpr const char* op = "rename";
+  NodeRef node;
+  std::string name;
+};
+template <>
+const EditType& edit_type<Rename>();
+
+Scene apply(const Scene& scene, const Rename& edit);
+
+}  // namespace rebake

@@ -1,0 +1,41 @@
+#include "editor/edits/nodes/reorder.h"
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+Scene apply(const Scene& scene, const Reorder& edit) {
+  const PlacedNode placed = editable(scene, edit.node.id);
+  if (edit.index < 0) throw FieldError("index", "must be 0 or more");
+  if (edit.top && edit.parent) throw FieldError("top", "contradicts parent");
+  const NodeId parent = edit.top ? NodeId::none : edit.parent ? edit.parent->id : parent_of(scene, edit.node.id);
+  const Scene rest = without(scene, edit.node.id);
+  Node moved = *placed.node;
+  Affine parent_to_world = Affine::Identity();
+  if (parent != NodeId::none) {
+    const auto target = find_placed(rest, parent);
+    if (!target) throw FieldError("parent", "is the node itself or inside it");
+    if (target->node->object) throw FieldError("parent", "\"" + target->node->name + "\" is an object, not a group");
+    editable(scene, parent);
+    parent_to_world = target->to_world;
+  }
+  if (parent != parent_of(scene, edit.node.id)) {
+    moved.to_parent = parent_to_world.inverse() * placed.to_world;
+    moved.visible = placed.visible;  // hidden by a group above stays hidden
+  }
+  const Scene result = with_added(rest, std::move(moved), parent, static_cast<std::size_t>(edit.index));
+  check_subtree(result, edit.node.id);
+  return result;
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Reorder, "Moves a node within the outline, to another place or group; it stays where it is in the world.",
+    (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::required, "node to move");
+      visit("index", edit.index, Need::required,
+            "place among its new siblings, from 0; later ones are drawn on top where depths are equal");
+      visit("parent", edit.parent, Need::optional, "group to move into; left out: stays in its group");
+      visit("top", edit.top, Need::optional, "move to the top level, out of all groups");
+    })
+
+}  // namespace rebake

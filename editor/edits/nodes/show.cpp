@@ -1,0 +1,16 @@
+#include "editor/edits/nodes/show.h"
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+Scene apply(const Scene& scene, const Show& edit) {
+  present(scene, edit.node.id);
+  return with_changed(scene, edit.node.id, [](Node& node) { node.visible = true; });
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Show, "Makes a node visible again.",
+    (auto& edit, auto& visit) { visit("node", edit.node, Need::required, "node"); })
+
+}  // namespace rebake

@@ -1,0 +1,81 @@
+#include "editor/edits/nodes/transform.h"
+
+#include <algorithm>
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+Mat3 scaling(const Transform& edit) {
+  // Where axes do not matter the scale stays exact.
+  const Vec3& scale = edit.scale.value;
+  if (edit.scale_axes.quaternion().vec().isZero(0) || (scale.array() == scale[0]).all()) return scale.asDiagonal();
+  const Mat3 axes = edit.scale_axes.matrix();
+  const Mat3 product = axes * scale.asDiagonal() * axes.transpose();
+  return (product + product.transpose()) / 2;
+}
+
+Scene apply(const Scene& scene, const Transform& edit) {
+  const PlacedNode placed = editable_with_children(scene, edit.node.id);
+  Box box;
+  if (!edit.selection) {
+    box = subtree_bounds(scene, edit.node.id);
+  } else {
+    box = selection_bounds(with_selection(scene, edit.node).front());
+  }
+  const Vec3 pivot = edit.pivot      ? *edit.pivot
+                     : box.isEmpty() ? Vec3(placed.to_world.translation())
+                                     : Vec3(box.center());
+  Affine motion = Affine::Identity();
+  const Mat3 linear = edit.rotate.matrix() * scaling(edit);
+  motion.linear() = linear;
+  // A pure move adds just the distance: no rounding from the pivot.
+  motion.translation() = linear.isIdentity(0) ? edit.translate : Vec3(pivot + edit.translate - linear * pivot);
+  if (!motion.matrix().allFinite()) throw EditError("the transform is not finite");
+  if (!edit.selection) {
+    const Affine parent_to_world = parent_of(scene, edit.node.id) == NodeId::none
+                                       ? Affine(Affine::Identity())
+                                       : present(scene, parent_of(scene, edit.node.id)).to_world;
+    const Affine to_parent = parent_to_world.matrix().isIdentity(0)
+                                 ? motion * placed.node->to_parent
+                                 : parent_to_world.inverse() * motion * placed.to_world;
+    const Scene result = with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
+    check_subtree(result, edit.node.id);
+    return result;
+  }
+  const Affine in_object = placed.to_world.inverse() * motion * placed.to_world;
+  checked_turn(in_object);
+  // The colour belongs to the direction turned back by the orthogonal factor of all that was done, seen from the
+  // object's own frame.
+  const Mat3 turn = orthogonal_factor(placed.to_world.linear()).transpose() *
+                    orthogonal_factor(motion.linear() * placed.to_world.linear());
+  const Scene result = with_changed(scene, edit.node.id, [&](Node& node) {
+    std::vector<TextureSet> sets;
+    std::size_t first = 0;
+    for (const TextureSet& set : node.object->sets) {
+      const auto begin = node.selection->begin() + static_cast<std::ptrdiff_t>(first);
+      const bool any = std::any_of(begin, begin + static_cast<std::ptrdiff_t>(set.soup.triangle_count()),
+                                   [](auto flag) { return flag != 0; });
+      sets.push_back(any ? TextureSet{move_faces(set.soup, *node.selection, first, in_object, turn), set.texels} : set);
+      first += set.soup.triangle_count();
+    }
+    node.object = with_sets(*node.object, std::move(sets));
+  });
+  check_subtree(result, edit.node.id);
+  return result;
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Transform, "Scales, then turns, then moves a node or its selected triangles about a pivot.",
+    (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::required, "node to transform");
+      visit("selection", edit.selection, Need::optional, "only the selected triangles");
+      visit("translate", edit.translate, Need::optional, "in scene units");
+      visit("rotate", edit.rotate, Need::optional, "rotation");
+      visit("scale", edit.scale, Need::optional, "factor; negative mirrors, 0 is refused");
+      visit("scale_axes", edit.scale_axes, Need::optional, "turn of the axes along which scale acts, from the world's");
+      visit("pivot", edit.pivot, Need::optional,
+            "world point that scale and rotation keep; left out: the centre of the box of what is transformed");
+    })
+
+}  // namespace rebake

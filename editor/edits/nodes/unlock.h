@@ -1,0 +1,17 @@
+#pragma once
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+/// Allows edits again.
+struct Unlock {
+  static constexpr const char* op = "unlock";
+  NodeRef node;
+};
+template <>
+const EditType& edit_type<Unlock>();
+
+Scene apply(const Scene& scene, const Unlock& edit);
+
+}  // namespace rebake

@@ -1,0 +1,20 @@
+#include "editor/edits/nodes/view.h"
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+Scene apply(const Scene& scene, const StoreView& edit) {
+  if (edit.name.empty()) throw FieldError("name", "is empty");
+  Scene result = scene;
+  result.views[edit.name] = edit.camera;
+  return result;
+}
+
+REBAKE_DESCRIBE_EDIT(
+    StoreView, "Stores a camera under a name.", (auto& edit, auto& visit) {
+      visit("name", edit.name, Need::required, "name of the view");
+      visit("camera", edit.camera, Need::required, "the camera; what is left out has its usual value");
+    })
+
+}  // namespace rebake

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+/// Stores a camera under a name.
+struct StoreView {
+  static constexpr const char* op = "view";
+  std::string name;
+  Camera camera;
+};
+template <>
+const EditType& edit_type<StoreView>();
+
+Scene apply(const Scene& scene, const StoreView& edit);
+
+}  // namespace rebake

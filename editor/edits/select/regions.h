@@ -1,0 +1,89 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include "editor/fields/values.h"
+#include "mesh_ops/select/region.h"
+
+namespace rebake {
+
+/// Turns object coordinates into those that a selection's numbers are given in, and back.
+class FramePoints {
+ public:
+  FramePoints(CoordinateFrame frame, const PlacedNode& placed);
+  const Affine& from_object() const { return from_object_; }
+  Vec3 to_object(const Vec3& point) const { return from_object_.inverse() * point; }
+  /// What a radius is multiplied by, to be compared with distances in metric().
+  double radius_scale() const { return radius_scale_; }
+  /// Coordinates in which distances mean something: world, or the object's own.
+  const Affine& metric() const { return metric_; }
+
+ private:
+  Affine from_object_ = Affine::Identity();
+  Affine metric_ = Affine::Identity();
+  double radius_scale_ = 1;
+};
+
+inline FramePoints::FramePoints(CoordinateFrame frame, const PlacedNode& placed) {
+  if (frame == CoordinateFrame::world) from_object_ = metric_ = placed.to_world;
+  if (frame != CoordinateFrame::bounds) return;
+  const Box box = placed.node->object->bounds();
+  radius_scale_ = box.diagonal().norm();
+  for (int axis = 0; axis < 3; ++axis) {
+    // A flat box has a single coordinate along its flat side; it counts as 0.
+    const double size = box.sizes()[axis];
+    const double scale = size > 0 ? 1 / size : 1;
+    from_object_.linear()(axis, axis) = scale;
+    from_object_.translation()[axis] = -box.min()[axis] * scale;
+  }
+}
+
+/// A region of an object, in object space.
+struct ObjectRegion {
+  std::function<bool(const Vec3&)> inside;
+  /// False only where the triangle between the corners lies outside altogether.
+  std::function<bool(const std::array<Vec3, 3>&)> may_touch;
+};
+
+inline ObjectRegion region_of(const FramePoints& points, const BoxRegion& box) {
+  const Affine& from_object = points.from_object();
+  const auto inside = [from_object, box](const Vec3& object_point) {
+    const Vec3 p = from_object * object_point;
+    return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
+  };
+  const auto may_touch = [from_object, box](const std::array<Vec3, 3>& corners) {
+    Box triangle;
+    for (const Vec3& corner : corners) triangle.extend(from_object * corner);
+    return (triangle.max().array() >= box.min.array()).all() && (triangle.min().array() <= box.max.array()).all();
+  };
+  return {inside, may_touch};
+}
+
+inline ObjectRegion region_of(const FramePoints& points, const SphereRegion& sphere) {
+  const Vec3 center = points.metric() * points.to_object(sphere.center);
+  const double radius = sphere.radius * points.radius_scale();
+  const Affine& metric = points.metric();
+  const auto inside = [metric, center, radius](const Vec3& object_point) {
+    return (metric * object_point - center).norm() <= radius;
+  };
+  const auto may_touch = [metric, center, radius](const std::array<Vec3, 3>& corners) {
+    Box triangle;
+    for (const Vec3& corner : corners) triangle.extend(metric * corner);
+    return triangle.exteriorDistance(center) <= radius;
+  };
+  return {inside, may_touch};
+}
+
+inline ObjectRegion region_of(const FramePoints& points, const HalfSpaceRegion& half) {
+  const auto inside = [from_object = points.from_object(), half](const Vec3& object_point) {
+    return half.normal.dot(from_object * object_point - half.point) >= 0;
+  };
+  const auto may_touch = [inside](const std::array<Vec3, 3>& corners) {
+    return std::any_of(corners.begin(), corners.end(), inside);
+  };
+  return {inside, may_touch};
+}
+
+}  // namespace rebake

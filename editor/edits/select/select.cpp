@@ -1,0 +1,93 @@
+#include "editor/edits/select/select.h"
+
+#include "editor/edits/describe.h"
+
+#include <fmt/format.h>
+
+#include "editor/edits/select/regions.h"
+#include "mesh_ops/select/region.h"
+
+namespace rebake {
+
+namespace {
+
+TriangleSet triangles_of_set(const PlacedNode& placed, int wanted) {
+  const BakedObject& object = *placed.node->object;
+  if (wanted < 0 || static_cast<std::size_t>(wanted) >= object.sets.size())
+    throw FieldError("texture_set",
+                     fmt::format("\"{}\" has {} texture sets, counted from 0", placed.node->name, object.sets.size()));
+  TriangleSet flags;
+  for (std::size_t i = 0; i < object.sets.size(); ++i)
+    flags.insert(flags.end(), object.sets[i].soup.triangle_count(), i == static_cast<std::size_t>(wanted) ? 1 : 0);
+  return flags;
+}
+
+}  // namespace
+
+Scene apply(const Scene& scene, const Select& edit) {
+  const int ways = int{edit.all} + int{edit.none} + int{edit.invert} + int{edit.box.has_value()} +
+                   int{edit.sphere.has_value()} + int{edit.half_space.has_value()} + int{edit.connected.has_value()} +
+                   int{edit.texture_set.has_value()} + int{!edit.saved.empty()};
+  if (ways != 1)
+    throw FieldError("box",
+                     "exactly one of all, none, invert, box, sphere, half_space, connected, texture_set and saved must "
+                     "be given");
+  const std::vector<PlacedNode> targets = selectable(scene, edit.node);
+  if (!edit.saved.empty() && std::none_of(targets.begin(), targets.end(), [&](const PlacedNode& placed) {
+        return placed.node->saved_selections.contains(edit.saved);
+      }))
+    throw FieldError("saved", fmt::format("no selection is stored under \"{}\"", edit.saved));
+  // "Connected" starts at one triangle of one of the targets.
+  std::optional<NearestTriangle> start;
+  if (edit.connected) {
+    Vec3 point = *edit.connected;
+    if (edit.frame != CoordinateFrame::world) {
+      if (targets.size() != 1) throw FieldError("frame", "must be world where several objects are selected from");
+      point = targets[0].to_world * FramePoints(edit.frame, targets[0]).to_object(point);
+    }
+    start = nearest_triangle(targets, point, false);
+  }
+  const SelectMode mode = edit.invert ? SelectMode::set : edit.mode;
+  std::size_t index = 0;
+  return with_selected(scene, targets, mode, [&](const PlacedNode& placed) {
+    const std::size_t k = index++;
+    const BakedObject& object = *placed.node->object;
+    const FramePoints points(edit.frame, placed);
+    if (edit.invert) {
+      TriangleSet flags = selection_of(placed);
+      for (auto& flag : flags) flag = flag != 0 ? 0 : 1;
+      return flags;
+    }
+    if (edit.box) return triangles_by_centre(object, region_of(points, *edit.box).inside);
+    if (edit.sphere) return triangles_by_centre(object, region_of(points, *edit.sphere).inside);
+    if (edit.half_space) return triangles_by_centre(object, region_of(points, *edit.half_space).inside);
+    if (start && start->target == k && object.triangle_count() > 0) return triangles_connected(object, start->triangle);
+    if (edit.texture_set) return triangles_of_set(placed, *edit.texture_set);
+    if (const auto saved = placed.node->saved_selections.find(edit.saved);
+        !edit.saved.empty() && saved != placed.node->saved_selections.end())
+      return *saved->second;
+    return TriangleSet(object.triangle_count(), edit.all ? 1 : 0);
+  });
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Select, "Selects triangles by their centres.", (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::optional,
+            "only of this node and those inside it; left out: of all that is visible");
+      visit("all", edit.all, Need::optional, "every triangle");
+      visit("none", edit.none, Need::optional, "no triangle");
+      visit("invert", edit.invert, Need::optional, "those not selected now");
+      visit("box", edit.box, Need::optional, "inside a box");
+      visit("sphere", edit.sphere, Need::optional,
+            "inside a sphere; radius in units of the frame, in frame bounds as a share of the box diagonal");
+      visit("half_space", edit.half_space, Need::optional, "on the side that the normal points to");
+      visit("connected", edit.connected, Need::optional,
+            "joined through shared corners to the triangle nearest to this point");
+      visit("texture_set", edit.texture_set, Need::optional, "of this texture set, counted from 0");
+      visit("saved", edit.saved, Need::optional, "stored by store_selection under this name");
+      visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
+      visit("frame", edit.frame, Need::optional,
+            "world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1");
+    })
+
+}  // namespace rebake

@@ -1,0 +1,24 @@
+#include "editor/edits/select/select_folded.h"
+
+#include "editor/edits/describe.h"
+#include "mesh_ops/deform/deform_object.h"
+
+namespace rebake {
+
+Scene apply(const Scene& scene, const SelectFolded& edit) {
+  return with_selected(scene, selectable(scene, edit.node), edit.mode, [](const PlacedNode& placed) {
+    const BakedObject& object = *placed.node->object;
+    return object.folded ? *object.folded : TriangleSet(object.triangle_count(), 0);
+  });
+}
+
+REBAKE_DESCRIBE_EDIT(
+    SelectFolded,
+    "Selects triangles that the last deformation of their object folded or collapsed (det J ≤ 0 at a corner).",
+    (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::optional,
+            "only of this node and those inside it; left out: of all that is visible");
+      visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
+    })
+
+}  // namespace rebake

@@ -1,0 +1,69 @@
+#include "editor/edits/select/select_unneeded.h"
+
+#include "editor/edits/describe.h"
+
+#include <fmt/format.h>
+
+#include "mesh_ops/index/opacity.h"
+#include "mesh_ops/select/duplicates.h"
+
+namespace rebake {
+
+namespace {
+
+TriangleSet transparent_triangles(const BakedObject& object) {
+  TriangleSet flags;
+  for (const TextureSet& set : object.sets)
+    for (const std::uint8_t shows : faces_with_opaque_texels(set)) flags.push_back(shows != 0 ? 0 : 1);
+  return flags;
+}
+
+void add(TriangleSet& flags, const TriangleSet& more) {
+  for (std::size_t f = 0; f < flags.size(); ++f) flags[f] |= more[f];
+}
+
+}  // namespace
+
+Scene apply(const Scene& scene, const SelectUnneeded& edit) {
+  if (!edit.transparent && !edit.duplicates && edit.unseen == 0 && edit.unseen_from.empty())
+    throw FieldError("transparent", "at least one of transparent, duplicates, unseen and unseen_from must be given");
+  if (edit.unseen < 0 || edit.unseen > 100000) throw FieldError("unseen", "must lie between 0 and 100000");
+  if (!(edit.distance > 1)) throw FieldError("distance", "must be above 1: the eyes are outside the box");
+  std::vector<Camera> cameras;
+  for (const std::string& name : edit.unseen_from) {
+    const auto found = scene.views.find(name);
+    if (found == scene.views.end()) throw FieldError("unseen_from", fmt::format("there is no view \"{}\"", name));
+    cameras.push_back(found->second);
+  }
+  return with_selected(scene, selectable(scene, edit.node), edit.mode, [&](const PlacedNode& placed) {
+    const BakedObject& object = *placed.node->object;
+    TriangleSet flags(object.triangle_count(), 0);
+    if (edit.transparent) add(flags, transparent_triangles(object));
+    if (edit.duplicates) add(flags, duplicate_triangles(object));
+    std::vector<Standpoint> eyes;
+    if (edit.unseen > 0) eyes = eyes_around(object.bounds(), edit.unseen, edit.distance);
+    for (const Camera& camera : cameras) {
+      const Affine to_object = placed.to_world.inverse();
+      const Vec3 back = to_object.linear() * world_to_camera(camera).row(2).transpose();
+      eyes.push_back({to_object * camera.eye, camera.orthographic() ? Vec3(back.normalized()) : Vec3::Zero()});
+    }
+    if (!eyes.empty()) add(flags, triangles_unseen(object, eyes));
+    return flags;
+  });
+}
+
+REBAKE_DESCRIBE_EDIT(
+    SelectUnneeded, "Selects triangles that no picture needs, for cleaning: look at the count, then delete.",
+    (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::optional,
+            "only of this node and those inside it; left out: of all that is visible");
+      visit("transparent", edit.transparent, Need::optional, "without an opaque texel");
+      visit("duplicates", edit.duplicates, Need::optional, "same corners and same texels as a triangle drawn later");
+      visit("unseen", edit.unseen, Need::optional,
+            "not seen from this many eyes on a sphere around the object; other objects hide nothing");
+      visit("distance", edit.distance, Need::optional, "of the eyes, in half diagonals of the object's box");
+      visit("unseen_from", edit.unseen_from, Need::optional, "names of stored views: not seen from any of their eyes");
+      visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
+    })
+
+}  // namespace rebake

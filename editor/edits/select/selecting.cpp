@@ -1,0 +1,170 @@
+#include "editor/edits/select/selecting.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "mesh_ops/index/index.h"
+
+namespace rebake {
+
+namespace {
+
+Picture picture_of(const Scene& scene, const PictureFields& fields) {
+  if (fields.camera.has_value() == !fields.view.empty())
+    throw FieldError("camera", "exactly one of view and camera must be given");
+  Picture picture{fields.camera.value_or(Camera{}), fields.size.width, fields.size.height};
+  if (!fields.view.empty()) {
+    const auto found = scene.views.find(fields.view);
+    if (found == scene.views.end()) {
+      std::vector<std::string> names;
+      for (const auto& [name, camera] : scene.views) names.push_back(name);
+      throw FieldError("view", names.empty() ? "no view is stored; store one with the edit view, or give a camera"
+                                             : fmt::format("there is no view \"{}\"; there are {}", fields.view,
+                                                           fmt::join(names, ", ")));
+    }
+    picture.camera = found->second;
+  }
+  return picture;
+}
+
+PixelMask mask_of(const PictureFields& fields) {
+  if (fields.polygon && fields.brush) throw FieldError("brush", "give a polygon or a brush, not both");
+  if (!fields.polygon && !fields.brush && !fields.depth)
+    throw FieldError("polygon", "at least one of polygon, brush and depth must be given");
+  const auto [width, height] = fields.size;
+  if (fields.polygon) return polygon_mask(fields.polygon->corners, width, height);
+  if (fields.brush) return brush_mask(fields.brush->points, fields.brush->radius, width, height);
+  return full_mask(width, height);
+}
+
+}  // namespace
+
+std::vector<PlacedNode> selectable(const Scene& scene, const std::optional<NodeRef>& node) {
+  std::vector<NodeId> inside;
+  if (node) inside.push_back(editable(scene, node->id).node->id);
+  std::vector<PlacedNode> result;
+  for (PlacedNode& placed : placed_nodes(scene)) {
+    if (node) {
+      if (std::find(inside.begin(), inside.end(), placed.node->id) == inside.end()) continue;
+      for (const NodePtr& child : placed.node->children) inside.push_back(child->id);
+    }
+    // What is hidden is selected on only where it is named itself.
+    const bool named = node && placed.node->id == node->id;
+    if (placed.node->object && !placed.locked && (placed.visible || named)) result.push_back(std::move(placed));
+  }
+  if (result.empty())
+    throw EditError(
+        node ? fmt::format("\"{}\" holds no object that is visible and not locked", present(scene, node->id).node->name)
+             : "there is no object that is visible and not locked");
+  return result;
+}
+
+std::vector<PlacedNode> visible_objects(const Scene& scene) {
+  std::vector<PlacedNode> result;
+  for (PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->object && placed.visible) result.push_back(std::move(placed));
+  return result;
+}
+
+TriangleSet selection_of(const PlacedNode& placed) {
+  return placed.node->selection ? *placed.node->selection : TriangleSet(placed.node->object->triangle_count(), 0);
+}
+
+Scene with_selected(const Scene& scene, const std::vector<PlacedNode>& targets, SelectMode mode,
+                    const std::function<TriangleSet(const PlacedNode&)>& found) {
+  Scene result = scene;
+  for (const PlacedNode& placed : targets) {
+    TriangleSet flags = found(placed);
+    if (mode != SelectMode::set) {
+      const TriangleSet before = selection_of(placed);
+      for (std::size_t f = 0; f < flags.size(); ++f) {
+        const bool was = before[f] != 0, is = flags[f] != 0;
+        flags[f] = mode == SelectMode::add ? was || is : mode == SelectMode::remove ? was && !is : was && is;
+      }
+    }
+    result = with_changed(result, placed.node->id, [&](Node& node) {
+      node.selection = count(flags) == 0 ? nullptr : std::make_shared<const TriangleSet>(std::move(flags));
+    });
+  }
+  return result;
+}
+
+NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const Vec3& world, bool opaque) {
+  NearestTriangle nearest{0, 0};
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const auto traits = opaque ? traits_of(*targets[k].node->object) : nullptr;
+    std::size_t f = 0;
+    for (const TextureSet& set : targets[k].node->object->sets) {
+      const std::vector<Vec3>& p = set.soup.positions();
+      for (const Face& face : set.soup.faces()) {
+        const Vec3 centre = targets[k].to_world * Vec3((p[face[0]] + p[face[1]] + p[face[2]]) / 3);
+        const double distance = (centre - world).squaredNorm();
+        if (distance < least && (!traits || (*traits)[f].opacity > 0)) {
+          least = distance;
+          nearest = {k, f};
+        }
+        ++f;
+      }
+    }
+  }
+  if (!std::isfinite(least)) throw EditError("no object there shows anything: all its texels are transparent");
+  return nearest;
+}
+
+void WeldingField::check() const {
+  if (tolerance < 0) throw FieldError("tolerance", "must not be negative");
+}
+
+Joining JoiningFields::checked() const {
+  welding.check();
+  if (gap < 0) throw FieldError("gap", "must not be negative");
+  return {welding.tolerance, gap};
+}
+
+Scene with_selection_stepped(const Scene& scene, const std::optional<NodeRef>& node, int steps,
+                             const WeldingField& welding,
+                             TriangleSet (*change)(const WeldedCorners&, const TriangleSet&)) {
+  if (steps < 1) throw FieldError("steps", "must be at least 1");
+  welding.check();
+  with_selection(scene, node);
+  return with_selected(scene, selectable(scene, node), SelectMode::set, [&](const PlacedNode& placed) {
+    const auto corners = corners_of(*placed.node->object, welding.tolerance);
+    TriangleSet flags = selection_of(placed);
+    for (int step = 0; step < steps; ++step) {
+      TriangleSet next = change(*corners, flags);
+      if (next == flags) break;
+      flags = std::move(next);
+    }
+    return flags;
+  });
+}
+
+PictureRegion::PictureRegion(const Scene& scene, const PictureFields& fields)
+    : projector_(picture_of(scene, fields)),
+      mask_(mask_of(fields)),
+      depth_(fields.depth.value_or(Interval{0, std::numeric_limits<double>::infinity()})) {
+  for (int y = 0; y < mask_.height; ++y)
+    for (int x = 0; x < mask_.width; ++x)
+      if (mask_.at(x, y)) flagged_.extend(Eigen::Vector2i(x, y));
+}
+
+bool PictureRegion::contains(const Vec3& world) const {
+  Projector::At at;
+  return projector_(world, at) && at.depth >= depth_.min && at.depth <= depth_.max && mask_.at(at.x, at.y);
+}
+
+bool PictureRegion::may_touch(const std::array<Vec3, 3>& world) const {
+  Eigen::AlignedBox2i covered;
+  for (const Vec3& corner : world) {
+    Projector::At at;
+    // A triangle that crosses the near plane covers pixels that its corners do not tell.
+    if (!projector_(corner, at)) return true;
+    covered.extend(Eigen::Vector2i(at.x, at.y));
+  }
+  return flagged_.intersects(covered);
+}
+
+}  // namespace rebake

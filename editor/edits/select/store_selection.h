@@ -1,0 +1,17 @@
+#pragma once
+
+#include "editor/edits/select/selecting.h"
+
+namespace rebake {
+
+/// Stores the present selection of all nodes under a name, for select's field saved; replaces what had the name.
+struct StoreSelection {
+  static constexpr const char* op = "store_selection";
+  std::string name;
+};
+template <>
+const EditType& edit_type<StoreSelection>();
+
+Scene apply(const Scene& scene, const StoreSelection& edit);
+
+}  // namespace rebake

@@ -1,0 +1,34 @@
+#include "editor/edits/shape/delete_selected.h"
+
+#include <fmt/format.h>
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+Outcome apply(const Scene& scene, const DeleteSelected& edit) {
+  Scene result = scene;
+  std::size_t removed = 0;
+  for (const PlacedNode& placed : with_selection(scene, edit.node)) {
+    const TriangleSet& selection = *placed.node->selection;
+    removed += count(selection);
+    const bool all = count(selection) == selection.size();
+    // A node without triangles stays when it groups others.
+    if (all && placed.node->children.empty()) {
+      result = without(result, placed.node->id);
+      continue;
+    }
+    result = with_changed(result, placed.node->id, [&](Node& node) { keep_triangles(node, selection, false); });
+  }
+  std::size_t left = 0;
+  for (const PlacedNode& placed : placed_nodes(result))
+    if (placed.node->object) left += placed.node->object->triangle_count();
+  return {std::move(result), {{fmt::format("{} triangles removed, {} left", removed, left)}}};
+}
+
+REBAKE_DESCRIBE_EDIT(
+    DeleteSelected, "Removes the selected triangles; a node that loses all goes too.", (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::optional, "only of this node; left out: of all that are visible and not locked");
+    })
+
+}  // namespace rebake

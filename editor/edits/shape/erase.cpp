@@ -1,0 +1,111 @@
+#include "editor/edits/shape/erase.h"
+
+#include <fmt/format.h>
+
+#include "editor/edits/describe.h"
+
+#include "editor/edits/select/regions.h"
+#include "mesh_ops/features/erase.h"
+#include "mesh_ops/index/index.h"
+
+namespace rebake {
+
+namespace {
+
+// Whether something opaque stands between a picture's eye and a world point.
+class Hiding {
+ public:
+  Hiding(const Scene& scene, const Projector& projector) : projector_(projector) {
+    for (const PlacedNode& placed : visible_objects(scene))
+      objects_.push_back(
+          {rays_of(*placed.node->object), placed.to_world.inverse(), placed.node->object->bounds().diagonal().norm()});
+  }
+  bool operator()(const Vec3& world) const {
+    const Vec3 eye = projector_.eye_for(world);
+    for (const Object& object : objects_) {
+      const Vec3 from = object.to_object * eye, way = object.to_object * world - from;
+      const double distance = way.norm();
+      // Stops short of the point itself by more than the tree's rounding.
+      if (distance > 0 && object.rays->blocked(from, way, 0, 1 - 1e-5 * std::max(1.0, object.size / distance)))
+        return true;
+    }
+    return false;
+  }
+
+ private:
+  struct Object {
+    std::shared_ptr<const RayTree> rays;
+    Affine to_object;
+    double size;
+  };
+  const Projector& projector_;
+  std::vector<Object> objects_;
+};
+
+Outcome erased(const Scene& scene, const std::vector<PlacedNode>& targets,
+               const std::function<ObjectRegion(const PlacedNode&)>& region_in) {
+  Scene result = scene;
+  std::uint64_t texels = 0;
+  for (const PlacedNode& placed : targets) {
+    const ObjectRegion region = region_in(placed);
+    Erased change = erase_texels(*placed.node->object, region.inside, region.may_touch);
+    texels += change.texels;
+    if (change.texels == 0) continue;
+    result = with_changed(result, placed.node->id,
+                          [&](Node& node) { node.object = with_sets(*node.object, std::move(change.sets)); });
+  }
+  if (texels == 0) throw EditError("no opaque texel lies there: nothing was erased");
+  std::uint64_t left = 0;
+  for (const PlacedNode& placed : placed_nodes(result))
+    if (placed.node->object) left += placed.node->object->opaque_texel_count();
+  return {std::move(result), {{fmt::format("{} texels cleared, {} opaque ones left", texels, left)}}};
+}
+
+}  // namespace
+
+Outcome apply(const Scene& scene, const Erase& edit) {
+  const std::vector<PlacedNode> targets = selectable(scene, edit.node);
+  const bool in_picture = edit.picture.polygon || edit.picture.brush || edit.picture.depth;
+  const int ways =
+      int{edit.box.has_value()} + int{edit.sphere.has_value()} + int{edit.half_space.has_value()} + int{in_picture};
+  if (ways != 1) throw FieldError("box", "exactly one of box, sphere, half_space and a picture's region must be given");
+  if (in_picture) {
+    const PictureRegion region(scene, edit.picture);
+    const std::optional<Hiding> hidden =
+        edit.through ? std::nullopt : std::optional<Hiding>(std::in_place, scene, region.projector());
+    return erased(scene, targets, [&](const PlacedNode& placed) {
+      const auto inside = [&region, &hidden, to_world = placed.to_world](const Vec3& p) {
+        const Vec3 world = to_world * p;
+        return region.contains(world) && !(hidden && (*hidden)(world));
+      };
+      const auto may_touch = [&region, to_world = placed.to_world](const std::array<Vec3, 3>& corners) {
+        return region.may_touch({to_world * corners[0], to_world * corners[1], to_world * corners[2]});
+      };
+      return ObjectRegion{inside, may_touch};
+    });
+  }
+  return erased(scene, targets, [&](const PlacedNode& placed) {
+    const FramePoints points(edit.frame, placed);
+    if (edit.box) return region_of(points, *edit.box);
+    if (edit.sphere) return region_of(points, *edit.sphere);
+    return region_of(points, *edit.half_space);
+  });
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Erase,
+    "Clears the opacity of texels inside a region or in a picture, where an object's edge runs through triangles; "
+    "all "
+    "other texels stay bit for bit.",
+    (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::optional,
+            "only of this node and those inside it; left out: of all that is visible");
+      visit("box", edit.box, Need::optional, "inside a box");
+      visit("sphere", edit.sphere, Need::optional, "inside a sphere; radius as for select");
+      visit("half_space", edit.half_space, Need::optional, "on the side that the normal points to");
+      visit("frame", edit.frame, Need::optional, "of box, sphere and half_space, as for select");
+      PictureFields::fields(edit.picture, visit);
+      visit("through", edit.through, Need::optional, "in a picture: hidden texels too");
+    })
+
+}  // namespace rebake

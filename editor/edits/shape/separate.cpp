@@ -1,0 +1,32 @@
+#include "editor/edits/shape/separate.h"
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+Scene apply(const Scene& scene, const Separate& edit) {
+  const PlacedNode placed = with_selection(scene, edit.node).front();
+  if (!edit.as.empty() && find(scene, edit.as) != nullptr)
+    throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+  const TriangleSet& selection = *placed.node->selection;
+  if (count(selection) == selection.size())
+    throw EditError("all triangles of \"" + placed.node->name +
+                    "\" are selected; there would be nothing left to separate from");
+  Node part = *placed.node;
+  part.id = NodeId::none;
+  part.name = edit.as.empty() ? placed.node->name : edit.as;
+  part.children.clear();
+  keep_triangles(part, selection, true);
+  const Scene changed =
+      with_changed(scene, placed.node->id, [&](Node& node) { keep_triangles(node, selection, false); });
+  const auto [parent, index] = place_of(changed, placed.node->id);
+  return with_added(changed, std::move(part), parent, index + 1);
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Separate, "Makes the selected triangles of a node a node of its own, after it.", (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::required, "node to separate from");
+      visit("as", edit.as, Need::optional, "name of the new node; empty: the node's with a number");
+    })
+
+}  // namespace rebake

@@ -1,0 +1,410 @@
+#include "editor/fields/visitors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "mesh_ops/formats/camera_json.h"
+
+namespace rebake {
+
+using nlohmann::json;
+
+namespace {
+
+double number(const json& value) {
+  if (!value.is_number()) throw Error("must be a number");
+  const double result = value.get<double>();
+  if (!std::isfinite(result)) throw Error("must be finite");
+  return result;
+}
+
+Vec3 vector(const json& value) {
+  if (!value.is_array() || value.size() != 3) throw Error("must be a list of three numbers");
+  return {number(value[0]), number(value[1]), number(value[2])};
+}
+
+json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+std::vector<Vec2> points(const json& value, std::size_t least) {
+  if (!value.is_array() || value.size() < least)
+    throw Error(fmt::format("must be a list of at least {} points [x, y]", least));
+  std::vector<Vec2> result;
+  for (const json& point : value) {
+    if (!point.is_array() || point.size() != 2) throw Error("a point must be a list of two numbers");
+    result.emplace_back(number(point[0]), number(point[1]));
+  }
+  return result;
+}
+
+json list(const std::vector<Vec2>& points) {
+  json out = json::array();
+  for (const Vec2& p : points) out.push_back({p.x(), p.y()});
+  return out;
+}
+
+const json& part(const json& value, const char* key, std::initializer_list<const char*> all) {
+  const std::string shape = fmt::format("must be an object with {}", fmt::join(all, " and "));
+  if (!value.is_object() || value.size() != all.size()) throw Error(shape);
+  const auto found = value.find(key);
+  if (found == value.end()) throw Error(shape);
+  return *found;
+}
+
+template <class E>
+E word(const json& value, std::initializer_list<std::pair<const char*, E>> words) {
+  std::vector<std::string> known;
+  for (const auto& [text, meaning] : words) {
+    if (value.is_string() && value.get_ref<const std::string&>() == text) return meaning;
+    known.emplace_back(text);
+  }
+  throw Error(fmt::format("must be one of {}", fmt::join(known, ", ")));
+}
+
+}  // namespace
+
+FieldType Codec<bool>::type() { return {FieldKind::flag, "true or false", "bool", {}}; }
+bool Codec<bool>::read(const json& value, const Scene&) {
+  if (!value.is_boolean()) throw Error("must be true or false");
+  return value.get<bool>();
+}
+json Codec<bool>::write(const bool& value) { return value; }
+
+FieldType Codec<int>::type() { return {FieldKind::whole_number, "whole number", "int", {}}; }
+int Codec<int>::read(const json& value, const Scene&) {
+  if (!value.is_number_integer() || value.get<std::int64_t>() < -2147483647 || value.get<std::int64_t>() > 2147483647)
+    throw Error("must be a whole number");
+  return value.get<int>();
+}
+json Codec<int>::write(const int& value) { return value; }
+
+FieldType Codec<double>::type() { return {FieldKind::number, "number", "float", {}}; }
+double Codec<double>::read(const json& value, const Scene&) { return number(value); }
+json Codec<double>::write(const double& value) { return value; }
+
+FieldType Codec<std::string>::type() { return {FieldKind::text, "text", "str", {}}; }
+std::string Codec<std::string>::read(const json& value, const Scene&) {
+  if (!value.is_string()) throw Error("must be text");
+  return value.get<std::string>();
+}
+json Codec<std::string>::write(const std::string& value) { return value; }
+
+FieldType Codec<Vec3>::type() { return {FieldKind::other, "[x, y, z]", "Vector", {}}; }
+Vec3 Codec<Vec3>::read(const json& value, const Scene&) { return vector(value); }
+json Codec<Vec3>::write(const Vec3& value) { return list(value); }
+
+FieldType Codec<NodeRef>::type() { return {FieldKind::node, "node", "Node", {}}; }
+NodeRef Codec<NodeRef>::read(const json& value, const Scene& scene) {
+  if (value.is_string()) {
+    const auto& name = value.get_ref<const std::string&>();
+    if (const NodePtr node = find(scene, name)) return {node->id};
+    std::vector<std::string> names;
+    for (const PlacedNode& placed : placed_nodes(scene)) names.push_back(placed.node->name);
+    const std::string near = nearest_word(name, names);
+    throw Error(fmt::format("there is no node \"{}\"{}", name,
+                            names.empty()   ? " (the scene is empty)"
+                            : !near.empty() ? fmt::format("; did you mean \"{}\"?", near)
+                                            : fmt::format("; there are {}", fmt::join(names, ", "))));
+  }
+  if (value.is_number_unsigned()) {
+    const NodeId id{value.get<std::uint64_t>()};
+    if (find(scene, id) == nullptr) throw Error(fmt::format("there is no node number {}", value.get<std::uint64_t>()));
+    return {id};
+  }
+  throw Error("must be the name of a node");
+}
+json Codec<NodeRef>::write(const NodeRef& value) {
+  return value.id == NodeId::none ? json() : json(static_cast<std::uint64_t>(value.id));
+}
+
+FieldType Codec<std::vector<NodeRef>>::type() { return {FieldKind::nodes, "list of nodes", "Sequence[Node]", {}}; }
+std::vector<NodeRef> Codec<std::vector<NodeRef>>::read(const json& value, const Scene& scene) {
+  if (!value.is_array() || value.empty()) throw Error("must be a list of node names");
+  std::vector<NodeRef> nodes;
+  for (const json& entry : value) nodes.push_back(Codec<NodeRef>::read(entry, scene));
+  return nodes;
+}
+json Codec<std::vector<NodeRef>>::write(const std::vector<NodeRef>& value) {
+  json out;
+  for (const NodeRef& node : value) out.push_back(Codec<NodeRef>::write(node));
+  return out;
+}
+
+FieldType Codec<Rotation>::type() {
+  return {FieldKind::other, "{\"axis\": [x, y, z], \"degrees\": d} or quaternion [w, x, y, z]", "Rotation", {}};
+}
+Rotation Codec<Rotation>::read(const json& value, const Scene&) {
+  if (value.is_array()) {
+    if (value.size() != 4) throw Error("a quaternion has four numbers: w, x, y, z");
+    const Eigen::Quaterniond q(number(value[0]), number(value[1]), number(value[2]), number(value[3]));
+    return Rotation(q);
+  }
+  const Vec3 axis = vector(part(value, "axis", {"axis", "degrees"}));
+  const double degrees = number(part(value, "degrees", {"axis", "degrees"}));
+  if (axis.isZero(0)) throw Error("the axis has no direction");
+  return Rotation(Eigen::AngleAxisd(std::remainder(degrees, 360.0) * std::numbers::pi / 180, axis.stableNormalized()));
+}
+json Codec<Rotation>::write(const Rotation& value) {
+  const Eigen::Quaterniond& q = value.quaternion();
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+FieldType Codec<Scale>::type() { return {FieldKind::other, "number or [x, y, z]", "float | Vector", {}}; }
+Scale Codec<Scale>::read(const json& value, const Scene&) {
+  const Vec3 scale = value.is_number() ? Vec3::Constant(number(value)) : vector(value);
+  if ((scale.array() == 0).any()) throw Error("a scale of 0 would flatten the object");
+  return {scale};
+}
+json Codec<Scale>::write(const Scale& value) { return list(value.value); }
+
+FieldType Codec<BoxRegion>::type() { return {FieldKind::other, "{\"min\": [x, y, z], \"max\": [x, y, z]}", "Box", {}}; }
+BoxRegion Codec<BoxRegion>::read(const json& value, const Scene&) {
+  return {vector(part(value, "min", {"min", "max"})), vector(part(value, "max", {"min", "max"}))};
+}
+json Codec<BoxRegion>::write(const BoxRegion& value) { return {{"min", list(value.min)}, {"max", list(value.max)}}; }
+
+FieldType Codec<SphereRegion>::type() {
+  return {FieldKind::other, "{\"center\": [x, y, z], \"radius\": r}", "Sphere", {}};
+}
+SphereRegion Codec<SphereRegion>::read(const json& value, const Scene&) {
+  const SphereRegion sphere{vector(part(value, "center", {"center", "radius"})),
+                            number(part(value, "radius", {"center", "radius"}))};
+  if (sphere.radius < 0) throw Error("the radius is negative");
+  return sphere;
+}
+json Codec<SphereRegion>::write(const SphereRegion& value) {
+  return {{"center", list(value.center)}, {"radius", value.radius}};
+}
+
+FieldType Codec<HalfSpaceRegion>::type() {
+  return {FieldKind::other, "{\"point\": [x, y, z], \"normal\": [x, y, z]}", "HalfSpace", {}};
+}
+HalfSpaceRegion Codec<HalfSpaceRegion>::read(const json& value, const Scene&) {
+  const HalfSpaceRegion half{vector(part(value, "point", {"point", "normal"})),
+                             vector(part(value, "normal", {"point", "normal"}))};
+  if (half.normal.isZero(0)) throw Error("the normal has no direction");
+  return half;
+}
+json Codec<HalfSpaceRegion>::write(const HalfSpaceRegion& value) {
+  return {{"point", list(value.point)}, {"normal", list(value.normal)}};
+}
+
+FieldType Codec<PixelPolygon>::type() {
+  return {FieldKind::other, "[[x, y], …] in pixels", "Sequence[Sequence[float]]", {}};
+}
+PixelPolygon Codec<PixelPolygon>::read(const json& value, const Scene&) { return {points(value, 3)}; }
+json Codec<PixelPolygon>::write(const PixelPolygon& value) { return list(value.corners); }
+
+FieldType Codec<BrushStroke>::type() {
+  return {FieldKind::other, "{\"points\": [[x, y], …], \"radius\": pixels}", "Brush", {}};
+}
+BrushStroke Codec<BrushStroke>::read(const json& value, const Scene&) {
+  const BrushStroke stroke{points(part(value, "points", {"points", "radius"}), 1),
+                           number(part(value, "radius", {"points", "radius"}))};
+  if (!(stroke.radius > 0)) throw Error("the radius must be positive");
+  return stroke;
+}
+json Codec<BrushStroke>::write(const BrushStroke& value) {
+  return {{"points", list(value.points)}, {"radius", value.radius}};
+}
+
+FieldType Codec<Interval>::type() { return {FieldKind::other, "[min, max]", "Sequence[float]", {}}; }
+Interval Codec<Interval>::read(const json& value, const Scene&) {
+  if (!value.is_array() || value.size() != 2) throw Error("must be a list of two numbers: least and most");
+  const Interval interval{number(value[0]), number(value[1])};
+  if (interval.min > interval.max) throw Error("the first number must not be above the second");
+  return interval;
+}
+json Codec<Interval>::write(const Interval& value) { return json::array({value.min, value.max}); }
+
+FieldType Codec<NumberRanges>::type() {
+  return {FieldKind::other, "list of whole numbers and of ranges [first, last]", "Sequence[int | Sequence[int]]", {}};
+}
+NumberRanges Codec<NumberRanges>::read(const json& value, const Scene&) {
+  constexpr const char* expected = "must be a list of whole numbers from 0 on, or of ranges [first, last] of them";
+  if (!value.is_array()) throw Error(expected);
+  NumberRanges result;
+  for (const json& entry : value) {
+    const bool range = entry.is_array() && entry.size() == 2;
+    const json& first = range ? entry[0] : entry;
+    const json& last = range ? entry[1] : entry;
+    if (!first.is_number_unsigned() || !last.is_number_unsigned() || first > last) throw Error(expected);
+    result.ranges.emplace_back(first.get<std::uint64_t>(), last.get<std::uint64_t>());
+  }
+  return result;
+}
+json Codec<NumberRanges>::write(const NumberRanges& value) {
+  json list = json::array();
+  for (const auto& [first, last] : value.ranges)
+    list.push_back(first == last ? json(first) : json::array({first, last}));
+  return list;
+}
+
+FieldType Codec<PixelSize>::type() { return {FieldKind::other, "[width, height] in pixels", "Sequence[int]", {}}; }
+PixelSize Codec<PixelSize>::read(const json& value, const Scene& scene) {
+  if (!value.is_array() || value.size() != 2) throw Error("must be a list of two whole numbers: width and height");
+  const PixelSize size{Codec<int>::read(value[0], scene), Codec<int>::read(value[1], scene)};
+  if (std::min(size.width, size.height) < 1 || std::max(size.width, size.height) > 16384)
+    throw Error("must lie between 1 and 16384 pixels");
+  return size;
+}
+json Codec<PixelSize>::write(const PixelSize& value) { return json::array({value.width, value.height}); }
+
+FieldType Codec<std::vector<std::string>>::type() { return {FieldKind::other, "list of names", "Sequence[str]", {}}; }
+std::vector<std::string> Codec<std::vector<std::string>>::read(const json& value, const Scene& scene) {
+  if (!value.is_array() || value.empty()) throw Error("must be a list of names");
+  std::vector<std::string> names;
+  for (const json& name : value) names.push_back(Codec<std::string>::read(name, scene));
+  return names;
+}
+json Codec<std::vector<std::string>>::write(const std::vector<std::string>& value) {
+  return value.empty() ? json() : json(value);
+}
+
+FieldType Codec<SelectMode>::type() { return choice_type({"set", "add", "remove", "intersect"}); }
+SelectMode Codec<SelectMode>::read(const json& value, const Scene&) {
+  return word<SelectMode>(value, {{"set", SelectMode::set},
+                                  {"add", SelectMode::add},
+                                  {"remove", SelectMode::remove},
+                                  {"intersect", SelectMode::intersect}});
+}
+json Codec<SelectMode>::write(const SelectMode& value) {
+  static const char* const names[] = {"set", "add", "remove", "intersect"};
+  return names[static_cast<int>(value)];
+}
+
+FieldType Codec<CoordinateFrame>::type() { return choice_type({"world", "node", "bounds"}); }
+CoordinateFrame Codec<CoordinateFrame>::read(const json& value, const Scene&) {
+  return word<CoordinateFrame>(
+      value, {{"world", CoordinateFrame::world}, {"node", CoordinateFrame::node}, {"bounds", CoordinateFrame::bounds}});
+}
+json Codec<CoordinateFrame>::write(const CoordinateFrame& value) {
+  static const char* const names[] = {"world", "node", "bounds"};
+  return names[static_cast<int>(value)];
+}
+
+FieldType Codec<Axes>::type() { return choice_type({"360", "forward"}); }
+Axes Codec<Axes>::read(const json& value, const Scene&) {
+  if (value == 360) return Axes::y_up;
+  return word<Axes>(value, {{"360", Axes::y_up}, {"forward", Axes::forward}});
+}
+json Codec<Axes>::write(const Axes& value) { return value == Axes::forward ? "forward" : "360"; }
+
+FieldType Codec<Layout>::type() { return choice_type({"split", "chunked", "unsplit"}); }
+Layout Codec<Layout>::read(const json& value, const Scene&) {
+  return word<Layout>(value, {{"split", Layout::split}, {"chunked", Layout::chunked}, {"unsplit", Layout::unsplit}});
+}
+json Codec<Layout>::write(const Layout& value) {
+  static const char* const names[] = {"split", "chunked", "unsplit"};
+  return names[static_cast<int>(value)];
+}
+
+FieldType Codec<Camera>::type() {
+  return {FieldKind::other,
+          "{\"eye\", \"target\", \"up\": [x, y, z], \"fov\": degrees, \"ortho_height\", \"near\", \"far\"}",
+          "Camera",
+          {}};
+}
+Camera Codec<Camera>::read(const json& value, const Scene&) { return read_camera_json(value); }
+json Codec<Camera>::write(const Camera& value) { return camera_json(value); }
+
+FieldType Codec<std::vector<int>>::type() { return {FieldKind::other, "list of whole numbers", "Sequence[int]", {}}; }
+std::vector<int> Codec<std::vector<int>>::read(const json& value, const Scene& scene) {
+  if (!value.is_array()) throw Error("must be a list of whole numbers");
+  std::vector<int> numbers;
+  for (const json& number : value) numbers.push_back(Codec<int>::read(number, scene));
+  return numbers;
+}
+json Codec<std::vector<int>>::write(const std::vector<int>& value) { return value.empty() ? json() : json(value); }
+
+Rotation::Rotation(const Eigen::Quaterniond& turn) : quaternion_(turn) {
+  if (!turn.coeffs().allFinite()) throw Error("a rotation must be finite");
+  // What normalising leaves lies within this of length 1, so that doing it again would change nothing.
+  constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+  if (std::abs(turn.squaredNorm() - 1) <= rounding) return;
+  // Neither squares of 1e200 nor of 1e-200 are numbers.
+  const double largest = turn.coeffs().cwiseAbs().maxCoeff();
+  if (!(largest > 0)) throw Error("a quaternion of length 0 is no rotation");
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  for (double& part : quaternion_.coeffs()) part = std::ldexp(part, -exponent);
+  quaternion_.normalize();
+}
+
+FieldType choice_type(std::vector<std::string> choices) {
+  std::string words, python;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    words += (k == 0 ? "" : k + 1 == choices.size() ? " or " : ", ") + choices[k];
+    python += fmt::format("{}\"{}\"", k == 0 ? "" : ", ", choices[k]);
+  }
+  return {FieldKind::choice, words, "Literal[" + python + "]", std::move(choices)};
+}
+
+const char* to_string(Unit unit) {
+  switch (unit) {
+    case Unit::degrees:
+      return "degrees";
+    case Unit::length:
+      return "scene units";
+    case Unit::pixels:
+      return "pixels";
+    case Unit::share:
+      return "share, 0 to 1";
+    default:
+      return "";
+  }
+}
+
+const json* FieldReader::find(const char* name, Need need) const {
+  const auto found = object_.find(name);
+  if (found != object_.end()) return &*found;
+  if (need == Need::required) throw FieldError(name, "is missing");
+  return nullptr;
+}
+
+void FieldWriter::put(const char* name, json written) {
+  if (!written.is_null()) object_[name] = std::move(written);
+}
+
+void FieldLister::add(const char* name, FieldType type, const json& initial, Need need, const char* help, Unit unit) {
+  lines_.push_back({name, std::move(type), need == Need::required || initial.is_null() ? "" : initial.dump(), help,
+                    unit, need == Need::required});
+}
+
+void FieldReader::finish() const {
+  for (const auto& [name, value] : object_.items()) {
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    const std::string near = nearest_word(name, known_);
+    throw FieldError(name, near.empty() ? fmt::format("is not known here (known: {})", fmt::join(known_, ", "))
+                                        : fmt::format("is not known here; did you mean \"{}\"?", near));
+  }
+}
+
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t best_distance = word.size() / 3 + 2;
+  for (const std::string& candidate : known) {
+    std::vector<std::size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j <= candidate.size(); ++j) {
+        const std::size_t above = row[j];
+        row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (word[i - 1] == candidate[j - 1] ? 0U : 1U)});
+        diagonal = above;
+      }
+    }
+    if (row.back() < best_distance) {
+      best_distance = row.back();
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace rebake

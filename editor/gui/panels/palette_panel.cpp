@@ -1,0 +1,99 @@
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+#include "editor/gui/panels/panels.h"
+#include "editor/gui/window/commands.h"
+
+namespace rebake {
+
+namespace {
+
+std::string plain(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return c == '_' ? ' ' : static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+struct Entry {
+  std::string title, keys, help;
+  const Command* command = nullptr;  ///< null: the form of the edit `title`, or
+  const Camera* view = nullptr;      ///< a stored view
+};
+
+std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
+  std::vector<Entry> all;
+  for (const Command& command : command_table())
+    all.push_back({std::string(command.menu) + ": " + command.title, command.keys_of(desk), "", &command});
+  for (const EditType* type : edit_types()) all.push_back({type->op, "", type->help});
+  for (const auto& [name, camera] : desk.scene().views)
+    all.push_back({"Stored view: " + name, "", "", nullptr, &camera});
+  // All words, in any order; edits are written with underscores.
+  const std::string wanted = plain(filter);
+  std::erase_if(all, [&](const Entry& entry) {
+    const std::string text = plain(entry.title + " " + entry.help);
+    std::istringstream words(wanted);
+    for (std::string word; words >> word;)
+      if (text.find(word) == std::string::npos) return true;
+    return false;
+  });
+  // Those whose name holds it come before those whose help does.
+  std::stable_partition(all.begin(), all.end(),
+                        [&](const Entry& entry) { return plain(entry.title).find(wanted) != std::string::npos; });
+  std::stable_partition(all.begin(), all.end(), [&](const Entry& entry) {
+    const std::size_t colon = entry.title.find(": ");
+    return plain(colon == std::string::npos ? entry.title : entry.title.substr(colon + 2)).starts_with(wanted);
+  });
+  return all;
+}
+
+}  // namespace
+
+void PalettePanel::draw(Desk& desk) {
+  if (!desk.palette_open) {
+    was_open_ = false;
+    return;
+  }
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y * 0.15F}, ImGuiCond_Always, {0.5F, 0});
+  ImGui::SetNextWindowSize({std::min(720.0F, screen.x * 0.8F), screen.y * 0.6F});
+  ImGui::SetNextWindowBgAlpha(1);
+  ImGui::Begin("All commands", &desk.palette_open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
+  if (!was_open_) {
+    filter_.clear();
+    ImGui::SetKeyboardFocusHere();
+  }
+  ImGui::SetNextItemWidth(-1);
+  const bool entered = ImGui::InputTextWithHint("##filter", "type to search; Enter takes the first", &filter_,
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
+  was_open_ = true;
+  ImGui::BeginChild("entries");
+  bool first = true;
+  for (const Entry& entry : entries(desk, filter_)) {
+    const bool can = entry.command == nullptr || entry.command->enabled(desk);
+    ImGui::BeginDisabled(!can);
+    const bool taken = ImGui::Selectable(entry.title.c_str(), first) || (entered && first && can);
+    ImGui::EndDisabled();
+    if (!entry.keys.empty() || !entry.help.empty()) {
+      ImGui::SameLine(240);
+      ImGui::TextDisabled("%s", entry.keys.empty() ? entry.help.c_str() : entry.keys.c_str());
+    }
+    first = false;
+    if (!taken) continue;
+    desk.palette_open = false;
+    if (entry.command != nullptr)
+      entry.command->run(desk);
+    else if (entry.view != nullptr)
+      desk.camera = *entry.view;
+    else
+      desk.form_op = entry.title;
+    break;
+  }
+  ImGui::EndChild();
+  ImGui::End();
+}
+
+}  // namespace rebake

@@ -1,0 +1,291 @@
+#include "editor/gui/tools/gizmo.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "editor/edits/nodes/transform.h"
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr double handle_pixels = 90, grab_pixels = 9;
+constexpr ImU32 axis_colors[] = {IM_COL32(235, 70, 70, 255), IM_COL32(100, 200, 60, 255), IM_COL32(70, 130, 245, 255),
+                                 IM_COL32(235, 235, 235, 255)};
+
+double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 along = b - a;
+  const double t = along.squaredNorm() > 0 ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+  return (a + t * along - p).norm();
+}
+
+// A handle's line on the screen: an axis, or for turning a circle about it.
+std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, double reach, const Lens& lens,
+                          int number) {
+  std::vector<Vec2> points;
+  const auto add = [&](const Vec3& world) {
+    if (const auto pixel = lens.pixel(world)) points.push_back(*pixel);
+  };
+  if (kind == ToolKind::turn) {
+    const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
+    constexpr int corners = 48;
+    const double radius = number < 3 ? reach : 1.2 * reach;  // the ring about the line of sight is outermost
+    for (int k = 0; k <= corners; ++k) {
+      const double angle = 2 * std::numbers::pi * k / corners;
+      add(pivot + radius * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+  } else {
+    add(pivot);
+    add(pivot + reach * axis);
+  }
+  return points;
+}
+
+}  // namespace
+
+std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) const {
+  Target target;
+  Box box;
+  for (const PlacedNode& placed : placed_nodes(desk.scene())) {
+    if (!placed.visible || placed.locked || !placed.node->selection || count(*placed.node->selection) == 0) continue;
+    target.nodes.push_back(placed.node->id);
+    box.extend(selection_bounds(placed));
+  }
+  target.triangles = !target.nodes.empty();
+  if (!target.triangles) {
+    for (const NodeId id : desk.active_tops()) {
+      const auto placed = find_placed(desk.scene(), id);
+      if (!placed || placed->locked) continue;
+      target.nodes.push_back(id);
+      box.extend(subtree_bounds(desk.scene(), id));
+    }
+  }
+  if (target.nodes.empty()) return std::nullopt;
+  const auto first = find_placed(desk.scene(), target.nodes.front());
+  target.pivot = box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center());
+  target.local = orthogonal_factor(first->to_world.linear());
+  if (desk.local_axes) target.axes = target.local;
+  target.towards_eye = lens.towards_eye(target.pivot);
+  return target;
+}
+
+double Gizmo::reach(const Lens& lens, const Vec3& pivot) { return handle_pixels * lens.unit(pivot); }
+
+int Gizmo::handle_at(const Target& target, const Lens& lens, const Vec2& at) const {
+  const auto middle = lens.pixel(target.pivot);
+  if (!middle) return none;
+  if (kind_ != ToolKind::turn && (*middle - at).norm() < grab_pixels) return all;
+  int found = none;
+  double least = grab_pixels;
+  for (int axis = 0; axis < (kind_ == ToolKind::turn ? 4 : 3); ++axis) {
+    const std::vector<Vec2> line =
+        outline(kind_, target.pivot, target.axis(axis), reach(lens, target.pivot), lens, axis);
+    for (std::size_t k = 0; k + 1 < line.size(); ++k)
+      if (const double distance = distance_to_segment(at, line[k], line[k + 1]); distance < least) {
+        least = distance;
+        found = axis;
+      }
+  }
+  return found;
+}
+
+double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
+  const auto middle = lens.pixel(at_.pivot);
+  if (!middle) return 0;
+  const double fine = pointer.shift ? 0.1 : 1;
+  double result = 0;
+  if (kind_ == ToolKind::turn) {
+    const Vec3 axis = at_.axis(held_);
+    const Vec2 a = from_ - *middle, b = now_ - *middle;
+    double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+    // On the screen y points down; seen from behind the turn goes the other way.
+    if (axis.dot(lens.towards_eye(at_.pivot)) > 0) angle = -angle;
+    result = angle * 180 / std::numbers::pi * fine;
+    return pointer.control ? std::round(result / 15) * 15 : result;
+  }
+  if (by_key_ && kind_ == ToolKind::scale) {
+    // How much farther from the middle the pointer is than it was.
+    result = (now_ - *middle).norm() / std::max((from_ - *middle).norm(), 1.0) - 1;
+  } else if (held_ == all) {
+    result = kind_ == ToolKind::scale ? (now_.x() - from_.x()) / handle_pixels : 1;
+  } else {
+    const auto end = lens.pixel(at_.pivot + reach(lens, at_.pivot) * at_.axes.col(held_));
+    if (!end) return 0;
+    const Vec2 along = *end - *middle;
+    const double length = along.norm();
+    // An axis towards the eye has no direction on the screen.
+    if (length < 1) return 0;
+    const double pixels = (now_ - from_).dot(along) / length;
+    result = kind_ == ToolKind::scale ? pixels / handle_pixels : pixels / length * reach(lens, at_.pivot);
+  }
+  result *= fine;
+  if (!pointer.control) return result;
+  // Steps of the power of ten below the handle's length.
+  const double step = kind_ == ToolKind::scale ? 0.1 : std::pow(10, std::floor(std::log10(reach(lens, at_.pivot))));
+  return std::round(result / step) * step;
+}
+
+std::vector<Edit> Gizmo::edits(const Lens& lens) const {
+  Transform transform;
+  transform.selection = at_.triangles;
+  transform.pivot = at_.pivot;
+  if (kind_ == ToolKind::turn) {
+    transform.rotate = Rotation(Eigen::AngleAxisd(amount_ * std::numbers::pi / 180, at_.axis(held_)));
+  } else if (kind_ == ToolKind::scale) {
+    if (held_ == all)
+      transform.scale.value = Vec3::Constant(1 + amount_);
+    else
+      transform.scale.value[held_] = 1 + amount_;
+    // Axes serve a scale as well turned round; a mirrored node's would be no turn.
+    transform.scale_axes = Rotation(Eigen::Quaterniond(at_.axes.determinant() < 0 ? Mat3(-at_.axes) : at_.axes));
+  } else if (held_ == all) {
+    transform.translate = amount_ * lens.motion(at_.pivot, now_ - from_);
+  } else {
+    transform.translate = amount_ * at_.axes.col(held_);
+  }
+  std::vector<Edit> result;
+  for (const NodeId id : at_.nodes) {
+    transform.node = NodeRef{id};
+    result.emplace_back(transform);
+  }
+  return result;
+}
+
+void Gizmo::preview(Desk& desk, const std::vector<Edit>& made) {
+  try {
+    Scene scene = desk.scene();
+    for (const Edit& edit : made) scene = rebake::apply(scene, edit).scene;
+    desk.show_preview(std::move(scene));
+  } catch (const Error&) {
+    desk.preview.reset();  // what cannot be done is said on release
+  }
+}
+
+void Gizmo::begin(const Target& target, int handle, const Vec2& at) {
+  at_ = target;
+  held_ = handle;
+  from_ = now_ = at;
+  amount_ = 0;
+  typed_.clear();
+}
+
+void Gizmo::end(Desk& desk) {
+  held_ = none;
+  constrained_ = entered_ = false;
+  axis_presses_ = 0;
+  typed_.clear();
+  if (!std::exchange(by_key_, false)) return;
+  const std::optional<ToolKind> before = std::exchange(desk.tool_before, std::nullopt);
+  if (before && desk.tool == kind_) desk.tool = *before;
+}
+
+void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
+  if (held_ == none) {
+    const bool by_key = std::exchange(desk.drag_begins, std::nullopt).has_value();
+    if (!by_key && (!pointer.pressed || !pointer.inside)) return;
+    const std::optional<Target> here = target(desk, lens);
+    if (!here) {
+      by_key_ = by_key;
+      end(desk);
+      return;
+    }
+    begin(*here, by_key ? all : handle_at(*here, lens, pointer.at), pointer.at);
+    by_key_ = by_key;
+    return;
+  }
+  // A view turned meanwhile changes what the same way of the pointer means.
+  const bool moved = now_ != pointer.at || std::exchange(constrained_, false) || !(camera_ == desk.camera);
+  camera_ = desk.camera;
+  now_ = pointer.at;
+  const double before = amount_;
+  amount_ = amount(lens, pointer);
+  if (typed_.value()) amount_ = *typed_.value() - (kind_ == ToolKind::scale ? 1 : 0);
+  const bool nothing = amount_ == 0 || (held_ == all && kind_ == ToolKind::move && now_ == from_);
+  const std::vector<Edit> made = nothing ? std::vector<Edit>{} : edits(lens);
+  if (moved || amount_ != before) preview(desk, made);
+  if (by_key_ ? !pointer.pressed && !std::exchange(entered_, false) : !pointer.released) return;
+  end(desk);
+  if (nothing)
+    desk.preview.reset();
+  else
+    desk.edits(made);
+}
+
+void Gizmo::constrain(int axis) {
+  // As in Blender: along the world's, then the local one, then free again.
+  axis_presses_ = held_ == axis ? (axis_presses_ + 1) % 3 : 1;
+  held_ = axis_presses_ == 0 ? all : axis;
+  at_.axes = axis_presses_ == 2 ? at_.local : Mat3::Identity();
+  constrained_ = true;
+}
+
+bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
+  if (held_ == none || press.control || press.alt) return false;
+  if (press.key >= GLFW_KEY_X && press.key <= GLFW_KEY_Z) {
+    if (!press.repeated) constrain(press.key - GLFW_KEY_X);
+    return true;
+  }
+  if (by_key_ && (press.key == GLFW_KEY_ENTER || press.key == GLFW_KEY_KP_ENTER)) {
+    entered_ = true;
+    return true;
+  }
+  // A move in the view's plane has no one number.
+  if (held_ == all && kind_ == ToolKind::move) return false;
+  return typed_.key(press);
+}
+
+void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
+                 const ImVec2& origin) const {
+  const std::optional<Target> here = held_ != none ? std::optional(at_) : target(desk, lens);
+  if (!here) return;
+  const auto middle = lens.pixel(here->pivot);
+  if (!middle) return;
+  const int hot = held_ != none ? held_ : pointer.inside ? handle_at(*here, lens, pointer.at) : none;
+  for (int axis = 0; axis < (kind_ == ToolKind::turn ? 4 : 3); ++axis) {
+    std::vector<ImVec2> line;
+    for (const Vec2& p : outline(kind_, here->pivot, here->axis(axis), reach(lens, here->pivot), lens, axis))
+      line.push_back(on_screen(p, origin));
+    if (line.size() < 2) continue;
+    const ImU32 color = axis == hot ? IM_COL32(255, 230, 60, 255) : axis_colors[axis];
+    list.AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(0, 0, 0, 120), 0, 5);
+    list.AddPolyline(line.data(), static_cast<int>(line.size()), color, 0, 3);
+    if (kind_ == ToolKind::move) list.AddCircleFilled(line.back(), 6, color);
+    if (kind_ == ToolKind::scale)
+      list.AddRectFilled({line.back().x - 6, line.back().y - 6}, {line.back().x + 6, line.back().y + 6}, color);
+  }
+  if (kind_ != ToolKind::turn)
+    list.AddCircleFilled(on_screen(*middle, origin), 6, hot == all ? IM_COL32(255, 230, 60, 255) : axis_colors[3]);
+  if (held_ == none) return;
+  const char* const names[] = {"X", "Y", "Z", kind_ == ToolKind::scale ? "all" : "view"};
+  std::string text = kind_ == ToolKind::turn    ? fmt::format("{} {:.2f} deg", names[held_], amount_)
+                     : kind_ == ToolKind::scale ? fmt::format("{} x {:.3f}", names[held_], 1 + amount_)
+                     : held_ == all             ? std::string(names[held_])
+                                                : fmt::format("{} {:.4g}", names[held_], amount_);
+  if (held_ != all && at_.axes != Mat3::Identity()) text = "local " + text;
+  if (!typed_.text().empty()) text += "  [" + typed_.text() + "]";
+  draw_label(list, on_screen(now_ + Vec2(16, 16), origin), text);
+}
+
+void Gizmo::options(Desk& desk) {
+  ImGui::Checkbox("local axes", &desk.local_axes);
+  const Lens lens(desk.camera, desk.view_width, desk.view_height);
+  const std::optional<Target> here = target(desk, lens);
+  if (!here)
+    flow_text("pick a node in the outline, or select triangles");
+  else
+    flow_text(fmt::format("{}: {}; X Y Z take an axis, digits a number, Ctrl snaps, Shift is fine, Esc lets go",
+                          here->triangles ? "the selected triangles" : "the picked nodes",
+                          by_key_ ? "move the pointer, click or Enter ends" : "drag a handle")
+                  .c_str());
+}
+
+void Gizmo::cancel(Desk& desk) {
+  end(desk);
+  desk.preview.reset();
+}
+
+}  // namespace rebake

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "editor/gui/tools/tool.h"
+
+namespace rebake {
+
+/// A click picks a node; with flood it selects triangles whose colour is like that under the pointer.
+class PickTool final : public ViewTool {
+ public:
+  explicit PickTool(bool floods) : floods_(floods) {}
+  void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
+  void draw(const Desk&, const Lens&, const Pointer&, ImDrawList&, const ImVec2&) const override {}
+  void options(Desk& desk) override;
+  void cancel(Desk&) override {}
+
+ private:
+  bool floods_;
+  Vec2 pressed_at_{-1, -1};
+};
+
+}  // namespace rebake

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <imgui.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "editor/gui/view/lens.h"
+#include "editor/gui/window/desk.h"
+#include "editor/gui/window/window.h"
+
+namespace rebake {
+
+/// The pointer over the viewport, in its pixels.
+struct Pointer {
+  Vec2 at{0, 0};
+  bool inside = false;                                   ///< over the viewport, nothing above it
+  bool pressed = false, down = false, released = false;  ///< left button: just now, held, just now
+  bool double_clicked = false;
+  bool let_go = false;  ///< right button, just now
+  bool shift = false, control = false;
+};
+
+/// What the left button does in the viewport. A drag is a preview; release makes one edit.
+class ViewTool {
+ public:
+  virtual ~ViewTool() = default;
+  virtual void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) = 0;
+  /// Draws over the picture, whose top left corner is at `origin`.
+  virtual void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
+                    const ImVec2& origin) const = 0;
+  /// Lines in the world.
+  virtual void add_guides(const Desk& /*desk*/, std::vector<Guides::Line>& /*lines*/) const {}
+  /// Takes a key before commands do; true when it was for this tool.
+  virtual bool key(Desk& /*desk*/, const KeyPress& /*press*/) { return false; }
+  /// Options and help, in the tool bar's panel.
+  virtual void options(Desk& desk) = 0;
+  /// True while something is held that Escape would let go of.
+  virtual bool busy() const { return false; }
+  virtual void cancel(Desk& desk) = 0;
+};
+
+/// All of them, as tools.cpp lists them. They hold nothing of the GPU.
+using Tools = std::map<ToolKind, std::unique_ptr<ViewTool>>;
+Tools make_tools();
+
+inline ImVec2 on_screen(const Vec2& pixel, const ImVec2& origin) {
+  return {origin.x + static_cast<float>(pixel.x()), origin.y + static_cast<float>(pixel.y())};
+}
+
+/// A line of text that can be read over any picture.
+inline void draw_label(ImDrawList& list, const ImVec2& at, const std::string& text) {
+  if (text.empty()) return;
+  list.AddRectFilled({at.x - 4, at.y - 3},
+                     {at.x + ImGui::CalcTextSize(text.c_str()).x + 4, at.y + ImGui::GetFontSize() + 3},
+                     IM_COL32(0, 0, 0, 200));
+  list.AddText(at, IM_COL32(255, 255, 255, 255), text.c_str());
+}
+
+/// Puts the next item, about so wide, beside the last one where there is room, else on a line of its own.
+inline void flow(float width) {
+  const float right = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
+  if (right < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+}
+/// The same for a text, in a muted colour.
+inline void flow_text(const char* text) {
+  flow(ImGui::CalcTextSize(text).x);
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+  ImGui::TextWrapped("%s", text);
+  ImGui::PopStyleColor();
+}
+
+/// How modifiers join a new selection to the present one.
+inline SelectMode select_mode(const Pointer& pointer) {
+  if (pointer.shift && pointer.control) return SelectMode::intersect;
+  return pointer.shift ? SelectMode::add : pointer.control ? SelectMode::remove : SelectMode::set;
+}
+
+}  // namespace rebake

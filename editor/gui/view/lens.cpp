@@ -1,0 +1,50 @@
+#include "editor/gui/view/lens.h"
+
+#include <cmath>
+#include <limits>
+
+#include "mesh_ops/index/index.h"
+
+namespace rebake {
+
+Lens::Lens(const Camera& camera, int width, int height)
+    : camera_(camera), rows_(world_to_camera(camera)), height_(height), middle_(width / 2.0, height / 2.0) {}
+
+std::optional<Vec2> Lens::pixel(const Vec3& world) const {
+  const Vec3 p = rows_ * (world - camera_.eye);
+  if (!(p.z() < 0) && !camera_.orthographic()) return std::nullopt;
+  return Vec2(middle_ + Vec2(p.x(), -p.y()) * (height_ / 2 / half_height(camera_, -p.z())));
+}
+ViewRay Lens::ray(const Vec2& pixel) const {
+  const Vec2 p = (pixel - middle_) * (half_height(camera_, 1) * 2 / height_);
+  const Vec3 aside = rows_.transpose() * Vec3(p.x(), -p.y(), 0), forward = -rows_.row(2).transpose();
+  if (camera_.orthographic()) return {camera_.eye + aside, forward};
+  return {camera_.eye, aside + forward};
+}
+double Lens::depth(const Vec3& world) const { return -(rows_ * (world - camera_.eye)).z(); }
+double Lens::unit(const Vec3& world) const { return std::max(0.0, half_height(camera_, depth(world))) * 2 / height_; }
+Vec3 Lens::towards_eye(const Vec3& world) const {
+  return camera_.orthographic() ? Vec3(rows_.row(2)) : Vec3((camera_.eye - world).stableNormalized());
+}
+Vec3 Lens::motion(const Vec3& world, const Vec2& pixels) const {
+  return unit(world) * (rows_.transpose() * Vec3(pixels.x(), -pixels.y(), 0));
+}
+
+std::optional<Picked> pick(const Scene& scene, const Lens& lens, const Vec2& pixel, bool waits) {
+  std::optional<Picked> nearest;
+  const ViewRay ray = lens.ray(pixel);
+  double least = std::numeric_limits<double>::infinity();
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.visible || !placed.node->object) continue;
+    const auto rays = waits ? rays_of(*placed.node->object) : rays_if_there(*placed.node->object);
+    if (!rays) continue;
+    const Affine to_object = placed.to_world.inverse();
+    const auto hit = rays->nearest(to_object * ray.origin, to_object.linear() * ray.direction, 0, least);
+    if (!hit || hit->t >= least) continue;
+    least = hit->t;
+    nearest = Picked{placed.node->id, hit->triangle, ray.origin + hit->t * ray.direction};
+  }
+  return nearest;
+}
+
+}  // namespace rebake

@@ -1,0 +1,139 @@
+#include "editor/gui/view/navigation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace rebake {
+
+namespace {
+
+constexpr double closest_to_pole = 0.01;  // radians
+
+Camera flown_to(const Camera& camera, const Vec3& target) {
+  Camera result = camera;
+  result.eye += target - camera.target;
+  result.target = target;
+  return result;
+}
+
+// `direction` turned about the camera's up and then towards or away from it.
+Vec3 turned(const Camera& camera, const Vec3& direction, double about_up, double towards_up) {
+  const Vec3 up = camera.up.normalized();
+  const Vec3 level = Eigen::AngleAxisd(about_up, up) * direction;
+  const double angle = std::acos(std::clamp(level.normalized().dot(up), -1.0, 1.0));
+  const double wanted = std::clamp(angle - towards_up, closest_to_pole, std::numbers::pi - closest_to_pole);
+  Vec3 side = up.cross(level);
+  if (!(side.norm() > 1e-9 * level.norm())) side = up.unitOrthogonal();  // along the axis every side is as good
+  return Eigen::AngleAxisd(wanted - angle, side.normalized()) * level;
+}
+
+}  // namespace
+
+Camera orbited(const Camera& camera, double right_pixels, double down_pixels, int height) {
+  const double turn = std::numbers::pi / height;
+  Camera result = camera;
+  result.eye = camera.target + turned(camera, camera.eye - camera.target, -right_pixels * turn, down_pixels * turn);
+  return result;
+}
+
+Camera looked(const Camera& camera, double right_pixels, double down_pixels, int height) {
+  const double turn = std::numbers::pi / 2 / height;
+  Camera result = camera;
+  result.target = camera.eye + turned(camera, camera.target - camera.eye, -right_pixels * turn, -down_pixels * turn);
+  return result;
+}
+
+Camera panned(const Camera& camera, double right_pixels, double down_pixels, int height) {
+  const double unit = 2 * half_height(camera, (camera.target - camera.eye).norm()) / height;
+  return flown(camera, -right_pixels * unit, down_pixels * unit, 0);
+}
+
+Camera zoomed(const Camera& camera, const Vec3& towards, double factor) {
+  Camera result = camera;
+  result.eye = towards + (camera.eye - towards) * factor;
+  result.target = towards + (camera.target - towards) * factor;
+  result.ortho_height *= factor;
+  // Nearer than numbers tell points apart there is nothing to see.
+  const double least = std::max(1e-12 * result.target.norm(), std::numeric_limits<double>::min());
+  const bool sound = (result.eye - result.target).norm() > least &&
+                     (!camera.orthographic() || (result.ortho_height > least && std::isfinite(result.ortho_height)));
+  return sound ? result : camera;
+}
+
+Camera framed(const Camera& camera, const Box& box, double aspect) {
+  if (box.isEmpty()) return camera;
+  // A single point is looked at from where the camera is.
+  const double radius = box.diagonal().norm() / 2;
+  if (!(radius > 1e-12 * box.center().norm())) return flown_to(camera, box.center());
+  const double half = std::atan(std::tan(camera.fov_degrees * std::numbers::pi / 360) * std::min(1.0, aspect));
+  Camera result = camera;
+  if (camera.orthographic()) result.ortho_height = 2 * radius / std::min(1.0, aspect);
+  result.target = box.center();
+  result.eye = result.target + (camera.eye - camera.target).normalized() * (radius / std::sin(half));
+  return result;
+}
+
+Camera flown(const Camera& camera, double right, double up, double forward) {
+  const Mat3 rows = world_to_camera(camera);
+  const Vec3 motion = rows.transpose() * Vec3(right, up, -forward);
+  Camera result = camera;
+  result.eye += motion;
+  result.target += motion;
+  return result;
+}
+
+Camera along_axis(const Camera& camera, const Vec3& axis) {
+  Camera result = camera;
+  const double distance = (camera.eye - camera.target).norm();
+  Vec3 direction = axis.normalized();
+  const Vec3 up = camera.up.normalized();
+  // From the poles, a hair aside, so that turning goes on from there.
+  if (std::abs(direction.dot(up)) > 1 - 1e-6) {
+    Vec3 level = camera.eye - camera.target;
+    level -= level.dot(up) * up;
+    // The nearest level axis keeps pictures upright.
+    int largest = 0;
+    level.cwiseAbs().maxCoeff(&largest);
+    Vec3 snapped(0, 0, 0);
+    snapped[largest] = level[largest] < 0 ? -1 : 1;
+    direction = (direction * std::cos(closest_to_pole) + snapped * std::sin(closest_to_pole)).normalized();
+  }
+  result.eye = camera.target + direction * distance;
+  return result;
+}
+
+Camera projected_otherwise(const Camera& camera) {
+  Camera result = camera;
+  if (camera.orthographic()) {
+    result.ortho_height = 0;
+    result.eye =
+        camera.target + (camera.eye - camera.target).normalized() * (camera.ortho_height / 2 / half_height(result, 1));
+  } else {
+    result.ortho_height = 2 * half_height(camera, (camera.eye - camera.target).norm());
+  }
+  return result;
+}
+
+Camera with_depth_for(const Camera& camera, const Box& box) {
+  Camera result = camera;
+  if (camera.orthographic() && !box.isEmpty()) {
+    const Vec3 back = (camera.eye - camera.target).normalized();
+    const double before = back.dot(box.center() - camera.target) + box.diagonal().norm();
+    // How far it stands changes nothing but what depths can be told apart.
+    const double distance = std::max(before, 0.01 * box.diagonal().norm());
+    const double now = (camera.eye - camera.target).norm();
+    // A camera that stands there stays, bit for bit: a picture of it is not drawn again.
+    if (distance > 0 && std::abs(distance - now) > 1e-9 * distance) result.eye = camera.target + distance * back;
+  }
+  const double target = (result.target - result.eye).norm();
+  double farthest = 2 * target;
+  if (!box.isEmpty()) farthest = std::max(farthest, (box.center() - result.eye).norm() + box.diagonal().norm());
+  result.far_plane = farthest * 2;
+  // Float depth is reversed: what a small near plane costs is nothing.
+  result.near_plane = std::min(target / 100, farthest / 1000);
+  return result;
+}
+
+}  // namespace rebake

@@ -1,0 +1,400 @@
+#include "editor/gui/view/viewport.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "editor/gui/view/navigation.h"
+#include "render/image.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr auto settle_time = std::chrono::milliseconds(200);  // after the last move the picture is drawn in full
+constexpr double wanted_ms = 58;                              // a frame while moving
+
+bool same_scene(const Scene& a, const Scene& b) { return a.roots == b.roots && a.background == b.background; }
+bool same_view(const View& a, const View& b) {
+  return a.camera == b.camera && a.width == b.width && a.height == b.height && a.samples == b.samples;
+}
+
+}  // namespace
+
+Viewport::Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_ptr<gl::Context>()> window_context)
+    : renderer_(renderer), window_context_(std::move(window_context)), tools_(tools) {
+  report_.device = renderer.device();
+}
+Viewport::~Viewport() = default;
+
+bool Viewport::key(Desk& desk, const KeyPress& press) { return tool(desk).key(desk, press); }
+
+bool Viewport::cancel(Desk& desk) {
+  if (desk.flying) {
+    desk.flying = false;
+    return true;
+  }
+  if (std::exchange(desk.drag_begins, std::nullopt)) {
+    desk.tool = desk.tool_before.value_or(desk.tool);
+    desk.tool_before.reset();
+    return true;
+  }
+  const bool held = tool(desk).busy();
+  tool(desk).cancel(desk);
+  return held;
+}
+
+bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
+
+double Viewport::next_frame_in(const Desk& desk) const {
+  if (desk.turntable || desk.flying) return 0;
+  if (!moving()) return made_ && made_->view.width != made_->shown_width ? 0 : -1;
+  return std::chrono::duration<double>(settle_time).count();
+}
+
+void Viewport::fly(Desk& desk) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto held = [&](int key, char letter) {
+    return io.KeysDown[key] || io.KeysDown[static_cast<unsigned char>(letter)] ? 1.0 : 0.0;
+  };
+  const Clock::time_point now = Clock::now();
+  const double seconds = std::min(0.2, std::chrono::duration<double>(now - flown_at_).count());
+  flown_at_ = now;
+  const double speed = desk.focus().isEmpty() ? 1 : desk.focus().diagonal().norm() * (io.KeyShift ? 1.0 : 0.3);
+  if (io.WantTextInput || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) return;
+  const double right = held(GLFW_KEY_RIGHT, 'D') - held(GLFW_KEY_LEFT, 'A'), up = held('E', 'E') - held('Q', 'Q'),
+               forward = held(GLFW_KEY_UP, 'W') - held(GLFW_KEY_DOWN, 'S');
+  if (right == 0 && up == 0 && forward == 0) return;
+  const bool parallel = desk.camera.orthographic();
+  desk.camera =
+      flown(desk.camera, right * speed * seconds, up * speed * seconds, parallel ? 0 : forward * speed * seconds);
+  // Where nothing grows by coming nearer, forward enlarges.
+  if (parallel) desk.camera = zoomed(desk.camera, desk.camera.target, std::exp(-2 * forward * seconds));
+}
+
+void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool picks = desk.tool == ToolKind::pick;
+  if (pointer.inside) {
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) (io.KeyShift ? panning_ : orbiting_) = true;
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && !pointer.let_go) panning_ = true;
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) && (io.KeyAlt || (picks && !io.KeyShift && !io.KeyCtrl)))
+      orbiting_ = true;
+    if (io.MouseWheel != 0) {
+      // Towards what lies under the pointer; beside everything, towards the target's depth there.
+      const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false);
+      const ViewRay ray = lens.ray(pointer.at);
+      const Vec3 at = picked ? picked->world : Vec3(ray.origin + ray.direction * lens.depth(desk.camera.target));
+      desk.camera = zoomed(desk.camera, at, std::pow(0.85, static_cast<double>(io.MouseWheel)));
+    }
+  }
+  if (!io.MouseDown[0] && !io.MouseDown[2]) orbiting_ = false;
+  if (!io.MouseDown[1] && !io.MouseDown[2]) panning_ = false;
+  const double dx = static_cast<double>(io.MouseDelta.x), dy = static_cast<double>(io.MouseDelta.y);
+  if (dx == 0 && dy == 0) return;
+  if (orbiting_)
+    desk.camera =
+        desk.flying ? looked(desk.camera, dx, dy, desk.view_height) : orbited(desk.camera, dx, dy, desk.view_height);
+  else if (panning_)
+    desk.camera = panned(desk.camera, dx, dy, desk.view_height);
+}
+
+// Of all that is drawn. An orthographic camera stands before it; for a perspective one the scene does.
+Box Viewport::drawn_bounds(const Desk& desk) const {
+  Box box = world_bounds(desk.scene());
+  if (!desk.camera.orthographic()) return box;
+  if (desk.preview) box.extend(world_bounds(desk.shown()));
+  for (const Guides::Line& line : guides(desk).lines) box.extend(line.from).extend(line.to);
+  return box;
+}
+
+void Viewport::add_grid(const Desk& desk, std::vector<Guides::Line>& lines) {
+  // On the ground; squares of the power of ten that fits the scene.
+  const Box box = world_bounds(desk.scene());
+  const double size = box.isEmpty() || !(box.diagonal().norm() > 0) ? 1 : box.diagonal().norm();
+  const double step = std::pow(10, std::floor(std::log10(size)));
+  const double floor = box.isEmpty() ? 0 : box.min().y();
+  constexpr int half = 10;
+  for (int k = -half; k <= half; ++k) {
+    const double at = k * step, end = half * step;
+    const Color grey(0.5, 0.5, 0.5);
+    lines.push_back({{at, floor, -end}, {at, floor, end}, k == 0 ? Color(0.25, 0.45, 0.95) : grey, 0.45, 0});
+    lines.push_back({{-end, floor, at}, {end, floor, at}, k == 0 ? Color(0.9, 0.3, 0.3) : grey, 0.45, 0});
+  }
+}
+
+Guides Viewport::guides(const Desk& desk) const {
+  Guides result;
+  result.selection = desk.show_selection;
+  result.inspect = desk.inspect;
+  result.channel = desk.channel;
+  if (desk.settings.grid) add_grid(desk, result.lines);
+  for (const NodeId id : desk.active) {
+    const Box box = subtree_bounds(desk.shown(), id);
+    if (box.isEmpty()) continue;
+    for (int corner = 0; corner < 8; ++corner)
+      for (int axis = 0; axis < 3; ++axis)
+        if ((corner >> axis & 1) == 0)
+          result.lines.push_back({box.corner(static_cast<Box::CornerType>(corner)),
+                                  box.corner(static_cast<Box::CornerType>(corner | 1 << axis)), Color(1, 0.7, 0.2), 0.9,
+                                  0.25});
+  }
+  tools_.at(desk.tool)->add_guides(desk, result.lines);
+  return result;
+}
+
+void Viewport::picture(Desk& desk) {
+  const bool still = !moving() && !desk.flying;
+  const double wanted_picture_ms = std::max(10.0, wanted_ms - rest_ms_);
+  View view;
+  const Scene& scene = desk.shown();
+  view.camera = desk.camera;
+  view.samples = desk.samples;
+  double scale = 1;
+  if (!still && full_ms_ > wanted_picture_ms) {
+    view.samples = 1;
+    scale = moving_scale_;
+  }
+  view.width = std::max(16, static_cast<int>(std::lround(desk.view_width * scale)));
+  view.height = std::max(16, static_cast<int>(std::lround(desk.view_height * scale)));
+  Made wanted{scene, view, guides(desk), each_pass_, desk.wipe, desk.view_width, desk.view_height};
+  if (made_ && same_scene(made_->scene, scene) && same_view(made_->view, view) && made_->guides == wanted.guides &&
+      made_->each_pass == each_pass_ && made_->wipe == desk.wipe)
+    return;
+  // Whether it can be drawn or not: what cannot is said once.
+  made_ = wanted;
+  texture_ = 0;
+  const Renderer::Shown shown = renderer_.show(scene, view, {}, wanted.guides, each_pass_);
+  const double ms = shown.times.frame_ms;
+  if (view.width == desk.view_width && view.samples == desk.samples) full_ms_ = ms;
+  // The time goes with the pixels, as far as it goes with anything that can be chosen here.
+  if (!still && full_ms_ > wanted_picture_ms)
+    moving_scale_ = std::clamp(scale * std::sqrt(wanted_picture_ms / ms), 0.35, 1.0);
+  // Of pictures that follow each other in one movement.
+  const Clock::time_point now = Clock::now();
+  const double since = std::chrono::duration<double>(now - drawn_at_).count();
+  drawn_at_ = now;
+  double rate = report_.pictures_a_second;
+  if (!still && since < 0.5) rate = rate > 0 ? 0.8 * rate + 0.2 / since : 1 / since;
+  report_ = {shown.times, shown.passes, renderer_.peak_gpu_bytes(), report_.device, scale, view.samples, rate};
+  if (!desk.wipe) {
+    before_.reset();
+  } else {
+    // A renderer of its own keeps what the scene was on the GPU, as long as it is compared with.
+    if (!before_) before_ = std::make_unique<Renderer>(window_context_());
+    Guides before;
+    before.inspect = desk.inspect;
+    before.channel = desk.channel;
+    if (desk.settings.grid) add_grid(desk, before.lines);
+    before_texture_ = before_->show(desk.imported, view, {}, before, false).texture;
+  }
+  texture_ = shown.texture;
+  drew_ = true;
+}
+
+void Viewport::frame_took(double ms) {
+  if (!std::exchange(drew_, false)) return;
+  const double rest = std::max(0.0, ms - report_.times.frame_ms);
+  rest_ms_ = rest_ms_ > 0 ? 0.7 * rest_ms_ + 0.3 * rest : rest;
+}
+
+// The line between before and after, which the pointer moves. True while it does, or is about to.
+bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer) {
+  constexpr double grab = 8;  // pixels
+  const double at = desk.wipe_at * desk.view_width;
+  const bool hot = pointer.inside && std::abs(pointer.at.x() - at) < grab;
+  if (hot && pointer.pressed) wiping_ = true;
+  if (!pointer.down) wiping_ = false;
+  if (wiping_) desk.wipe_at = std::clamp(pointer.at.x() / desk.view_width, 0.02, 0.98);
+  const float x = origin.x + static_cast<float>(desk.wipe_at * desk.view_width);
+  const float bottom = origin.y + static_cast<float>(desk.view_height);
+  list.AddLine({x, origin.y}, {x, bottom}, IM_COL32(0, 0, 0, 200), 4);
+  list.AddLine({x, origin.y}, {x, bottom}, hot || wiping_ ? IM_COL32(255, 230, 60, 255) : IM_COL32(255, 255, 255, 255),
+               2);
+  list.AddText({x - 60, origin.y + 8}, IM_COL32(0, 0, 0, 255), "before");
+  list.AddText({x + 12, origin.y + 8}, IM_COL32(0, 0, 0, 255), "after");
+  return hot || wiping_;
+}
+
+// What the colours mean when they are not the scene's.
+void Viewport::draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin) {
+  std::string text;
+  switch (desk.inspect) {
+    case Guides::Inspect::none:
+      return;
+    case Guides::Inspect::wireframe:
+      text = "Wireframe: every triangle, a colour for each texture set";
+      break;
+    case Guides::Inspect::opacity:
+      text = "Opacity: grey shows, dark red is transparent";
+      break;
+    case Guides::Inspect::texture_sets:
+      text = "Texture sets: a colour for each";
+      break;
+    case Guides::Inspect::channel:
+      text = fmt::format("Feature channel {}{}: black is 0, white 255", desk.channel,
+                         desk.channel == 0 ? " (opacity)" : "");
+      break;
+    case Guides::Inspect::overdraw:
+      text = "Overdraw: the brighter, the more triangles behind each other";
+      break;
+  }
+  draw_label(list, {origin.x + 10, origin.y + static_cast<float>(desk.view_height) - ImGui::GetFontSize() - 12}, text);
+}
+
+bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, bool over) {
+  constexpr float arm = 34, knob = 9;
+  const ImVec2 middle{corner.x - arm - 16, corner.y + arm + 16};
+  const Mat3 rows = world_to_camera(desk.camera);
+  struct Knob {
+    double depth;
+    ImVec2 at;
+    Vec3 axis;
+    int number;
+  };
+  std::array<Knob, 6> knobs;
+  for (int k = 0; k < 6; ++k) {
+    Vec3 axis(0, 0, 0);
+    axis[k / 2] = k % 2 == 0 ? 1 : -1;
+    const Vec3 seen = rows * axis;
+    knobs[static_cast<std::size_t>(k)] = {
+        seen.z(),
+        {middle.x + arm * static_cast<float>(seen.x()), middle.y - arm * static_cast<float>(seen.y())},
+        axis,
+        k};
+  }
+  std::sort(knobs.begin(), knobs.end(), [](const Knob& a, const Knob& b) { return a.depth < b.depth; });
+  bool hovered = false;
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  for (const Knob& one : knobs) {
+    const bool positive = one.number % 2 == 0;
+    const int axis = one.number / 2;
+    const ImU32 color = axis == 0   ? IM_COL32(235, 70, 70, positive ? 255 : 110)
+                        : axis == 1 ? IM_COL32(100, 200, 60, positive ? 255 : 110)
+                                    : IM_COL32(70, 130, 245, positive ? 255 : 110);
+    if (positive) list.AddLine(middle, one.at, color, 2);
+    list.AddCircleFilled(one.at, positive ? knob : knob - 3, color);
+    if (positive) {
+      const char letter[] = {static_cast<char>('X' + axis), 0};
+      const ImVec2 size = ImGui::CalcTextSize(letter);
+      list.AddText({one.at.x - size.x / 2, one.at.y - size.y / 2}, IM_COL32(0, 0, 0, 255), letter);
+    }
+    const float dx = mouse.x - one.at.x, dy = mouse.y - one.at.y;
+    if (dx * dx + dy * dy > knob * knob || !over) continue;
+    hovered = true;
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) desk.camera = along_axis(desk.camera, one.axis);
+  }
+  return hovered;
+}
+
+void Viewport::write_pictures(Desk& desk) {
+  const auto written = [&](const Camera& camera, int width, int height, const std::filesystem::path& path) {
+    made_.reset();
+    const View view{with_depth_for(camera, world_bounds(desk.scene())), width, height, desk.samples};
+    write_png(renderer_.render(desk.scene(), view), path, desk.now->sources);
+  };
+  try {
+    if (const auto shot = std::exchange(desk.screenshot, std::nullopt)) {
+      written(desk.camera, shot->width, shot->height, shot->path);
+      desk.log.push_back({"screenshot " + shot->path.string()});
+    }
+    if (desk.turntable) {
+      Desk::Turntable& turntable = *desk.turntable;
+      std::filesystem::create_directories(turntable.folder);
+      const double turn = 2.0 * desk.view_height * turntable.next / turntable.count;
+      written(orbited(desk.camera, turn, 0, desk.view_height), turntable.width, turntable.height,
+              turntable.folder / fmt::format("{:03}.png", turntable.next));
+      if (++turntable.next == turntable.count) {
+        desk.log.push_back({fmt::format("turntable of {} pictures in {}", turntable.count, turntable.folder.string())});
+        desk.turntable.reset();
+      }
+    }
+  } catch (const std::exception& error) {
+    desk.turntable.reset();
+    desk.error = error.what();
+  }
+}
+
+void Viewport::draw(Desk& desk) {
+  const ImVec2 size = ImGui::GetContentRegionAvail(), origin = ImGui::GetCursorScreenPos();
+  desk.view_width = std::max(16, static_cast<int>(size.x));
+  desk.view_height = std::max(16, static_cast<int>(size.y));
+  if (desk.drag_begins && *desk.drag_begins != desk.tool) {
+    // Another tool was taken before the drag could begin.
+    desk.drag_begins.reset();
+    desk.tool_before.reset();
+  }
+  if (desk.tool != last_tool_) {
+    tools_.at(last_tool_)->cancel(desk);
+    last_tool_ = desk.tool;
+  }
+  ImGui::InvisibleButton(
+      "viewport", size,
+      ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
+  const ImGuiIO& io = ImGui::GetIO();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  Pointer pointer;
+  pointer.at = Vec2(static_cast<double>(io.MousePos.x - origin.x), static_cast<double>(io.MousePos.y - origin.y));
+  pointer.inside = ImGui::IsItemHovered();
+  pointer.pressed = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !io.KeyAlt;
+  pointer.down = io.MouseDown[0];
+  pointer.released = ImGui::IsMouseReleased(ImGuiMouseButton_Left);
+  pointer.double_clicked = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+  // In the midst of a drag the right button lets go of it, as Escape does.
+  pointer.let_go = tool(desk).busy() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
+  if (pointer.let_go) tool(desk).cancel(desk);
+  pointer.shift = io.KeyShift;
+  pointer.control = io.KeyCtrl;
+
+  list.PushClipRect(origin, {origin.x + size.x, origin.y + size.y}, true);
+  list.ChannelsSplit(2);
+  list.ChannelsSetCurrent(1);
+  draw_legend(desk, list, origin);
+  const bool on_axes = draw_axes(desk, list, {origin.x + size.x, origin.y}, pointer.inside && !tool(desk).busy());
+  if (on_axes || (desk.wipe && draw_wipe(desk, list, origin, pointer))) {
+    pointer.inside = false;
+    pointer.pressed = false;
+  }
+  try {
+    navigate(desk, Lens(desk.camera, desk.view_width, desk.view_height), pointer);
+  } catch (const std::exception& error) {
+    desk.error = error.what();
+  }
+  if (desk.flying) fly(desk);
+  // What edits select through this camera is what is drawn through it.
+  desk.camera = with_depth_for(desk.camera, drawn_bounds(desk));
+  const Lens lens(desk.camera, desk.view_width, desk.view_height);
+  try {
+    if (!desk.worker.busy() || tool(desk).busy()) tool(desk).pointer(desk, lens, pointer);
+    last_tool_ = desk.tool;  // a drag that a key began ends with the tool before it, and what it did stays
+  } catch (const std::exception& error) {
+    desk.error = error.what();
+    tool(desk).cancel(desk);
+  }
+  if (!(desk.camera == last_camera_)) {
+    last_camera_ = desk.camera;
+    moved_at_ = Clock::now();
+  }
+  try {
+    write_pictures(desk);
+    picture(desk);
+    tool(desk).draw(desk, lens, pointer, list, origin);
+  } catch (const std::exception& error) {
+    desk.error = error.what();
+  }
+  list.ChannelsSetCurrent(0);
+  if (texture_ != 0)
+    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), origin,
+                  {origin.x + size.x, origin.y + size.y}, {0, 1}, {1, 0});
+  if (desk.wipe && before_) {
+    const auto share = static_cast<float>(desk.wipe_at);
+    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(before_texture_)), origin,
+                  {origin.x + share * size.x, origin.y + size.y}, {0, 1}, {share, 0});
+  }
+  list.ChannelsMerge();
+  list.PopClipRect();
+}
+
+}  // namespace rebake

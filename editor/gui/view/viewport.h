@@ -1,0 +1,76 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+
+#include "editor/gui/panels/panels.h"
+#include "editor/gui/tools/tool.h"
+
+namespace rebake {
+
+/// The picture with what is drawn over it, the pointer in it, and the camera that it moves.
+class Viewport {
+ public:
+  /// `window_context` makes contexts for further renderers, in the same window.
+  Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_ptr<gl::Context>()> window_context);
+  ~Viewport();
+
+  /// Draws into the present Dear ImGui window, over all of its content.
+  void draw(Desk& desk);
+  /// Takes a key before commands do; true when it was for the tool in hand.
+  bool key(Desk& desk, const KeyPress& press);
+  /// Lets go of what the tool holds; false when it holds nothing.
+  bool cancel(Desk& desk);
+  ViewTool& tool(const Desk& desk) { return *tools_.at(desk.tool); }
+
+  /// Seconds until there is something to draw without any event; negative for never.
+  double next_frame_in(const Desk& desk) const;
+  /// How long the whole frame took of the window in which the last picture was drawn.
+  void frame_took(double ms);
+  const FrameReport& report() const { return report_; }
+  bool& each_pass() { return each_pass_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  /// What the shown picture was made of.
+  struct Made {
+    Scene scene;
+    View view;
+    Guides guides;
+    bool each_pass = false, wipe = false;
+    int shown_width = 0, shown_height = 0;
+  };
+  void navigate(Desk& desk, const Lens& lens, const Pointer& pointer);
+  void fly(Desk& desk);
+  void picture(Desk& desk);
+  Guides guides(const Desk& desk) const;
+  Box drawn_bounds(const Desk& desk) const;
+  static void add_grid(const Desk& desk, std::vector<Guides::Line>& lines);
+  bool draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer);
+  static void draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin);
+  /// `over`: the pointer may take a knob. True while it is on one.
+  bool draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, bool over);
+  void write_pictures(Desk& desk);
+  bool moving() const;
+
+  Renderer& renderer_;
+  std::function<std::unique_ptr<gl::Context>()> window_context_;
+  std::unique_ptr<Renderer> before_;  ///< of the scene as imported; null while it is not compared with
+  unsigned before_texture_ = 0;
+  Tools& tools_;
+  ToolKind last_tool_ = ToolKind::pick;
+  std::optional<Made> made_;
+  unsigned texture_ = 0;
+  FrameReport report_;
+  bool each_pass_ = false;
+  Camera last_camera_;
+  Clock::time_point moved_at_{}, flown_at_{}, drawn_at_{};
+  double full_ms_ = 0;       ///< of a picture at full quality
+  double rest_ms_ = 0;       ///< of a frame beside its picture
+  bool drew_ = false;        ///< a picture in this frame
+  double moving_scale_ = 1;  ///< of the resolution while the camera moves
+  bool orbiting_ = false, panning_ = false, wiping_ = false;
+  Vec3 zoom_at_{0, 0, 0};
+};
+
+}  // namespace rebake

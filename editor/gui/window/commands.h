@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "editor/gui/window/desk.h"
+#include "editor/gui/window/window.h"
+
+namespace rebake {
+
+/// Something that a key, a menu or the palette does.
+struct Command {
+  const char* menu;  ///< in which it stands; empty: the palette only
+  const char* title;
+  const char* keys;          ///< alternatives, separated by spaces, e.g. "Ctrl+Shift+Z"; empty for none
+  const char* blender_keys;  ///< in the keymap that follows Blender
+  bool (*enabled)(const Desk& desk);
+  void (*run)(Desk& desk);
+  bool repeats = false;  ///< while its key is held
+
+  const char* keys_of(const Desk& desk) const { return desk.settings.blender_keys ? blender_keys : keys; }
+};
+
+/// All of them, in the order of the menus.
+const std::vector<Command>& command_table();
+
+/// A key with its modifiers as people write it, e.g. "Ctrl+Shift+A", "[", "KP_1". Nothing when it is no such text.
+std::optional<KeyPress> parse_key(const std::string& text);
+
+/// The command that a key starts now, null for none.
+const Command* command_for(const KeyPress& press, const Desk& desk);
+
+}  // namespace rebake

@@ -1,0 +1,82 @@
+#include "editor/gui/window/settings.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+// XDG's folders must be absolute, else they do not count.
+fs::path user_folder(const char* variable, const char* below_home) {
+  if (const char* given = std::getenv(variable); given != nullptr && fs::path(given).is_absolute()) return given;
+  const char* home = std::getenv("HOME");
+  return fs::path(home != nullptr ? home : "/tmp") / below_home;
+}
+
+// Calls visit(name, member) for all that is written.
+template <class Self, class Visit>
+void for_fields(Self& self, Visit visit) {
+  visit("dark", self.dark);
+  visit("blender_keys", self.blender_keys);
+  visit("grid", self.grid);
+  visit("brush_radius", self.brush_radius);
+  visit("likeness", self.likeness);
+  visit("side_width", self.side_width);
+  visit("bottom_height", self.bottom_height);
+  visit("window_width", self.window_width);
+  visit("window_height", self.window_height);
+  visit("recent", self.recent);
+}
+
+}  // namespace
+
+void Settings::remember(const std::string& path) {
+  constexpr std::size_t most = 12;
+  std::erase(recent, path);
+  recent.insert(recent.begin(), path);
+  if (recent.size() > most) recent.resize(most);
+}
+
+fs::path config_folder() { return user_folder("XDG_CONFIG_HOME", ".config") / "rebake"; }
+fs::path journal_folder() { return user_folder("XDG_STATE_HOME", ".local/state") / "rebake" / "journals"; }
+
+Settings read_settings(const fs::path& file, std::string& problem) {
+  if (!fs::exists(file)) return {};
+  try {
+    const json read = json::parse(read_file(file));
+    if (!read.is_object()) throw Error("they must be an object");
+    Settings settings;
+    for_fields(settings, [&](const char* name, auto& value) {
+      if (read.contains(name)) read.at(name).get_to(value);
+    });
+    settings.brush_radius = std::clamp(settings.brush_radius, 1.0, 500.0);
+    settings.likeness = std::clamp(settings.likeness, 0.0, 1.0);
+    settings.side_width = std::clamp(settings.side_width, 200.0, 1000.0);
+    settings.bottom_height = std::clamp(settings.bottom_height, 80.0, 800.0);
+    settings.window_width = std::clamp(settings.window_width, 640, 16384);
+    settings.window_height = std::clamp(settings.window_height, 400, 16384);
+    return settings;
+  } catch (const std::exception& error) {
+    problem = file.string() + ": these settings are not used: " + error.what();
+    return {};
+  }
+}
+
+void write_settings(const Settings& settings, const fs::path& file) {
+  json object;
+  for_fields(settings, [&](const char* name, const auto& value) { object[name] = value; });
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error) throw FileError(file.parent_path(), "cannot be made: " + error.message());
+  write_file_atomically(file, object.dump(1) + "\n", {});
+}
+
+}  // namespace rebake

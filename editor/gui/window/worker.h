@@ -1,0 +1,83 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "editor/commands/session.h"
+
+namespace rebake {
+
+/// What the window knows of the document: a copy as it was after the last job.
+struct Snapshot {
+  Scene scene;
+  std::vector<Edit> done, undone;   ///< oldest first; the first of `undone` is what redo does
+  std::vector<bool> joined;         ///< of `done`, then of `undone`: made together with the one before
+  SourceGuard sources;              ///< where nothing may be written
+  std::uint64_t history_bytes = 0;  ///< that the kept scenes hold
+};
+
+/// Carries jobs out on the document, one after the other, off the window's thread.
+class Worker {
+ public:
+  using Job = std::function<void(Session&)>;
+  /// `wake` is called, from another thread, when there is something new to take, or progress to show.
+  explicit Worker(std::function<void()> wake);
+  /// Asks what runs to stop, and waits for it.
+  ~Worker();
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  /// `then` is carried out by take_finished()'s caller once the job is done; `otherwise`, when it failed or was
+  /// cancelled, also while it still waited.
+  void start(std::string title, Job job, std::function<void()> then = {}, std::function<void()> otherwise = {});
+  bool busy() const;
+  /// Asks the present job to stop and forgets those that wait.
+  void cancel();
+  /// Before the next job: what its renderer holds may be lost.
+  void drop_renderer() { drops_renderer_ = true; }
+
+  struct Status {
+    std::string title, what;  ///< the job, and what it is at
+    double share = 0;         ///< done of that, 0 … 1
+  };
+  Status status() const;
+  std::shared_ptr<const Snapshot> snapshot() const;
+  /// What jobs had to say since the last call, in order.
+  struct Message {
+    std::string text;
+    bool failed = false;
+  };
+  std::vector<Message> take_messages();
+  std::vector<std::function<void()>> take_finished();
+
+ private:
+  void loop();
+  void publish();
+
+  std::function<void()> wake_;
+  Session session_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  struct Waiting {
+    std::string title;
+    Job job;
+    std::function<void()> then, otherwise;
+  };
+  std::deque<Waiting> waiting_;
+  bool running_ = false, ending_ = false;
+  std::atomic<bool> cancel_ = false, drops_renderer_ = false;
+  Status status_;
+  std::shared_ptr<const Snapshot> snapshot_ = std::make_shared<const Snapshot>();
+  std::vector<Message> messages_;
+  std::vector<std::function<void()>> finished_;
+  std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace rebake

@@ -1,0 +1,87 @@
+#include "editor/python/work.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "mesh_ops/base/error.h"
+
+namespace py = pybind11;
+
+namespace rebake {
+
+namespace {
+
+std::atomic<pid_t> worked_in = 0;
+
+void refuse_forked() {
+  const pid_t here = ::getpid();
+  pid_t before = 0;
+  if (!worked_in.compare_exchange_strong(before, here) && before != here)
+    throw Error(
+        "this process was forked off one that used rebake, whose threads did not come along: start processes by "
+        "multiprocessing's \"spawn\", or fork before rebake is first used");
+}
+
+}  // namespace
+
+void do_work(const py::object& callback, const std::function<void(const Progress&)>& work) {
+  refuse_forked();
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool ended = false;
+  std::exception_ptr failed;
+  std::optional<std::pair<std::string, double>> latest;
+  std::atomic<bool> cancel = false;
+  const Progress progress(
+      [&](std::string_view what, double share) {
+        const std::scoped_lock lock(mutex);
+        latest.emplace(what, share);
+      },
+      &cancel);
+  std::thread worker([&] {
+    try {
+      work(progress);
+    } catch (...) {
+      failed = std::current_exception();
+    }
+    const std::scoped_lock lock(mutex);
+    ended = true;
+    changed.notify_all();
+  });
+  // What Python raised meanwhile.
+  std::optional<py::error_already_set> raised;
+  for (bool done = false; !done;) {
+    std::optional<std::pair<std::string, double>> now;
+    {
+      const py::gil_scoped_release others;
+      std::unique_lock lock(mutex);
+      changed.wait_for(lock, std::chrono::milliseconds(100), [&] { return ended; });
+      done = ended;
+      now.swap(latest);
+    }
+    if (raised) continue;
+    try {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (now && !callback.is_none()) callback(now->first, now->second);
+    } catch (py::error_already_set& error) {
+      raised.emplace(std::move(error));
+      cancel = true;
+    }
+  }
+  {
+    const py::gil_scoped_release others;
+    worker.join();
+  }
+  if (raised) throw std::move(*raised);
+  if (failed) std::rethrow_exception(failed);
+}
+
+}  // namespace rebake

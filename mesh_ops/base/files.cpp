@@ -1,0 +1,267 @@
+#include "mesh_ops/base/files.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <random>
+#include <set>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/file_calls.h"
+#include "mesh_ops/base/hash.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Descriptor {
+  int value = -1;
+  ~Descriptor() {
+    if (value >= 0) ::close(value);
+  }
+};
+
+std::string reason() { return std::strerror(errno); }
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what) { throw FileError(path, what + ": " + reason()); }
+
+std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MB"; }
+
+// Reads until the end. `expected` is how much there should be.
+std::string read_all(const fs::path& path, int file, std::uint64_t expected, std::uint64_t most) {
+  std::string bytes;
+  std::size_t filled = 0;
+  bytes.resize(expected + 1);
+  for (;;) {
+    if (filled == bytes.size()) bytes.resize(bytes.size() * 2);
+    const ssize_t got = ::read(file, bytes.data() + filled, bytes.size() - filled);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(path, "cannot be read");
+    if (got == 0) break;
+    filled += static_cast<std::size_t>(got);
+    if (filled > most) throw FileError(path, "is larger than " + megabytes(most) + ", the most that is read");
+  }
+  bytes.resize(filled);
+  return bytes;
+}
+
+std::string read_some(const fs::path& path, std::uint64_t most, bool pipes) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw FileError(path, "does not exist");
+  if (fs::is_directory(status)) throw FileError(path, "is a folder, not a file");
+  const bool regular = fs::is_regular_file(status), pipe = fs::is_fifo(status) || fs::is_character_file(status);
+  if (!regular && !(pipes && pipe)) throw FileError(path, "is no regular file (a pipe, a device or a socket)");
+  // A pipe that takes the file's place now would make opening wait for ever.
+  Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular ? O_NONBLOCK : 0))};
+  struct stat about {};
+  if (file.value < 0 || ::fstat(file.value, &about) != 0) fail(path, "cannot be read");
+  if (regular && !S_ISREG(about.st_mode)) throw FileError(path, "is no regular file any more");
+  const auto size = regular ? static_cast<std::uint64_t>(about.st_size) : std::uint64_t{65536};
+  if (regular && size > most) throw FileError(path, "is larger than " + megabytes(most) + ", the most that is read");
+  return read_all(path, file.value, size, most);
+}
+
+void write_synced(const fs::path& path, std::string_view bytes, int flags) {
+  const OutputFile file(path, O_WRONLY | O_CREAT | flags);
+  // So that nobody takes it for a leftover.
+  ::flock(file.descriptor(), LOCK_SH | LOCK_NB);
+  if (!file.write_at(0, bytes) || !file.sync()) fail(path, "cannot be written");
+}
+
+// "NAME.<8 digits>.partial", hidden for folders: what is being written for NAME.
+std::string partial_name(const std::string& name) {
+  std::random_device device;
+  std::string result = name;
+  result.append(".").append(hash_text(device()), 8).append(".partial");
+  return result;
+}
+
+bool is_partial_of(const std::string& name, const std::string& of) {
+  constexpr std::string_view ending = ".partial";
+  if (name.size() != of.size() + 9 + ending.size() || !name.starts_with(of) || !name.ends_with(ending)) return false;
+  const std::string digits = name.substr(of.size(), 9);
+  return digits[0] == '.' && digits.find_first_not_of("0123456789abcdef", 1) == std::string::npos;
+}
+
+// What processes that were killed left behind; one that is at work holds a lock.
+void remove_leftovers(const fs::path& folder, const std::string& of) {
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    if (!is_partial_of(at->path().filename().string(), of)) continue;
+    const Descriptor lock{::open(at->path().c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW)};
+    if (lock.value < 0 || ::flock(lock.value, LOCK_EX | LOCK_NB) != 0) continue;
+    std::error_code ignored;
+    fs::remove_all(at->path(), ignored);
+  }
+}
+
+// A new name that was made in it must be found again after a power loss.
+void make_folders(const fs::path& folder) {
+  if (folder.empty() || fs::is_directory(folder)) return;
+  make_folders(folder.parent_path());
+  if (file_calls().mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) fail(folder, "cannot be made");
+  if (!fs::is_directory(folder)) throw FileError(folder, "is no folder");
+  sync_folder(folder.parent_path());
+}
+
+// Through symbolic links: what they point to is replaced, not the link.
+fs::path followed(const fs::path& path) {
+  std::error_code error;
+  fs::path target = fs::weakly_canonical(fs::absolute(path), error);
+  if (error) throw FileError(path, "cannot be reached: " + error.message());
+  return target.has_filename() ? target : target.parent_path();
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path, std::uint64_t most) { return read_some(path, most, false); }
+std::string read_input(const fs::path& path, std::uint64_t most) { return read_some(path, most, true); }
+
+OutputFile::OutputFile(const fs::path& path, int flags)
+    : descriptor_(file_calls().open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) fail(path, "cannot be written");
+}
+OutputFile::~OutputFile() { file_calls().close(descriptor_); }
+
+bool OutputFile::write_at(std::uint64_t offset, std::string_view bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t written = file_calls().pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written == 0) errno = ENOSPC;
+    if (written <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
+  }
+  return true;
+}
+
+bool OutputFile::sync() const {
+  int result = 0;
+  do result = file_calls().fsync(descriptor_);
+  while (result != 0 && errno == EINTR);
+  return result == 0 || errno == EINVAL;  // pipes have nothing to sync
+}
+
+void sync_folder(const fs::path& folder) {
+  const fs::path named = folder.empty() ? fs::path(".") : folder;
+  const int descriptor = file_calls().open(named.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0);
+  if (descriptor < 0) fail(named, "cannot be synced");
+  const bool done = file_calls().fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
+  const int error = errno;
+  file_calls().close(descriptor);
+  errno = error;
+  if (!done) fail(named, "cannot be synced");
+}
+
+void write_file_atomically(const fs::path& named, std::string_view bytes, const SourceGuard& guard) {
+  guard.check_file(named);
+  const fs::path path = followed(named);
+  std::error_code error;
+  if (path.has_parent_path() && !fs::is_directory(path.parent_path(), error))
+    throw FileError(named.parent_path(), "is not a folder; create it first");
+  if (fs::is_directory(path)) throw FileError(named, "is a folder; name a file to write to");
+  if (fs::exists(path) && !fs::is_regular_file(path)) {
+    // Devices and pipes are written to; a rename would put a file in their place.
+    const OutputFile file(path, O_WRONLY);
+    std::size_t written = 0;
+    while (written < bytes.size()) {
+      const ssize_t more = ::write(file.descriptor(), bytes.data() + written, bytes.size() - written);
+      if (more < 0 && errno == EINTR) continue;
+      if (more <= 0) fail(path, "cannot be written");
+      written += static_cast<std::size_t>(more);
+    }
+    return;
+  }
+  remove_leftovers(path.parent_path(), path.filename().string());
+  const fs::path partial = path.parent_path() / partial_name(path.filename().string());
+  try {
+    write_synced(partial, bytes, O_EXCL);
+    if (file_calls().rename(partial.c_str(), path.c_str(), 0) != 0) fail(path, "cannot be written");
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+    throw;
+  }
+  sync_folder(path.parent_path());
+}
+
+void remove_file(const fs::path& path) {
+  if (file_calls().unlink(path.c_str()) != 0) fail(path, "cannot be removed");
+  sync_folder(path.parent_path());
+}
+
+AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
+                           const std::function<void(const fs::path&)>& may_replace) {
+  if (target.empty()) throw FieldError("out", "names no folder to write to");
+  guard.check_folder(target);
+  target_ = followed(target);
+  std::error_code error;
+  if (fs::exists(target_, error)) {
+    if (!fs::is_directory(target_)) throw FileError(target_, "is a file; name a folder to write to");
+    may_replace(target_);
+    if (::access(target_.c_str(), W_OK) != 0) fail(target_, "cannot be written");
+  }
+  make_folders(target_.parent_path());
+  const std::string hidden = "." + target_.filename().string();
+  remove_leftovers(target_.parent_path(), hidden);
+  staging_ = target_.parent_path() / partial_name(hidden);
+  if (file_calls().mkdir(staging_.c_str(), 0777) != 0) {
+    staging_.clear();
+    fail(target_, "cannot be written");
+  }
+  lock_ = ::open(staging_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ >= 0) ::flock(lock_, LOCK_SH | LOCK_NB);
+}
+
+AtomicFolder::~AtomicFolder() {
+  std::error_code ignored;
+  if (!staging_.empty()) fs::remove_all(staging_, ignored);
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void AtomicFolder::write(const fs::path& relative, std::string_view bytes) {
+  const fs::path path = staging_ / relative;
+  make_folders(path.parent_path());
+  write_synced(path, bytes, O_TRUNC);
+}
+
+void AtomicFolder::commit() {
+  // First what it holds, then the folders that name it, then its own name.
+  std::set<fs::path> folders{staging_};
+  for (const auto& entry : fs::recursive_directory_iterator(staging_))
+    if (entry.is_directory()) folders.insert(entry.path());
+  for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) sync_folder(*folder);
+  fs::path old;
+  if (fs::exists(target_)) {
+    // One system call swaps old and new; the old one, now at the staging path, is removed by the destructor.
+    if (file_calls().rename(staging_.c_str(), target_.c_str(), RENAME_EXCHANGE) == 0) {
+      old = staging_;
+    } else {
+      if (errno != EINVAL && errno != ENOSYS) fail(target_, "cannot be replaced");
+      // In two steps, where the file system cannot swap: the old one is found under a name of its own in between.
+      const fs::path aside = staging_.string() + ".old";  // no leftover: it may be all that there is
+      if (file_calls().rename(target_.c_str(), aside.c_str(), 0) != 0) fail(target_, "cannot be replaced");
+      if (file_calls().rename(staging_.c_str(), target_.c_str(), 0) != 0) {
+        const int error = errno;
+        file_calls().rename(aside.c_str(), target_.c_str(), 0);
+        errno = error;
+        fail(target_, "cannot be replaced");
+      }
+      old = aside;
+    }
+  } else if (file_calls().rename(staging_.c_str(), target_.c_str(), 0) != 0) {
+    fail(target_, "cannot be written");
+  }
+  staging_ = old;
+  sync_folder(target_.parent_path());
+}
+
+}  // namespace rebake

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "mesh_ops/base/types.h"
+
+namespace rebake {
+
+/// The rotation that is nearest to a Jacobian.
+struct LocalRotation {
+  Mat3 rotation = Mat3::Identity();  ///< always a rotation: det 1, RᵀR = I to 1e-14
+  /// False where two rotations are equally near: the Jacobian is flat to a line, or reflects as much as it keeps. A
+  /// neighbour's rotation is the better answer there.
+  bool defined = true;
+};
+
+/// By scaled Newton iteration (Higham 1986) where det J > 1e-6 ‖J‖³, else by singular values. Scale does not matter.
+LocalRotation local_rotation(const Mat3& jacobian);
+
+/// The orthogonal polar factor by scaled Newton iteration: a reflection where det J < 0, and useless where J is nearly
+/// singular.
+Mat3 newton_polar_factor(const Mat3& jacobian);
+
+/// By singular values, the smallest one's sign turned where det J < 0.
+LocalRotation svd_rotation(const Mat3& jacobian);
+
+}  // namespace rebake

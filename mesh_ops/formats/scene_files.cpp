@@ -1,0 +1,129 @@
+#include "mesh_ops/formats/scene_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/baked_folder.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+// Takes digits off the front, as many as there are.
+std::size_t skip_digits(std::string_view& text) {
+  const std::size_t count = std::min(text.find_first_not_of("0123456789"), text.size());
+  text.remove_prefix(count);
+  return count;
+}
+
+// The object folders that a folder's own scene.json names; none where there is no such file.
+std::set<std::string> named_folders(const fs::path& folder) {
+  std::set<std::string> names;
+  if (!fs::exists(folder / "scene.json")) return names;
+  const json scene = json::parse(read_file(folder / "scene.json"), nullptr, false);
+  if (!scene.is_object() || !scene.contains("rebake_scene")) return names;
+  std::vector<const json*> open{&scene};
+  while (!open.empty()) {
+    const json& value = *open.back();
+    open.pop_back();
+    for (const char* key : {"nodes", "children"})
+      if (value.is_object() && value.contains(key) && value.at(key).is_array())
+        for (const json& child : value.at(key)) open.push_back(&child);
+    if (value.is_object() && value.contains("folder") && value.at("folder").is_string())
+      names.insert(value.at("folder").get<std::string>());
+  }
+  return names;
+}
+
+// The files of one MobileNeRF folder, whichever of its names are there.
+void add_baked_files(const fs::path& root, const fs::path& folder, std::vector<fs::path>& files) {
+  const auto add = [&](const std::string& name) {
+    if (!fs::exists(root / folder / name)) return false;
+    files.push_back(folder / name);
+    return true;
+  };
+  if (!add("mlp.json")) return;
+  add("turns.json");
+  const json mlp = json::parse(read_file(root / folder / "mlp.json"), nullptr, false);
+  const bool unsplit = !mlp.is_object() || !mlp.contains("obj_num") || !mlp.at("obj_num").is_number_unsigned();
+  const std::size_t sets = unsplit ? 1 : std::min<std::size_t>(mlp.at("obj_num").get<std::size_t>(), most_texture_sets);
+  const Layout naming = unsplit ? Layout::unsplit : Layout::split;
+  for (std::size_t set = 0; set < sets; ++set) {
+    if (!add(geometry_name(naming, set, 0)) && !unsplit)
+      for (std::size_t chunk = 0; add(geometry_name(Layout::chunked, set, chunk));) ++chunk;
+    for (const int image : {0, 1}) add(feature_name(naming, set, image));
+  }
+}
+
+}  // namespace
+
+bool is_format_file_name(const std::string& name) {
+  if (name == "mlp.json" || name == "scene.json" || name == "turns.json") return true;
+  std::string_view rest = name;
+  if (!rest.starts_with("shape")) return false;
+  rest.remove_prefix(5);
+  skip_digits(rest);
+  if (rest == ".pngfeat0.png" || rest == ".pngfeat1.png" || rest == ".obj") return true;
+  if (!rest.starts_with('_')) return false;
+  rest.remove_prefix(1);
+  return skip_digits(rest) > 0 && rest == ".obj";
+}
+
+fs::path scene_folder_of(const fs::path& path) {
+  if (path.filename() != "scene.json") return path;
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+std::vector<fs::path> scene_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (fs::exists(folder / "scene.json")) {
+    files.emplace_back("scene.json");
+    for (const std::string& name : named_folders(folder))
+      add_baked_files(folder, fs::path(name).lexically_normal(), files);
+  } else {
+    add_baked_files(folder, {}, files);
+  }
+  std::sort(files.begin(), files.end(),
+            [](const fs::path& a, const fs::path& b) { return a.generic_string() < b.generic_string(); });
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  return files;
+}
+
+std::uint64_t folder_hash(const fs::path& path) {
+  const fs::path folder = scene_folder_of(path);
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) throw FileError(path, "is not there, or is not a folder");
+  std::string all;
+  for (const fs::path& file : scene_files(folder))
+    all += fmt::format("{} {:016x}\n", file.generic_string(), content_hash(read_file(folder / file)));
+  return content_hash(all);
+}
+
+void refuse_foreign_content(const fs::path& folder) {
+  const std::set<std::string> own = named_folders(folder);
+  const auto refuse = [&](const fs::path& path) {
+    throw FileError(folder,
+                    fmt::format("holds \"{}\", which is not part of the scene there; choose a new or empty folder",
+                                path.lexically_relative(folder).string()));
+  };
+  std::error_code error;
+  for (auto it = fs::recursive_directory_iterator(folder, error); !error && it != fs::recursive_directory_iterator();
+       it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (it->is_symlink()) refuse(it->path());
+    if (it->is_directory() ? it.depth() > 0 || !own.contains(name) : !is_format_file_name(name)) refuse(it->path());
+  }
+  if (error) throw FileError(folder, "cannot be read: " + error.message());
+}
+
+}  // namespace rebake

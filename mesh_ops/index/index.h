@@ -1,0 +1,24 @@
+#pragma once
+
+#include "mesh_ops/base/progress.h"
+#include "mesh_ops/index/traits.h"
+#include "mesh_ops/rays/ray_tree.h"
+#include "mesh_ops/select/connection.h"
+
+namespace rebake {
+
+// What selecting on an object needs to know of it. Each part is computed when it is first asked for and kept with the
+// object; all scenes that share the object share it. Callable from any thread.
+
+std::shared_ptr<const std::vector<TriangleTraits>> traits_of(const BakedObject& object);
+std::shared_ptr<const WeldedCorners> corners_of(const BakedObject& object, double tolerance = 0);
+std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tolerance = 0);
+std::shared_ptr<const Components> components_of(const BakedObject& object, const Joining& joining = {});
+std::shared_ptr<const RayTree> rays_of(const BakedObject& object);
+/// Null where they are not there yet: for who must not wait.
+std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object);
+
+/// Computes all of the above with their defaults, to be called off the window's thread before anything is selected.
+void prepare_index(const BakedObject& object, const Progress& progress = {});
+
+}  // namespace rebake

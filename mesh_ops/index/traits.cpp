@@ -1,0 +1,111 @@
+#include "mesh_ops/index/traits.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <bit>
+
+#include "mesh_ops/index/footprint.h"
+
+namespace rebake {
+
+namespace {
+
+// Sums of the texels' bytes; they become features once.
+struct Sum {
+  std::array<std::uint32_t, 8> bytes{};
+  std::uint32_t opaque = 0;
+  std::uint32_t all = 0;
+
+  // At most 256 texels, whose bytes then fit into 16 bits each: four are added at a time.
+  void add(const Texel* texels, int count) {
+    std::uint64_t even = 0, odd = 0;
+    for (int i = 0; i < count; ++i) {
+      if (!texels[i].opaque()) continue;
+      ++opaque;
+      const auto all_bytes = std::bit_cast<std::uint64_t>(texels[i]);
+      even += all_bytes & 0x00ff00ff00ff00ffULL;
+      odd += all_bytes >> 8 & 0x00ff00ff00ff00ffULL;
+    }
+    all += static_cast<std::uint32_t>(count);
+    for (std::size_t k = 0; k < 4; ++k) {
+      bytes[2 * k] += static_cast<std::uint32_t>(even >> 16 * k & 0xffff);
+      bytes[2 * k + 1] += static_cast<std::uint32_t>(odd >> 16 * k & 0xffff);
+    }
+  }
+};
+static_assert(std::endian::native == std::endian::little && sizeof(Texel) == 8);
+
+TriangleTraits traits_of(const TextureSet& set, std::size_t f) {
+  const FeatureTexture& texels = *set.texels;
+  const std::array<Vec2, 3> corners = texel_corners(set, f);
+  Sum sum;
+  for_each_row_inside(corners, texels.width(), texels.height(), [&](int y, int begin, int end) {
+    while (begin < end) {
+      const int part = std::min(end, (begin / TexelTile::size + 1) * TexelTile::size);
+      sum.add(texels.row_part(begin, y), part - begin);
+      begin = part;
+    }
+  });
+  if (sum.all == 0) {
+    const Vec2 middle = (corners[0] + corners[1] + corners[2]) / 3;
+    sum.add(&texels.sample(middle.x() / texels.width(), 1 - middle.y() / texels.height()), 1);
+  }
+  TriangleTraits traits;
+  traits.opacity = static_cast<float>(sum.opaque) / static_cast<float>(sum.all);
+  if (sum.opaque > 0) {
+    for (std::size_t k = 0; k < 8; ++k) traits.features[k] = static_cast<float>(sum.bytes[k]) / (255.0F * sum.opaque);
+    if (texels.alpha_code() == AlphaCode::halved)
+      for (const std::size_t k : {3, 7}) traits.features[k] = 2 * traits.features[k] - 1;
+  }
+  const Face& face = set.soup.faces()[f];
+  const std::vector<Vec3>& p = set.soup.positions();
+  const Vec3 cross = (p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]);
+  traits.area = static_cast<float>(cross.norm() / 2);
+  const Vec3 normal = cross.stableNormalized();
+  for (int k = 0; k < 3; ++k) traits.normal[static_cast<std::size_t>(k)] = static_cast<float>(normal[k]);
+  return traits;
+}
+
+// The decoder on many triangles at once: a column each.
+void decode_colors(const Decoder& decoder, TriangleTraits* traits, Eigen::Index count) {
+  const Eigen::MatrixXf w0 = decoder.weights0.cast<float>().transpose();
+  const Eigen::MatrixXf w1 = decoder.weights1.cast<float>().transpose();
+  const Eigen::MatrixXf w2 = decoder.weights2.cast<float>().transpose();
+  const Eigen::VectorXf b0 = decoder.bias0.cast<float>(), b1 = decoder.bias1.cast<float>(),
+                        b2 = decoder.bias2.cast<float>();
+  Eigen::MatrixXf features(8, count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    for (Eigen::Index k = 0; k < 8; ++k) features(k, i) = traits[i].features[static_cast<std::size_t>(k)];
+  const Eigen::MatrixXf base = (w0.leftCols(8) * features).colwise() + b0;
+  Eigen::MatrixXf mean = Eigen::MatrixXf::Zero(3, count);
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    for (const float sign : {-1.0F, 1.0F}) {
+      const Eigen::MatrixXf h0 = (base.colwise() + sign * w0.col(8 + axis)).cwiseMax(0.0F);
+      const Eigen::MatrixXf h1 = ((w1 * h0).colwise() + b1).cwiseMax(0.0F);
+      const Eigen::MatrixXf out = (w2 * h1).colwise() + b2;
+      mean.array() += (1 / (1 + (-out.array()).exp())) / 6;
+    }
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (traits[i].opacity > 0)
+      for (Eigen::Index k = 0; k < 3; ++k) traits[i].color[static_cast<std::size_t>(k)] = mean(k, i);
+}
+
+}  // namespace
+
+std::vector<TriangleTraits> triangle_traits(const BakedObject& object) {
+  std::vector<TriangleTraits> traits(object.triangle_count());
+  std::size_t first = 0;
+  for (const TextureSet& set : object.sets) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, set.soup.triangle_count(), 512),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t f = range.begin(); f < range.end(); ++f) traits[first + f] = traits_of(set, f);
+                        decode_colors(*object.decoder, &traits[first + range.begin()],
+                                      static_cast<Eigen::Index>(range.size()));
+                      });
+    first += set.soup.triangle_count();
+  }
+  return traits;
+}
+
+}  // namespace rebake

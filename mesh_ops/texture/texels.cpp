@@ -1,0 +1,119 @@
+#include "mesh_ops/texture/texels.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace rebake {
+
+namespace {
+
+// Most of a real atlas is unused; one shared tile stands for all of that.
+const std::shared_ptr<const TexelTile>& shared_empty_tile(AlphaCode code) {
+  const auto make = [](AlphaCode c) {
+    auto tile = std::make_shared<TexelTile>();
+    tile->texels.assign(TexelTile::size * TexelTile::size, empty_texel(c));
+    return std::shared_ptr<const TexelTile>(std::move(tile));
+  };
+  static const std::shared_ptr<const TexelTile> halved = make(AlphaCode::halved);
+  static const std::shared_ptr<const TexelTile> plain = make(AlphaCode::plain);
+  return code == AlphaCode::halved ? halved : plain;
+}
+
+}  // namespace
+
+Texel empty_texel(AlphaCode code) {
+  Texel texel;
+  texel.feat0[3] = texel.feat1[3] = code == AlphaCode::halved ? 128 : 0;
+  return texel;
+}
+
+std::array<double, 8> decode_features(const Texel& texel, AlphaCode code) {
+  const auto alpha = [code](std::uint8_t a) { return code == AlphaCode::halved ? 2 * a / 255.0 - 1 : a / 255.0; };
+  return {texel.feat0[0] / 255.0, texel.feat0[1] / 255.0, texel.feat0[2] / 255.0, alpha(texel.feat0[3]),
+          texel.feat1[0] / 255.0, texel.feat1[1] / 255.0, texel.feat1[2] / 255.0, alpha(texel.feat1[3])};
+}
+
+FeatureTexture FeatureTexture::from_rows(int width, int height, AlphaCode code,
+                                         const std::function<void(int, Texel*)>& fill_row) {
+  FeatureTexture texture;
+  texture.width_ = width;
+  texture.height_ = height;
+  texture.code_ = code;
+  const int columns = texture.tile_columns();
+  const int rows = texture.tile_rows();
+  texture.tiles_.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  const Texel empty = empty_texel(code);
+  tbb::parallel_for(0, rows, [&](int tile_row) {
+    std::vector<Texel> line(static_cast<std::size_t>(columns) * TexelTile::size, empty);
+    std::vector<std::shared_ptr<TexelTile>> fresh(static_cast<std::size_t>(columns));
+    for (int y = tile_row * TexelTile::size; y < std::min(height, (tile_row + 1) * TexelTile::size); ++y) {
+      fill_row(y, line.data());
+      for (int column = 0; column < columns; ++column) {
+        const auto begin = line.begin() + column * TexelTile::size;
+        const auto end = begin + TexelTile::size;
+        auto& tile = fresh[static_cast<std::size_t>(column)];
+        if (!tile) {
+          if (std::all_of(begin, end, [&](const Texel& t) { return t == empty; })) continue;
+          tile = std::make_shared<TexelTile>(*shared_empty_tile(code));
+        }
+        std::copy(begin, end, tile->texels.begin() + (y % TexelTile::size) * TexelTile::size);
+        tile->opaque_count +=
+            static_cast<std::uint32_t>(std::count_if(begin, end, [](const Texel& t) { return t.opaque(); }));
+      }
+    }
+    for (int column = 0; column < columns; ++column) {
+      auto& tile = fresh[static_cast<std::size_t>(column)];
+      texture.tiles_[static_cast<std::size_t>(tile_row * columns + column)] =
+          tile ? std::shared_ptr<const TexelTile>(std::move(tile)) : shared_empty_tile(code);
+    }
+  });
+  return texture;
+}
+
+const Texel& FeatureTexture::sample(double u, double v) const {
+  const int x = std::clamp(static_cast<int>(std::floor(std::clamp(u, -1.0, 2.0) * width_)), 0, width_ - 1);
+  const int y = std::clamp(static_cast<int>(std::floor((1 - std::clamp(v, -1.0, 2.0)) * height_)), 0, height_ - 1);
+  return at(x, y);
+}
+
+FeatureTexture::Change::Change(const FeatureTexture& from)
+    : texture_(std::make_shared<FeatureTexture>(from)), fresh_(from.tiles_.size()) {}
+
+Texel& FeatureTexture::Change::at(int x, int y) {
+  const auto tile = static_cast<std::size_t>(y / TexelTile::size) * static_cast<std::size_t>(texture_->tile_columns()) +
+                    static_cast<std::size_t>(x / TexelTile::size);
+  if (!fresh_[tile]) fresh_[tile] = std::make_shared<TexelTile>(*texture_->tiles_[tile]);
+  return fresh_[tile]->texels[static_cast<std::size_t>(y % TexelTile::size) * TexelTile::size +
+                              static_cast<std::size_t>(x % TexelTile::size)];
+}
+
+bool FeatureTexture::Change::touched() const {
+  return std::any_of(fresh_.begin(), fresh_.end(), [](const auto& tile) { return tile != nullptr; });
+}
+
+std::shared_ptr<const FeatureTexture> FeatureTexture::Change::finish() {
+  for (std::size_t k = 0; k < fresh_.size(); ++k) {
+    if (!fresh_[k]) continue;
+    fresh_[k]->opaque_count = static_cast<std::uint32_t>(
+        std::count_if(fresh_[k]->texels.begin(), fresh_[k]->texels.end(), [](const Texel& t) { return t.opaque(); }));
+    texture_->tiles_[k] = std::move(fresh_[k]);
+  }
+  return std::move(texture_);
+}
+
+std::uint64_t FeatureTexture::opaque_count() const {
+  std::uint64_t count = 0;
+  for (const auto& tile : tiles_) count += tile->opaque_count;
+  return count;
+}
+
+std::uint64_t FeatureTexture::memory() const {
+  std::set<const TexelTile*> distinct;
+  for (const auto& tile : tiles_) distinct.insert(tile.get());
+  return distinct.size() * TexelTile::size * TexelTile::size * sizeof(Texel);
+}
+
+}  // namespace rebake

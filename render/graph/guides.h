@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh_ops/base/types.h"
+
+namespace rebake {
+
+/// What an editor draws over the picture, in world space.
+struct Guides {
+  struct Line {
+    Vec3 from, to;
+    Color color{1, 1, 1};  ///< display colour, 0 … 1
+    double opacity = 1;
+    double hidden_opacity = 1;  ///< where something lies in front
+    bool operator==(const Line&) const = default;
+  };
+  std::vector<Line> lines;
+  bool selection = true;  ///< tints and outlines selected triangles
+
+  /// Another look at the triangles, in place of their colours; at 1 sample a pixel.
+  enum class Inspect {
+    none,
+    wireframe,     ///< every triangle that may show something, transparent parts too
+    opacity,       ///< opaque texels light, transparent ones dark
+    texture_sets,  ///< a colour for each
+    channel,       ///< one feature byte as grey
+    overdraw       ///< brighter where more opaque triangles lie behind each other
+  };
+  Inspect inspect = Inspect::none;
+  int channel = 1;  ///< 0 … 3 of feat0 (0 is opacity), 4 … 7 of feat1
+
+  bool operator==(const Guides&) const = default;
+};
+
+}  // namespace rebake

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/scene/scene.h"
+#include "render/graph/guides.h"
+#include "render/graph/view.h"
+
+namespace rebake {
+
+/// How the renderer does what can be done in several ways. All ways give the same picture, but for rounding.
+struct RenderOptions {
+  enum class Weights {
+    automatic,  ///< constants for up to 4 decoders of at most 4096 weights together, else buffer
+    constants,  ///< decoder weights are literals in the shader: fastest, a new decoder costs a compilation
+    buffer,     ///< decoder weights are fetched: any number and width of decoders with one shader
+  };
+  enum class Shading {
+    automatic,  ///< forward at 1 sample with constant weights, where it is faster; else deferred
+    deferred,   ///< features are drawn first and decoded once a pixel
+    forward,    ///< features are decoded while drawing; the rule allows it at 1 sample only
+  };
+  enum class Precision {
+    full,  ///< decoder weights as 32-bit floats
+    half,  ///< decoder weights rounded to 16-bit floats (11 significant bits)
+  };
+  Weights weights = Weights::automatic;
+  Shading shading = Shading::automatic;
+  Precision precision = Precision::full;
+};
+
+/// How the samples of some nodes feed a decoder. Nodes that agree share one.
+struct NodeFrame {
+  std::size_t decoder = 0;  ///< index into FramePlan::decoders
+  Mat3 world_to_fed;        ///< turns world directions into what the decoder is fed
+  AlphaCode alpha_code = AlphaCode::halved;
+};
+
+/// One texture set of one node.
+struct Draw {
+  NodeId node = NodeId::none;
+  TextureSet set;
+  std::size_t frame = 0;  ///< index into FramePlan::frames
+  Affine to_camera;       ///< object to camera space, composed in double
+  Axes axes = Axes::y_up;
+  std::shared_ptr<const TriangleSet> selection;  ///< of the whole object; null when nothing is selected
+  std::size_t first_triangle = 0;                ///< the set's, in the object's numbering
+};
+
+/// A pass or an optional part of one, and why it runs or not.
+struct PlannedPass {
+  std::string name;
+  bool runs = false;
+  std::string why;
+};
+
+/// Pixel rectangle, y down, right and bottom excluded.
+struct PixelRect {
+  int left = 0, top = 0, right = 0, bottom = 0;
+  bool empty() const { return left >= right || top >= bottom; }
+};
+
+/// Everything that the GPU is to do for one picture.
+struct FramePlan {
+  View view;
+  RenderOptions options;  ///< with automatic choices made
+  Color background{1, 1, 1};
+  std::vector<Draw> draws;
+  std::vector<std::shared_ptr<const Decoder>> decoders;  ///< distinct weights in view
+  std::vector<NodeFrame> frames;
+  std::vector<PlannedPass> passes;
+  PixelRect covered;  ///< nothing is drawn outside it
+  std::size_t triangles = 0;
+  Guides guides;
+
+  bool runs(const std::string& pass) const;
+};
+
+/// Pure. `guides`: what an editor wants over the picture, null for the picture alone. Throws FieldError for a view or
+/// option that cannot be carried out, EditError for a node whose transform is singular.
+FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options = {}, const Guides* guides = nullptr);
+
+/// One line a pass, e.g. "left out  node frames     one decoder and orientation in view".
+std::string describe(const FramePlan& plan);
+
+}  // namespace rebake

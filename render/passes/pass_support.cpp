@@ -1,0 +1,267 @@
+#include "render/passes/pass_support.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <numbers>
+
+#include "render/gl/shader_library.h"
+#include "render/passes/decoder_glsl.h"
+
+namespace rebake {
+
+namespace {
+
+// Depth 1 at the near plane and 0 at the far one keeps float depth precise at any distance; without clip control depth
+// runs −1 … 1.
+bool reversed_depth() {
+  // Asked each time: another thread may draw in another driver's context.
+  return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
+}
+
+Eigen::Matrix4d projection(const View& view) {
+  const double f = 1 / half_height(view.camera, 1);
+  const double n = view.camera.near_plane, r = view.camera.far_plane;
+  Eigen::Matrix4d p = Eigen::Matrix4d::Zero();
+  p(0, 0) = f * view.height / view.width;
+  p(1, 1) = f;
+  if (view.camera.orthographic()) {
+    p(3, 3) = 1;
+    if (reversed_depth()) {
+      p(2, 2) = 1 / (r - n);
+      p(2, 3) = r / (r - n);
+    } else {
+      p(2, 2) = -2 / (r - n);
+      p(2, 3) = -(r + n) / (r - n);
+    }
+    return p;
+  }
+  p(3, 2) = -1;
+  if (reversed_depth()) {
+    p(2, 2) = n / (r - n);
+    p(2, 3) = n * r / (r - n);
+  } else {
+    p(2, 2) = -(r + n) / (r - n);
+    p(2, 3) = -2 * n * r / (r - n);
+  }
+  return p;
+}
+
+glm::mat4 to_glm(const Eigen::Matrix4d& matrix) {
+  glm::mat4 result;
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row) result[column][row] = static_cast<float>(matrix(row, column));
+  return result;
+}
+
+GLint location(const gl::Program& program, const char* name) { return glGetUniformLocation(program.name(), name); }
+
+bool outside(const Eigen::Matrix4d& object_to_clip, const Box& box) {
+  // Beyond one of the planes x, y = ±w or behind the eye with all eight corners.
+  int left = 0, right = 0, down = 0, up = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector4d c = object_to_clip * box.corner(static_cast<Box::CornerType>(corner)).homogeneous();
+    left += c.x() < -c.w() ? 1 : 0;
+    right += c.x() > c.w() ? 1 : 0;
+    down += c.y() < -c.w() ? 1 : 0;
+    up += c.y() > c.w() ? 1 : 0;
+  }
+  return left == 8 || right == 8 || down == 8 || up == 8;
+}
+
+}  // namespace
+
+const gl::Program& program(PassState& state, const std::string& vertex, const std::string& fragment,
+                           const std::string& preamble) {
+  const std::string key = vertex + '\n' + fragment + '\n' + preamble;
+  const auto found = state.programs.find(key);
+  if (found != state.programs.end()) return found->second;
+  return state.programs
+      .emplace(key, gl::make_program(gl::shader_source(vertex, preamble), gl::shader_source(fragment, preamble)))
+      .first->second;
+}
+
+std::string decoder_preamble(const PassInput& input) {
+  const FramePlan& plan = input.plan;
+  if (plan.options.weights == RenderOptions::Weights::constants)
+    return decoder_constants_glsl(plan.decoders, plan.options.precision);
+  DecoderTables& tables = input.state.tables;
+  if (!tables.weights || tables.decoders != plan.decoders || tables.precision != plan.options.precision) {
+    const DecoderBuffers buffers = decoder_buffers(plan.decoders, plan.options.precision);
+    tables.decoders = plan.decoders;
+    tables.precision = plan.options.precision;
+    tables.widest_layer = buffers.widest_layer;
+    tables.weights_buffer =
+        gl::make_buffer(GL_TEXTURE_BUFFER, buffers.weights.data(), buffers.weights.size() * sizeof(float));
+    tables.layout_buffer =
+        gl::make_buffer(GL_TEXTURE_BUFFER, buffers.layout.data(), buffers.layout.size() * sizeof(float));
+    tables.weights = gl::make_buffer_texture(tables.weights_buffer);
+    tables.layout = gl::make_buffer_texture(tables.layout_buffer);
+  }
+  return fmt::format("#define WIDEST_LAYER {}\n#define DECODER_BUFFER 1\n", tables.widest_layer);
+}
+
+void bind_decoders(const PassInput& input, const gl::Program& program) {
+  if (input.plan.options.weights == RenderOptions::Weights::constants) return;
+  glActiveTexture(GL_TEXTURE4);
+  glBindTexture(GL_TEXTURE_BUFFER, input.state.tables.weights.name());
+  glActiveTexture(GL_TEXTURE5);
+  glBindTexture(GL_TEXTURE_BUFFER, input.state.tables.layout.name());
+  set_uniform(program, "decoder_weights", 4);
+  set_uniform(program, "decoder_layout", 5);
+}
+
+glm::mat3 to_glm(const Mat3& matrix) {
+  glm::mat3 result;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row) result[column][row] = static_cast<float>(matrix(row, column));
+  return result;
+}
+
+Mat3 camera_to_fed(const FramePlan& plan, const NodeFrame& frame) {
+  return frame.world_to_fed * world_to_camera(plan.view.camera).transpose();
+}
+
+glm::vec2 alpha_factors(AlphaCode code) { return code == AlphaCode::halved ? glm::vec2(2, -1) : glm::vec2(1, 0); }
+
+void set_ray_uniforms(const gl::Program& program, const View& view, int side) {
+  // Parallel rays are all (0, 0, -1).
+  const double top = view.camera.orthographic() ? 0 : half_height(view.camera, 1);
+  const double right = top * view.width / view.height;
+  set_uniform(program, "ray_scale", glm::vec2(2 * right / (view.width * side), 2 * top / (view.height * side)));
+  set_uniform(program, "ray_offset", glm::vec2(-right, -top));
+}
+
+void set_uniform(const gl::Program& program, const char* name, int value) {
+  glUniform1i(location(program, name), value);
+}
+void set_uniform(const gl::Program& program, const char* name, float value) {
+  glUniform1f(location(program, name), value);
+}
+void set_uniform(const gl::Program& program, const char* name, unsigned value) {
+  glUniform1ui(location(program, name), value);
+}
+void set_uniform(const gl::Program& program, const char* name, const glm::vec2& value) {
+  glUniform2fv(location(program, name), 1, glm::value_ptr(value));
+}
+void set_uniform(const gl::Program& program, const char* name, const glm::vec3& value) {
+  glUniform3fv(location(program, name), 1, glm::value_ptr(value));
+}
+void set_uniform(const gl::Program& program, const char* name, const glm::ivec2& value) {
+  glUniform2iv(location(program, name), 1, glm::value_ptr(value));
+}
+void set_uniform(const gl::Program& program, const char* name, const glm::mat3& value) {
+  glUniformMatrix3fv(location(program, name), 1, GL_FALSE, glm::value_ptr(value));
+}
+void set_uniform(const gl::Program& program, const char* name, const glm::mat4& value) {
+  glUniformMatrix4fv(location(program, name), 1, GL_FALSE, glm::value_ptr(value));
+}
+
+void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Program& program) {
+  const GpuMesh& mesh = input.gpu.mesh(draw.set);
+  const GpuTexture& texture = input.gpu.texture(draw.set);
+  Affine to_camera = draw.to_camera;
+  to_camera.translation() += draw.to_camera.linear() * mesh.center;
+  const Eigen::Matrix4d to_clip = projection(input.plan.view);
+  set_uniform(program, "object_to_clip", to_glm(Eigen::Matrix4d(to_clip * to_camera.matrix())));
+  set_uniform(program, "last_texel", glm::ivec2(texture.source->width() - 1, texture.source->height() - 1));
+  set_uniform(program, "features", 0);
+  if (draw.set.soup.turns() != nullptr) {
+    const Mat3 axes = axes_matrix(draw.axes);
+    set_uniform(program, "parallel_rays", input.plan.view.camera.orthographic() ? 1 : 0);
+    set_uniform(program, "object_to_camera", to_glm(Eigen::Matrix4d(to_camera.matrix())));
+    set_uniform(program, "camera_to_object",
+                to_glm(Mat3(axes.transpose() * camera_to_fed(input.plan, input.plan.frames[draw.frame]))));
+    set_uniform(program, "object_to_fed", to_glm(axes));
+  }
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, texture.texture.name());
+}
+
+void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program) {
+  set_mesh_uniforms(input, draw, program);
+  const GpuMesh& mesh = input.gpu.mesh(draw.set);
+  glBindVertexArray(mesh.array.name());
+  const Eigen::Matrix4d cull = projection(input.plan.view) * draw.to_camera.matrix();
+  std::vector<GLsizei> counts;
+  std::vector<const void*> offsets;
+  for (const GpuMesh::Cluster& cluster : mesh.clusters) {
+    if (outside(cull, cluster.bounds)) continue;
+    const auto begin = reinterpret_cast<const void*>(cluster.first_face * sizeof(Face));
+    const auto count = static_cast<GLsizei>(cluster.face_count * 3);
+    // Neighbours in view are drawn as one range: each separate range costs a call inside the driver.
+    if (!counts.empty() &&
+        reinterpret_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()) * 4 ==
+            reinterpret_cast<std::size_t>(begin)) {
+      counts.back() += count;
+      continue;
+    }
+    counts.push_back(count);
+    offsets.push_back(begin);
+  }
+  if (!counts.empty())
+    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
+                        static_cast<GLsizei>(counts.size()));
+}
+
+void begin_geometry(const FramePlan& plan, int side) {
+  glViewport(0, 0, plan.view.width * side, plan.view.height * side);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(plan.covered.left * side, (plan.view.height - plan.covered.bottom) * side,
+            (plan.covered.right - plan.covered.left) * side, (plan.covered.bottom - plan.covered.top) * side);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  if (reversed_depth()) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glDepthFunc(reversed_depth() ? GL_GEQUAL : GL_LEQUAL);
+  const float farthest = reversed_depth() ? 0.0F : 1.0F;
+  // Lines are compared with the depth of all pixels.
+  if (plan.runs("guides")) glDisable(GL_SCISSOR_TEST);
+  glClearBufferfv(GL_DEPTH, 0, &farthest);
+  glEnable(GL_SCISSOR_TEST);
+}
+
+void begin_overlay(const FramePlan& plan) {
+  glViewport(0, 0, plan.view.width, plan.view.height);
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+  if (reversed_depth()) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+}
+
+void bind_scene_depth(const PassInput& input, const gl::Program& program) {
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_2D, input.state.targets.depth.name());
+  set_uniform(program, "scene_depth", 1);
+  set_uniform(program, "side", input.plan.runs("forward") ? 1 : input.plan.view.side());
+  set_uniform(program, "nearer", reversed_depth() ? 1.0F : -1.0F);
+}
+
+void set_camera_to_clip(const FramePlan& plan, const gl::Program& program) {
+  set_uniform(program, "camera_to_clip", to_glm(projection(plan.view)));
+}
+
+gl::VertexArray make_position_array(const GpuMesh& mesh) {
+  gl::VertexArray array = gl::make_vertex_array();
+  glBindVertexArray(array.name());
+  glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices.name());
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(GpuVertex),
+                        reinterpret_cast<const void*>(offsetof(GpuVertex, position)));
+  glEnableVertexAttribArray(1);
+  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(GpuVertex),
+                        reinterpret_cast<const void*>(offsetof(GpuVertex, texel)));
+  glBindVertexArray(0);
+  return array;
+}
+
+void end_geometry() {
+  glBindVertexArray(0);
+  glDisable(GL_DEPTH_TEST);
+  if (reversed_depth()) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+}
+
+}  // namespace rebake

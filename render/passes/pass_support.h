@@ -1,0 +1,54 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+
+#include "render/graph/passes.h"
+
+namespace rebake {
+
+/// The program made of two shader files behind a preamble; compiled once.
+const gl::Program& program(PassState& state, const std::string& vertex, const std::string& fragment,
+                           const std::string& preamble);
+
+/// Text of the decoder function as the plan wants it: generated constants or the buffer version.
+std::string decoder_preamble(const PassInput& input);
+/// Binds the weight buffers, where the plan uses them, to texture units 4 and 5.
+void bind_decoders(const PassInput& input, const gl::Program& program);
+
+glm::mat3 to_glm(const Mat3& matrix);
+Mat3 camera_to_fed(const FramePlan& plan, const NodeFrame& frame);
+/// Stored alpha's factor and offset, as unpack.glsl wants them.
+glm::vec2 alpha_factors(AlphaCode code);
+
+/// Sets ray_scale and ray_offset for samples of a pixel's `side`.
+void set_ray_uniforms(const gl::Program& program, const View& view, int side);
+
+void set_uniform(const gl::Program& program, const char* name, int value);
+void set_uniform(const gl::Program& program, const char* name, float value);
+void set_uniform(const gl::Program& program, const char* name, unsigned value);
+void set_uniform(const gl::Program& program, const char* name, const glm::vec2& value);
+void set_uniform(const gl::Program& program, const char* name, const glm::vec3& value);
+void set_uniform(const gl::Program& program, const char* name, const glm::ivec2& value);
+void set_uniform(const gl::Program& program, const char* name, const glm::mat3& value);
+void set_uniform(const gl::Program& program, const char* name, const glm::mat4& value);
+
+/// Sets what geometry.vert needs of a set and binds its texture.
+void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Program& program);
+/// The same, and draws the clusters in view.
+void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program);
+
+/// Depth test (less or equal, in reversed depth where the driver can), both sides drawn, restricted to plan.covered at
+/// `side` samples.
+void begin_geometry(const FramePlan& plan, int side);
+void end_geometry();
+
+/// For what is drawn over the picture: its whole raster, the depth convention of the scene, no depth test.
+void begin_overlay(const FramePlan& plan);
+/// Binds the scene's depth to texture unit 1, and sets scene_depth, side and nearer.
+void bind_scene_depth(const PassInput& input, const gl::Program& program);
+void set_camera_to_clip(const FramePlan& plan, const gl::Program& program);
+/// A vertex array over a mesh's vertices, without indices.
+gl::VertexArray make_position_array(const GpuMesh& mesh);
+
+}  // namespace rebake

@@ -1,0 +1,70 @@
+#include <epoxy/gl.h>
+
+#include "render/passes/pass_support.h"
+
+namespace rebake {
+
+namespace {
+
+// The selected faces of a set as indices of their own, over the vertices that are there already.
+SelectedFaces upload(const Draw& draw, const GpuMesh& mesh) {
+  SelectedFaces selected;
+  selected.selection = draw.selection;
+  selected.source = draw.set.soup;
+  std::vector<Face> faces;
+  for (std::size_t f = 0; f < draw.set.soup.triangle_count(); ++f)
+    if ((*draw.selection)[draw.first_triangle + f] != 0) faces.push_back(draw.set.soup.faces()[f]);
+  selected.count = faces.size() * 3;
+  if (faces.empty()) return selected;
+  selected.array = make_position_array(mesh);
+  glBindVertexArray(selected.array.name());
+  selected.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, faces.data(), faces.size() * sizeof(Face));
+  glBindVertexArray(0);
+  return selected;
+}
+
+}  // namespace
+
+void execute_selection(const PassInput& input) {
+  FrameTargets& targets = input.state.targets;
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.mask_buffer.name());
+  begin_overlay(input.plan);
+  const float nothing[4] = {};
+  glClearBufferfv(GL_COLOR, 0, nothing);
+  glEnable(GL_BLEND);
+  glBlendEquation(GL_MAX);
+  const gl::Program& mask = program(input.state, "geometry.vert", "selection_mask.frag", "#define TURNED_MESH 0\n");
+  glUseProgram(mask.name());
+  bind_scene_depth(input, mask);
+  std::map<SelectionKey, SelectedFaces> kept;
+  for (const Draw& draw : input.plan.draws) {
+    if (draw.selection == nullptr) continue;
+    const SelectionKey key{mesh_key(draw.set), draw.selection.get()};
+    const auto held = input.state.selected.find(key);
+    const SelectedFaces& faces =
+        kept.emplace(key, held != input.state.selected.end() ? std::move(held->second)
+                                                             : upload(draw, input.gpu.mesh(draw.set)))
+            .first->second;
+    if (faces.count == 0) continue;
+    set_mesh_uniforms(input, draw, mask);
+    glBindVertexArray(faces.array.name());
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(faces.count), GL_UNSIGNED_INT, nullptr);
+  }
+  input.state.selected = std::move(kept);
+  glBlendEquation(GL_FUNC_ADD);
+  end_geometry();
+
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.overlay_buffer.name());
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  const gl::Program& tint = program(input.state, "fullscreen.vert", "selection.frag", "");
+  glUseProgram(tint.name());
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, targets.mask.name());
+  set_uniform(tint, "mask", 0);
+  glBindVertexArray(input.state.empty_array.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glBindVertexArray(0);
+  glDisable(GL_BLEND);
+}
+
+}  // namespace rebake
