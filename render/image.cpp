@@ -12,6 +12,7 @@ namespace rebake {
 
 Image read_image(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw FileError(path, "does not exist");
+  if (!std::filesystem::is_regular_file(path)) throw FileError(path, "is no regular file");
   const auto input = OIIO::ImageInput::open(path.string());
   if (!input) throw FileError(path, "cannot be read as a picture: " + OIIO::geterror());
   const OIIO::ImageSpec& spec = input->spec();

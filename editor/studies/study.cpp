@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
@@ -39,6 +39,25 @@ Image enlarged(const Image& image, int width, int height) {
       }
     }
   return result;
+}
+
+// What gnuplot makes of a script.
+std::string plotted(const std::string& script) {
+  std::string name = (std::filesystem::temp_directory_path() / "rebake-plot-XXXXXX").string();
+  const int file = ::mkstemp(name.data());
+  if (file < 0) throw FileError(name, "cannot be made for gnuplot");
+  const bool written = ::write(file, script.data(), script.size()) == static_cast<ssize_t>(script.size());
+  ::close(file);
+  std::string output;
+  FILE* pipe = written ? ::popen(("gnuplot '" + name + "'").c_str(), "r") : nullptr;
+  if (pipe != nullptr) {
+    char buffer[65536];
+    for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) output.append(buffer, got);
+  }
+  const bool done = pipe != nullptr && ::pclose(pipe) == 0 && !output.empty();
+  ::unlink(name.c_str());
+  if (!done) throw Error("the table is written, but gnuplot failed; install gnuplot-nox for the plots");
+  return output;
 }
 
 }  // namespace
@@ -92,8 +111,6 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
                           k, k, 4 + k, row.choice);
   }
   const std::string base = (folder / study.name).string();
-  std::string quoted;  // for gnuplot, which doubles single quotes
-  for (const char c : base) quoted += c == '\'' ? std::string("''") : std::string(1, c);
   write_file_atomically(base + ".csv", csv, guard);
   std::string plot = fmt::format(
       "$rows << EOD\n{}EOD\nset title \"{}\"\nset xlabel \"{}\"\nset ylabel \"{}\"\n{}{}"
@@ -101,14 +118,11 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
       data, study.help, table.columns[table.x], table.columns[table.y],
       table.log_x ? "set logscale x\nset format x '10^{%L}'\n" : "",
       table.log_y ? "set logscale y\nset format y '10^{%L}'\n" : "");
+  // Its output is written here, so that no name of a file reaches gnuplot.
   for (const auto& [terminal, extension] :
        {std::pair{"svg size 860,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 860,440", "png"}})
-    plot += fmt::format("set terminal {}\nset output '{}.{}'\nplot {}\n", terminal, quoted, extension, points);
-  std::signal(SIGPIPE, SIG_IGN);  // gnuplot may be missing; its exit status says so
-  FILE* pipe = popen("gnuplot", "w");
-  if (pipe == nullptr) throw Error("gnuplot cannot be started; install gnuplot-nox for the plots");
-  std::fputs(plot.c_str(), pipe);
-  if (pclose(pipe) != 0) throw Error(base + ".csv is written, but gnuplot failed; install gnuplot-nox for the plots");
+    write_file_atomically(base + "." + extension, plotted(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)),
+                          guard);
 }
 
 }  // namespace rebake

@@ -116,13 +116,15 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
         for (std::size_t k = 0; k < 3; ++k) shows[number[corners->places[t * 3 + k]]] = 1;
     for (std::size_t i = 0; i < rest.size(); ++i) report.opaque_outside += shows[i] & moved.outside[i];
   }
+  bool any = false;  // of those that are numbers
   for (std::size_t i = 0; i < rest.size(); ++i) {
     report.not_finite += is_number[i] != 0 ? 0 : 1;
     report.outside += !moved.outside.empty() && moved.outside[i] != 0 ? 1 : 0;
     report.folded += determinants[i] <= 0 ? 1 : 0;
     report.undefined += defined[i] == 0 ? 1 : 0;
-    if (is_number[i] != 0)
-      report.least_determinant = i == 0 ? determinants[i] : std::min(report.least_determinant, determinants[i]);
+    if (is_number[i] == 0) continue;
+    report.least_determinant = any ? std::min(report.least_determinant, determinants[i]) : determinants[i];
+    any = true;
   }
   // Where two rotations are equally near, that of a place beside it: from those that have one outwards.
   if (report.undefined > 0) {

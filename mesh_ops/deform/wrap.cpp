@@ -50,6 +50,11 @@ Cage wrap(const TriangleList& triangles, double coarseness, const Progress& prog
     const Vec3 q = p.allFinite() ? Vec3((p - center) / diagonal) : Vec3(0, 0, 0);
     points.emplace_back(q.x(), q.y(), q.z());
   }
+  // CGAL wants triangles with an area; those without lie on others' edges, or show nothing.
+  std::erase_if(faces, [&](const std::vector<std::size_t>& f) {
+    return CGAL::collinear(points[f[0]], points[f[1]], points[f[2]]);
+  });
+  if (faces.empty()) throw Error("no triangle has an area: there is nothing to put a cage around; use a lattice");
   Mesh mesh;
   CGAL::alpha_wrap_3(points, faces, coarseness, coarseness / 4, mesh, CGAL::parameters::default_values(),
                      CGAL::parameters::visitor(Watch(progress)));

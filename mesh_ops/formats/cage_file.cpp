@@ -1,5 +1,7 @@
 #include "mesh_ops/formats/cage_file.h"
 
+#include <fmt/format.h>
+
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <algorithm>
@@ -27,11 +29,40 @@ std::string format_of(const std::filesystem::path& path) {
   return ending;
 }
 
+// OpenMesh believes a header's counts and makes room for them.
+void check_counts(const std::filesystem::path& path, const std::string& format, const std::string& bytes) {
+  std::istringstream text(bytes.substr(0, 4096));
+  const auto check = [&](double count, const char* what) {
+    if (count > static_cast<double>(bytes.size()))
+      throw FileError(path, fmt::format("its header promises {:.0f} {}, more than the file can hold", count, what));
+  };
+  double points = 0, faces = 0;
+  if (format == ".ply") {
+    for (std::string line; std::getline(text, line) && line.find("end_header") == std::string::npos;) {
+      std::istringstream words(line);
+      std::string element, what;
+      double count = 0;
+      if (words >> element >> what >> count && element == "element") check(count, what.c_str());
+    }
+  } else if (format == ".off") {
+    std::string line;
+    while (std::getline(text, line) && (line.find("OFF") != std::string::npos || line.starts_with('#') || line.empty()))
+      continue;
+    std::istringstream words(line);
+    if (words >> points >> faces) {
+      check(points, "points");
+      check(faces, "faces");
+    }
+  }
+}
+
 }  // namespace
 
 Cage read_cage(const std::filesystem::path& path) {
   const std::string format = format_of(path);
-  std::istringstream text(read_file(path));
+  const std::string bytes = read_file(path, std::uint64_t{1} << 30);
+  check_counts(path, format, bytes);
+  std::istringstream text(bytes);
   Mesh mesh;
   OpenMesh::IO::Options options;
   // OpenMesh leaves out, without a word that could be passed on, the faces that make a mesh non-manifold.

@@ -3,7 +3,11 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <string>
+
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 
@@ -30,10 +34,34 @@ void let_through_transparent(const RTCFilterFunctionNArguments* args) {
 
 }  // namespace
 
+// A ray in the tree's own frame, where the object's box is about 1 wide: shifted along itself to where it enters the box,
+// so that neither far eyes nor tiny or huge objects leave what floats tell apart, and of length 1.
+struct LocalRay {
+  std::array<float, 3> origin{}, direction{};
+  float near = 0, far = -1;
+  double shift = 0;   // what was left out before the origin, in the caller's t
+  double length = 1;  // of the caller's direction here
+  bool meets = false;
+
+  double t(float local) const { return shift + static_cast<double>(local) / length; }
+};
+
 class RayTree::Impl {
  public:
   explicit Impl(const BakedObject& object)
-      : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)), center_(object.bounds().center()) {
+      // The same instructions on every processor, so that the same triangles are found at silhouettes too.
+      : device_(rtcNewDevice("isa=sse2")), scene_(nullptr) {
+    if (device_ == nullptr) throw DeviceError("Embree cannot be started; is its library whole?");
+    scene_ = rtcNewScene(device_);
+    const Box box = object.bounds();
+    if (!box.isEmpty() && box.sizes().allFinite()) {
+      center_ = box.center();
+      int exponent = 0;
+      std::frexp(box.sizes().maxCoeff(), &exponent);
+      scale_ = box.sizes().maxCoeff() > 0 ? std::ldexp(1.0, -exponent) : 1.0;
+      const Vec3 half = box.sizes() / 2 * scale_;
+      half_ = half + Vec3::Constant(1e-6 + 1e-6 * half.maxCoeff());
+    }
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     std::uint32_t first = 0;
     surfaces_.reserve(object.sets.size());
@@ -41,24 +69,9 @@ class RayTree::Impl {
       surfaces_.push_back({set, first});
       const Soup& soup = set.soup;
       first += static_cast<std::uint32_t>(soup.triangle_count());
-      if (soup.triangle_count() == 0) {
-        // Keeps the geometry numbers those of the sets.
-        RTCGeometry empty = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        rtcCommitGeometry(empty);
-        rtcAttachGeometry(scene_, empty);
-        rtcReleaseGeometry(empty);
-        continue;
-      }
       RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-      auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-          geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), soup.positions().size()));
-      for (const Vec3& p : soup.positions()) {
-        const Vec3 relative = p - center_;
-        for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(relative[k]);
-      }
-      void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Face),
-                                              soup.faces().size());
-      std::memcpy(indices, soup.faces().data(), soup.faces().size() * sizeof(Face));
+      // One without triangles keeps the geometry numbers those of the sets.
+      if (soup.triangle_count() > 0) add_triangles(geometry, soup);
       rtcSetGeometryUserData(geometry, &surfaces_.back());
       rtcSetGeometryIntersectFilterFunction(geometry, let_through_transparent);
       rtcSetGeometryOccludedFilterFunction(geometry, let_through_transparent);
@@ -67,23 +80,28 @@ class RayTree::Impl {
       rtcReleaseGeometry(geometry);
     }
     rtcCommitScene(scene_);
+    if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE) {
+      release();
+      throw DeviceError(error == RTC_ERROR_OUT_OF_MEMORY
+                            ? "there is not enough memory for the tree that rays are sent through"
+                            : "Embree reports error " + std::to_string(error));
+    }
   }
-  ~Impl() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
+  ~Impl() { release(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
   std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const {
+    const LocalRay local = local_ray(origin, direction, near, far);
+    if (!local.meets) return std::nullopt;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit query{};
-    query.ray = ray(origin, direction, near, far);
+    query.ray = embree_ray(local);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return Hit{query.ray.tfar, surfaces_[query.hit.geomID].first_triangle + query.hit.primID};
+    return Hit{local.t(query.ray.tfar), surfaces_[query.hit.geomID].first_triangle + query.hit.primID};
   }
   void nearest(Bundle& rays, double near) const {
     RTCIntersectContext context;
@@ -91,17 +109,18 @@ class RayTree::Impl {
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     RTCRayHit8 query{};
     alignas(32) std::array<int, 8> valid{};
+    std::array<LocalRay, 8> local;
     for (std::size_t i = 0; i < 8; ++i) {
-      const Vec3 start = rays.origins[i] - center_;
-      valid[i] = rays.far[i] >= near ? -1 : 0;
-      query.ray.org_x[i] = static_cast<float>(start.x());
-      query.ray.org_y[i] = static_cast<float>(start.y());
-      query.ray.org_z[i] = static_cast<float>(start.z());
-      query.ray.dir_x[i] = static_cast<float>(rays.directions[i].x());
-      query.ray.dir_y[i] = static_cast<float>(rays.directions[i].y());
-      query.ray.dir_z[i] = static_cast<float>(rays.directions[i].z());
-      query.ray.tnear[i] = static_cast<float>(near);
-      query.ray.tfar[i] = static_cast<float>(rays.far[i]);
+      local[i] = local_ray(rays.origins[i], rays.directions[i], near, rays.far[i]);
+      valid[i] = local[i].meets ? -1 : 0;
+      query.ray.org_x[i] = local[i].origin[0];
+      query.ray.org_y[i] = local[i].origin[1];
+      query.ray.org_z[i] = local[i].origin[2];
+      query.ray.dir_x[i] = local[i].direction[0];
+      query.ray.dir_y[i] = local[i].direction[1];
+      query.ray.dir_z[i] = local[i].direction[2];
+      query.ray.tnear[i] = local[i].near;
+      query.ray.tfar[i] = local[i].far;
       query.ray.mask[i] = ~0U;
       query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
@@ -109,37 +128,84 @@ class RayTree::Impl {
     for (std::size_t i = 0; i < 8; ++i) {
       rays.hit[i] = valid[i] != 0 && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
       if (!rays.hit[i]) continue;
-      rays.far[i] = static_cast<double>(query.ray.tfar[i]);
+      rays.far[i] = local[i].t(query.ray.tfar[i]);
       rays.triangle[i] = surfaces_[query.hit.geomID[i]].first_triangle + query.hit.primID[i];
     }
   }
   bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
+    const LocalRay local = local_ray(origin, direction, near, far);
+    if (!local.meets) return false;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRay query = ray(origin, direction, near, far);
+    RTCRay query = embree_ray(local);
     rtcOccluded1(scene_, &context, &query);
     return query.tfar < 0;
   }
 
  private:
-  RTCRay ray(const Vec3& origin, const Vec3& direction, double near, double far) const {
-    const Vec3 start = origin - center_;
+  void add_triangles(RTCGeometry geometry, const Soup& soup) {
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), soup.positions().size()));
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Face),
+                                            soup.faces().size());
+    if (vertices == nullptr || indices == nullptr) return;  // the device says why
+    for (const Vec3& p : soup.positions()) {
+      const Vec3 local = (p - center_) * scale_;
+      for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(local[k]);
+    }
+    std::memcpy(indices, soup.faces().data(), soup.faces().size() * sizeof(Face));
+  }
+
+  LocalRay local_ray(const Vec3& origin, const Vec3& direction, double near, double far) const {
+    LocalRay ray;
+    const Vec3 d = direction * scale_, o = (origin - center_) * scale_;
+    ray.length = d.stableNorm();
+    if (!(far >= near) || !(ray.length > 0) || !std::isfinite(ray.length) || !o.allFinite()) return ray;
+    // Where it enters and leaves the box.
+    double enters = near, leaves = far;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (d[axis] == 0) {
+        if (std::abs(o[axis]) > half_[axis]) return ray;
+        continue;
+      }
+      const double a = (-half_[axis] - o[axis]) / d[axis], b = (half_[axis] - o[axis]) / d[axis];
+      enters = std::max(enters, std::min(a, b));
+      leaves = std::min(leaves, std::max(a, b));
+    }
+    if (!(enters <= leaves)) return ray;
+    ray.meets = true;
+    ray.shift = enters;
+    const Vec3 start = o + d * enters, along = d / ray.length;
+    for (int axis = 0; axis < 3; ++axis) {
+      ray.origin[static_cast<std::size_t>(axis)] = static_cast<float>(start[axis]);
+      ray.direction[static_cast<std::size_t>(axis)] = static_cast<float>(along[axis]);
+    }
+    ray.far = static_cast<float>((leaves - enters) * ray.length);
+    return ray;
+  }
+  static RTCRay embree_ray(const LocalRay& local) {
     RTCRay ray{};
-    ray.org_x = static_cast<float>(start.x());
-    ray.org_y = static_cast<float>(start.y());
-    ray.org_z = static_cast<float>(start.z());
-    ray.dir_x = static_cast<float>(direction.x());
-    ray.dir_y = static_cast<float>(direction.y());
-    ray.dir_z = static_cast<float>(direction.z());
-    ray.tnear = static_cast<float>(near);
-    ray.tfar = static_cast<float>(far);
+    ray.org_x = local.origin[0];
+    ray.org_y = local.origin[1];
+    ray.org_z = local.origin[2];
+    ray.dir_x = local.direction[0];
+    ray.dir_y = local.direction[1];
+    ray.dir_z = local.direction[2];
+    ray.tnear = local.near;
+    ray.tfar = local.far;
     ray.mask = ~0U;
     return ray;
+  }
+  void release() {
+    if (scene_ != nullptr) rtcReleaseScene(scene_);
+    if (device_ != nullptr) rtcReleaseDevice(device_);
   }
 
   RTCDevice device_;
   RTCScene scene_;
-  Vec3 center_;
+  Vec3 center_{0, 0, 0};
+  double scale_ = 1;          ///< a power of two
+  Vec3 half_{1e-6, 1e-6, 1e-6};  ///< of the box, in the tree's frame, with some room
   std::vector<Surface> surfaces_;
 };
 

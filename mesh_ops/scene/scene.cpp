@@ -1,6 +1,8 @@
 #include "mesh_ops/scene/scene.h"
 
 #include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace rebake {
 
@@ -33,17 +35,31 @@ bool edit_list(std::vector<NodePtr>& nodes, NodeId id,
   return false;
 }
 
-// `reserved` holds names given within the subtree being added, which the scene does not know yet.
-void adopt(const Scene& scene, Node& node, std::uint64_t& next_id, std::vector<std::string>& reserved) {
+// Names that are taken, with the number that each was last given.
+class Names {
+ public:
+  explicit Names(const Scene& scene) {
+    for (const PlacedNode& placed : placed_nodes(scene)) taken_.insert(placed.node->name);
+  }
+  std::string unique(const std::string& wanted) {
+    const std::string base = wanted.empty() ? "object" : wanted;
+    std::string name = base;
+    for (int& n = last_.try_emplace(base, 1).first->second; !taken_.insert(name).second;)
+      name = base + "." + std::to_string(++n);
+    return name;
+  }
+
+ private:
+  std::unordered_set<std::string> taken_;
+  std::unordered_map<std::string, int> last_;
+};
+
+void adopt(Node& node, std::uint64_t& next_id, Names& names) {
   if (node.id == NodeId::none) node.id = NodeId{next_id++};
-  std::string name = unique_name(scene, node.name);
-  for (int n = 2; std::find(reserved.begin(), reserved.end(), name) != reserved.end(); ++n)
-    name = unique_name(scene, node.name + "." + std::to_string(n));
-  node.name = name;
-  reserved.push_back(name);
+  node.name = names.unique(node.name);
   for (NodePtr& child : node.children) {
     Node copy = *child;
-    adopt(scene, copy, next_id, reserved);
+    adopt(copy, next_id, names);
     child = std::make_shared<const Node>(std::move(copy));
   }
 }
@@ -100,8 +116,8 @@ Scene without(const Scene& scene, NodeId id) {
 
 Scene with_added(const Scene& scene, Node node, NodeId parent, std::size_t index, NodeId* added) {
   Scene result = scene;
-  std::vector<std::string> reserved;
-  adopt(scene, node, result.next_id, reserved);
+  Names names(scene);
+  adopt(node, result.next_id, names);
   if (added != nullptr) *added = node.id;
   const auto pointer = std::make_shared<const Node>(std::move(node));
   const auto insert = [&](std::vector<NodePtr>& list) {
@@ -114,12 +130,7 @@ Scene with_added(const Scene& scene, Node node, NodeId parent, std::size_t index
   return result;
 }
 
-std::string unique_name(const Scene& scene, const std::string& wanted) {
-  const std::string base = wanted.empty() ? "object" : wanted;
-  std::string name = base;
-  for (int n = 2; find(scene, name) != nullptr; ++n) name = base + "." + std::to_string(n);
-  return name;
-}
+std::string unique_name(const Scene& scene, const std::string& wanted) { return Names(scene).unique(wanted); }
 
 Box transformed(const Box& box, const Affine& transform) {
   Box result;

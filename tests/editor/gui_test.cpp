@@ -7,9 +7,6 @@
 #include <sstream>
 #include <thread>
 
-#include "editor/edits/nodes/import.h"
-#include "editor/edits/select/select.h"
-#include "editor/edits/shape/delete_selected.h"
 #include "editor/gui/panels/euler.h"
 #include "editor/gui/tools/expression.h"
 #include "editor/gui/tools/typed_number.h"
@@ -164,57 +161,6 @@ TEST(SettingsFile, ComesBackAndABadOneIsSaid) {
   }
   write_file_atomically(file, R"({"side_width": -5, "window_width": 1000000, "something_newer": 1})", {});
   EXPECT_EQ(read_settings(file, problem).side_width, 200);
-}
-
-class WorkerTest : public ::testing::Test {
- protected:
-  void wait() {
-    while (worker.busy()) std::this_thread::yield();
-  }
-  Worker worker{[] {}};
-};
-
-TEST_F(WorkerTest, DoesJobsInOrderAndCopiesTheSceneOut) {
-  const TemporaryFolder folder;
-  export_scene(scene_of(made_object({.columns = 8, .rows = 4})), folder.path() / "ball", {});
-  Import import;
-  import.path = (folder.path() / "ball").string();
-  bool told = false;
-  worker.start(
-      "import", [&](Session& session) { session.edit(import); }, [&] { told = true; });
-  worker.start("bad", [](Session& session) { session.edit(DeleteSelected{}); });
-  Select all;
-  all.all = true;
-  worker.start("select", [&](Session& session) { session.edit(all); });
-  wait();
-  const auto snapshot = worker.snapshot();
-  EXPECT_EQ(snapshot->done.size(), 2U);
-  ASSERT_EQ(snapshot->scene.roots.size(), 1U);
-  EXPECT_NE(snapshot->scene.roots[0]->selection, nullptr);
-  std::size_t failed = 0;
-  for (const Worker::Message& message : worker.take_messages()) failed += message.failed ? 1 : 0;
-  EXPECT_EQ(failed, 1U);
-  EXPECT_FALSE(told) << "only when the window asks";
-  for (const auto& then : worker.take_finished()) then();
-  EXPECT_TRUE(told);
-}
-
-TEST_F(WorkerTest, CancelStopsWhatRunsAndForgetsWhatWaits) {
-  std::atomic<bool> begun = false;
-  bool second = false;
-  worker.start("long", [&](Session& session) {
-    begun = true;
-    for (;;) session.progress.at("waiting", 0.5);
-  });
-  worker.start("next", [&](Session&) { second = true; });
-  while (!begun) std::this_thread::yield();
-  worker.cancel();
-  wait();
-  EXPECT_FALSE(second);
-  const auto messages = worker.take_messages();
-  ASSERT_EQ(messages.size(), 1U);
-  EXPECT_TRUE(messages[0].failed);
-  EXPECT_NE(messages[0].text.find("stopped"), std::string::npos);
 }
 
 }  // namespace

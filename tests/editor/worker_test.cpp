@@ -1,0 +1,92 @@
+// The window's worker: jobs in order, copies out, cancelling, and what is told of jobs that were not done.
+#include "editor/gui/window/worker.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "editor/edits/nodes/import.h"
+#include "editor/edits/select/select.h"
+#include "editor/edits/shape/delete_selected.h"
+#include "mesh_ops/formats/export.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+class WorkerTest : public ::testing::Test {
+ protected:
+  void wait() {
+    while (worker.busy()) std::this_thread::yield();
+  }
+  Worker worker{[] {}};
+};
+
+TEST_F(WorkerTest, DoesJobsInOrderAndCopiesTheSceneOut) {
+  const TemporaryFolder folder;
+  export_scene(scene_of(made_object({.columns = 8, .rows = 4})), folder.path() / "ball", {});
+  Import import;
+  import.path = (folder.path() / "ball").string();
+  bool told = false;
+  worker.start(
+      "import", [&](Session& session) { session.edit(import); }, [&] { told = true; });
+  worker.start("bad", [](Session& session) { session.edit(DeleteSelected{}); });
+  Select all;
+  all.all = true;
+  worker.start("select", [&](Session& session) { session.edit(all); });
+  wait();
+  const auto snapshot = worker.snapshot();
+  EXPECT_EQ(snapshot->done.size(), 2U);
+  ASSERT_EQ(snapshot->scene.roots.size(), 1U);
+  EXPECT_NE(snapshot->scene.roots[0]->selection, nullptr);
+  std::size_t failed = 0;
+  for (const Worker::Message& message : worker.take_messages()) failed += message.failed ? 1 : 0;
+  EXPECT_EQ(failed, 1U);
+  EXPECT_FALSE(told) << "only when the window asks";
+  for (const auto& then : worker.take_finished()) then();
+  EXPECT_TRUE(told);
+}
+
+TEST_F(WorkerTest, CancelStopsWhatRunsAndForgetsWhatWaits) {
+  std::atomic<bool> begun = false;
+  bool second = false;
+  worker.start("long", [&](Session& session) {
+    begun = true;
+    for (;;) session.progress.at("waiting", 0.5);
+  });
+  worker.start("next", [&](Session&) { second = true; });
+  while (!begun) std::this_thread::yield();
+  worker.cancel();
+  wait();
+  EXPECT_FALSE(second);
+  const auto messages = worker.take_messages();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_TRUE(messages[0].failed);
+  EXPECT_NE(messages[0].text.find("stopped"), std::string::npos);
+}
+
+// A preview is shown until its job has ended: whoever shows one must hear of every end.
+TEST_F(WorkerTest, WhoeverAskedHearsOfJobsThatFailedOrWereForgotten) {
+  int done = 0, otherwise = 0;
+  const auto start = [&](const char* title, Worker::Job job) {
+    worker.start(title, std::move(job), [&] { ++done; }, [&] { ++otherwise; });
+  };
+  start("good", [](Session&) {});
+  start("bad", [](Session&) { throw Error("no"); });
+  wait();
+  std::atomic<bool> begun = false;
+  start("long", [&](Session& session) {
+    begun = true;
+    for (;;) session.progress.at("waiting", 0.5);
+  });
+  start("next", [](Session&) {});
+  while (!begun) std::this_thread::yield();
+  worker.cancel();
+  wait();
+  for (const auto& then : worker.take_finished()) then();
+  EXPECT_EQ(done, 1);
+  EXPECT_EQ(otherwise, 3);
+}
+
+}  // namespace
+}  // namespace rebake::test

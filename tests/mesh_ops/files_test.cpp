@@ -1,0 +1,141 @@
+// What is written is whole and on the disk, or was never there: the order of calls that a power loss tests, full disks,
+// short writes, leftovers, and files that are none.
+#include "mesh_ops/base/files.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <fstream>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/file_calls.h"
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/scene_folder.h"
+#include "tests/support/made_scenes.h"
+#include "tests/support/power_loss.h"
+
+namespace rebake::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_text(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+TEST(Files, WhatIsRenamedIsSyncedFirstAndItsFolderAfterwards) {
+  const TemporaryFolder folder;
+  PowerLoss calls;
+  const ReplacedFileCalls in_use(calls);
+  write_file_atomically(folder.path() / "a.txt", "one", {});
+  write_file_atomically(folder.path() / "a.txt", "two", {});
+  export_scene(scene_of(made_object()), folder.path() / "new" / "deeper", {});
+  export_scene(scene_of(made_object()), folder.path() / "new" / "deeper", {});
+  save_scene_folder(scene_of(made_object()), folder.path() / "scene", {});
+  EXPECT_EQ(calls.renames(), 5U);
+  EXPECT_EQ(calls.trouble(), "") << "a power loss would leave less than was promised";
+  EXPECT_EQ(read_file(folder.path() / "a.txt"), "two");
+}
+
+TEST(Files, AFullDiskAtAnyCallLeavesWhatWasThere) {
+  const TemporaryFolder folder;
+  const auto object = made_object({.columns = 6, .rows = 4});
+  export_scene(scene_of(object), folder.path() / "out", {});
+  write_file_atomically(folder.path() / "note", "before", {});
+  const auto before = folder_bytes(folder.path() / "out");
+  // Half of the object: other bytes.
+  TriangleSet half(object->triangle_count());
+  for (std::size_t f = 0; f < half.size(); ++f) half[f] = f % 2;
+  BakedObject changed = *object;
+  changed.sets[0].soup = subset(object->sets[0].soup, half, 0, true);
+  changed.sets.resize(1);
+  const Scene scene = scene_of(std::make_shared<const BakedObject>(changed));
+  std::size_t failures = 0;
+  for (int nth = 0;; ++nth) {
+    PowerLoss calls;
+    calls.fail_at(nth, ENOSPC);
+    const ReplacedFileCalls in_use(calls);
+    bool failed = false;
+    try {
+      export_scene(scene, folder.path() / "out", {});
+      write_file_atomically(folder.path() / "note", "after", {});
+    } catch (const FileError& error) {
+      failed = true;
+      EXPECT_NE(std::string(error.what()).find("No space left"), std::string::npos) << error.what();
+    }
+    if (!failed) break;
+    ++failures;
+    const bool replaced = calls.renames() > 0;  // only syncing it failed
+    if (!replaced) {
+      EXPECT_EQ(folder_bytes(folder.path() / "out"), before) << "call " << nth;
+    } else {
+      // Whole, the old or the new one.
+      EXPECT_NO_THROW(read_any(folder.path() / "out", Axes::y_up));
+      EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2) << "nothing half-written, call " << nth;
+    }
+    if (read_file(folder.path() / "note") != "before") {
+      EXPECT_EQ(read_file(folder.path() / "note"), "after");
+      write_text(folder.path() / "note", "before");
+    }
+    fs::remove_all(folder.path() / "out");
+    export_scene(scene_of(object), folder.path() / "out", {});
+  }
+  EXPECT_GT(failures, 10U);
+}
+
+TEST(Files, ShortWritesAreGoneOnWith) {
+  const TemporaryFolder folder;
+  PowerLoss calls;
+  calls.write_at_most(3);
+  const ReplacedFileCalls in_use(calls);
+  write_file_atomically(folder.path() / "a", "a longer text than three bytes", {});
+  EXPECT_EQ(read_file(folder.path() / "a"), "a longer text than three bytes");
+}
+
+TEST(Files, LeftoversOfKilledWritesAreRemovedByTheNextButNothingElse) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / ".out.01234567.partial");
+  write_text(folder.path() / ".out.01234567.partial" / "mlp.json", "half");
+  write_text(folder.path() / "note.89abcdef.partial", "half");
+  for (const char* kept : {"note.txt.partial", "out.0123.partial", ".other.01234567.partial"})
+    write_text(folder.path() / kept, "mine");
+  export_scene(scene_of(made_object()), folder.path() / "out", {});
+  write_file_atomically(folder.path() / "note", "whole", {});
+  EXPECT_FALSE(fs::exists(folder.path() / ".out.01234567.partial"));
+  EXPECT_FALSE(fs::exists(folder.path() / "note.89abcdef.partial"));
+  for (const char* kept : {"note.txt.partial", "out.0123.partial", ".other.01234567.partial"})
+    EXPECT_TRUE(fs::exists(folder.path() / kept)) << kept;
+}
+
+TEST(Files, PipesAndDevicesAreNoFiles) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
+  EXPECT_THROW(read_file(folder.path() / "pipe"), FileError);
+  EXPECT_THROW(read_file("/dev/zero"), FileError);
+  EXPECT_THROW(read_input("/dev/zero", 1 << 20), FileError);
+  write_text(folder.path() / "large", std::string(100, 'x'));
+  EXPECT_THROW(read_file(folder.path() / "large", 99), FileError);
+  // In a scene's folder, in place of one of its files.
+  export_scene(scene_of(made_object()), folder.path() / "scene", {});
+  fs::remove(folder.path() / "scene" / "shape0.obj");
+  ASSERT_EQ(::mkfifo((folder.path() / "scene" / "shape0.obj").c_str(), 0600), 0);
+  EXPECT_THROW(read_any(folder.path() / "scene", Axes::y_up), FileError);
+}
+
+TEST(SourceGuard, RefusesWhatIsEqualAboveBelowAndBehindLinks) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "x/ficus/below");
+  fs::create_directory_symlink(folder.path() / "x/ficus", folder.path() / "link");
+  SourceGuard guard;
+  guard.add(folder.path() / "x/ficus");
+  for (const char* refused : {"x/ficus", "x/ficus/", "x", "x/ficus/below", "x/ficus/new/deeper", "link", "x/./ficus/../ficus"})
+    EXPECT_THROW(guard.check_folder(folder.path() / refused), FileError) << refused;
+  for (const char* refused : {"x/ficus/shape0.obj", "x/ficus/below/p.png", "link/p.rebake"})
+    EXPECT_THROW(guard.check_file(folder.path() / refused), FileError) << refused;
+  for (const char* allowed : {"x/other", "y", "x/ficus2"}) EXPECT_NO_THROW(guard.check_folder(folder.path() / allowed));
+  EXPECT_NO_THROW(guard.check_file(folder.path() / "x/p.png"));
+}
+
+}  // namespace
+}  // namespace rebake::test
