@@ -45,7 +45,7 @@ std::string first_line(int of) { return line_of({{"rebake_journal", of}}); }
 
 // The JSON behind a line's checksum, where that is right.
 std::optional<json> whole(std::string_view line) {
-  if (line.size() <= digits + 1 || hash_text(content_hash(line.substr(digits + 1))) != line.substr(0, digits))
+  if (line.size() <= digits + 1 || line[digits] != ' ' || hash_text(content_hash(line.substr(digits + 1))) != line.substr(0, digits))
     return std::nullopt;
   json entry = json::parse(line.substr(digits + 1), nullptr, false);
   return entry.is_object() ? std::optional(std::move(entry)) : std::nullopt;
@@ -75,7 +75,9 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
       parsed.good_bytes = begin;
       continue;
     }
-    const bool follows = entry && entry->value("n", json()) == number;
+    // Behind damage, which may have joined or split lines, numbers need not be those of the lines.
+    const bool follows =
+        entry && (contents.damaged_line != 0 ? entry->contains("n") : entry->value("n", json()) == number);
     whole_lines += follows ? 1 : 0;
     const std::string text = follows ? entry->dump() : "";
     if (contents.damaged_line != 0) {

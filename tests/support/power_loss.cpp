@@ -43,19 +43,19 @@ int PowerLoss::open(const char* path, int flags, mode_t mode) {
 
 ssize_t PowerLoss::pwrite(int file, const void* bytes, std::size_t count, off_t at) {
   if (fails()) return -1;
-  dirty_.insert(open_.at(file));
+  dirty_.insert(open_[file]);
   return FileCalls::pwrite(file, bytes, std::min(count, most_), at);
 }
 
 int PowerLoss::ftruncate(int file, off_t size) {
-  dirty_.insert(open_.at(file));
+  dirty_.insert(open_[file]);
   return FileCalls::ftruncate(file, size);
 }
 
 int PowerLoss::fsync(int file) {
   if (fails()) return -1;
-  dirty_.erase(open_.at(file));
-  log_.push_back("sync " + open_.at(file));
+  dirty_.erase(open_[file]);
+  log_.push_back("sync " + open_[file]);
   return FileCalls::fsync(file);
 }
 
