@@ -210,7 +210,8 @@ AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
     if (::access(target_.c_str(), W_OK) != 0) fail(target_, "cannot be written");
   }
   make_folders(target_.parent_path());
-  const std::string hidden = "." + target_.filename().string();
+  std::string hidden = ".";
+  hidden += target_.filename().string();
   remove_leftovers(target_.parent_path(), hidden);
   staging_ = target_.parent_path() / partial_name(hidden);
   if (file_calls().mkdir(staging_.c_str(), 0777) != 0) {

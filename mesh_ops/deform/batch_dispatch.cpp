@@ -23,6 +23,10 @@ std::size_t batch_workspace(const BatchCage& cage, bool gradients) {
   return (gradients ? 4U : 1U) * batch_lanes * (cage.edge_count + cage.vertex_count);
 }
 
+std::size_t batch_sums_at(const BatchCage& cage, bool gradients) {
+  return (gradients ? 4U : 1U) * batch_lanes * cage.edge_count;
+}
+
 std::vector<MeanValueBatch> mean_value_batches() {
   std::vector<MeanValueBatch> batches;
 #ifdef REBAKE_WIDE_VECTORS

@@ -10,17 +10,19 @@ namespace rebake {
 
 /// A triangle in its own plane. Corner 0 lies opposite the longest edge, which runs from corner 1 to corner 2 along
 /// `tangent`; `outward` lies in the plane and points away from corner 0; `normal` = outward of the cage.
-struct FaceFrame {
+template <class R>
+struct FaceFrameOf {
   std::array<std::uint32_t, 3> vertices;
-  std::array<std::uint32_t, 3> edges;  ///< opposite each corner
-  std::array<double, 3> normal, tangent, outward;
-  double length = 0;                         ///< of the longest edge
-  double height = 0;                         ///< of corner 0 above it
-  double apex = 0;                           ///< of corner 0 along the tangent, from corner 1
-  std::array<double, 3> lengths;             ///< of the edges
-  std::array<double, 3> edge_t, edge_o;      ///< edge k's unit direction, along tangent and outward
-  std::array<double, 3> normal_t, normal_o;  ///< edge k's outward unit normal in the plane, likewise
+  std::array<std::uint32_t, 3> edges{};  ///< opposite each corner
+  std::array<R, 3> normal, tangent, outward;
+  R length = 0;                         ///< of the longest edge
+  R height = 0;                         ///< of corner 0 above it
+  R apex = 0;                           ///< of corner 0 along the tangent, from corner 1
+  std::array<R, 3> lengths;             ///< of the edges
+  std::array<R, 3> edge_t, edge_o;      ///< edge k's unit direction, along tangent and outward
+  std::array<R, 3> normal_t, normal_o;  ///< edge k's outward unit normal in the plane, likewise
 };
+using FaceFrame = FaceFrameOf<double>;
 
 struct EdgeFrame {
   std::uint32_t first, second;
@@ -34,6 +36,7 @@ struct CageFrame {
   Vec3 center;
   double scale;  ///< local = (x − center) · scale; exact as a factor
   std::vector<Vec3> vertices;
+  std::vector<Vec3> given;       ///< the same, as they came
   std::vector<FaceFrame> faces;  ///< without those that have no area
   std::vector<std::uint32_t> face_numbers;
   std::vector<EdgeFrame> edges;  ///< of those faces

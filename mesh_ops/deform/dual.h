@@ -1,8 +1,42 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
+
+#include "mesh_ops/base/elementary.h"
 
 namespace rebake {
+
+/// Functions of each number type; of double, those that are the same on every processor.
+namespace real {
+template <class R>
+R atan2(const R& y, const R& x) {
+  if constexpr (std::is_same_v<R, double>) {
+    return elementary::atan2(y, x);
+  } else {
+    using std::atan2;
+    return atan2(y, x);
+  }
+}
+template <class R>
+R atan(const R& x) {
+  return atan2(x, R(1));
+}
+template <class R>
+R log(const R& x) {
+  if constexpr (std::is_same_v<R, double>) {
+    return elementary::log(x);
+  } else {
+    using std::log;
+    return log(x);
+  }
+}
+template <class R>
+R sqrt(const R& x) {
+  using std::sqrt;
+  return sqrt(x);
+}
+}  // namespace real
 
 /// A number with its gradient in space (forward-mode automatic differentiation).
 template <class Real>
@@ -62,8 +96,8 @@ DualOf<R> chained(R value, R slope, const DualOf<R>& a) {
 }
 template <class R>
 DualOf<R> sqrt(const DualOf<R>& a) {
-  const R root = std::sqrt(a.v);
-  return chained(root, root > 0 ? 0.5 / root : 0.0, a);
+  const R root = real::sqrt(a.v);
+  return chained(root, root > 0 ? R(R(0.5) / root) : R(0), a);
 }
 template <class R>
 DualOf<R> abs(const DualOf<R>& a) {
@@ -71,25 +105,45 @@ DualOf<R> abs(const DualOf<R>& a) {
 }
 template <class R>
 DualOf<R> log(const DualOf<R>& a) {
-  return chained(std::log(a.v), 1 / a.v, a);
+  return chained(real::log(a.v), R(1 / a.v), a);
 }
 template <class R>
 DualOf<R> atan(const DualOf<R>& a) {
-  return chained(std::atan(a.v), 1 / (1 + a.v * a.v), a);
+  return chained(real::atan(a.v), R(1 / (1 + a.v * a.v)), a);
 }
 template <class R>
 DualOf<R> atan2(const DualOf<R>& y, const DualOf<R>& x) {
   const R square = x.v * x.v + y.v * y.v;
-  const R by_y = square > 0 ? x.v / square : 0, by_x = square > 0 ? -y.v / square : 0;
-  return {std::atan2(y.v, x.v), by_y * y.x + by_x * x.x, by_y * y.y + by_x * x.y, by_y * y.z + by_x * x.z};
+  const R by_y = square > 0 ? R(x.v / square) : R(0), by_x = square > 0 ? R(-y.v / square) : R(0);
+  return {real::atan2(y.v, x.v), by_y * y.x + by_x * x.x, by_y * y.y + by_x * x.y, by_y * y.z + by_x * x.z};
 }
+
+namespace real {
+template <class R>
+DualOf<R> atan2(const DualOf<R>& y, const DualOf<R>& x) {
+  return rebake::atan2(y, x);
+}
+template <class R>
+DualOf<R> atan(const DualOf<R>& a) {
+  return rebake::atan(a);
+}
+template <class R>
+DualOf<R> log(const DualOf<R>& a) {
+  return rebake::log(a);
+}
+template <class R>
+DualOf<R> sqrt(const DualOf<R>& a) {
+  return rebake::sqrt(a);
+}
+}  // namespace real
 
 template <class R>
 double value_of(const DualOf<R>& a) {
   return static_cast<double>(a.v);
 }
-inline double value_of(double a) { return a; }
-inline double value_of(long double a) { return static_cast<double>(a); }
-inline double value_of(float a) { return static_cast<double>(a); }
+template <class R>
+double value_of(const R& a) {
+  return static_cast<double>(a);
+}
 
 }  // namespace rebake

@@ -82,11 +82,10 @@ std::array<T, 3> mean_value_terms(const FaceFrame& face, const Seen<T>& s) {
 /// ∫ λᵢ h / r³ dA and ∫ 1 / r dA by the form that holds.
 template <class T>
 GreenTerms<T> green_terms(const FaceFrame& face, const Seen<T>& s) {
-  using std::sqrt;
   if (!prefers_quadrature(face, s)) return green(face, s);
   GreenTerms<T> sums{{constant<T>(0), constant<T>(0), constant<T>(0)}, constant<T>(0)};
   for_each_node(face, s, [&](double area, const std::array<double, 3>& lambda, const T& square) {
-    const T by_r = constant<T>(area) / sqrt(square), by_cube = by_r / square;
+    const T by_r = constant<T>(area) / real::sqrt(square), by_cube = by_r / square;
     for (std::size_t k = 0; k < 3; ++k) sums.corners[k] += constant<T>(lambda[k]) * by_cube;
     sums.face += by_r;
   });

@@ -1,10 +1,11 @@
 // Mean value coordinates of many points at once: the forms of plane_local.h, without branches, as loops over lanes that
-// the compiler turns into vectors (this file alone is built with -ffast-math, for the vector library's atan2), with
-// gradients worked out by hand. What all faces of an edge share is computed once. Points so near a face that rounding
-// decides are left to plane_local.h.
+// the compiler turns into vectors, with gradients worked out by hand. What all faces of an edge share is computed once.
+// Faces that rounding decides about are left to plane_local.h.
 #include "mesh_ops/deform/mean_value_batch.h"
 
 #include <math.h>
+
+#include "mesh_ops/base/elementary.h"
 
 #ifndef REBAKE_BATCH_NAME
 #define REBAKE_BATCH_NAME mean_value_batch_baseline
@@ -16,8 +17,12 @@ namespace rebake {
 namespace {
 
 constexpr int lanes = static_cast<int>(batch_lanes);
-// Below this distance (local units) from a face, plane_local weighs a point.
-constexpr double delicate_distance = 1e-6;
+// Below this distance (local units) from a face, and below this share of the distance from an edge's nearer end where a
+// point lies beyond it and beside its line, the face is left out.
+constexpr double near_distance = 1e-6;
+constexpr double near_line = 1e-4;
+// Where the angle of an edge has a series: see plane_local::EdgeSeries.
+constexpr double series_ratio = 1.0 / 7;
 // Where the point's projection lies beside the triangle by this many times its height, the sum over the edges cancels;
 // the other form takes over. It would hold nearer too, but costs three more arctangents.
 constexpr double grazing_ratio = 16;
@@ -35,7 +40,7 @@ REBAKE_INLINE double part_value(double a, double square, double c, double begin,
   const double upper = square * end / (both * (a * c + end * end + tiny)),
                lower = square * begin / (both * (a * c + begin * begin + tiny));
   // Both are small here: one arctangent of their difference.
-  return theta / (c * both) + atan2(upper - lower, 1 + upper * lower) / square;
+  return theta / (c * both) + elementary::atan2(upper - lower, 1 + upper * lower) / square;
 }
 REBAKE_INLINE Part part(double a, double square, double c, double begin, double end, double theta) {
   const double v = part_value(a, square, c, begin, end, theta);
@@ -50,13 +55,19 @@ REBAKE_INLINE Part part(double a, double square, double c, double begin, double 
           -(v + a / (2 * cc) * (by_c - theta / c)) / square, a * (end_a * end_c - begin_a * begin_c)};
 }
 
-REBAKE_INLINE double sign_of(double a) { return a > 0 ? 1.0 : a < 0 ? -1.0 : 0.0; }
+// On an edge's line, beyond its ends, a part is 0 and its slope is not.
+REBAKE_INLINE double sign_of(double a) { return a < 0 ? -1.0 : 1.0; }
 REBAKE_INLINE double least(double a, double b) { return a < b ? a : b; }
 REBAKE_INLINE double greatest(double a, double b) { return a > b ? a : b; }
+// 1 where the point lies beyond the edge's ends and beside its line.
+REBAKE_INLINE double beside_line(double a, double square, double begin, double end) {
+  const double nearer = least(fabs(begin), fabs(end));
+  return begin * end > 0 && a * a + square < near_line * near_line * nearer * nearer ? 1.0 : 0.0;
+}
 
 template <bool gradients>
-void weigh(const BatchCage& cage, const double* points, const double* start, double* workspace, double* weights,
-           double* slopes, std::uint8_t* delicate) {
+std::size_t weigh(const BatchCage& cage, const double* points, const double* start, double* workspace, double* weights,
+                  double* slopes, BatchNear* near) {
   constexpr int row = (gradients ? 4 : 1) * lanes;
   const double *px = points, *py = points + lanes, *pz = points + 2 * lanes;
   double* const angles = workspace;                     // θ / c of each edge, then its gradient: rows of lanes
@@ -76,14 +87,27 @@ void weigh(const BatchCage& cage, const double* points, const double* start, dou
       // The distance from the line as a cross product: no difference of squares.
       const double cx = ey * tz - ez * ty, cy = ez * tx - ex * tz, cz = ex * ty - ey * tx;
       const double cc = cx * cx + cy * cy + cz * cz + tiny, c = sqrt(cc);
-      const double theta = atan2(c * length, cc + begin * end);
+      const double theta = elementary::atan2(c * length, cc + begin * end);
       const double by_c = 1 / c, value = theta * by_c;
       q[lane] = value;
       if constexpr (gradients) {
-        const double near = 1 / (cc + begin * begin), far = 1 / (cc + end * end);
+        const double first_end = 1 / (cc + begin * begin), second_end = 1 / (cc + end * end);
         // ∇θ = ∂θ/∂c ∇c + ∂θ/∂begin ∇begin, where ∇c = −(e − begin t) / c and ∇begin = −t.
-        const double across = -(begin * near - end * far - value) * by_c * by_c;
-        const double along = -(far - near) - across * begin;
+        const double closed = -(begin * first_end - end * second_end - value) * by_c * by_c;
+        // −2 d(θ/c)/dc² by the series, where the closed form is 0 / 0: Σ (−1)ⁿ⁺¹ 2n βₙ c²ⁿ⁻² / (2n + 1).
+        const double nearer = least(fabs(begin), fabs(end));
+        const bool beyond = begin * end > 0 && cc < series_ratio * series_ratio * nearer * nearer;
+        const double u = 1 / (begin + (begin >= 0 ? tiny : -tiny)), v = 1 / (end + (end >= 0 ? tiny : -tiny));
+        const double uu = u * u, vv = v * v, odd = v * (u + v);
+        double powers = uu + odd, v_power = vv, term = length * u * v, series = 0;
+        for (int n = 1; n <= 10; ++n) {
+          series += term * powers * (2.0 * n / (2.0 * n + 1));
+          powers = powers * uu + v_power * odd;
+          v_power = v_power * vv;
+          term = -term * cc;
+        }
+        const double across = beyond ? series : closed;
+        const double along = -(second_end - first_end) - across * begin;
         q[lanes + lane] = across * ex + along * tx;
         q[2 * lanes + lane] = across * ey + along * ty;
         q[3 * lanes + lane] = across * ez + along * tz;
@@ -91,7 +115,7 @@ void weigh(const BatchCage& cage, const double* points, const double* start, dou
     }
   }
 
-  for (int lane = 0; lane < lanes; ++lane) delicate[lane] = 0;
+  std::size_t near_count = 0;
   for (std::size_t f = 0; f < cage.face_count; ++f) {
     const std::uint32_t* corners = cage.faces + 6 * f;
     const double *q0 = angles + static_cast<std::size_t>(corners[3]) * row,
@@ -110,9 +134,9 @@ void weigh(const BatchCage& cage, const double* points, const double* start, dou
     const double nt1 = frame[19], nt2 = frame[20], no1 = frame[22], no2 = frame[23];
     const double length1 = frame[25], length2 = frame[26];
     const double beside_ratio = grazing_ratio * frame[27];
-    double grazing[lanes];
-    double nearest = 1, grazing_lanes = 0;
-#pragma omp simd reduction(min : nearest) reduction(+ : grazing_lanes)
+    double grazing[lanes], left_out[lanes];
+    double near_lanes = 0, grazing_lanes = 0;
+#pragma omp simd reduction(+ : near_lanes) reduction(+ : grazing_lanes)
     for (int lane = 0; lane < lanes; ++lane) {
       const double ex = v1x - px[lane], ey = v1y - py[lane], ez = v1z - pz[lane];
       const double h = nx * ex + ny * ey + nz * ez, along = tx * ex + ty * ey + tz * ez,
@@ -120,10 +144,19 @@ void weigh(const BatchCage& cage, const double* points, const double* start, dou
       const double a1 = (along + length) * nt1 + out * no1, a2 = along * nt2 + out * no2;
       const double beside = -least(out, least(a1, a2));
       const double height = fabs(h);
-      const double grazes = beside > beside_ratio * height ? 1.0 : 0.0;
+      // Edge 0 begins at corner 1, edge 1 at corner 2; edge 2 ends at corner 1.
+      const double far = along + length, begin1 = far * et1 + out * eo1, end2 = along * et2 + out * eo2;
+      const double on = greatest(height, beside) < near_distance ? 1.0 : 0.0;
+      const double beside_lines = beside_line(out, h * h, along, far) +
+                                  beside_line(a1, h * h, begin1, begin1 + length1) +
+                                  beside_line(a2, h * h, end2 - length2, end2);
+      const double left = on > 0 ? 2.0 : beside_lines > 0 ? 1.0 : 0.0;
+      left_out[lane] = left;
+      near_lanes += left;
+      const double grazes = beside > beside_ratio * height && left == 0 ? 1.0 : 0.0;
       grazing[lane] = grazes;
       grazing_lanes += grazes;
-      nearest = least(nearest, greatest(height, beside));
+      const double kept = left == 0 ? 1.0 : 0.0;
       // Σ a θ / c / 2h², for lanes that do not graze.
       const double half = (1 - grazes) * 0.5 / (h * h + tiny);
       const double k0 = q0[lane], k1 = q1[lane], k2 = q2[lane];
@@ -137,11 +170,11 @@ void weigh(const BatchCage& cage, const double* points, const double* start, dou
       const double slope1 = -(slope0 + slope2);
       const double part0 = lambda0 * whole - 0.5 * slope0, part1 = lambda1 * whole - 0.5 * slope1,
                    part2 = lambda2 * whole - 0.5 * slope2;
-      // In its plane, and beside it, a face weighs nothing (but what it weighs changes there).
+      // In its plane, and beside it, a face has value 0, but a gradient.
       const double below = height <= 1e-15 ? 0.0 : h;
-      w0[lane] += below * part0;
-      w1[lane] += below * part1;
-      w2[lane] += below * part2;
+      w0[lane] += kept > 0 ? below * part0 : 0.0;
+      w1[lane] += kept > 0 ? below * part1 : 0.0;
+      w2[lane] += kept > 0 ? below * part2 : 0.0;
       if constexpr (gradients) {
         const double by_h = 2 * whole * h / (h * h + tiny);
         const auto axis = [&](int n, double normal, double tangent, double outward) __attribute__((always_inline)) {
@@ -154,23 +187,22 @@ void weigh(const BatchCage& cage, const double* points, const double* start, dou
           const double dt = g1 * nt1 + g2 * nt2, d_o = g0 + g1 * no1 + g2 * no2;
           const double d_slope0 = -d_o * by_height, d_slope2 = (dt - d_slope0 * apex) * by_length;
           const double d_slope1 = -(d_slope0 + d_slope2);
-          w0[n * lanes + lane] += h * (d_lambda0 * whole + lambda0 * d_whole - 0.5 * d_slope0) - normal * part0;
-          w1[n * lanes + lane] += h * (d_lambda1 * whole + lambda1 * d_whole - 0.5 * d_slope1) - normal * part1;
-          w2[n * lanes + lane] += h * (d_lambda2 * whole + lambda2 * d_whole - 0.5 * d_slope2) - normal * part2;
+          const double d_part0 = h * (d_lambda0 * whole + lambda0 * d_whole - 0.5 * d_slope0) - normal * part0;
+          w0[n * lanes + lane] += kept > 0 ? d_part0 : 0.0;
+          const double d_part1 = h * (d_lambda1 * whole + lambda1 * d_whole - 0.5 * d_slope1) - normal * part1;
+          w1[n * lanes + lane] += kept > 0 ? d_part1 : 0.0;
+          const double d_part2 = h * (d_lambda2 * whole + lambda2 * d_whole - 0.5 * d_slope2) - normal * part2;
+          w2[n * lanes + lane] += kept > 0 ? d_part2 : 0.0;
         };
         axis(1, nx, tx, ox);
         axis(2, ny, ty, oy);
         axis(3, nz, tz, oz);
       }
     }
-    if (nearest < delicate_distance)
-      for (int lane = 0; lane < lanes; ++lane) {
-        const double ex = v1x - px[lane], ey = v1y - py[lane], ez = v1z - pz[lane];
-        const double h = nx * ex + ny * ey + nz * ez, along = tx * ex + ty * ey + tz * ez,
-                     out = ox * ex + oy * ey + oz * ez;
-        const double beside = -least(out, least((along + length) * nt1 + out * no1, along * nt2 + out * no2));
-        if (greatest(fabs(h), beside) < delicate_distance) delicate[lane] = 1;
-      }
+    if (near_lanes > 0)
+      for (int lane = 0; lane < lanes; ++lane)
+        if (left_out[lane] > 0)
+          near[near_count++] = {static_cast<std::uint32_t>(f), static_cast<std::uint32_t>(lane), left_out[lane] > 1};
     if (grazing_lanes > 0) {
 #pragma omp simd
       for (int lane = 0; lane < lanes; ++lane) {
@@ -179,11 +211,9 @@ void weigh(const BatchCage& cage, const double* points, const double* start, dou
                      out = ox * ex + oy * ey + oz * ez;
         const double far = along + length;
         const double a1 = far * nt1 + out * no1, a2 = along * nt2 + out * no2;
-        // Edge 0 begins at corner 1, edge 1 at corner 2; edge 2 ends at corner 1.
         const double begin1 = far * et1 + out * eo1, end2 = along * et2 + out * eo2;
         const double square = h * h + tiny;
         const double k0 = q0[lane], k1 = q1[lane], k2 = q2[lane];
-        // On an edge's line its part vanishes.
         const double sign0 = sign_of(out), sign1 = sign_of(a1), sign2 = sign_of(a2);
         const double c0 = sqrt(out * out + square), c1 = sqrt(a1 * a1 + square), c2 = sqrt(a2 * a2 + square);
         const double lambda0 = out * by_height;
@@ -191,22 +221,21 @@ void weigh(const BatchCage& cage, const double* points, const double* start, dou
         const double lambda1 = 1 - lambda0 - lambda2;
         const double below = fabs(h) <= 1e-15 ? 0.0 : h;
         if constexpr (!gradients) {
-          const double whole = -0.5 * grazing[lane] *
-                               (sign0 * part_value(sign0 * out, square, c0, along, far, k0 * c0) +
-                                sign1 * part_value(sign1 * a1, square, c1, begin1, begin1 + length1, k1 * c1) +
-                                sign2 * part_value(sign2 * a2, square, c2, end2 - length2, end2, k2 * c2));
-          w0[lane] += below * lambda0 * whole;
-          w1[lane] += below * lambda1 * whole;
-          w2[lane] += below * lambda2 * whole;
+          const double whole = -0.5 * (sign0 * part_value(sign0 * out, square, c0, along, far, k0 * c0) +
+                                       sign1 * part_value(sign1 * a1, square, c1, begin1, begin1 + length1, k1 * c1) +
+                                       sign2 * part_value(sign2 * a2, square, c2, end2 - length2, end2, k2 * c2));
+          w0[lane] += grazing[lane] > 0 ? below * lambda0 * whole : 0.0;
+          w1[lane] += grazing[lane] > 0 ? below * lambda1 * whole : 0.0;
+          w2[lane] += grazing[lane] > 0 ? below * lambda2 * whole : 0.0;
         } else {
           const Part p0 = part(sign0 * out, square, c0, along, far, k0 * c0),
                      p1 = part(sign1 * a1, square, c1, begin1, begin1 + length1, k1 * c1),
                      p2 = part(sign2 * a2, square, c2, end2 - length2, end2, k2 * c2);
-          const double half = -0.5 * grazing[lane];
+          constexpr double half = -0.5;
           const double whole = half * (sign0 * p0.v + sign1 * p1.v + sign2 * p2.v);
-          w0[lane] += below * lambda0 * whole;
-          w1[lane] += below * lambda1 * whole;
-          w2[lane] += below * lambda2 * whole;
+          w0[lane] += grazing[lane] > 0 ? below * lambda0 * whole : 0.0;
+          w1[lane] += grazing[lane] > 0 ? below * lambda1 * whole : 0.0;
+          w2[lane] += grazing[lane] > 0 ? below * lambda2 * whole : 0.0;
           const double by_height_of_point =
               -2 * h * half * (sign0 * p0.by_square + sign1 * p1.by_square + sign2 * p2.by_square);
           const auto axis = [&](int n, double normal, double tangent, double outward) __attribute__((always_inline)) {
@@ -218,9 +247,12 @@ void weigh(const BatchCage& cage, const double* points, const double* start, dou
                         sign1 * e1 * p1.by_ends + sign2 * e2 * p2.by_ends);
             const double d_lambda0 = -outward * by_height;
             const double d_lambda2 = (tangent - d_lambda0 * apex) * by_length, d_lambda1 = -(d_lambda0 + d_lambda2);
-            w0[n * lanes + lane] += h * (d_lambda0 * whole + lambda0 * d_whole) - normal * lambda0 * whole;
-            w1[n * lanes + lane] += h * (d_lambda1 * whole + lambda1 * d_whole) - normal * lambda1 * whole;
-            w2[n * lanes + lane] += h * (d_lambda2 * whole + lambda2 * d_whole) - normal * lambda2 * whole;
+            const double d_part0 = h * (d_lambda0 * whole + lambda0 * d_whole) - normal * lambda0 * whole;
+            w0[n * lanes + lane] += grazing[lane] > 0 ? d_part0 : 0.0;
+            const double d_part1 = h * (d_lambda1 * whole + lambda1 * d_whole) - normal * lambda1 * whole;
+            w1[n * lanes + lane] += grazing[lane] > 0 ? d_part1 : 0.0;
+            const double d_part2 = h * (d_lambda2 * whole + lambda2 * d_whole) - normal * lambda2 * whole;
+            w2[n * lanes + lane] += grazing[lane] > 0 ? d_part2 : 0.0;
           };
           axis(1, nx, tx, ox);
           axis(2, ny, ty, oy);
@@ -248,16 +280,15 @@ void weigh(const BatchCage& cage, const double* points, const double* start, dou
               (sum[n * lanes + lane] - weight[lane] * total[n * lanes + lane]) / total[lane];
     }
   }
+  return near_count;
 }
 
 }  // namespace
 
-void REBAKE_BATCH_NAME(const BatchCage& cage, const double* points, const double* start, double* workspace,
-                       double* weights, double* gradients, std::uint8_t* delicate) {
-  if (gradients != nullptr)
-    weigh<true>(cage, points, start, workspace, weights, gradients, delicate);
-  else
-    weigh<false>(cage, points, start, workspace, weights, gradients, delicate);
+std::size_t REBAKE_BATCH_NAME(const BatchCage& cage, const double* points, const double* start, double* workspace,
+                              double* weights, double* gradients, BatchNear* near) {
+  if (gradients != nullptr) return weigh<true>(cage, points, start, workspace, weights, gradients, near);
+  return weigh<false>(cage, points, start, workspace, weights, gradients, near);
 }
 
 }  // namespace rebake

@@ -22,25 +22,33 @@ struct BatchCage {
 /// lengths (3), and the sine of half the smallest angle.
 inline constexpr std::size_t batch_face_numbers = 28;
 
-/// Where the batch works: workspace of batch_workspace(cage, gradients) doubles.
+/// Where the batch works, in doubles; batch_sums_at(cage, gradients) into it lie the weights before they are
+/// normalised: vertex_count rows of lanes, each followed by its gradient's three rows if `gradients`.
 std::size_t batch_workspace(const BatchCage& cage, bool gradients);
+std::size_t batch_sums_at(const BatchCage& cage, bool gradients);
 
-/// Normalised mean value weights of batch_lanes points (local; all x, then all y, then all z) into
-/// weights[vertex][lane], and with `gradients` not null their gradients into gradients[vertex][axis][lane]. A flag in
-/// `delicate` says that the lane's point is so near a face that plane_local must weigh it. `start`, where not null:
-/// what faces that are not in `cage` weigh before normalising, as vertex_count rows of lanes, each followed by its
-/// gradient's three rows if `gradients` is not null.
-using MeanValueBatch = void (*)(const BatchCage& cage, const double* points, const double* start, double* workspace,
-                                double* weights, double* gradients, std::uint8_t* delicate);
+/// A face that a lane's point is so near, or so near the line of one of its edges, that the batch leaves it out.
+struct BatchNear {
+  std::uint32_t face, lane;
+  bool on;  ///< near the face itself
+};
+
+/// Normalised mean value weights of batch_lanes finite points (local; all x, then all y, then all z) into
+/// weights[vertex][lane], and with `gradients` not null their gradients into gradients[vertex][axis][lane]. Returns how
+/// many it left out, into `near` (face_count · batch_lanes at most): the weights of their lanes are not whole. `start`,
+/// where not null: what faces that are not in `cage` weigh before normalising, laid out as the sums in the workspace.
+/// Every implementation gives the same bits: lanes do not mix, and nothing is contracted or reordered.
+using MeanValueBatch = std::size_t (*)(const BatchCage& cage, const double* points, const double* start,
+                                       double* workspace, double* weights, double* gradients, BatchNear* near);
 
 // One source, compiled once for each kind of processor.
-void mean_value_batch_baseline(const BatchCage& cage, const double* points, const double* start, double* workspace,
-                               double* weights, double* gradients, std::uint8_t* delicate);
+std::size_t mean_value_batch_baseline(const BatchCage& cage, const double* points, const double* start,
+                                      double* workspace, double* weights, double* gradients, BatchNear* near);
 #ifdef REBAKE_WIDE_VECTORS
-void mean_value_batch_v3(const BatchCage& cage, const double* points, const double* start, double* workspace,
-                         double* weights, double* gradients, std::uint8_t* delicate);
-void mean_value_batch_v4(const BatchCage& cage, const double* points, const double* start, double* workspace,
-                         double* weights, double* gradients, std::uint8_t* delicate);
+std::size_t mean_value_batch_v3(const BatchCage& cage, const double* points, const double* start, double* workspace,
+                                double* weights, double* gradients, BatchNear* near);
+std::size_t mean_value_batch_v4(const BatchCage& cage, const double* points, const double* start, double* workspace,
+                                double* weights, double* gradients, BatchNear* near);
 #endif
 
 }  // namespace rebake

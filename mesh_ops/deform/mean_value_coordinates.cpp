@@ -1,5 +1,6 @@
 #include "mesh_ops/deform/coordinates.h"
 #include "mesh_ops/deform/far_quadrature.h"
+#include "mesh_ops/deform/near_faces.h"
 
 namespace rebake {
 
@@ -7,8 +8,6 @@ namespace {
 
 namespace pl = plane_local;
 
-// Below this distance (local units) from a face the batch cannot weigh a point.
-constexpr double delicate_distance = 1e-6;
 // Farther out than this from the cage's centre (its diagonal is 1 to 2), all faces are small beside their distance.
 constexpr double far_distance = 4;
 
@@ -27,6 +26,7 @@ class MeanValue final : public Coordinates {
         needles_.push_back(&face);
         continue;
       }
+      batched_.push_back(&face);
       faces_.insert(faces_.end(), face.vertices.begin(), face.vertices.end());
       faces_.insert(faces_.end(), face.edges.begin(), face.edges.end());
       const auto append = [&](const std::array<double, 3>& numbers) {
@@ -46,7 +46,7 @@ class MeanValue final : public Coordinates {
         const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
         const double sine = std::abs(face.edge_t[i] * face.edge_o[j] - face.edge_o[i] * face.edge_t[j]),
                      cosine = -(face.edge_t[i] * face.edge_t[j] + face.edge_o[i] * face.edge_o[j]);
-        half = std::min(half, std::sin(std::atan2(sine, cosine) / 2));
+        half = std::min(half, elementary::sine_cosine(elementary::atan2(sine, cosine) / 2).sine);
       }
       face_frames_.push_back(half);
     }
@@ -60,75 +60,113 @@ class MeanValue final : public Coordinates {
              std::uint8_t* outside) const override {
     std::array<double, 3 * batch_lanes> local;
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
-      const Vec3 p = frame_.to_local(points[lane]);
+      // What is no number has no weights, and must not decide about the other lanes.
+      const Vec3 given = frame_.to_local(points[lane]), p = given.allFinite() ? given : Vec3(0, 0, 0);
       for (std::size_t axis = 0; axis < 3; ++axis) local[axis * batch_lanes + lane] = p[static_cast<int>(axis)];
       outside[lane] = 0;
     }
-    thread_local std::vector<double> workspace;
-    workspace.resize(batch_workspace(batch_, gradients != nullptr));
-    thread_local std::vector<double> start;
-    start.clear();
-    std::array<std::uint8_t, batch_lanes> near_needles{}, delicate;
-    if (!needles_.empty()) {
-      start.assign((gradients != nullptr ? 4U : 1U) * batch_lanes * rows(), 0.0);
-      for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
-        const Vec3 p(local[lane], local[batch_lanes + lane], local[2 * batch_lanes + lane]);
-        const bool near = gradients != nullptr ? !add_needles<Dual>(p, start.data() + lane)
-                                               : !add_needles<double>(p, start.data() + lane);
-        near_needles[lane] = near ? 1 : 0;
-      }
+    if (gradients != nullptr) {
+      weigh_local<Dual>(local, weights, gradients);
+      for (std::size_t i = 0; i < rows() * 3 * batch_lanes; ++i) gradients[i] *= frame_.scale;
+    } else {
+      weigh_local<double>(local, weights, gradients);
     }
-    run_(batch_, local.data(), start.empty() ? nullptr : start.data(), workspace.data(), weights, gradients,
-         delicate.data());
+  }
+
+ private:
+  using Near = std::array<std::vector<const FaceFrame*>, batch_lanes>;
+
+  static Vec3 point_of(const std::array<double, 3 * batch_lanes>& local, std::size_t lane) {
+    return {local[lane], local[batch_lanes + lane], local[2 * batch_lanes + lane]};
+  }
+
+  template <class T>
+  void weigh_local(const std::array<double, 3 * batch_lanes>& local, double* weights, double* gradients) const {
+    constexpr std::size_t row = (pl::has_gradient<T> ? 4 : 1) * batch_lanes;
+    thread_local std::vector<double> workspace, start;
+    thread_local std::vector<BatchNear> left_out;
+    thread_local Near near;
+    workspace.resize(batch_workspace(batch_, pl::has_gradient<T>));
+    left_out.resize(batch_.face_count * batch_lanes);
+    for (auto& faces : near) faces.clear();
+    start.clear();
+    if (!needles_.empty()) {
+      start.assign(row * rows(), 0.0);
+      for (std::size_t lane = 0; lane < batch_lanes; ++lane)
+        for (const FaceFrame* face : needles_)
+          add_face<T>(*face, point_of(local, lane), start.data() + lane, near[lane]);
+    }
+    const std::size_t left = run_(batch_, local.data(), start.empty() ? nullptr : start.data(), workspace.data(),
+                                  weights, gradients, left_out.data());
+    double* const sums = workspace.data() + batch_sums_at(batch_, pl::has_gradient<T>);
+    std::array<std::uint8_t, batch_lanes> again{};
+    for (std::size_t n = 0; n < left; ++n) {
+      const std::size_t lane = left_out[n].lane;
+      const FaceFrame* face = batched_[left_out[n].face];
+      again[lane] = 1;
+      if (left_out[n].on)
+        near[lane].push_back(face);
+      else
+        add_face<T>(*face, point_of(local, lane), sums + lane, near[lane]);
+    }
+    thread_local std::vector<T> exact;
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
-      const Vec3 p(local[lane], local[batch_lanes + lane], local[2 * batch_lanes + lane]);
-      if (delicate[lane] == 0 && near_needles[lane] == 0 && p.cwiseAbs().maxCoeff() < far_distance) continue;
-      if (gradients != nullptr) {
-        thread_local std::vector<Dual> exact;
+      const Vec3 p = point_of(local, lane);
+      if (!(p.cwiseAbs().maxCoeff() < far_distance)) {
         mean_value_weights(frame_, p, exact);
-        for (std::size_t v = 0; v < exact.size(); ++v) {
-          weights[v * batch_lanes + lane] = exact[v].v;
+      } else if (again[lane] != 0 || !near[lane].empty()) {
+        exact.resize(rows());
+        for (std::size_t v = 0; v < rows(); ++v) {
+          const double* sum = sums + v * row + lane;
+          if constexpr (pl::has_gradient<T>)
+            exact[v] = T(sum[0], sum[batch_lanes], sum[2 * batch_lanes], sum[3 * batch_lanes]);
+          else
+            exact[v] = sum[0];
+        }
+        add_near_faces<T>(frame_, pl::local_point(p, T()), near[lane], exact);
+      } else {
+        continue;
+      }
+      for (std::size_t v = 0; v < rows(); ++v) {
+        weights[v * batch_lanes + lane] = part(exact[v]);
+        if constexpr (pl::has_gradient<T>) {
           double* slope = gradients + v * 3 * batch_lanes + lane;
           slope[0] = exact[v].x;
           slope[batch_lanes] = exact[v].y;
           slope[2 * batch_lanes] = exact[v].z;
         }
-      } else {
-        thread_local std::vector<double> exact;
-        mean_value_weights(frame_, p, exact);
-        for (std::size_t v = 0; v < exact.size(); ++v) weights[v * batch_lanes + lane] = exact[v];
       }
     }
-    if (gradients != nullptr)
-      for (std::size_t i = 0; i < rows() * 3 * batch_lanes; ++i) gradients[i] *= frame_.scale;
   }
 
- private:
-  // What needles weigh, into one lane of rows of them. False where the point is too near one.
+  static double part(double number) { return number; }
+  static double part(const Dual& number) { return number.v; }
+
+  // What a face weighs, into one lane of rows of sums; or the face into `near`.
   template <class T>
-  bool add_needles(const Vec3& local, double* sums) const {
-    const pl::Point<T> x = pl::local_point(local, T());
-    for (const FaceFrame* face : needles_) {
-      const pl::Seen<T> s = pl::seen(frame_, *face, x);
-      if (std::max(std::abs(value_of(s.h)), pl::distance_in_plane(s)) < delicate_distance) return false;
-      const bool in_plane = pl::place(s) != pl::Place::off_plane;
-      const auto terms = pl::mean_value_terms(*face, s);
-      for (std::size_t k = 0; k < 3; ++k) {
-        double* sum = sums + face->vertices[k] * (pl::has_gradient<T> ? 4 : 1) * batch_lanes;
-        // In its plane a face weighs nothing, but what it weighs changes.
-        if (!in_plane) sum[0] += value_of(terms[k]);
-        if constexpr (pl::has_gradient<T>) {
-          sum[batch_lanes] += terms[k].x;
-          sum[2 * batch_lanes] += terms[k].y;
-          sum[3 * batch_lanes] += terms[k].z;
-        }
+  void add_face(const FaceFrame& face, const Vec3& local, double* sums, std::vector<const FaceFrame*>& near) const {
+    const pl::Seen<T> s = pl::seen(frame_, face, pl::local_point(local, T()));
+    if (distance_of(s) < near_distance) {
+      near.push_back(&face);
+      return;
+    }
+    const bool in_plane = pl::place(s) != pl::Place::off_plane;
+    const auto terms = pl::mean_value_terms(face, s);
+    for (std::size_t k = 0; k < 3; ++k) {
+      double* sum = sums + face.vertices[k] * (pl::has_gradient<T> ? 4 : 1) * batch_lanes;
+      // In its plane a face has value 0, but a gradient.
+      if (!in_plane) sum[0] += value_of(terms[k]);
+      if constexpr (pl::has_gradient<T>) {
+        sum[batch_lanes] += terms[k].x;
+        sum[2 * batch_lanes] += terms[k].y;
+        sum[3 * batch_lanes] += terms[k].z;
       }
     }
-    return true;
   }
 
   CageFrame frame_;
   std::vector<const FaceFrame*> needles_;  ///< weighed one by one
+  std::vector<const FaceFrame*> batched_;  ///< the others
   std::vector<double> vertices_, edge_frames_, face_frames_;
   std::vector<std::uint32_t> edges_, faces_;
   BatchCage batch_;

@@ -27,17 +27,19 @@ struct RealOf<DualOf<R>> {
 template <class T>
 inline constexpr bool has_gradient = !std::is_same_v<T, typename RealOf<T>::type>;
 template <class T>
-inline constexpr double epsilon = static_cast<double>(std::numeric_limits<typename RealOf<T>::type>::epsilon());
+inline const double epsilon = static_cast<double>(std::numeric_limits<typename RealOf<T>::type>::epsilon());
 
 /// Far below the square of any height that rounding leaves.
 template <class T>
-inline constexpr double least_square = static_cast<double>(std::numeric_limits<typename RealOf<T>::type>::min()) * 1e10;
+inline const double least_square = std::max(static_cast<double>(std::numeric_limits<typename RealOf<T>::type>::min()),
+                                            1e-300) *
+                                   1e10;
 
 template <class T>
 using Point = std::array<T, 3>;
 
-template <class T>
-T constant(double value) {
+template <class T, class V>
+T constant(const V& value) {
   return T(static_cast<typename RealOf<T>::type>(value));
 }
 
@@ -63,19 +65,18 @@ struct Seen {
   double far;                   ///< the largest r
 };
 
-template <class T>
-Seen<T> seen(const CageFrame& cage, const FaceFrame& face, const Point<T>& x) {
-  using std::sqrt;
+/// `offsets`: corner − point.
+template <class T, class R>
+Seen<T> seen(const FaceFrameOf<R>& face, const std::array<Point<T>, 3>& offsets) {
   Seen<T> s;
-  const auto dot = [](const Point<T>& e, const std::array<double, 3>& d) {
+  const auto dot = [](const Point<T>& e, const std::array<R, 3>& d) {
     return e[0] * constant<T>(d[0]) + e[1] * constant<T>(d[1]) + e[2] * constant<T>(d[2]);
   };
   std::size_t nearest = 0;
   std::array<T, 3> height;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3& v = cage.vertices[face.vertices[k]];
-    const Point<T> e{constant<T>(v.x()) - x[0], constant<T>(v.y()) - x[1], constant<T>(v.z()) - x[2]};
-    s.r[k] = sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    const Point<T>& e = offsets[k];
+    s.r[k] = real::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
     s.along[k] = dot(e, face.tangent);
     s.out[k] = dot(e, face.outward);
     height[k] = dot(e, face.normal);
@@ -89,7 +90,7 @@ Seen<T> seen(const CageFrame& cage, const FaceFrame& face, const Point<T>& x) {
     const T nt = constant<T>(face.normal_t[k]), no = constant<T>(face.normal_o[k]);
     const T et = constant<T>(face.edge_t[k]), eo = constant<T>(face.edge_o[k]);
     s.a[k] = s.along[m] * nt + s.out[m] * no;
-    s.c[k] = sqrt(s.a[k] * s.a[k] + s.h * s.h);
+    s.c[k] = real::sqrt(s.a[k] * s.a[k] + s.h * s.h);
     // On an edge's line what is divided by c has a limit, which this reaches.
     if (value_of(s.c[k]) == 0) s.c[k] = constant<T>(std::sqrt(least_square<T>));
     s.begin[k] = s.along[i] * et + s.out[i] * eo;
@@ -98,17 +99,27 @@ Seen<T> seen(const CageFrame& cage, const FaceFrame& face, const Point<T>& x) {
   return s;
 }
 
-/// Barycentric coordinates of the point's projection; they sum to 1 and reproduce it whatever the triangle's shape.
 template <class T>
-std::array<T, 3> barycentric(const FaceFrame& face, const Seen<T>& s) {
+Seen<T> seen(const CageFrame& cage, const FaceFrame& face, const Point<T>& x) {
+  std::array<Point<T>, 3> offsets;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& v = cage.vertices[face.vertices[k]];
+    offsets[k] = {constant<T>(v.x()) - x[0], constant<T>(v.y()) - x[1], constant<T>(v.z()) - x[2]};
+  }
+  return seen(face, offsets);
+}
+
+/// Barycentric coordinates of the point's projection; they sum to 1 and reproduce it whatever the triangle's shape.
+template <class T, class R>
+std::array<T, 3> barycentric(const FaceFrameOf<R>& face, const Seen<T>& s) {
   const T apex = s.a[0] / constant<T>(face.height);
   const T second = -((constant<T>(1) - apex) * s.along[1] + apex * s.along[0]) / constant<T>(face.length);
   return {apex, constant<T>(1) - apex - second, second};
 }
 
 /// ∇λᵢ · Σ_k ν_k q_k for each corner, ν_k the edges' outward normals in the plane; sums to 0.
-template <class T>
-std::array<T, 3> gradients_dot(const FaceFrame& face, const std::array<T, 3>& q) {
+template <class T, class R>
+std::array<T, 3> gradients_dot(const FaceFrameOf<R>& face, const std::array<T, 3>& q) {
   T t = constant<T>(0), o = constant<T>(0);
   for (std::size_t k = 0; k < 3; ++k) {
     t += q[k] * constant<T>(face.normal_t[k]);
@@ -144,14 +155,62 @@ Place place(const Seen<T>& s) {
   return Place::on_face;
 }
 
-/// h ∫ λᵢ / r⁴ dA for a point that is not on the triangle.
+/// What an edge's part needs where the point's projection lies beyond an end of the edge, near its line. There the
+/// angle θ under which the point sees the edge, over its distance c from the line, is the series Σ (−1)ⁿ βₙ c²ⁿ / (2n +
+/// 1), βₙ = begin⁻²ⁿ⁻¹ − end⁻²ⁿ⁻¹, and what its closed form loses by 0 / 0 need not be computed.
 template <class T>
-std::array<T, 3> mean_value(const FaceFrame& face, const Seen<T>& s) {
-  using std::atan;
-  using std::atan2;
+struct EdgeSeries {
+  T quotient;  ///< θ / c
+  T slope;     ///< (quotient at c² = a² + h² − quotient at a²) / h²
+};
+template <class T>
+bool is_near_edge_line(const Seen<T>& s, std::size_t k) {
+  const double begin = value_of(s.begin[k]), end = value_of(s.end[k]);
+  return (begin > 0) == (end > 0) && 7 * value_of(s.c[k]) <= std::min(std::abs(begin), std::abs(end));
+}
+template <class T, class R>
+EdgeSeries<T> edge_series(const FaceFrameOf<R>& face, const Seen<T>& s, std::size_t k) {
+  // In units of the nearer end's distance, so that no power overflows.
+  const T unit = constant<T>(1 / std::min(std::abs(value_of(s.begin[k])), std::abs(value_of(s.end[k]))));
+  const T a = s.a[k] * unit, h = s.h * unit, aa = a * a, cc = aa + h * h;
+  const T u = constant<T>(1) / (s.begin[k] * unit), v = constant<T>(1) / (s.end[k] * unit);
+  // βₙ = (u − v) Σ_j uʲ v²ⁿ⁻ʲ, whose terms have one sign.
+  const T difference = constant<T>(face.lengths[k]) * unit * u * v;
+  const T uu = u * u, vv = v * v;
+  T sum = constant<T>(1), v_power = constant<T>(1);                                  // Σ_j uʲ v²ⁿ⁻ʲ and v²ⁿ
+  T cc_power = constant<T>(1), aa_power = constant<T>(1), divided = constant<T>(0);  // of c²ⁿ between the two
+  EdgeSeries<T> series{difference, constant<T>(0)};
+  const int terms = static_cast<int>(std::ceil(-std::log2(epsilon<T>) / std::log2(49.0))) + 1;
+  for (int n = 1; n <= terms; ++n) {
+    sum = sum * uu + v_power * v * (u + v);
+    v_power = v_power * vv;
+    divided = divided * cc + aa_power;
+    cc_power = cc_power * cc;
+    aa_power = aa_power * aa;
+    const T term = difference * sum * constant<T>((n % 2 == 0 ? 1.0 : -1.0)) / constant<T>(2.0 * n + 1);
+    series.quotient += term * cc_power;
+    series.slope += term * divided;
+  }
+  series.quotient = series.quotient * unit;
+  series.slope = series.slope * (unit * unit * unit);
+  return series;
+}
+
+/// h ∫ λᵢ / r⁴ dA for a point that is not on the triangle.
+template <class T, class R>
+std::array<T, 3> mean_value(const FaceFrameOf<R>& face, const Seen<T>& s) {
   std::array<T, 3> angle, q;
+  std::array<bool, 3> near_line;
+  std::array<T, 3> line_slope;
   for (std::size_t k = 0; k < 3; ++k) {
-    angle[k] = atan2(s.c[k] * constant<T>(face.lengths[k]), s.c[k] * s.c[k] + s.begin[k] * s.end[k]);
+    near_line[k] = is_near_edge_line(s, k);
+    if (near_line[k]) {
+      const EdgeSeries<T> series = edge_series(face, s, k);
+      q[k] = series.quotient;
+      line_slope[k] = series.slope;
+      continue;
+    }
+    angle[k] = real::atan2(T(s.c[k] * constant<T>(face.lengths[k])), T(s.c[k] * s.c[k] + s.begin[k] * s.end[k]));
     q[k] = angle[k] / s.c[k];
   }
   T square = s.h * s.h;
@@ -163,13 +222,20 @@ std::array<T, 3> mean_value(const FaceFrame& face, const Seen<T>& s) {
     whole = whole / (square + square);
   } else {
     for (std::size_t k = 0; k < 3; ++k) {
+      if (near_line[k]) {
+        whole += s.a[k] * line_slope[k];
+        continue;
+      }
       const bool negative = value_of(s.a[k]) < 0;
-      if (value_of(s.a[k]) == 0) continue;  // on the edge's line its part vanishes
-      const T a = negative ? -s.a[k] : s.a[k];
+      if (value_of(s.a[k]) == 0) continue;
+      const T a = negative ? T(-s.a[k]) : s.a[k];
       const T sum = s.c[k] + a;
-      const auto part = [&](const T& end) { return atan(square * (end / (sum * (a * s.c[k] + end * end)))); };
+      const auto part = [&](const T& end) { return real::atan(T(square * (end / (sum * (a * s.c[k] + end * end))))); };
       const T term = angle[k] / (s.c[k] * sum) + (part(s.end[k]) - part(s.begin[k])) / square;
-      whole += negative ? term : -term;
+      if (negative)
+        whole += term;
+      else
+        whole += -term;
     }
     whole = whole * constant<T>(0.5);
   }
@@ -179,16 +245,35 @@ std::array<T, 3> mean_value(const FaceFrame& face, const Seen<T>& s) {
   return result;
 }
 
+/// A face that the point lies over, or on: h ∫ λᵢ / r⁴ dA is λᵢ / width + restᵢ, where width vanishes with the height
+/// and all three are smooth through the face.
+template <class T>
+struct OverFace {
+  std::array<T, 3> lambda, rest;
+  T width;
+};
+template <class T, class R>
+OverFace<T> over_face(const FaceFrameOf<R>& face, const Seen<T>& s) {
+  std::array<T, 3> q;
+  T sum = constant<T>(0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    q[k] = real::atan2(T(s.c[k] * constant<T>(face.lengths[k])), T(s.c[k] * s.c[k] + s.begin[k] * s.end[k])) / s.c[k];
+    sum += s.a[k] * q[k];
+  }
+  const std::array<T, 3> slope = gradients_dot(face, q);
+  OverFace<T> result{barycentric(face, s), {}, (s.h + s.h) / sum};
+  for (std::size_t i = 0; i < 3; ++i) result.rest[i] = s.h * slope[i] * constant<T>(-0.5);
+  return result;
+}
+
 /// Green's coordinates of one face, times 4π: ∫ λᵢ h / r³ dA for each corner and ∫ 1 / r dA.
 template <class T>
 struct GreenTerms {
   std::array<T, 3> corners;
   T face;
 };
-template <class T>
-GreenTerms<T> green(const FaceFrame& face, const Seen<T>& s) {
-  using std::atan2;
-  using std::log;
+template <class T, class R>
+GreenTerms<T> green(const FaceFrameOf<R>& face, const Seen<T>& s) {
   std::array<T, 3> logs;
   T sum = constant<T>(0);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -196,13 +281,13 @@ GreenTerms<T> green(const FaceFrame& face, const Seen<T>& s) {
     T near = s.r[(k + 1) % 3], far = s.r[(k + 2) % 3];
     if (value_of(begin) + value_of(end) < 0) {
       const T old = begin;
-      begin = -end;
-      end = -old;
+      begin = T(-end);
+      end = T(-old);
       std::swap(near, far);
     }
-    const T low = value_of(begin) < 0 ? s.c[k] * s.c[k] / (near - begin) : begin + near;
+    const T low = value_of(begin) < 0 ? T(s.c[k] * s.c[k] / (near - begin)) : T(begin + near);
     // On the edge itself the integral diverges, but what it is multiplied by vanishes.
-    logs[k] = value_of(low) > 0 ? log((end + far) / low) : constant<T>(0);
+    logs[k] = value_of(low) > 0 ? real::log(T((end + far) / low)) : constant<T>(0);
     sum += s.a[k] * logs[k];
   }
   const auto corner_dot = [&](std::size_t i, std::size_t j) {
@@ -212,18 +297,20 @@ GreenTerms<T> green(const FaceFrame& face, const Seen<T>& s) {
   const T divisor = product + corner_dot(0, 1) * s.r[2] + corner_dot(1, 2) * s.r[0] + corner_dot(2, 0) * s.r[1];
   T angle = constant<T>(0);
   if (value_of(divisor) > 0.1 * value_of(product)) {
-    const T half = atan2(s.h * constant<T>(face.length * face.height), divisor);
+    const T half = real::atan2(T(s.h * constant<T>(face.length * face.height)), divisor);
     angle = half + half;
   } else {
     const bool below = value_of(s.h) < 0;
-    const T h = below ? -s.h : s.h;
+    const T h = below ? T(-s.h) : s.h;
     for (std::size_t k = 0; k < 3; ++k) {
       const T square = s.c[k] * s.c[k];
-      angle += atan2(s.a[k] * s.end[k], square + h * s.r[(k + 2) % 3]) -
-               atan2(s.a[k] * s.begin[k], square + h * s.r[(k + 1) % 3]);
+      angle += real::atan2(T(s.a[k] * s.end[k]), T(square + h * s.r[(k + 2) % 3])) -
+               real::atan2(T(s.a[k] * s.begin[k]), T(square + h * s.r[(k + 1) % 3]));
     }
     if (below) angle = -angle;
-    if (value_of(s.h) == 0) angle = angle - constant<T>(value_of(angle));  // nothing is seen edge on
+    // Nothing is seen edge on; on the face itself, half of all that is around.
+    if (value_of(s.h) == 0 && !(value_of(s.a[0]) > 0 && value_of(s.a[1]) > 0 && value_of(s.a[2]) > 0))
+      angle = angle - constant<T>(value_of(angle));
   }
   const std::array<T, 3> lambda = barycentric(face, s), slope = gradients_dot(face, logs);
   GreenTerms<T> result;

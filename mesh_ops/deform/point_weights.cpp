@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "mesh_ops/deform/far_quadrature.h"
+#include "mesh_ops/deform/near_faces.h"
 
 namespace rebake {
 
@@ -12,28 +13,23 @@ template <class T>
 void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>& weights) {
   weights.assign(cage.vertices.size(), pl::constant<T>(0));
   const pl::Point<T> x = pl::local_point(local, T());
-  T total = pl::constant<T>(0);
+  std::vector<const FaceFrame*> near;
   for (const FaceFrame& face : cage.faces) {
     const pl::Seen<T> s = pl::seen(cage, face, x);
-    const pl::Place place = pl::place(s);
-    // Without this rule coplanar neighbours could get heights of opposite signs, and weights of ±9.
-    if (place == pl::Place::in_plane && !pl::has_gradient<T>) continue;
-    if (place == pl::Place::on_face) {
-      weights.assign(cage.vertices.size(), pl::constant<T>(0));
-      const auto lambda = pl::barycentric(face, s);
-      for (std::size_t k = 0; k < 3; ++k) weights[face.vertices[k]] = lambda[k];
-      return;
+    if (distance_of(s) < near_distance) {
+      near.push_back(&face);
+      continue;
     }
+    const bool in_plane = pl::place(s) == pl::Place::in_plane;
+    // Of a face's value rounding must not decide where it is 0; its gradient is not.
+    if (in_plane && !pl::has_gradient<T>) continue;
     auto terms = pl::mean_value_terms(face, s);
-    // It weighs nothing there, but what it weighs changes.
-    if (place == pl::Place::in_plane)
-      for (T& term : terms) term = term - pl::constant<T>(value_of(term));
     for (std::size_t k = 0; k < 3; ++k) {
+      if (in_plane) terms[k] = terms[k] - pl::constant<T>(value_of(terms[k]));
       weights[face.vertices[k]] += terms[k];
-      total += terms[k];
     }
   }
-  for (T& weight : weights) weight = weight / total;
+  add_near_faces<T>(cage, x, near, weights);
 }
 
 namespace {
@@ -72,15 +68,29 @@ bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_co
   T sum = pl::constant<T>(0);
   double nearest = std::numeric_limits<double>::infinity(), extent = 0;
   std::size_t nearest_face = 0;
-  for (std::size_t f = 0; f < cage.faces.size(); ++f) {
-    const FaceFrame& face = cage.faces[f];
-    const pl::Seen<T> s = pl::seen(cage, face, x);
-    const auto terms = pl::green_terms(face, s);
+  const auto add = [&](std::size_t f, const pl::GreenTerms<T>& terms) {
     for (std::size_t k = 0; k < 3; ++k) {
-      phi[face.vertices[k]] += terms.corners[k] * share;
+      phi[cage.faces[f].vertices[k]] += terms.corners[k] * share;
       sum += terms.corners[k] * share;
     }
     psi[cage.face_numbers[f]] = terms.face * share;
+  };
+  std::vector<const FaceFrame*> near;
+  std::vector<pl::GreenTerms<T>> near_terms;
+  std::vector<std::size_t> near_numbers;
+  for (std::size_t f = 0; f < cage.faces.size(); ++f) {
+    const FaceFrame& face = cage.faces[f];
+    pl::Seen<T> s = pl::seen(cage, face, x);
+    // Rounding must not decide which side of its own face a point lies on.
+    if (pl::place(s) == pl::Place::on_face) s.h = s.h - pl::constant<T>(value_of(s.h));
+    const auto terms = pl::green_terms(face, s);
+    if (distance_of(s) < near_distance) {
+      near.push_back(&face);
+      near_terms.push_back(terms);
+      near_numbers.push_back(f);
+    } else {
+      add(f, terms);
+    }
     const double distance = std::hypot(value_of(s.h), pl::distance_in_plane(s));
     extent = std::max(extent, s.far);
     if (distance < nearest) {
@@ -88,6 +98,8 @@ bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_co
       nearest_face = f;
     }
   }
+  if constexpr (std::is_same_v<T, Dual>) mend_gradients(cage, x, near, near_terms);
+  for (std::size_t n = 0; n < near.size(); ++n) add(near_numbers[n], near_terms[n]);
   // Outside the sum is 0, inside 1; between them only on the surface.
   if (!(value_of(sum) > 0.125 || nearest <= 4 * pl::epsilon<T> * extent)) return false;
   const FaceFrame& face = cage.faces[nearest_face];

@@ -129,7 +129,8 @@ TEST(SourceGuard, RefusesWhatIsEqualAboveBelowAndBehindLinks) {
   fs::create_directory_symlink(folder.path() / "x/ficus", folder.path() / "link");
   SourceGuard guard;
   guard.add(folder.path() / "x/ficus");
-  for (const char* refused : {"x/ficus", "x/ficus/", "x", "x/ficus/below", "x/ficus/new/deeper", "link", "x/./ficus/../ficus"})
+  for (const char* refused :
+       {"x/ficus", "x/ficus/", "x", "x/ficus/below", "x/ficus/new/deeper", "link", "x/./ficus/../ficus"})
     EXPECT_THROW(guard.check_folder(folder.path() / refused), FileError) << refused;
   for (const char* refused : {"x/ficus/shape0.obj", "x/ficus/below/p.png", "link/p.rebake"})
     EXPECT_THROW(guard.check_file(folder.path() / refused), FileError) << refused;

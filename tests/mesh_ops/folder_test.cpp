@@ -125,7 +125,8 @@ TEST(Folder, LayoutsConvert) {
         ASSERT_EQ(b.at(x, y), empty_texel(AlphaCode::plain));
       }
     }
-  export_scene(read_any(temporary.path() / "unsplit", Axes::y_up), temporary.path() / "chunked", {.layout = Layout::chunked, .sources = {}});
+  export_scene(read_any(temporary.path() / "unsplit", Axes::y_up), temporary.path() / "chunked",
+               {.layout = Layout::chunked, .sources = {}});
   EXPECT_EQ(read_any(temporary.path() / "chunked", Axes::y_up).roots[0]->object->layout, Layout::chunked);
   EXPECT_EQ(folder_bytes(temporary.path() / "chunked")["shape0.pngfeat0.png"],
             folder_bytes(temporary.path() / "split")["shape0.pngfeat0.png"]);
