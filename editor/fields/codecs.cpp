@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "mesh_ops/base/elementary.h"
 #include "mesh_ops/formats/camera_json.h"
 
 namespace rebake {
@@ -146,7 +147,9 @@ Rotation Codec<Rotation>::read(const json& value, const Scene&) {
   const Vec3 axis = vector(part(value, "axis", {"axis", "degrees"}));
   const double degrees = number(part(value, "degrees", {"axis", "degrees"}));
   if (axis.isZero(0)) throw Error("the axis has no direction");
-  return Rotation(Eigen::AngleAxisd(std::remainder(degrees, 360.0) * std::numbers::pi / 180, axis.stableNormalized()));
+  const auto half = elementary::sine_cosine(std::remainder(degrees, 360.0) * std::numbers::pi / 360);
+  const Vec3 across = half.sine * axis.stableNormalized();
+  return Rotation(Eigen::Quaterniond(half.cosine, across.x(), across.y(), across.z()));
 }
 json Codec<Rotation>::write(const Rotation& value) {
   const Eigen::Quaterniond& q = value.quaternion();

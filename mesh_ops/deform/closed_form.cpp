@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh_ops/base/elementary.h"
 #include "mesh_ops/base/error.h"
 
 namespace rebake {
@@ -46,7 +47,8 @@ Deformed deform(const ClosedForm& form, const Vec3& point) {
   // either: cos a − 1 = −2 sin²(a/2).
   Vec3 motion(0, 0, 0);
   Mat3 j = Mat3::Zero();
-  const double angle = form.radians * share, s = std::sin(angle), half = std::sin(angle / 2), c1 = -2 * half * half;
+  const double angle = form.radians * share, s = elementary::sine_cosine(angle).sine,
+               half = elementary::sine_cosine(angle / 2).sine, c1 = -2 * half * half;
   switch (form.kind) {
     case ClosedForm::Kind::twist: {
       const double rate = slope * form.radians / length;

@@ -4,58 +4,175 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_deformation.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/polar.h"
 
 namespace rebake {
 
-HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVertex>& held, int iterations) {
-  using Kernel = CGAL::Simple_cartesian<double>;
-  using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
-  if (held.empty()) throw Error("no cage point is held; fix some and move some");
-  // In a box of diagonal 1, as the solver's tolerances expect.
-  Box box;
-  for (const Vec3& v : cage.vertices) box.extend(v);
-  const double size = box.diagonal().stableNorm();
-  const auto in = [&](const Vec3& v) {
-    const Vec3 p = (v - box.center()) / size;
-    return Kernel::Point_3(p.x(), p.y(), p.z());
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+
+struct RigidMotion {
+  Mat3 turn = Mat3::Identity();
+  Vec3 shift{0, 0, 0};
+  bool is_exact = false;  ///< it takes all to their places, up to rounding
+
+  Vec3 operator()(const Vec3& p) const { return turn * p + shift; }
+};
+
+// The rotation that takes the centred points nearest to their places; of those that do so equally, one that turns
+// least: a single line of points leaves the turn about it open, a single point every turn.
+Mat3 fitted_turn(const Mat3& covariance) {
+  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vec3 sizes = svd.singularValues();
+  if (!(sizes[0] > 0)) return Mat3::Identity();
+  if (sizes[1] <= 1e-12 * sizes[0])
+    return Eigen::Quaterniond::FromTwoVectors(svd.matrixV().col(0), svd.matrixU().col(0)).toRotationMatrix();
+  Vec3 signs(1, 1, 1);
+  signs.z() = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+// Of points in a box of size 1.
+RigidMotion fitted(const std::vector<Vec3>& rest, const std::vector<Vec3>& places) {
+  RigidMotion motion;
+  Vec3 from(0, 0, 0), to(0, 0, 0);
+  for (std::size_t k = 0; k < rest.size(); ++k) {
+    from += rest[k] / static_cast<double>(rest.size());
+    to += places[k] / static_cast<double>(rest.size());
+  }
+  Mat3 covariance = Mat3::Zero();
+  for (std::size_t k = 0; k < rest.size(); ++k) covariance += (places[k] - to) * (rest[k] - from).transpose();
+  motion.turn = fitted_turn(covariance);
+  motion.shift = to - motion.turn * from;
+  double farthest = 0, size = 1;
+  for (std::size_t k = 0; k < rest.size(); ++k) {
+    farthest = std::max(farthest, (motion(rest[k]) - places[k]).norm());
+    size = std::max(size, places[k].norm());
+  }
+  motion.is_exact = farthest <= 1e-13 * size;
+  return motion;
+}
+
+// What is minimised: of each vertex, how far the edges of its triangles are from turned ones, weighed by the cotangents
+// of the angles opposite (Chao et al. 2010, spokes and rims). 0 where every triangle's surroundings turn rigidly.
+double rigidity_energy(const std::vector<Vec3>& rest, const std::vector<Vec3>& moved, const std::vector<Face>& faces) {
+  std::vector<Mat3> turns(rest.size(), Mat3::Zero());
+  const auto for_edges = [&](const Face& face, const auto& visit) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t apex = face[k], a = face[(k + 1) % 3], b = face[(k + 2) % 3];
+      const Vec3 u = rest[a] - rest[apex], v = rest[b] - rest[apex];
+      const double area = u.cross(v).norm();
+      if (area > 0) visit(u.dot(v) / area, Vec3(rest[b] - rest[a]), Vec3(moved[b] - moved[a]));
+    }
   };
+  for (const Face& face : faces)
+    for_edges(face, [&](double weight, const Vec3& before, const Vec3& after) {
+      for (const std::uint32_t v : face) turns[v] += weight * after * before.transpose();
+    });
+  for (Mat3& turn : turns) turn = svd_rotation(turn).rotation;
+  double energy = 0;
+  for (const Face& face : faces)
+    for_edges(face, [&](double weight, const Vec3& before, const Vec3& after) {
+      for (const std::uint32_t v : face) energy += weight * (after - turns[v] * before).squaredNorm();
+    });
+  return energy;
+}
+
+}  // namespace
+
+HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVertex>& held, int iterations,
+                                 const Progress& progress) {
+  if (held.empty()) throw Error("no cage point is held; fix some and move some");
+  HandledCage result{cage.vertices};
   const std::vector<std::uint32_t> component = components(cage);
   std::vector<std::uint8_t> has_held(cage.vertices.size(), 0), used(cage.vertices.size(), 0);
   for (const HandledVertex& h : held) has_held[component[h.vertex]] = 1;
-  HandledCage result{cage.vertices, 0};
-  Mesh mesh;
-  std::vector<Mesh::Vertex_index> number(cage.vertices.size());
   for (const Face& face : cage.faces)
     for (const std::uint32_t v : face) used[v] = 1;
   if (std::none_of(held.begin(), held.end(), [&](const HandledVertex& h) { return used[h.vertex] != 0; }))
     throw Error("none of the held points belongs to a triangle of the cage; fix some that do");
-  for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
-    if (used[v] == 0) continue;
-    if (component[v] == v && has_held[v] == 0) ++result.free_components;
-    if (has_held[component[v]] != 0) number[v] = mesh.add_vertex(in(cage.vertices[v]));
-  }
-  for (const Face& face : cage.faces)
-    if (has_held[component[face[0]]] != 0 &&
-        mesh.add_face(number[face[0]], number[face[1]], number[face[2]]) == Mesh::null_face())
-      throw Error("two parts of the cage meet in a single point: handles need a cage without such places");
-  CGAL::Surface_mesh_deformation<Mesh> deformation(mesh);
-  for (const auto v : mesh.vertices()) deformation.insert_roi_vertex(v);
-  // A point of no face is held where it is asked to be, and moves nothing else.
-  for (const HandledVertex& h : held)
-    if (used[h.vertex] != 0) deformation.insert_control_vertex(number[h.vertex]);
-  if (!deformation.preprocess()) throw Error("the handles do not determine the cage; fix some more points");
-  for (const HandledVertex& h : held)
-    if (used[h.vertex] != 0) deformation.set_target_position(number[h.vertex], in(h.place));
-  deformation.deform(static_cast<unsigned>(iterations), 0);
-  for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
-    if (used[v] == 0 || has_held[component[v]] == 0) continue;
-    const Kernel::Point_3& p = mesh.point(number[v]);
-    result.vertices[v] = box.center() + Vec3(p.x(), p.y(), p.z()) * size;
-  }
   // Held points are where they were asked to be, bit for bit.
+  for (const HandledVertex& h : held) result.vertices[h.vertex] = h.place;
+  for (std::uint32_t v = 0; v < cage.vertices.size(); ++v)
+    if (used[v] != 0 && component[v] == v && has_held[v] == 0) ++result.free_components;
+  if (result.vertices == cage.vertices) return result;
+
+  // In a box of diagonal 1, as the solver's tolerances expect.
+  Box box;
+  for (const Vec3& v : cage.vertices) box.extend(v);
+  const double size = box.diagonal().stableNorm();
+  const auto local = [&](const Vec3& v) { return Vec3((v - box.center()) / size); };
+  std::vector<RigidMotion> motions(cage.vertices.size());
+  bool all_exact = true;
+  for (std::uint32_t first = 0; first < cage.vertices.size(); ++first) {
+    if (used[first] == 0 || component[first] != first || has_held[first] == 0) continue;
+    std::vector<Vec3> rest, places;
+    for (const HandledVertex& h : held)
+      if (used[h.vertex] != 0 && component[h.vertex] == first) {
+        rest.push_back(local(cage.vertices[h.vertex]));
+        places.push_back(local(h.place));
+      }
+    motions[first] = fitted(rest, places);
+    if (rest == places) motions[first] = {Mat3::Identity(), Vec3(0, 0, 0), true};
+    all_exact = all_exact && motions[first].is_exact;
+  }
+  // Rigidity is the same from wherever the cage rigidly stands: the solver starts from where it fits.
+  std::vector<Vec3> rest(cage.vertices.size()), moved(cage.vertices.size());
+  for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
+    rest[v] = local(cage.vertices[v]);
+    if (used[v] != 0 && has_held[component[v]] != 0) rest[v] = motions[component[v]](rest[v]);
+  }
+  moved = rest;
+  if (!all_exact) {
+    Mesh mesh;
+    std::vector<Mesh::Vertex_index> number(cage.vertices.size());
+    for (std::uint32_t v = 0; v < cage.vertices.size(); ++v)
+      if (used[v] != 0 && has_held[component[v]] != 0)
+        number[v] = mesh.add_vertex(Kernel::Point_3(rest[v].x(), rest[v].y(), rest[v].z()));
+    for (const Face& face : cage.faces)
+      if (has_held[component[face[0]]] != 0 &&
+          mesh.add_face(number[face[0]], number[face[1]], number[face[2]]) == Mesh::null_face())
+        throw Error("two parts of the cage meet in a single point: handles need a cage without such places");
+    CGAL::Surface_mesh_deformation<Mesh> deformation(mesh);
+    for (const auto v : mesh.vertices()) deformation.insert_roi_vertex(v);
+    // A point of no face is held where it is asked to be, and moves nothing else.
+    for (const HandledVertex& h : held)
+      if (used[h.vertex] != 0) deformation.insert_control_vertex(number[h.vertex]);
+    if (!deformation.preprocess()) throw Error("the handles do not determine the cage; fix some more points");
+    for (const HandledVertex& h : held)
+      if (used[h.vertex] != 0) {
+        const Vec3 place = local(h.place);
+        deformation.set_target_position(number[h.vertex], Kernel::Point_3(place.x(), place.y(), place.z()));
+      }
+    do {
+      deformation.deform(1, 0);
+      result.residual = 0;
+      for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
+        if (used[v] == 0 || has_held[component[v]] == 0) continue;
+        const Kernel::Point_3& p = mesh.point(number[v]);
+        const Vec3 place(p.x(), p.y(), p.z());
+        result.residual = std::max(result.residual, (place - moved[v]).norm());
+        moved[v] = place;
+      }
+      progress.at("rigid as possible", static_cast<double>(++result.iterations) / iterations);
+    } while (result.iterations < iterations && result.residual > handles_residual);
+    std::vector<Face> solved;
+    for (const Face& face : cage.faces)
+      if (has_held[component[face[0]]] != 0) solved.push_back(face);
+    result.energy = rigidity_energy(rest, moved, solved);
+  }
+  for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
+    // A component that is held where it was keeps its bits.
+    const bool stands = motions[component[v]].is_exact && motions[component[v]].turn.isIdentity(0) &&
+                        motions[component[v]].shift.isZero(0);
+    if (used[v] != 0 && has_held[component[v]] != 0 && !stands) result.vertices[v] = box.center() + moved[v] * size;
+  }
   for (const HandledVertex& h : held) result.vertices[h.vertex] = h.place;
   return result;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh_ops/base/progress.h"
 #include "mesh_ops/deform/cage.h"
 
 namespace rebake {
@@ -17,10 +18,18 @@ struct HandledVertex {
 struct HandledCage {
   std::vector<Vec3> vertices;
   std::size_t free_components = 0;  ///< no vertex held: they stay where they are
+  int iterations = 0;               ///< that were done
+  double residual = 0;              ///< the farthest that a vertex went in the last one, in diagonals of the cage
+  double energy = 0;                ///< what is left of it: 0 where the motion is rigid; of a cage of diagonal 1
 };
 
-/// `iterations` of local and global steps; more come nearer to the minimum. Throws Error when nothing is held, and when
-/// the mesh cannot be solved for.
-HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVertex>& held, int iterations);
+/// Iterations stop at this residual.
+inline constexpr double handles_residual = 1e-6;
+
+/// Starts from the rigid motion that fits the held vertices of each component best (Kabsch 1976), which is the answer
+/// where they moved rigidly, whatever the angle; then up to `iterations` local and global steps. What is held where it
+/// was moves nothing, bit for bit. Throws Error when nothing is held, and when the mesh cannot be solved for.
+HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVertex>& held, int iterations,
+                                 const Progress& progress = {});
 
 }  // namespace rebake

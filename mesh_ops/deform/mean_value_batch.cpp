@@ -96,17 +96,30 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
         const double closed = -(begin * first_end - end * second_end - value) * by_c * by_c;
         // −2 d(θ/c)/dc² by the series, where the closed form is 0 / 0: Σ (−1)ⁿ⁺¹ 2n βₙ c²ⁿ⁻² / (2n + 1).
         const double nearer = least(fabs(begin), fabs(end));
-        const bool beyond = begin * end > 0 && cc < series_ratio * series_ratio * nearer * nearer;
-        const double u = 1 / (begin + (begin >= 0 ? tiny : -tiny)), v = 1 / (end + (end >= 0 ? tiny : -tiny));
+        // A product of numbers where a condition would become a branch, and the loop no vectors.
+        const double beyond = (begin * end > 0 ? 1.0 : 0.0) *
+                              (cc < series_ratio * series_ratio * nearer * nearer ? 1.0 : 0.0);
+        const double u = 1 / (beyond * begin + (1 - beyond)), v = 1 / (beyond * end + (1 - beyond));
         const double uu = u * u, vv = v * v, odd = v * (u + v);
         double powers = uu + odd, v_power = vv, term = length * u * v, series = 0;
-        for (int n = 1; n <= 10; ++n) {
-          series += term * powers * (2.0 * n / (2.0 * n + 1));
+        // Written out: a loop within would keep the one over lanes from becoming vectors.
+        const auto add = [&](double share) __attribute__((always_inline)) {
+          series += term * powers * share;
           powers = powers * uu + v_power * odd;
           v_power = v_power * vv;
-          term = -term * cc;
-        }
-        const double across = beyond ? series : closed;
+          term = -term * beyond * cc;
+        };
+        add(2.0 / 3);
+        add(4.0 / 5);
+        add(6.0 / 7);
+        add(8.0 / 9);
+        add(10.0 / 11);
+        add(12.0 / 13);
+        add(14.0 / 15);
+        add(16.0 / 17);
+        add(18.0 / 19);
+        add(20.0 / 21);
+        const double across = beyond * series + (1 - beyond) * closed;
         const double along = -(second_end - first_end) - across * begin;
         q[lanes + lane] = across * ex + along * tx;
         q[2 * lanes + lane] = across * ey + along * ty;

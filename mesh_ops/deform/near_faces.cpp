@@ -204,11 +204,11 @@ void add_near_faces(const CageFrame& cage, const pl::Point<T>& local, std::span<
   add_faces(cage, local, near, weights);
 }
 
-void mend_gradients(const CageFrame& cage, const pl::Point<Dual>& local, std::span<const FaceFrame* const> near,
+bool mend_gradients(const CageFrame& cage, const pl::Point<Dual>& local, std::span<const FaceFrame* const> near,
                     std::span<pl::GreenTerms<Dual>> terms) {
   const Vec3 at = values_of(local);
-  if (near.empty() || least_distance(cage, at, near) >= quad_distance) return;
-  if (near.size() == 1 && is_over(pl::seen(cage, *near.front(), local))) return;
+  if (near.empty() || least_distance(cage, at, near) >= quad_distance) return false;
+  if (near.size() == 1 && is_over(pl::seen(cage, *near.front(), local))) return false;
   const pl::Point<WideDual> place = gradient_place(cage, at, near);
   for (std::size_t n = 0; n < near.size(); ++n) {
     const WideFace wide = wide_face(cage, *near[n]);
@@ -216,6 +216,7 @@ void mend_gradients(const CageFrame& cage, const pl::Point<Dual>& local, std::sp
     for (std::size_t k = 0; k < 3; ++k) set_gradient(terms[n].corners[k], exact.corners[k]);
     set_gradient(terms[n].face, exact.face);
   }
+  return true;
 }
 
 template void add_near_faces(const CageFrame&, const pl::Point<double>&, std::span<const FaceFrame* const>,

@@ -25,8 +25,8 @@ void add_near_faces(const CageFrame& cage, const plane_local::Point<T>& local, s
                     std::vector<T>& weights);
 
 /// Gradients of what near faces weigh by Green's coordinates (times 4π), where double does not hold them: `terms` keep
-/// their values. Does nothing where it does.
-void mend_gradients(const CageFrame& cage, const plane_local::Point<Dual>& local,
+/// their values. Returns whether it had to.
+bool mend_gradients(const CageFrame& cage, const plane_local::Point<Dual>& local,
                     std::span<const FaceFrame* const> near, std::span<plane_local::GreenTerms<Dual>> terms);
 
 }  // namespace rebake

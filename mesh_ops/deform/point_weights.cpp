@@ -98,12 +98,16 @@ bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_co
       nearest_face = f;
     }
   }
-  if constexpr (std::is_same_v<T, Dual>) mend_gradients(cage, x, near, near_terms);
+  bool mended = false;
+  if constexpr (std::is_same_v<T, Dual>) mended = mend_gradients(cage, x, near, near_terms);
   for (std::size_t n = 0; n < near.size(); ++n) add(near_numbers[n], near_terms[n]);
   // Outside the sum is 0, inside 1; between them only on the surface.
   if (!(value_of(sum) > 0.125 || nearest <= 4 * pl::epsilon<T> * extent)) return false;
   const FaceFrame& face = cage.faces[nearest_face];
-  const auto lambda = nearest_coordinates(face, pl::seen(cage, face, x));
+  auto lambda = nearest_coordinates(face, pl::seen(cage, face, x));
+  // Mended gradients are those of a place where nothing is missing.
+  if (mended)
+    for (T& share_of_corner : lambda) share_of_corner = pl::constant<T>(value_of(share_of_corner));
   const T missing = pl::constant<T>(1) - sum;
   for (std::size_t k = 0; k < 3; ++k) phi[face.vertices[k]] += missing * lambda[k];
   return true;

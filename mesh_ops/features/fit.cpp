@@ -9,6 +9,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "mesh_ops/base/elementary.h"
+
 // Adam: Kingma & Ba 2015. The network is evaluated for `lanes` observations at once in structure-of-arrays form, which
 // the compiler vectorises.
 
@@ -226,7 +228,7 @@ class Fitter {
 
  private:
   float rate_at(double share) const {
-    return static_cast<float>(options_.learning_rate * (0.01 + 0.99 * 0.5 * (1 + std::cos(std::numbers::pi * share))));
+    return static_cast<float>(options_.learning_rate * (0.01 + 0.99 * 0.5 * (1 + elementary::sine_cosine(std::numbers::pi * share).cosine)));
   }
 
   float feature(std::size_t texel, std::size_t c) const {

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh_ops/base/elementary.h"
 #include "mesh_ops/base/error.h"
 
 namespace rebake {
 
 double half_height(const Camera& camera, double depth) {
-  return camera.orthographic() ? camera.ortho_height / 2
-                               : depth * std::tan(camera.fov_degrees * std::numbers::pi / 360);
+  if (camera.orthographic()) return camera.ortho_height / 2;
+  const auto half = elementary::sine_cosine(camera.fov_degrees * std::numbers::pi / 360);
+  return depth * (half.sine / half.cosine);
 }
 
 Mat3 world_to_camera(const Camera& camera) {

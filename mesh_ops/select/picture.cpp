@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "mesh_ops/base/elementary.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/index/index.h"
@@ -232,8 +233,8 @@ std::vector<Standpoint> eyes_around(const Box& box, int count, double distance) 
   const double radius = distance * box.diagonal().norm() / 2;
   for (int i = 0; i < count; ++i) {
     const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z);
-    const double angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    eyes.push_back({box.center() + radius * Vec3(r * std::cos(angle), z, r * std::sin(angle)), Vec3::Zero()});
+    const auto angle = elementary::sine_cosine(i * std::numbers::pi * (3 - std::sqrt(5.0)));
+    eyes.push_back({box.center() + radius * Vec3(r * angle.cosine, z, r * angle.sine), Vec3::Zero()});
   }
   return eyes;
 }

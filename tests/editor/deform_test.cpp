@@ -8,6 +8,7 @@
 #include "editor/commands/session.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/deform/cage.h"
 #include "mesh_ops/formats/export.h"
 #include "render/compare.h"
 #include "render/graph/plan.h"
@@ -85,6 +86,48 @@ TEST_F(DeformScript, ARigidMotionByACageIsThatOfTheNode) {
     EXPECT_GE(compare(picture(), by_node, 2).psnr_db, 48) << cage;
     run(R"({"op": "undo"})");
     EXPECT_TRUE(picture().rgb == before.rgb) << "undo restores every bit";
+  }
+}
+
+// The points of a box that is its own cage lie on faces, edges and corners of the cage, where rotations once were
+// wrong by up to 180°.
+TEST_F(DeformScript, ABoxTurnedByItsOwnCageLooksAsTurned) {
+  const Cage cells = lattice_cage(Box(Vec3(-0.75, -0.875, -0.625), Vec3(0.75, 0.875, 0.625)), 4, 4, 4);
+  std::string text = "mtllib shape0.mtl\n";
+  std::vector<Vec2> uvs;
+  for (const Vec3& v : cells.vertices) text += fmt::format("v {} {} {}\n", v.x(), v.y(), v.z());
+  BakedObject box = ball();
+  std::vector<Vec3> positions;
+  std::vector<Face> faces;
+  for (const Face& face : cells.faces) {
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    for (std::size_t k = 0; k < 3; ++k) {
+      positions.push_back(cells.vertices[face[k]]);
+      uvs.emplace_back(0.05 + 0.1 * static_cast<double>(k == 1), 0.05 + 0.1 * static_cast<double>(k == 2));
+    }
+    faces.push_back({first, first + 1, first + 2});
+  }
+  box.sets = {box.sets[0]};
+  box.sets[0].soup = Soup(positions, uvs, faces);
+  export_scene(scene_of(std::make_shared<BakedObject>(box)), folder_.path() / "box", {});
+  run(R"({"op": "import", "path": "{here}/box", "as": "box"})" "\n" R"({"op": "hide", "node": "ball"})");
+  run(R"({"op": "transform", "node": "box", "rotate": {"axis": [0, 1, 0], "degrees": 180}, "pivot": [0, 0, 0]})");
+  const Image by_node = picture();
+  run(R"({"op": "undo"})");
+  write_text(folder_.path() / "own.obj", [&] {
+    std::string obj;
+    const Cage own = lattice_cage(Box(Vec3(-0.75, -0.875, -0.625), Vec3(0.75, 0.875, 0.625)), 1, 1, 1);
+    for (const Vec3& v : own.vertices) obj += fmt::format("v {} {} {}\n", v.x(), v.y(), v.z());
+    for (const Face& f : own.faces) obj += fmt::format("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1);
+    return obj;
+  }());
+  for (const char* coordinates : {"mean_value", "green"}) {
+    said.clear();
+    run(fmt::format(R"({{"op": "cage", "node": "box", "mesh": "{}", "coordinates": "{}", "moves": [{{"box": {{"min": [-9, -9, -9], "max": [9, 9, 9]}}, "rotate": {{"axis": [0, 1, 0], "degrees": 180}}, "pivot": [0, 0, 0]}}]}})",
+                    (folder_.path() / "own.obj").string(), coordinates));
+    EXPECT_EQ(said.find("fold"), std::string::npos) << said;
+    EXPECT_LE(compare(picture(), by_node, 2).largest, 2) << coordinates;
+    run(R"({"op": "undo"})");
   }
 }
 

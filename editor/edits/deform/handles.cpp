@@ -24,10 +24,14 @@ Outcome apply(const Scene& scene, const HandlesDeform& edit, const Progress& pro
     for (const std::uint32_t v : points_of(move, cage, shares)) held.insert_or_assign(v, asked[v]);
   std::vector<HandledVertex> places;
   for (const auto& [vertex, place] : held) places.push_back({vertex, place});
-  const HandledCage moved = as_rigid_as_possible(cage, places, edit.iterations);
+  const HandledCage moved = as_rigid_as_possible(cage, places, edit.iterations, progress);
   std::vector<std::string> notes = notes_on(cage, moved.vertices);
   if (moved.free_components > 0)
     notes.push_back(fmt::format("{} parts of the cage hold no point and stay", moved.free_components));
+  if (moved.iterations > 0)
+    notes.push_back(fmt::format("rigid to a residual of {:.1g} diagonals after {} iterations{}, energy {:.3g}",
+                                moved.residual, moved.iterations,
+                                moved.residual > handles_residual ? "; more come nearer" : "", moved.energy));
   const auto coordinates = mean_value_coordinates(cage);
   return with_deformed(
       scene, set, edit.target.falloff,
@@ -48,7 +52,7 @@ REBAKE_DESCRIBE_EDIT(
             "points of the cage that are moved; boxes and spheres in world units, with frame bounds in shares of the "
             "cage's box");
       visit("fixed", edit.fixed, Need::optional, "points of the cage that are held where they are");
-      visit("iterations", edit.iterations, Need::optional, "1 to 1000; more come nearer to rigid, and take longer");
+      visit("iterations", edit.iterations, Need::optional, "1 to 1000, at most; it ends sooner where nothing moves by more than a millionth of the cage's size");
     })
 
 }  // namespace rebake

@@ -11,7 +11,7 @@ struct HandlesDeform {
   CageSource cage;
   CageMoves moves;
   CageMoves fixed;
-  int iterations = 10;
+  int iterations = 200;
 };
 template <>
 const EditType& edit_type<HandlesDeform>();

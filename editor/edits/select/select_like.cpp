@@ -1,5 +1,6 @@
 #include "editor/edits/select/select_like.h"
 
+#include "mesh_ops/base/elementary.h"
 #include "editor/edits/describe.h"
 
 #include <tbb/parallel_for.h>
@@ -92,7 +93,7 @@ Scene apply(const Scene& scene, const SelectLike& edit) {
   }
   const Likeness model = mean_of(targets, picked);
   const double least_cosine =
-      edit.orientation ? std::cos(std::min(*edit.orientation, 90.0) * std::numbers::pi / 180) : 0;
+      edit.orientation ? elementary::sine_cosine(std::min(*edit.orientation, 90.0) * std::numbers::pi / 180).cosine : 0;
   return with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
     const auto traits = traits_of(*placed.node->object);
     const WorldShape shape(placed);
