@@ -46,6 +46,18 @@ void for_blocks(const Coordinates& coordinates, const std::vector<Vec3>& points,
   });
 }
 
+// What all vertices move alike, taken out of their motions where it is most of them: their weights sum to 1 but for
+// rounding, which a long way would multiply.
+Vec3 take_shift(std::vector<Vec3>& motions, std::size_t vertices) {
+  Vec3 mean(0, 0, 0);
+  for (std::size_t v = 0; v < vertices; ++v) mean += motions[v] / static_cast<double>(vertices);
+  double spread = 0;
+  for (std::size_t v = 0; v < vertices; ++v) spread = std::max(spread, (motions[v] - mean).stableNorm());
+  if (!(2 * spread < mean.stableNorm())) return Vec3(0, 0, 0);
+  for (std::size_t v = 0; v < vertices; ++v) motions[v] -= mean;
+  return mean;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> curve_order(const std::vector<Vec3>& points) {
@@ -79,7 +91,8 @@ DeformedPoints deform_points(const Coordinates& coordinates, const Cage& rest, c
   result.outside.assign(points.size(), 0);
   if (jacobians) result.jacobians.assign(points.size(), Mat3::Identity());
   if (points.empty()) return result;
-  const std::vector<Vec3> motions = coordinates.row_motions(rest, moved);
+  std::vector<Vec3> motions = coordinates.row_motions(rest, moved);
+  const Vec3 shift = take_shift(motions, rest.vertices.size());
   const std::vector<std::uint32_t> order = curve_order(points);
   for_blocks(coordinates, points, order, jacobians, progress,
              [&](std::size_t block, const std::vector<double>& weights, const std::vector<double>& slopes,
@@ -96,7 +109,7 @@ DeformedPoints deform_points(const Coordinates& coordinates, const Cage& rest, c
                    const double* slope = slopes.data() + row * 3 * batch_lanes + lane;
                    jacobian += motions[row] * Vec3(slope[0], slope[batch_lanes], slope[2 * batch_lanes]).transpose();
                  }
-                 result.points[point] = points[point] + motion;
+                 result.points[point] = points[point] + (shift + motion);
                  if (jacobians) result.jacobians[point] = jacobian;
                }
              });
@@ -147,7 +160,9 @@ MovingRows moving_rows(const std::vector<Vec3>& motions) {
 
 void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& out) const {
   out.resize(points_.size());
-  const MovingRows moving = moving_rows(coordinates_.row_motions(rest_, moved));
+  std::vector<Vec3> motions = coordinates_.row_motions(rest_, moved);
+  const Vec3 shift = take_shift(motions, rest_.vertices.size());
+  const MovingRows moving = moving_rows(motions);
   const std::size_t block_size = coordinates_.rows() * batch_lanes;
   const RowSums sum_rows = row_sums();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_of(points_.size()), 64), [&](const auto& range) {
@@ -157,9 +172,9 @@ void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& o
                sums.data());
       for (std::size_t lane = 0; lane < batch_lanes && block * batch_lanes + lane < order_.size(); ++lane) {
         const std::uint32_t point = order_[block * batch_lanes + lane];
-        out[point] =
-            points_[point] + Vec3(static_cast<double>(sums[lane]), static_cast<double>(sums[batch_lanes + lane]),
-                                  static_cast<double>(sums[2 * batch_lanes + lane]));
+        out[point] = points_[point] + (shift + Vec3(static_cast<double>(sums[lane]),
+                                                    static_cast<double>(sums[batch_lanes + lane]),
+                                                    static_cast<double>(sums[2 * batch_lanes + lane])));
       }
     }
   });

@@ -116,6 +116,10 @@ CageFrame frame_of(const Cage& cage) {
   return frame;
 }
 
+std::array<Quad, 3> wide_place(const CageFrame& cage, const Vec3& point) {
+  return rounded<Quad>(wide_local(cage, point));
+}
+
 WideFace wide_face(const CageFrame& cage, const FaceFrame& face) {
   std::array<Wide3, 3> corners;
   for (std::size_t k = 0; k < 3; ++k) corners[k] = wide_local(cage, cage.given[face.vertices[k]]);

@@ -9,6 +9,9 @@ namespace rebake {
 /// 113 bits, for the few terms that cancel beyond what double holds.
 using Quad = boost::multiprecision::cpp_bin_float_quad;
 
+/// A point of the cage's space in the cage's frame.
+std::array<Quad, 3> wide_place(const CageFrame& cage, const Vec3& point);
+
 /// A face of the cage in the cage's frame.
 struct WideFace {
   FaceFrameOf<Quad> frame;

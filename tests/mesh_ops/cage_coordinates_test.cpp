@@ -372,6 +372,33 @@ TEST(Green, WeightsAreNumbersOnTheSurface) {
     for (const double weight : weights_at(*coordinates, point)) EXPECT_TRUE(std::isfinite(weight));
 }
 
+// Stretches of faces, from their deformed corners: in doubles those of needles were off by rounding over their height.
+TEST(Green, RigidMotionsOfNeedlesStretchNothing) {
+  for (const double thin : {1e-3, 1e-6, 1e-9}) {
+    const Cage cage = needles(thin);
+    // By right angles, so that the moved corners are exact and only the formula can err.
+    Mat3 turn;
+    turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+    std::vector<Vec3> moved = cage.vertices;
+    for (Vec3& v : moved) v = turn * v;
+    const std::vector<Vec3> motions = green_coordinates(cage)->row_motions(cage, moved);
+    for (std::size_t f = 0; f < cage.faces.size(); ++f) {
+      const Face& face = cage.faces[f];
+      const Gold3 a = gold(cage.vertices[face[0]]), b = gold(cage.vertices[face[1]]), c = gold(cage.vertices[face[2]]);
+      Gold3 n;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        n[k] = (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
+      }
+      const Gold size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+      const Vec3 normal(static_cast<double>(n[0] / size), static_cast<double>(n[1] / size),
+                        static_cast<double>(n[2] / size));
+      const Vec3 want = (turn * normal - normal) / frame_of(cage).scale;
+      EXPECT_LE((motions[cage.vertices.size() + f] - want).norm(), 1e-15) << thin << " face " << f;
+    }
+  }
+}
+
 // The Jacobian of a given motion of the cage's rows.
 Mat3 jacobian_of(const std::vector<Vec3>& gradients, const std::vector<Vec3>& motions) {
   Mat3 jacobian = Mat3::Identity();

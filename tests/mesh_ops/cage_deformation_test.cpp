@@ -8,6 +8,20 @@
 namespace rebake::test {
 namespace {
 
+// Weights sum to 1 but for rounding; a million diagonals away that once was a million times as much.
+TEST(CageDeformation, AFarTranslationTakesPointsAlong) {
+  const Cage cage = dented();
+  const Vec3 far(1e6, -3e6, 2e6);
+  std::vector<Vec3> moved = cage.vertices;
+  for (Vec3& v : moved) v += far;
+  const std::vector<Vec3> points = hard_points(cage);
+  const DeformedPoints result = deform_points(*mean_value_coordinates(cage), cage, moved, points, false);
+  double worst = 0;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    worst = std::max(worst, (result.points[k] - (points[k] + far)).norm());
+  EXPECT_LE(worst, 1.5e-9) << "what rounding at 3e6 leaves: half a step a number";
+}
+
 TEST(CageDeformation, TheIdentityChangesNoBitAndEqualPointsMoveAlike) {
   const Cage cage = dented();
   std::vector<Vec3> points = hard_points(cage);
