@@ -30,40 +30,96 @@ namespace fs = std::filesystem;
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using nlohmann::json;
 
 // Where the batch keeps what it knows of a scene: a mark when it is done, and what its process said.
 fs::path state_folder(const BatchOptions& options) { return options.out / ".rebake-batch"; }
 
-// What a result depends on. A scene that was done under the same key need not be done again.
+// What a result depends on, but for the files that the script itself names. A scene that was done under the same key
+// need not be done again.
 std::string key_of(const BatchOptions& options, const std::string& script, const fs::path& scene) {
-  std::string all = fmt::format("{} {:016x} {:016x}", REBAKE_VERSION, content_hash(script), folder_hash(scene));
+  std::string all = fmt::format("{} {:016x} {:016x} {:016x}", REBAKE_VERSION, content_hash(read_file(options.program)),
+                                content_hash(script), folder_hash(scene));
   for (const std::string& variable : options.variables) all += '\n' + variable;
-  return fmt::format("{:016x}", content_hash(all));
+  return hash_text(content_hash(all));
 }
 
-// The folders that a scene's script exported, from the list that its process wrote.
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
+// What a scene's process read and exported, and its key: the mark that it is done.
+struct Mark {
+  struct File {
+    std::string path, content;
+  };
+  std::string key;
+  std::vector<File> read, wrote;
+};
+
+// One JSON object a line; what is none is left out.
+Mark mark_from(const std::string& text) {
+  Mark mark;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    lines.push_back(text.substr(begin, end - begin));
+    const json line = json::parse(text.begin() + static_cast<std::ptrdiff_t>(begin),
+                                  text.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
     begin = end + 1;
+    if (!line.is_object()) continue;
+    mark.key = line.value("key", mark.key);
+    if (line.contains("read")) mark.read.push_back({line.value("read", ""), line.value("content", "")});
+    if (line.contains("wrote")) mark.wrote.push_back({line.value("wrote", ""), line.value("content", "")});
   }
-  return lines;
+  return mark;
 }
 
-// Whether a scene was done under this key and all that it exported is still there. The mark holds both.
-bool still_done(const fs::path& mark, const std::string& key) {
-  if (!fs::exists(mark)) return false;
-  const std::vector<std::string> lines = lines_of(read_file(mark));
-  return !lines.empty() && lines[0] == key &&
-         std::all_of(lines.begin() + 1, lines.end(), [](const std::string& folder) { return fs::exists(folder); });
+Mark read_mark(const fs::path& path) { return fs::exists(path) ? mark_from(read_file(path)) : Mark(); }
+
+bool is_as_it_was(const Mark::File& file) {
+  try {
+    return hash_text(fs::is_directory(file.path) ? folder_hash(file.path) : content_hash(read_file(file.path))) ==
+           file.content;
+  } catch (const FileError&) {
+    return false;
+  }
 }
+
+// Whether a scene was done under this key from files that are still the same, and all that it exported is whole.
+bool still_done(const Mark& mark, const std::string& key) {
+  return mark.key == key && std::all_of(mark.read.begin(), mark.read.end(), is_as_it_was) &&
+         std::all_of(mark.wrote.begin(), mark.wrote.end(), is_as_it_was);
+}
+
+// Says of every exported folder whose it is, to all shards.
+class Claims {
+ public:
+  explicit Claims(fs::path folder) : folder_(std::move(folder)) { fs::create_directories(folder_); }
+
+  // The scene that exported there too; empty where there is none.
+  std::string claim(const std::string& exported, const std::string& scene) const {
+    const fs::path path = path_of(exported);
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0) {
+      const bool whole = ::write(file, scene.data(), scene.size()) == static_cast<ssize_t>(scene.size());
+      ::close(file);
+      if (!whole) throw FileError(path, "cannot be written");
+      return "";
+    }
+    if (errno != EEXIST) throw FileError(path, "cannot be made");
+    const std::string other = read_file(path);
+    return other == scene ? "" : other.empty() ? "another scene" : other;
+  }
+  void release(const std::string& exported, const std::string& scene) const {
+    const fs::path path = path_of(exported);
+    if (fs::exists(path) && read_file(path) == scene) fs::remove(path);
+  }
+
+ private:
+  fs::path path_of(const std::string& exported) const { return folder_ / hash_text(content_hash(exported)); }
+
+  fs::path folder_;
+};
 
 // So that all processes together have a thread a core.
 int threads_of_each(int jobs) { return std::max(1, tbb::this_task_arena::max_concurrency() / jobs); }
 
-pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& log, const fs::path& exports) {
+pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& log, const fs::path& files_list) {
   std::vector<std::string> words{options.program,
                                  "run",
                                  options.script,
@@ -71,8 +127,8 @@ pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& 
                                  scene.string(),
                                  "--out",
                                  options.out / folder_title(scene),
-                                 "--list-exports",
-                                 exports,
+                                 "--list-files",
+                                 files_list,
                                  "--threads",
                                  std::to_string(threads_of_each(options.jobs)),
                                  "--parent",
@@ -170,6 +226,10 @@ std::vector<fs::path> batch_scenes(const BatchOptions& options) {
       if (fs::weakly_canonical(out / folder_title(folder)) == fs::weakly_canonical(folder))
         throw FieldError("--out", fmt::format("the result of {} would replace the scene itself; choose another folder",
                                               folder.string()));
+      if (!options.report.empty() &&
+          fs::weakly_canonical(options.report) == fs::weakly_canonical(out / folder_title(folder)))
+        throw FieldError("--report", fmt::format("the result of {} would lie where the report does; name another file",
+                                                 folder.string()));
       const auto [other, added] = by_name.emplace(folder_title(folder), folder);
       if (!added && fs::weakly_canonical(other->second) != fs::weakly_canonical(folder))
         throw FieldError("--scenes", fmt::format("{} and {} have one name, and their results would too; run them apart",
@@ -178,9 +238,9 @@ std::vector<fs::path> batch_scenes(const BatchOptions& options) {
   }
   if (by_name.empty()) throw FieldError("--scenes", "matches no folder");
   std::vector<fs::path> mine;
-  int number = 0;
+  const auto shards = static_cast<std::uint64_t>(options.shards);
   for (const auto& [name, folder] : by_name)
-    if (number++ % options.shards == options.shard - 1) mine.push_back(folder);
+    if (content_hash(name) % shards == static_cast<std::uint64_t>(options.shard - 1)) mine.push_back(folder);
   return mine;
 }
 
@@ -193,7 +253,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
   if (error) throw FileError(options.out, "cannot be made: " + error.message());
   Processes running;
   std::vector<BatchResult> results(scenes.size());
-  std::map<std::string, std::string> exported_by;
+  const Claims claims(state_folder(options) / "claims");
   std::size_t next = 0, over = 0;
   // Also where the wish to stop arrives.
   const auto report = [&](std::size_t more) {
@@ -215,12 +275,14 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
       bool started = false;
       try {
         const std::string key = key_of(options, script, scenes[k]);
-        if (options.resume && still_done(mark, key)) {
+        const Mark before = read_mark(mark);
+        if (options.resume && still_done(before, key)) {
           result.status = BatchResult::Status::skipped;
         } else {
+          for (const Mark::File& folder : before.wrote) claims.release(folder.path, result.name);
           fs::remove(mark);
           running.add(start(options, scenes[k], state_folder(options) / (result.name + ".log"),
-                            state_folder(options) / (result.name + ".exports")),
+                            state_folder(options) / (result.name + ".files")),
                       {k, key, Clock::now()});
           started = true;
         }
@@ -241,17 +303,17 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
     BatchResult& result = results[job.scene];
     result.seconds = std::chrono::duration<double>(Clock::now() - job.since).count();
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
-      const std::string exports = read_file(state_folder(options) / (result.name + ".exports"));
+      const std::string files = read_file(state_folder(options) / (result.name + ".files"));
       result.status = BatchResult::Status::done;
-      for (const std::string& folder : lines_of(exports))
-        if (const auto [other, added] = exported_by.emplace(folder, result.name);
-            !added && other->second != result.name) {
+      for (const Mark::File& folder : mark_from(files).wrote)
+        if (const std::string other = claims.claim(folder.path, result.name); !other.empty()) {
           result.status = BatchResult::Status::failed;
           result.message =
-              fmt::format("{} is the export of {} too: put {{name}} into the script's path", folder, other->second);
+              fmt::format("{} is the export of {} too: put {{name}} into the script's path", folder.path, other);
         }
       if (result.status == BatchResult::Status::done)
-        write_file_atomically(state_folder(options) / (result.name + ".done"), job.key + '\n' + exports, {});
+        write_file_atomically(state_folder(options) / (result.name + ".done"),
+                              json{{"key", job.key}}.dump() + '\n' + files, {});
     } else {
       result.message = last_error(state_folder(options) / (result.name + ".log"), status);
     }

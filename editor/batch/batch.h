@@ -16,8 +16,10 @@ struct BatchOptions {
   std::filesystem::path out;           ///< a scene's result goes to out/NAME, unless the script exports
   std::vector<std::string> variables;  ///< name=value, for the script
   int jobs = 1;
-  bool resume = false;            ///< leave out what was done before with the same version, script, variables and scene
-  int shard = 1, shards = 1;      ///< of all scenes in order, every shards-th from the shard-th on
+  bool resume = false;            ///< leave out what was done before with the same program, script, variables and
+                                  ///< files, and whose results are still as they were written
+  int shard = 1, shards = 1;      ///< scenes fall to shards by their names: each task may see another list of them
+  std::filesystem::path report;   ///< where its caller writes a report; empty: nowhere
   std::filesystem::path program;  ///< that is run for each scene: rebake itself
 };
 
@@ -32,11 +34,14 @@ struct BatchResult {
 
 const char* to_string(BatchResult::Status status);
 
-/// The folders that the patterns match and that are this shard's, by name. Throws FieldError when a pattern matches
-/// nothing, when two scenes have one name, and when a result would replace its scene.
+/// The folders that the patterns match and that are this shard's, by name; none where others have them all. Throws
+/// FieldError when a pattern matches nothing, when two scenes have one name, and when a result would replace its scene
+/// or lie where the report does.
 std::vector<std::filesystem::path> batch_scenes(const BatchOptions& options);
 
-/// Runs all, and reports each as it ends. Results come in the order of the scenes. Throws FileError when the script or
+/// Runs all, and reports each as it ends. Shards that run at one time need a file system that all of them see alike and
+/// that makes a file for one of them only (O_EXCL), as local ones, NFS 3 and later, and Lustre do: so they find out
+/// when two scenes export to one folder. Results come in the order of the scenes. Throws FileError when the script or
 /// the output folder is no good, Cancelled when stopping was asked for (what is done stays done).
 std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& progress,
                                    const std::function<void(const BatchResult&)>& ended);

@@ -34,15 +34,25 @@ nlohmann::json to_json(const BatchResult& result) {
   return line;
 }
 
+std::string on_one_line(const std::string& text) {
+  std::string line;
+  for (const char c : printable(text))
+    if (c == '\n')
+      line += "\\n";
+    else
+      line += c;
+  return line;
+}
+
 void print_table(const std::vector<BatchResult>& results) {
   std::size_t width = 5;
-  for (const BatchResult& result : results) width = std::max(width, result.name.size());
+  for (const BatchResult& result : results) width = std::max(width, on_one_line(result.name).size());
   fmt::print("{:<{}}  {:<8} {:>8}  message\n", "scene", width, "status", "seconds");
   std::size_t failed = 0;
   for (const BatchResult& result : results) {
     failed += result.status == BatchResult::Status::failed ? 1 : 0;
-    fmt::print("{:<{}}  {:<8} {:>8.2f}  {}\n", result.name, width, to_string(result.status), result.seconds,
-               result.message);
+    fmt::print("{:<{}}  {:<8} {:>8.2f}  {}\n", on_one_line(result.name), width, to_string(result.status),
+               result.seconds, on_one_line(result.message));
   }
   fmt::print("{} scenes, {} failed\n", results.size(), failed);
 }
@@ -64,8 +74,12 @@ void describe_batch(CommandDescription& command) {
       .required();
   command.option("--var", options->batch.variables, "gives {name} in the script's texts a value", "name=value...");
   command.option("--jobs", options->batch.jobs, "scenes at a time", "N [1]").between(1, 1024);
-  command.flag("--resume", options->batch.resume, "leave out what was done before with this script and scene");
-  command.option("--shard", options->shard, "only the i-th of n parts, for a scheduler to run all of them", "i/n");
+  command.flag("--resume", options->batch.resume,
+               "leave out what was done before with this program, script and scene, and is still whole");
+  command.option("--shard", options->shard,
+                 "only the i-th of n parts, by the scenes' names, for a scheduler to run all of them on a file system "
+                 "that all see",
+                 "i/n");
   command.option("--report", options->report, "one JSON object a line for each scene", "FILE [FOLDER/report.jsonl]");
   command.does([options] {
     BatchOptions& batch = options->batch;
@@ -80,12 +94,13 @@ void describe_batch(CommandDescription& command) {
         throw FieldError("--var", fmt::format("\"{}\" must be name=value", variable));
     // What is wrong with script and patterns is said before anything is made.
     read_file(batch.script);
-    batch_scenes(batch);
-    std::filesystem::create_directories(batch.out, error);
     const std::filesystem::path report =
         !options->report.empty() ? std::filesystem::path(options->report)
         : batch.shards > 1       ? batch.out / fmt::format("report-{}-of-{}.jsonl", batch.shard, batch.shards)
                                  : batch.out / "report.jsonl";
+    batch.report = report;
+    batch_scenes(batch);
+    std::filesystem::create_directories(batch.out, error);
     std::ofstream lines(report);
     if (!lines) throw FileError(report, "cannot be written");
     const std::vector<BatchResult> results = run_batch(batch, progress_bar(), [&](const BatchResult& result) {

@@ -8,6 +8,7 @@
 #include "editor/cli/commands.h"
 #include "editor/cli/options.h"
 #include "editor/cli/terminal.h"
+#include "editor/commands/views.h"
 #include "mesh_ops/base/error.h"
 #include "render/picture.h"
 
@@ -86,7 +87,11 @@ void execute(const Options& options) {
   }
   if (!options.out.empty() || options.time > 0) {
     Renderer renderer;
-    if (!options.out.empty()) write_png(renderer.render(scene, view, how), options.out, sources);
+    if (!options.out.empty()) {
+      const Image picture = renderer.render(scene, view, how);
+      write_png(picture, options.out, sources);
+      if (const auto why = why_blank(scene, view, picture)) fmt::print(stderr, "note: {}\n", *why);
+    }
     if (options.time > 0) {
       const json times = measure(renderer, scene, view, how, options.time);
       if (!options.json) print_times(times);

@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "editor/cli/commands.h"
@@ -14,13 +15,47 @@
 #include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/scene_files.h"
 
 namespace rebake {
 
+namespace {
+
+using nlohmann::json;
+
+std::string line_of(const char* what, const std::filesystem::path& path, std::uint64_t content) {
+  return json{{what, std::filesystem::absolute(path).lexically_normal().string()}, {"content", hash_text(content)}}
+             .dump(-1, ' ', false, json::error_handler_t::replace) +
+         '\n';
+}
+
+// What the result of a script rests on beside the script itself, imports and files of cages, and what it exported.
+std::string file_list(const Session& session, const std::string& script,
+                      const std::map<std::string, std::string>& variables) {
+  std::string lines;
+  for (const Edit& edit : session.document.history().edits())
+    if (const auto* import = edit.as<Import>()) lines += line_of("read", import->path, folder_hash(import->path));
+  for (std::size_t begin = 0; begin < script.size();) {
+    const std::size_t end = std::min(script.find('\n', begin), script.size());
+    const json line = json::parse(script.begin() + static_cast<std::ptrdiff_t>(begin),
+                                  script.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false, true);
+    if (line.is_object() && line.contains("mesh") && line.at("mesh").is_string()) {
+      const std::string mesh = with_variables(line.at("mesh"), variables);
+      lines += line_of("read", mesh, content_hash(read_file(mesh)));
+    }
+    begin = end + 1;
+  }
+  for (const std::string& folder : session.exports) lines += line_of("wrote", folder, folder_hash(folder));
+  return lines;
+}
+
+}  // namespace
+
 void describe_run(CommandDescription& command) {
   struct Options {
-    std::string script, journal, scene, out, exports;
+    std::string script, journal, scene, out, files;
     std::vector<std::string> variables;
     bool fields = false;
     int threads = 0, parent = 0;
@@ -32,7 +67,9 @@ void describe_run(CommandDescription& command) {
   command.option("--scene", options->scene, "import this first as the node \"scene\"; gives {name} and {path}",
                  "FOLDER");
   command.option("--out", options->out, "export there at the end, unless the script exports itself", "FOLDER");
-  command.option("--list-exports", options->exports, "write the folders that were exported there, one a line", "FILE");
+  command.option("--list-files", options->files,
+                 "write there, one JSON object a line, what was read and exported, with hashes of the contents",
+                 "FILE");
   command.option("--threads", options->threads, "use at most so many threads", "N [one a core]").between(1, 4096);
   command.option("--parent", options->parent, "end when the process with this number does", "PID");
   command.flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
@@ -75,12 +112,8 @@ void describe_run(CommandDescription& command) {
         action.out = options->out;
         run(session, action);
       }
-      if (!options->exports.empty()) {
-        std::string lines;
-        for (const std::string& folder : session.exports)
-          lines += std::filesystem::absolute(folder).lexically_normal().string() + '\n';
-        write_file_atomically(options->exports, lines, session.document.sources());
-      }
+      if (!options->files.empty())
+        write_file_atomically(options->files, file_list(session, script, variables), session.document.sources());
     } catch (const Error&) {
       if (!options->journal.empty())
         session.say(fmt::format("what was done is kept in {0}: rebake recover {0} -o FILE.rebake", options->journal));

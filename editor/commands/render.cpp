@@ -12,8 +12,10 @@ namespace rebake {
 void run(Session& session, const RenderAction& action) {
   const View view =
       chosen_view(session.scene(), action.camera, action.view, action.width, action.height, action.samples);
-  write_png(session.renderer().render(session.scene(), view), action.out, session.document.sources());
+  const Image picture = session.renderer().render(session.scene(), view);
+  write_png(picture, action.out, session.document.sources());
   session.say(fmt::format("rendered {}", action.out));
+  if (const auto why = why_blank(session.scene(), view, picture)) session.say(*why);
 }
 
 REBAKE_DESCRIBE_ACTION(

@@ -40,4 +40,44 @@ View chosen_view(const Scene& scene, const std::optional<Camera>& camera, const 
   return view;
 }
 
+std::optional<std::string> why_blank(const Scene& scene, const View& view, const Image& picture) {
+  const auto& bytes = picture.rgb;
+  for (std::size_t i = 3; i < bytes.size(); ++i)
+    if (bytes[i] != bytes[i - 3]) return std::nullopt;
+  const std::string nothing = "the picture shows nothing: ";
+  Box box, seen;  // in the camera's space: right, up and depth
+  const Mat3 turn = world_to_camera(view.camera);
+  bool any_object = false;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object) continue;
+    any_object = true;
+    if (!placed.visible) continue;
+    for (const TextureSet& set : placed.node->object->sets)
+      for (const Vec3& p : set.soup.positions()) {
+        const Vec3 world = placed.to_world * p;
+        if (!world.allFinite()) continue;
+        const Vec3 q = turn * (world - view.camera.eye);
+        const Vec3 at(q.x(), q.y(), -q.z());
+        box.extend(at);
+        const double half = half_height(view.camera, at.z()), aspect = static_cast<double>(view.width) / view.height;
+        if (std::abs(at.y()) <= half && std::abs(at.x()) <= half * aspect) seen.extend(at);
+      }
+  }
+  if (!any_object) return nothing + "the scene holds no object";
+  if (box.isEmpty()) return nothing + "all that could be seen is hidden, deleted, or has no place";
+  const double near = view.camera.near_plane, far = view.camera.far_plane;
+  if (box.max().z() <= 0) return nothing + "the scene lies behind the camera";
+  if (box.min().z() >= far)
+    return nothing + fmt::format("the scene begins {:.3g} away, beyond the far plane at {:.3g}", box.min().z(), far);
+  if (box.max().z() <= near)
+    return nothing + fmt::format("the scene ends {:.3g} away, before the near plane at {:.3g}", box.max().z(), near);
+  if (seen.isEmpty())
+    return nothing + "the scene may lie beside what the camera sees; aim it at its target, or widen it";
+  if (seen.min().z() >= far || seen.max().z() <= near)
+    return nothing +
+           fmt::format("what the camera looks at lies {:.3g} to {:.3g} away, outside its planes at {:.3g} and {:.3g}",
+                       seen.min().z(), seen.max().z(), near, far);
+  return nothing + "what lies in view is transparent, or has the background's colour";
+}
+
 }  // namespace rebake

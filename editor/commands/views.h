@@ -5,6 +5,7 @@
 
 #include "mesh_ops/scene/scene.h"
 #include "render/graph/view.h"
+#include "render/image.h"
 
 namespace rebake {
 
@@ -19,5 +20,8 @@ const Camera& stored_view(const Scene& scene, const std::string& name);
 /// camera that cannot be drawn.
 View chosen_view(const Scene& scene, const std::optional<Camera>& camera, const std::string& view_name, int width,
                  int height, int samples);
+
+/// Why a picture shows nothing but the background; nothing where it shows something.
+std::optional<std::string> why_blank(const Scene& scene, const View& view, const Image& picture);
 
 }  // namespace rebake

@@ -338,7 +338,7 @@ class Document:
         coordinates: mean_value: anywhere; green: keeps shapes, inside only; harmonic: around corners, not across, inside only, on a grid
         resolution: harmonic: cells of the grid along the cage's longest side, 8 to 256; finer is nearer and slower
         """
-    def handles(self, *, moves: Sequence[dict[str, Any]], node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, lattice: Sequence[int] | None = None, wrap: float | None = None, mesh: str | dict[str, Any] | None = None, fixed: Sequence[dict[str, Any]] = [], iterations: int = 10) -> None:
+    def handles(self, *, moves: Sequence[dict[str, Any]], node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, lattice: Sequence[int] | None = None, wrap: float | None = None, mesh: str | dict[str, Any] | None = None, fixed: Sequence[dict[str, Any]] = [], iterations: int = 200) -> None:
         """Deforms triangles as rigidly as possible: some points of a wrap around them are held or moved, the rest follows.
 
         node: with those inside it; left out: all that have selected triangles
@@ -351,7 +351,7 @@ class Document:
         mesh: a closed triangle mesh in world space: a file (.obj, .off, .ply), or its vertices and faces
         moves: points of the cage that are moved; boxes and spheres in world units, with frame bounds in shares of the cage's box
         fixed: points of the cage that are held where they are
-        iterations: 1 to 1000; more come nearer to rigid, and take longer
+        iterations: 1 to 1000, at most; it ends sooner where nothing moves by more than a millionth of the cage's size
         """
     def bend(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None, direction: Vector = [1.0,0.0,0.0]) -> None:
         """Bends triangles along an axis into an arc: the axis keeps its length, what lies beyond the limits follows.

@@ -1,6 +1,8 @@
 #include "mesh_ops/deform/cage.h"
 
 #include <fmt/format.h>
+#include <array>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -62,14 +64,23 @@ double volume(const Cage& cage) {
   Box box;
   for (const Vec3& v : cage.vertices) box.extend(v);
   if (box.isEmpty()) return 0;
+  // In 50 digits: of a rod that is 1e8 times as long as wide, doubles leave nothing.
+  using Wide = boost::multiprecision::cpp_bin_float_50;
+  using Wide3 = std::array<Wide, 3>;
   const Vec3 origin = box.center();
-  double sum = 0;
+  const auto from_origin = [&](std::uint32_t v) {
+    const Vec3& p = cage.vertices[v];
+    return Wide3{Wide(p.x()) - origin.x(), Wide(p.y()) - origin.y(), Wide(p.z()) - origin.z()};
+  };
+  Wide sum = 0;
   for (const Face& face : cage.faces) {
-    const Vec3 a = cage.vertices[face[0]] - origin, b = cage.vertices[face[1]] - origin,
-               c = cage.vertices[face[2]] - origin;
-    sum += a.dot(b.cross(c)) / 6;
+    const Wide3 a = from_origin(face[0]), b = from_origin(face[1]), c = from_origin(face[2]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      sum += a[i] * (b[j] * c[k] - b[k] * c[j]);
+    }
   }
-  return sum;
+  return static_cast<double>(Wide(sum / 6));
 }
 
 std::vector<std::uint32_t> components(const Cage& cage) {
@@ -122,7 +133,14 @@ Cage checked_cage(Cage cage) {
   Cage scaled = cage;
   for (Vec3& v : scaled.vertices) v = (v - box.center()) / extent;
   const double inside = volume(scaled);
-  if (std::abs(inside) < 1e-14) throw Error("the cage encloses nothing: its volume is zero");
+  // By its surface: what encloses something is thicker than rounding there, whatever its shape.
+  double surface = 0;
+  for (const Face& face : scaled.faces)
+    surface += (scaled.vertices[face[1]] - scaled.vertices[face[0]])
+                   .cross(scaled.vertices[face[2]] - scaled.vertices[face[0]])
+                   .norm() /
+               2;
+  if (std::abs(inside) <= 1e-15 * surface) throw Error("the cage encloses nothing: its volume is zero");
   if (inside < 0)
     for (Face& face : cage.faces) std::swap(face[1], face[2]);
   return cage;

@@ -172,9 +172,9 @@ void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& o
                sums.data());
       for (std::size_t lane = 0; lane < batch_lanes && block * batch_lanes + lane < order_.size(); ++lane) {
         const std::uint32_t point = order_[block * batch_lanes + lane];
-        out[point] = points_[point] + (shift + Vec3(static_cast<double>(sums[lane]),
-                                                    static_cast<double>(sums[batch_lanes + lane]),
-                                                    static_cast<double>(sums[2 * batch_lanes + lane])));
+        out[point] = points_[point] +
+                     (shift + Vec3(static_cast<double>(sums[lane]), static_cast<double>(sums[batch_lanes + lane]),
+                                   static_cast<double>(sums[2 * batch_lanes + lane])));
       }
     }
   });

@@ -7,9 +7,11 @@
 #include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/index/index.h"
+#include "mesh_ops/index/opacity.h"
 
 namespace rebake {
 
@@ -21,11 +23,28 @@ using TreePoint = boost::geometry::model::point<double, 3, boost::geometry::cs::
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 // Fades the deformation out towards the border.
-void fade(const std::vector<Vec3>& rest, const std::vector<Vec3>& border, double falloff, DeformedPoints& deformed) {
+using TreeSegment = boost::geometry::model::segment<TreePoint>;
+
+// A piece of the border: an edge that a deformed and another triangle share, or a corner that they do.
+struct BorderPiece {
+  Vec3 begin, end;
+
+  Vec3 nearest(const Vec3& p) const {
+    const Vec3 along = end - begin;
+    const double square = along.squaredNorm();
+    return begin + (square > 0 ? std::clamp((p - begin).dot(along) / square, 0.0, 1.0) : 0.0) * along;
+  }
+};
+
+void fade(const std::vector<Vec3>& rest, const std::vector<BorderPiece>& border, double falloff,
+          DeformedPoints& deformed) {
   if (border.empty()) return;
   // In a box of size 1, so that no square of a distance overflows.
   Box box;
-  for (const Vec3& p : border) box.extend(p);
+  for (const BorderPiece& piece : border) {
+    box.extend(piece.begin);
+    box.extend(piece.end);
+  }
   for (const Vec3& p : rest)
     if (p.allFinite()) box.extend(p);
   const double size = box.sizes().maxCoeff() > 0 ? box.sizes().maxCoeff() : 1;
@@ -33,13 +52,14 @@ void fade(const std::vector<Vec3>& rest, const std::vector<Vec3>& border, double
     const Vec3 q = (p - box.min()) / size;
     return TreePoint(q.x(), q.y(), q.z());
   };
-  std::vector<std::pair<TreePoint, std::uint32_t>> entries;
-  for (std::uint32_t i = 0; i < border.size(); ++i) entries.emplace_back(point(border[i]), i);
-  const bgi::rtree<std::pair<TreePoint, std::uint32_t>, bgi::linear<16>> tree(entries);
+  std::vector<std::pair<TreeSegment, std::uint32_t>> entries;
+  for (std::uint32_t i = 0; i < border.size(); ++i)
+    entries.emplace_back(TreeSegment(point(border[i].begin), point(border[i].end)), i);
+  const bgi::rtree<std::pair<TreeSegment, std::uint32_t>, bgi::linear<16>> tree(entries);
   tbb::parallel_for(std::size_t{0}, rest.size(), [&](std::size_t i) {
     if (!rest[i].allFinite()) return;
     const auto found = tree.qbegin(bgi::nearest(point(rest[i]), 1));
-    const Vec3 away = rest[i] - border[found->second];
+    const Vec3 away = rest[i] - border[found->second].nearest(rest[i]);
     const double distance = away.stableNorm(), t = distance / falloff;
     if (t >= 1) return;
     const double share = t * t * (3 - 2 * t);
@@ -50,6 +70,41 @@ void fade(const std::vector<Vec3>& rest, const std::vector<Vec3>& border, double
     deformed.jacobians[i] =
         Mat3::Identity() + share * (deformed.jacobians[i] - Mat3::Identity()) + motion * slope.transpose();
   });
+}
+
+// Edges first, then corners that no such edge has.
+std::vector<BorderPiece> border_of(const std::vector<std::uint32_t>& places, const std::vector<std::uint32_t>& number,
+                                   const std::vector<std::uint8_t>& shared, const TriangleSet& flags,
+                                   const std::vector<Vec3>& world) {
+  const auto is_border = [&](std::uint32_t place) {
+    return number[place] != none && shared[place] != 0 && world[number[place]].allFinite();
+  };
+  const auto for_edges = [&](bool flagged, const auto& visit) {
+    for (std::size_t t = 0; t < flags.size(); ++t) {
+      if ((flags[t] != 0) != flagged) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = places[t * 3 + k], b = places[t * 3 + (k + 1) % 3];
+        if (a != b && is_border(a) && is_border(b)) visit(std::pair(std::min(a, b), std::max(a, b)));
+      }
+    }
+  };
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> kept, edges;
+  for_edges(false, [&](const auto& edge) { kept.push_back(edge); });
+  std::sort(kept.begin(), kept.end());
+  for_edges(true, [&](const auto& edge) {
+    if (std::binary_search(kept.begin(), kept.end(), edge)) edges.push_back(edge);
+  });
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<std::uint8_t> on_edge(number.size(), 0);
+  std::vector<BorderPiece> border;
+  for (const auto& [a, b] : edges) {
+    on_edge[a] = on_edge[b] = 1;
+    border.push_back({world[number[a]], world[number[b]]});
+  }
+  for (std::uint32_t place = 0; place < number.size(); ++place)
+    if (is_border(place) && on_edge[place] == 0) border.push_back({world[number[place]], world[number[place]]});
+  return border;
 }
 
 }  // namespace
@@ -79,11 +134,7 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
   std::transform(rest.begin(), rest.end(), world.begin(), [&](const Vec3& p) { return to_world * p; });
   DeformedPoints moved = deformation(world);
   if (falloff > 0) {
-    std::vector<Vec3> border;
-    for (std::uint32_t place = 0; place < corners->place_count; ++place)
-      if (number[place] != none && shared[place] != 0 && world[number[place]].allFinite())
-        border.push_back(world[number[place]]);
-    fade(world, border, falloff, moved);
+    fade(world, border_of(corners->places, number, shared, flags, world), falloff, moved);
   }
 
   DeformedObject result;
@@ -109,11 +160,14 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
     turns[i] = frame.transpose() * local.rotation * frame;
   });
   if (std::any_of(moved.outside.begin(), moved.outside.end(), [](auto flag) { return flag != 0; })) {
-    const auto traits = traits_of(object);
     std::vector<std::uint8_t> shows(rest.size(), 0);
-    for (std::size_t t = 0; t < flags.size(); ++t)
-      if (flags[t] != 0 && (*traits)[t].opacity > 0)
-        for (std::size_t k = 0; k < 3; ++k) shows[number[corners->places[t * 3 + k]]] = 1;
+    std::size_t t = 0;
+    for (const TextureSet& set : object.sets)
+      for (const std::uint8_t opaque : faces_with_opaque_texels(set)) {
+        if (flags[t] != 0 && opaque != 0)
+          for (std::size_t k = 0; k < 3; ++k) shows[number[corners->places[t * 3 + k]]] = 1;
+        ++t;
+      }
     for (std::size_t i = 0; i < rest.size(); ++i) report.opaque_outside += shows[i] & moved.outside[i];
   }
   bool any = false;  // of those that are numbers

@@ -25,8 +25,8 @@ using SpaceDeformation = std::function<DeformedPoints(const std::vector<Vec3>& w
 
 /// The object with its flagged triangles deformed in world space. Each place is deformed once, so that corners that
 /// coincide move alike bit for bit; what the deformation leaves where it was keeps its bits. Within `falloff` (world
-/// units) of corners that unflagged triangles share, the deformation fades out, smoothly and without cracks; with 0 it
-/// ends at the border, where shared corners are split. Turns get the local rotations' change.
+/// units) of the edges and corners that unflagged triangles share, the deformation fades out, smoothly and without
+/// cracks; with 0 it ends at the border, where shared corners are split. Turns get the local rotations' change.
 struct DeformedObject {
   std::shared_ptr<const BakedObject> object;  ///< `folded` says which triangles have a corner at a folded place
   DeformationReport report;

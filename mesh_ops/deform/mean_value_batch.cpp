@@ -97,8 +97,8 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
         // −2 d(θ/c)/dc² by the series, where the closed form is 0 / 0: Σ (−1)ⁿ⁺¹ 2n βₙ c²ⁿ⁻² / (2n + 1).
         const double nearer = least(fabs(begin), fabs(end));
         // A product of numbers where a condition would become a branch, and the loop no vectors.
-        const double beyond = (begin * end > 0 ? 1.0 : 0.0) *
-                              (cc < series_ratio * series_ratio * nearer * nearer ? 1.0 : 0.0);
+        const double beyond =
+            (begin * end > 0 ? 1.0 : 0.0) * (cc < series_ratio * series_ratio * nearer * nearer ? 1.0 : 0.0);
         const double u = 1 / (beyond * begin + (1 - beyond)), v = 1 / (beyond * end + (1 - beyond));
         const double uu = u * u, vv = v * v, odd = v * (u + v);
         double powers = uu + odd, v_power = vv, term = length * u * v, series = 0;

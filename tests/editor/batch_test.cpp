@@ -81,9 +81,62 @@ TEST_F(Batch, ResumeLeavesOutWhatIsDoneAndStillHolds) {
 
 TEST_F(Batch, ShardsShareTheScenes) {
   options.shards = 2;
-  EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"c", Status::done}}));
+  std::map<std::string, Status> both = run();
+  const std::size_t first = both.size();
   options.shard = 2;
-  EXPECT_EQ(run(), (std::map<std::string, Status>{{"b", Status::done}}));
+  both.merge(run());
+  EXPECT_EQ(both, (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::done}, {"c", Status::done}}));
+  // A scene stays with its shard whatever else a task sees: another that appears moves none.
+  fs::rename(folder_.path() / "scenes/a", folder_.path() / "scenes/0");
+  options.resume = true;
+  options.shard = 1;
+  std::map<std::string, Status> again = run();
+  options.shard = 2;
+  again.merge(run());
+  EXPECT_EQ(again, (std::map<std::string, Status>{{"0", Status::done}, {"b", Status::skipped}, {"c", Status::skipped}}))
+      << first;
+}
+
+TEST_F(Batch, ResumeLooksAtEverythingThatWasReadAndWritten) {
+  export_scene(scene_of(made_object({.columns = 8, .rows = 4, .seed = 9})), folder_.path() / "more", {});
+  write_text(options.script, R"({"op": "import", "path": "{also}", "as": "more"})");
+  options.variables = {"also=" + (folder_.path() / "more").string()};
+  options.resume = true;
+  EXPECT_EQ(run()["a"], Status::done);
+  EXPECT_EQ(run()["a"], Status::skipped);
+  std::ofstream(folder_.path() / "more/mlp.json", std::ios::app) << " ";
+  EXPECT_EQ(run()["a"], Status::done) << "what the script imported is another";
+  EXPECT_EQ(run()["a"], Status::skipped);
+  for (const auto& file : fs::recursive_directory_iterator(options.out / "a"))
+    if (file.path().extension() == ".png") fs::resize_file(file.path(), 100);
+  EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::skipped}, {"c", Status::skipped}}))
+      << "a result that was cut off is made again";
+}
+
+TEST_F(Batch, ShardsFindOutThatTheyExportToOneFolder) {
+  write_text(options.script, R"({"op": "export", "out": "{to}/same"})");
+  options.variables = {"to=" + folder_.path().string()};
+  std::size_t done = 0, failed = 0;
+  options.shards = 3;
+  for (options.shard = 1; options.shard <= 3; ++options.shard)
+    for (const auto& [name, status] : run()) ++(status == Status::done ? done : failed);
+  EXPECT_EQ(done, 1U);
+  EXPECT_EQ(failed, 2U);
+  // And once more, by one: the folder is a single scene's again.
+  options.shards = options.shard = 1;
+  std::size_t still = 0;
+  for (const auto& [name, status] : run()) still += status == Status::done ? 1 : 0;
+  EXPECT_EQ(still, 1U);
+}
+
+TEST_F(Batch, NamesWithLineBreaksAndNamesOfReportsDoNoHarm) {
+  fs::rename(folder_.path() / "scenes/a", folder_.path() / "scenes/a\nb");
+  EXPECT_EQ(run()["a\nb"], Status::done);
+  options.resume = true;
+  EXPECT_EQ(run()["a\nb"], Status::skipped);
+  fs::rename(folder_.path() / "scenes/a\nb", folder_.path() / "scenes/report.jsonl");
+  options.report = options.out / "report.jsonl";
+  EXPECT_THROW(batch_scenes(options), FieldError);
 }
 
 TEST_F(Batch, AScriptMayExportItself) {

@@ -110,7 +110,9 @@ TEST_F(DeformScript, ABoxTurnedByItsOwnCageLooksAsTurned) {
   box.sets = {box.sets[0]};
   box.sets[0].soup = Soup(positions, uvs, faces);
   export_scene(scene_of(std::make_shared<BakedObject>(box)), folder_.path() / "box", {});
-  run(R"({"op": "import", "path": "{here}/box", "as": "box"})" "\n" R"({"op": "hide", "node": "ball"})");
+  run(R"({"op": "import", "path": "{here}/box", "as": "box"})"
+      "\n"
+      R"({"op": "hide", "node": "ball"})");
   run(R"({"op": "transform", "node": "box", "rotate": {"axis": [0, 1, 0], "degrees": 180}, "pivot": [0, 0, 0]})");
   const Image by_node = picture();
   run(R"({"op": "undo"})");
@@ -123,8 +125,9 @@ TEST_F(DeformScript, ABoxTurnedByItsOwnCageLooksAsTurned) {
   }());
   for (const char* coordinates : {"mean_value", "green"}) {
     said.clear();
-    run(fmt::format(R"({{"op": "cage", "node": "box", "mesh": "{}", "coordinates": "{}", "moves": [{{"box": {{"min": [-9, -9, -9], "max": [9, 9, 9]}}, "rotate": {{"axis": [0, 1, 0], "degrees": 180}}, "pivot": [0, 0, 0]}}]}})",
-                    (folder_.path() / "own.obj").string(), coordinates));
+    run(fmt::format(
+        R"({{"op": "cage", "node": "box", "mesh": "{}", "coordinates": "{}", "moves": [{{"box": {{"min": [-9, -9, -9], "max": [9, 9, 9]}}, "rotate": {{"axis": [0, 1, 0], "degrees": 180}}, "pivot": [0, 0, 0]}}]}})",
+        (folder_.path() / "own.obj").string(), coordinates));
     EXPECT_EQ(said.find("fold"), std::string::npos) << said;
     EXPECT_LE(compare(picture(), by_node, 2).largest, 2) << coordinates;
     run(R"({"op": "undo"})");

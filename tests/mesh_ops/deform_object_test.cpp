@@ -210,8 +210,8 @@ TEST(Handles, WhatIsHeldWhereItWasChangesNoBit) {
 TEST(Handles, StepsEndAtTheirResidualAndMoreOfThemLoseEnergy) {
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
   std::vector<HandledVertex> held;
-  const Affine turned = Eigen::Translation3d(0.5, 4, 0.5) * Eigen::AngleAxisd(1.2, Vec3::UnitZ()) *
-                        Eigen::Translation3d(-0.5, -4, -0.5);
+  const Affine turned =
+      Eigen::Translation3d(0.5, 4, 0.5) * Eigen::AngleAxisd(1.2, Vec3::UnitZ()) * Eigen::Translation3d(-0.5, -4, -0.5);
   for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
     if (cage.vertices[v].y() < 0.1) held.push_back({v, cage.vertices[v]});
     if (cage.vertices[v].y() > 3.9) held.push_back({v, turned * cage.vertices[v]});

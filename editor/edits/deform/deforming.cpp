@@ -10,6 +10,7 @@
 #include "editor/edits/select/selecting.h"
 #include "mesh_ops/formats/cage_file.h"
 #include "mesh_ops/index/index.h"
+#include "mesh_ops/index/opacity.h"
 
 namespace rebake {
 
@@ -47,13 +48,15 @@ TriangleList DeformSet::opaque_triangles() const {
   TriangleList list;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const BakedObject& object = *nodes[k].node->object;
-    const auto traits = traits_of(object);
     std::size_t f = 0;
     for (const TextureSet& set : object.sets) {
+      // Every triangle that may show a texel when drawn.
+      const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
+      std::size_t in_set = 0;
       const auto base = static_cast<std::uint32_t>(list.points.size());
       for (const Vec3& p : set.soup.positions()) list.points.push_back(nodes[k].to_world * p);
       for (const Face& face : set.soup.faces()) {
-        if (flags[k][f] != 0 && (*traits)[f].opacity > 0)
+        if (shows[in_set++] != 0 && flags[k][f] != 0)
           list.faces.push_back({face[0] + base, face[1] + base, face[2] + base});
         ++f;
       }

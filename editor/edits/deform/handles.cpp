@@ -52,7 +52,8 @@ REBAKE_DESCRIBE_EDIT(
             "points of the cage that are moved; boxes and spheres in world units, with frame bounds in shares of the "
             "cage's box");
       visit("fixed", edit.fixed, Need::optional, "points of the cage that are held where they are");
-      visit("iterations", edit.iterations, Need::optional, "1 to 1000, at most; it ends sooner where nothing moves by more than a millionth of the cage's size");
+      visit("iterations", edit.iterations, Need::optional,
+            "1 to 1000, at most; it ends sooner where nothing moves by more than a millionth of the cage's size");
     })
 
 }  // namespace rebake
