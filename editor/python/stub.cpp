@@ -45,13 +45,14 @@ constexpr const char* head = R"(# Written by rebake.python_stub(); the edits are
 Lengths are in scene units, angles in degrees, colours display values from 0 to 1. Names and fields are those of scripts.
 """
 from os import PathLike
-from typing import Any, Literal, Sequence, TypedDict
+from typing import Any, Callable, Literal, Sequence, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 Vector = Sequence[float] | NDArray[np.floating[Any]]
 Node = str | int
+Progress = Callable[[str, float], object]
 class AxisAngle(TypedDict):
     axis: Vector
     degrees: float
@@ -88,10 +89,12 @@ class EditError(Error):
 class DeviceError(Error):
     """The machine lacks something: no OpenGL, no memory on the GPU."""
 
-def open(path: str | PathLike[str], axes: Literal["360", "forward"] = "360") -> Document:
+def open(path: str | PathLike[str], axes: Literal["360", "forward"] = "360",
+         progress: Progress | None = None) -> Document:
     """A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project (.rebake)."""
-def recover(journal: str | PathLike[str]) -> Document:
-    """The work that a journal kept; goes on writing it."""
+def recover(journal: str | PathLike[str], sources: dict[str, str] = {},
+            progress: Progress | None = None) -> Document:
+    """The work that a journal kept; goes on writing it. `sources`: where moved ones lie now, old path to new."""
 def move_by_cage(points: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.uint32],
                  moved: NDArray[np.float64], coordinates: Literal["mean_value", "green", "harmonic"] = "mean_value",
                  resolution: int = 32) -> NDArray[np.float64]:
@@ -104,6 +107,9 @@ def python_stub() -> str:
 
 class Document:
     """A scene with its history. An edit that raises leaves everything as it was."""
+    progress: Progress | None
+    """Called, ten times a second at most, with what is done and its share while something long is; what it raises stops
+    that, as Ctrl+C does, and nothing is changed."""
     def __init__(self) -> None: ...
     @property
     def nodes(self) -> list[dict[str, Any]]:

@@ -100,6 +100,45 @@ TEST(Deform, ASoftBorderLeavesNoCrackAndAHardOneSplits) {
   EXPECT_EQ(soft.report.folded, 0U);
 }
 
+// Faded by the distance to the nearest corner of the border, what runs along it waved, with a slope that jumped by 1.5
+// over the falloff between two corners.
+TEST(Deform, ASoftBorderIsAsSoftBetweenItsCornersAsAtThem) {
+  // A sheet of 4 × 64 quads; the upper 48 rows rise, the border runs along x.
+  std::vector<Vec3> positions;
+  std::vector<Vec2> uvs;
+  std::vector<Face> faces;
+  for (int row = 0; row <= 64; ++row)
+    for (int column = 0; column <= 4; ++column) {
+      positions.emplace_back(column * 0.5, row / 64.0, 0);
+      uvs.emplace_back(0.1, 0.1);
+    }
+  TriangleSet flags;
+  for (std::uint32_t row = 0; row < 64; ++row)
+    for (std::uint32_t column = 0; column < 4; ++column) {
+      const std::uint32_t a = row * 5 + column;
+      faces.push_back({a, a + 1, a + 6});
+      faces.push_back({a, a + 6, a + 5});
+      flags.insert(flags.end(), 2, row >= 16 ? 1 : 0);
+    }
+  BakedObject sheet = *made_object({.columns = 4, .rows = 2});
+  sheet.sets = {sheet.sets[0]};
+  // Columns that lie between the border's corners: the sheet's own are moved aside above it.
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (positions[v].y() > 0.26) positions[v].x() += 0.25;
+  sheet.sets[0].soup = Soup(positions, uvs, faces);
+  const SpaceDeformation rise = [](const std::vector<Vec3>& points) {
+    DeformedPoints result{points, std::vector<Mat3>(points.size(), Mat3::Identity()), {}};
+    for (Vec3& p : result.points) p.z() += 1;
+    return result;
+  };
+  const auto risen = deformed(sheet, Affine::Identity(), flags, 0.3, rise).object;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const double t = std::min(1.0, (positions[v].y() - 0.25) / 0.3);
+    if (t <= 0 || positions[v].x() > 2) continue;  // beside the border's end its corner is the nearest
+    EXPECT_NEAR(risen->sets[0].soup.positions()[v].z(), t * t * (3 - 2 * t), 1e-12) << positions[v].transpose();
+  }
+}
+
 TEST(Deform, FoldsAreCountedAndNothingBecomesNaN) {
   const auto object = made_object();
   // κ = 2: folds beyond x = 0.5.

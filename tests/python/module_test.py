@@ -1,9 +1,12 @@
 """The Python module: the same edits, the same journal, the same errors as the program."""
 import inspect
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -121,6 +124,83 @@ class Module(unittest.TestCase):
         self.assertGreater(np.ptp(picture), 50)
         self.document.hide(node="ficus")
         self.assertTrue((self.document.render(64, 48) == 255).all())
+
+    def test_other_threads_go_on_and_every_thread_may_draw(self):
+        pictures, ticks, stop = {}, [0], threading.Event()
+
+        def tick():
+            while not stop.wait(0.001):
+                ticks[0] += 1
+
+        def draw(k):
+            pictures[k] = self.document.render(64, 48)
+
+        ticker = threading.Thread(target=tick)
+        ticker.start()
+        drawers = [threading.Thread(target=draw, args=(k,)) for k in range(4)]
+        for thread in drawers:
+            thread.start()
+        for thread in drawers:
+            thread.join()
+        before = ticks[0]
+        vertices, triangles = rebake.wrap(self.document.vertices("ficus"), self.document.faces("ficus"), 0.02)
+        stop.set()
+        ticker.join()
+        self.assertGreater(ticks[0] - before, 3, "the interpreter's lock is let go during long work")
+        for picture in pictures.values():
+            np.testing.assert_array_equal(picture, pictures[0])
+        del self.document  # of a thread that did not draw first
+
+    def test_progress_is_told_and_may_stop(self):
+        told = []
+        document = rebake.open(FICUS, progress=lambda what, share: told.append((what, share)))
+        edits = document.edits()
+
+        def stop(what, share):
+            raise ValueError(what)
+
+        document.progress = stop
+        with self.assertRaises(ValueError):
+            document.cage(node="ficus", wrap=0.01, moves=[{"points": [[0, 9]], "translate": [0, 1, 0]}])
+        self.assertEqual(document.edits(), edits, "nothing was done")
+        for what, share in told:
+            self.assertIsInstance(what, str)
+            self.assertTrue(0 <= share <= 1)
+
+    def test_interrupts_stop_long_work(self):
+        work = (
+            "import rebake, sys\n"
+            "d = rebake.open(sys.argv[1])\n"
+            "print('ready', flush=True)\n"
+            "try:\n"
+            "    d.cage(node='ficus', wrap=0.005, moves=[{'points': [[0, 9]], 'translate': [0, 1, 0]}])\n"
+            "except KeyboardInterrupt:\n"
+            "    print(len(d.edits()), flush=True)\n"
+        )
+        process = subprocess.Popen([sys.executable, "-c", work, FICUS], stdout=subprocess.PIPE, text=True)
+        self.assertEqual(process.stdout.readline(), "ready\n")
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.communicate(timeout=60)[0], "1\n")
+
+    def test_a_forked_process_is_refused_and_does_not_hang(self):
+        self.document.render(32, 32)
+        child = os.fork()
+        if child == 0:
+            try:
+                self.document.render(32, 32)
+            except rebake.Error:
+                os._exit(7)
+            os._exit(0)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 7)
+
+    def test_endless_arguments_are_refused(self):
+        loop = []
+        loop.append(loop)
+        with self.assertRaises((ValueError, rebake.Error, RecursionError)):
+            self.document.select(triangles=loop)
+        with self.assertRaises((TypeError, ValueError, rebake.Error)):
+            self.document.select(triangles=(k for k in iter(int, 1)))
 
     def test_errors(self):
         with self.assertRaisesRegex(rebake.FieldError, 'did you mean "ficus"'):
