@@ -237,6 +237,18 @@ TEST_F(DeformScript, ExportKeepsWhatItCanOfTurns) {
   EXPECT_GT(quarter, 500U);
 }
 
+TEST_F(DeformScript, PartsTurnedApartSayWhatTheirSeamsLose) {
+  run(R"({"op": "select", "node": "ball", "half_space": {"point": [0, 0, 0], "normal": [0, 1, 0]}}
+{"op": "transform", "node": "ball", "selection": true, "rotate": {"axis": [0, 1, 0], "degrees": 40}, "pivot": [0, 0, 0]}
+{"op": "export", "out": "{here}/apart"})");
+  EXPECT_NE(said.find("parts of one decoder that are turned apart"), std::string::npos) << said;
+  said.clear();
+  run(R"({"op": "undo"}
+{"op": "transform", "node": "ball", "translate": [0, 1, 0]}
+{"op": "export", "out": "{here}/whole"})");
+  EXPECT_EQ(said.find("turned apart"), std::string::npos) << said;
+}
+
 TEST_F(DeformScript, BadInputSaysWhatToDo) {
   expect_error(R"({"op": "cage", "node": "ball", "moves": []})", "at least one move");
   expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1], "moves": [{"points": [0]}]})",
