@@ -1,9 +1,9 @@
 #pragma once
 
 #include "mesh_ops/base/progress.h"
+#include "mesh_ops/index/connection.h"
 #include "mesh_ops/index/traits.h"
 #include "mesh_ops/rays/ray_tree.h"
-#include "mesh_ops/select/connection.h"
 
 namespace rebake {
 

@@ -1,4 +1,4 @@
-#include "mesh_ops/select/connection.h"
+#include "mesh_ops/index/connection.h"
 
 #include <tbb/parallel_for.h>
 
