@@ -18,6 +18,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
+#include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/scene_files.h"
 
@@ -119,7 +120,8 @@ class Claims {
 // So that all processes together have a thread a core.
 int threads_of_each(int jobs) { return std::max(1, tbb::this_task_arena::max_concurrency() / jobs); }
 
-pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& log, const fs::path& files_list) {
+pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& log, const fs::path& files_list,
+            const fs::path& sources) {
   std::vector<std::string> words{options.program,
                                  "run",
                                  options.script,
@@ -129,6 +131,8 @@ pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& 
                                  options.out / folder_title(scene),
                                  "--list-files",
                                  files_list,
+                                 "--protect",
+                                 sources,
                                  "--threads",
                                  std::to_string(threads_of_each(options.jobs)),
                                  "--parent",
@@ -202,7 +206,7 @@ const char* to_string(BatchResult::Status status) {
   return names[static_cast<int>(status)];
 }
 
-std::vector<fs::path> batch_scenes(const BatchOptions& options) {
+std::vector<fs::path> batch_scenes(const BatchOptions& options, std::vector<fs::path>* all) {
   std::map<std::string, fs::path> by_name;
   const fs::path out = fs::weakly_canonical(options.out);
   for (const std::string& pattern : options.scenes) {
@@ -237,6 +241,16 @@ std::vector<fs::path> batch_scenes(const BatchOptions& options) {
     }
   }
   if (by_name.empty()) throw FieldError("--scenes", "matches no folder");
+  SourceGuard sources;
+  for (const auto& [name, folder] : by_name) sources.add(folder);
+  sources.check_file(state_folder(options));
+  if (!options.report.empty()) {
+    sources.check_file(options.report);
+    if (fs::weakly_canonical(options.report) == fs::weakly_canonical(options.script))
+      throw FieldError("--report", "is the script; name another file");
+  }
+  if (all != nullptr)
+    for (const auto& [name, folder] : by_name) all->push_back(folder);
   std::vector<fs::path> mine;
   const auto shards = static_cast<std::uint64_t>(options.shards);
   for (const auto& [name, folder] : by_name)
@@ -247,12 +261,18 @@ std::vector<fs::path> batch_scenes(const BatchOptions& options) {
 std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& progress,
                                    const std::function<void(const BatchResult&)>& ended) {
   const std::string script = read_file(options.script);
-  const std::vector<fs::path> scenes = batch_scenes(options);
+  std::vector<fs::path> all;
+  const std::vector<fs::path> scenes = batch_scenes(options, &all);
   std::error_code error;
   fs::create_directories(state_folder(options), error);
   if (error) throw FileError(options.out, "cannot be made: " + error.message());
   Processes running;
   std::vector<BatchResult> results(scenes.size());
+  // No scene's script may write over another scene.
+  json protected_folders = json::array();
+  for (const fs::path& scene : all) protected_folders.push_back(fs::absolute(scene).string());
+  const fs::path sources = state_folder(options) / fmt::format("sources-{}-of-{}.json", options.shard, options.shards);
+  write_file_atomically(sources, protected_folders.dump(-1, ' ', false, json::error_handler_t::ignore), {});
   const Claims claims(state_folder(options) / "claims");
   std::size_t next = 0, over = 0;
   // Also where the wish to stop arrives.
@@ -282,7 +302,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
           for (const Mark::File& folder : before.wrote) claims.release(folder.path, result.name);
           fs::remove(mark);
           running.add(start(options, scenes[k], state_folder(options) / (result.name + ".log"),
-                            state_folder(options) / (result.name + ".files")),
+                            state_folder(options) / (result.name + ".files"), sources),
                       {k, key, Clock::now()});
           started = true;
         }

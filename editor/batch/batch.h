@@ -37,7 +37,9 @@ const char* to_string(BatchResult::Status status);
 /// The folders that the patterns match and that are this shard's, by name; none where others have them all. Throws
 /// FieldError when a pattern matches nothing, when two scenes have one name, and when a result would replace its scene
 /// or lie where the report does.
-std::vector<std::filesystem::path> batch_scenes(const BatchOptions& options);
+/// Also when report or results would lie in one. `all`, where given: those of every shard.
+std::vector<std::filesystem::path> batch_scenes(const BatchOptions& options,
+                                                std::vector<std::filesystem::path>* all = nullptr);
 
 /// Runs all, and reports each as it ends. Shards that run at one time need a file system that all of them see alike and
 /// that makes a file for one of them only (O_EXCL), as local ones, NFS 3 and later, and Lustre do: so they find out

@@ -7,6 +7,7 @@
 #include "editor/cli/terminal.h"
 #include "editor/document/document.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 
 namespace rebake {
 
@@ -29,8 +30,18 @@ Relinked links_of(const std::vector<std::string>& pairs) {
   return links;
 }
 
+// Also a damaged one.
+bool holds_project(const std::filesystem::path& path) {
+  return read_file(path).find("\"rebake_project\"") != std::string::npos;
+}
+
 void execute(const Options& options) {
   if (!options.out.ends_with(".rebake")) throw FieldError("--out", "must end in .rebake, by which projects are known");
+  std::error_code error;
+  if (std::filesystem::equivalent(options.out, options.journal, error))
+    throw FieldError("--out", "is the journal itself, which would be lost with it; name another file");
+  if (options.replace && std::filesystem::exists(options.out) && !holds_project(options.out))
+    throw FileError(options.out, "is no project, so it is not replaced; choose another name");
   if (!options.replace && std::filesystem::exists(options.out))
     throw FileError(options.out, "is there already; choose another name, or --replace it");
   Document::Recovered recovered = Document::recover(options.journal, links_of(options.sources), progress_bar());

@@ -55,7 +55,7 @@ std::string file_list(const Session& session, const std::string& script,
 
 void describe_run(CommandDescription& command) {
   struct Options {
-    std::string script, journal, scene, out, files;
+    std::string script, journal, scene, out, files, sources;
     std::vector<std::string> variables;
     bool fields = false;
     int threads = 0, parent = 0;
@@ -70,6 +70,7 @@ void describe_run(CommandDescription& command) {
   command.option("--list-files", options->files,
                  "write there, one JSON object a line, what was read and exported, with hashes of the contents",
                  "FILE");
+  command.option("--protect", options->sources, "write over none of the folders that this JSON list names", "FILE");
   command.option("--threads", options->threads, "use at most so many threads", "N [one a core]").between(1, 4096);
   command.option("--parent", options->parent, "end when the process with this number does", "PID");
   command.flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
@@ -95,6 +96,9 @@ void describe_run(CommandDescription& command) {
     Session session;
     session.progress = progress_bar();
     session.say = say_line;
+    if (!options->sources.empty())
+      for (const json& folder : json::parse(read_file(options->sources), nullptr, false))
+        session.document.protect(folder.get<std::string>());
     const std::string script = read_input(options->script);
     if (!options->journal.empty()) session.document.keep_journal(options->journal);
     if (!options->scene.empty()) {

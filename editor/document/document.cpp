@@ -34,6 +34,7 @@ Document Document::open(const fs::path& project, const Relinked& links, const Pr
                         std::uint64_t memory_budget) {
   Document document({}, memory_budget);
   ReadProject read = read_project(project, links, progress);
+  add_sources(document.imported_, read.edits);
   for (std::size_t k = 0; k < read.edits.size(); ++k)
     document.history_.add(std::move(read.edits[k]), std::move(read.scenes[k]), read.joined[k]);
   return document;
@@ -87,6 +88,7 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
       Scene scene = rebake::apply(before, edit, progress).scene;
       made.emplace_back(std::move(edit), std::move(scene));
     }
+    for (const auto& [edit, scene] : made) add_sources(result.document.imported_, {edit});
     for (std::size_t k = 0; k < made.size(); ++k)
       history.add(std::move(made[k].first), std::move(made[k].second), k > 0);
   };
@@ -120,9 +122,7 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
 }
 
 SourceGuard Document::sources() const {
-  SourceGuard guard;
-  add_sources(guard, history_.edits());
-  add_sources(guard, history_.undone());
+  SourceGuard guard = imported_;
   add_sources(guard, scene());
   return guard;
 }
@@ -160,6 +160,7 @@ std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progre
   }
   if (whole.empty()) return reports;
   if (journal_) journal_->append(entry_of(whole));
+  add_sources(imported_, whole);
   for (std::size_t k = 0; k < whole.size(); ++k) history_.add(std::move(whole[k]), std::move(scenes[k]), k > 0);
   return reports;
 }

@@ -27,8 +27,10 @@ class Document {
 
   const Scene& scene() const { return history_.now(); }
   const History& history() const { return history_; }
-  /// Everything that was imported, undone or not, and where the present objects came from.
+  /// Everything that was ever imported, undone or not, where the present objects came from, and what is protected.
   SourceGuard sources() const;
+  /// Nothing may be written over this folder either.
+  void protect(const std::filesystem::path& source) { imported_.add(source); }
 
   /// From here on every edit is in a journal and on the disk before edit() returns. What was done before is written
   /// first. Throws FileError when there is a journal at that path already, and Error for a document that did not start
@@ -54,6 +56,7 @@ class Document {
  private:
   bool starts_empty_;
   History history_;
+  SourceGuard imported_;  ///< also by edits that history has dropped: a journal reads them again
   std::optional<Journal> journal_;
 };
 

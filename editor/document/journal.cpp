@@ -45,7 +45,8 @@ std::string first_line(int of) { return line_of({{"rebake_journal", of}}); }
 
 // The JSON behind a line's checksum, where that is right.
 std::optional<json> whole(std::string_view line) {
-  if (line.size() <= digits + 1 || line[digits] != ' ' || hash_text(content_hash(line.substr(digits + 1))) != line.substr(0, digits))
+  if (line.size() <= digits + 1 || line[digits] != ' ' ||
+      hash_text(content_hash(line.substr(digits + 1))) != line.substr(0, digits))
     return std::nullopt;
   json entry = json::parse(line.substr(digits + 1), nullptr, false);
   return entry.is_object() ? std::optional(std::move(entry)) : std::nullopt;

@@ -129,6 +129,22 @@ TEST_F(Batch, ShardsFindOutThatTheyExportToOneFolder) {
   EXPECT_EQ(still, 1U);
 }
 
+// A script that exported onto another scene replaced it, and what was made of that came out wrong.
+TEST_F(Batch, NothingIsWrittenOverAnyScene) {
+  const auto before = folder_bytes(folder_.path() / "scenes");
+  write_text(options.script, R"({"op": "export", "out": "{to}/b"})");
+  options.variables = {"to=" + (folder_.path() / "scenes").string()};
+  for (const auto& [name, status] : run()) EXPECT_EQ(status, Status::failed) << name;
+  EXPECT_EQ(folder_bytes(folder_.path() / "scenes"), before);
+  options.report = folder_.path() / "scenes/b/mlp.json";
+  EXPECT_THROW(batch_scenes(options), FileError);
+  options.report = options.script;
+  EXPECT_THROW(batch_scenes(options), FieldError);
+  options.report.clear();
+  options.out = folder_.path() / "scenes/a/out";
+  EXPECT_THROW(batch_scenes(options), FileError);
+}
+
 TEST_F(Batch, NamesWithLineBreaksAndNamesOfReportsDoNoHarm) {
   fs::rename(folder_.path() / "scenes/a", folder_.path() / "scenes/a\nb");
   EXPECT_EQ(run()["a\nb"], Status::done);

@@ -198,6 +198,13 @@ TEST_F(Recovery, SourcesAreProtectedAlsoWhileTheirImportIsUndone) {
   EXPECT_THROW(guard.check_folder(path("sources")), FileError);
   EXPECT_THROW(document.save(path("sources/ball/p.rebake")), FileError);
   EXPECT_THROW(document.keep_journal(path("sources/ball/journal")), FileError);
+  // Also when another edit has made the undone import impossible to bring back: a journal holds it still.
+  Document went_on;
+  work(went_on, 0);
+  while (went_on.undo()) {
+  }
+  went_on.edit(Background{});
+  EXPECT_THROW(went_on.sources().check_folder(path("sources/ball")), FileError);
   // What lies beside a scene's files is none of its content.
   document.redo();
   document.save(path("p.rebake"));
