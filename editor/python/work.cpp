@@ -71,8 +71,8 @@ void do_work(const py::object& callback, const std::function<void(const Progress
     try {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (now && !callback.is_none()) callback(now->first, now->second);
-    } catch (py::error_already_set& error) {
-      raised.emplace(std::move(error));
+    } catch (const py::error_already_set& error) {
+      raised = error;
       cancel = true;
     }
   }
