@@ -29,7 +29,7 @@ struct RigidMotion {
 // least: a single line of points leaves the turn about it open, a single point every turn.
 Mat3 fitted_turn(const Mat3& covariance) {
   const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vec3 sizes = svd.singularValues();
+  const Vec3& sizes = svd.singularValues();
   if (!(sizes[0] > 0)) return Mat3::Identity();
   if (sizes[1] <= 1e-12 * sizes[0])
     return Eigen::Quaterniond::FromTwoVectors(svd.matrixV().col(0), svd.matrixU().col(0)).toRotationMatrix();
