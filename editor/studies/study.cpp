@@ -121,8 +121,8 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
   // Its output is written here, so that no name of a file reaches gnuplot.
   for (const auto& [terminal, extension] :
        {std::pair{"svg size 860,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 860,440", "png"}})
-    write_file_atomically(base + "." + extension, plotted(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)),
-                          guard);
+    write_file_atomically(base + "." + extension,
+                          plotted(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)), guard);
 }
 
 }  // namespace rebake

@@ -228,7 +228,8 @@ class Fitter {
 
  private:
   float rate_at(double share) const {
-    return static_cast<float>(options_.learning_rate * (0.01 + 0.99 * 0.5 * (1 + elementary::sine_cosine(std::numbers::pi * share).cosine)));
+    return static_cast<float>(options_.learning_rate *
+                              (0.01 + 0.99 * 0.5 * (1 + elementary::sine_cosine(std::numbers::pi * share).cosine)));
   }
 
   float feature(std::size_t texel, std::size_t c) const {

@@ -34,8 +34,8 @@ void let_through_transparent(const RTCFilterFunctionNArguments* args) {
 
 }  // namespace
 
-// A ray in the tree's own frame, where the object's box is about 1 wide: shifted along itself to where it enters the box,
-// so that neither far eyes nor tiny or huge objects leave what floats tell apart, and of length 1.
+// A ray in the tree's own frame, where the object's box is about 1 wide: shifted along itself to where it enters the
+// box, so that neither far eyes nor tiny or huge objects leave what floats tell apart, and of length 1.
 struct LocalRay {
   std::array<float, 3> origin{}, direction{};
   float near = 0, far = -1;
@@ -204,7 +204,7 @@ class RayTree::Impl {
   RTCDevice device_;
   RTCScene scene_;
   Vec3 center_{0, 0, 0};
-  double scale_ = 1;          ///< a power of two
+  double scale_ = 1;             ///< a power of two
   Vec3 half_{1e-6, 1e-6, 1e-6};  ///< of the box, in the tree's frame, with some room
   std::vector<Surface> surfaces_;
 };

@@ -55,7 +55,8 @@ TEST_F(Recovery, AFlippedByteAnywhereLeavesEverythingBeforeIt) {
     std::string damaged = bytes;
     const std::size_t at = random() % damaged.size();
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << random() % 8));
-    const auto line = static_cast<std::size_t>(std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+    const auto line =
+        static_cast<std::size_t>(std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
     write(path("damaged"), damaged);
     const Document::Recovered recovered = Document::recover(path("damaged"));
     // Lines 1 … hold edits; a first line that is damaged costs nothing, the last counts as torn.
@@ -161,7 +162,8 @@ TEST_F(Recovery, AJournalGoesOnlyWhenItsProjectIsOnTheDisk) {
   document.discard_journal();
   EXPECT_EQ(calls.trouble(), "");
   const auto& log = calls.log();
-  const auto renamed = std::find_if(log.begin(), log.end(), [](const std::string& call) { return call.starts_with("rename"); });
+  const auto renamed =
+      std::find_if(log.begin(), log.end(), [](const std::string& call) { return call.starts_with("rename"); });
   const auto folder_synced = std::find(renamed, log.end(), "sync " + folder_.path().string());
   const auto unlinked = std::find(log.begin(), log.end(), "unlink " + path("journal").string());
   EXPECT_LT(renamed, folder_synced);

@@ -1,5 +1,5 @@
-// What was done gives the same bytes again, however it is done again: random sessions with turned, scaled, bent and caged
-// parts, repeated as a script, from the journal and from the project.
+// What was done gives the same bytes again, however it is done again: random sessions with turned, scaled, bent and
+// caged parts, repeated as a script, from the journal and from the project.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -69,7 +69,8 @@ TEST_F(WorkerTest, CancelStopsWhatRunsAndForgetsWhatWaits) {
 TEST_F(WorkerTest, WhoeverAskedHearsOfJobsThatFailedOrWereForgotten) {
   int done = 0, otherwise = 0;
   const auto start = [&](const char* title, Worker::Job job) {
-    worker.start(title, std::move(job), [&] { ++done; }, [&] { ++otherwise; });
+    worker.start(
+        title, std::move(job), [&] { ++done; }, [&] { ++otherwise; });
   };
   start("good", [](Session&) {});
   start("bad", [](Session&) { throw Error("no"); });

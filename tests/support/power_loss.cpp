@@ -84,7 +84,8 @@ int PowerLoss::rename(const char* from, const char* to, unsigned flags) {
   if (result != 0) return result;
   ++renames_;
   // Both folders have other entries now; what was made in the staging folder has another name.
-  std::erase_if(dirty_, [&](const std::string& path) { return path == from || path.starts_with(std::string(from) + "/"); });
+  std::erase_if(dirty_,
+                [&](const std::string& path) { return path == from || path.starts_with(std::string(from) + "/"); });
   dirty_.insert(fs::path(from).parent_path());
   dirty_.insert(fs::path(to).parent_path());
   return result;

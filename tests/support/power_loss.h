@@ -36,8 +36,8 @@ class PowerLoss final : public FileCalls {
  private:
   bool fails();
 
-  std::map<int, std::string> open_;        ///< paths of open files
-  std::set<std::string> dirty_;            ///< files and folders that were changed since they were synced
+  std::map<int, std::string> open_;  ///< paths of open files
+  std::set<std::string> dirty_;      ///< files and folders that were changed since they were synced
   std::vector<std::string> log_, trouble_;
   std::size_t renames_ = 0, most_ = ~std::size_t{0};
   int calls_ = 0, fail_at_ = -1, error_ = 0;

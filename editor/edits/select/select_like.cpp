@@ -1,7 +1,7 @@
 #include "editor/edits/select/select_like.h"
 
-#include "mesh_ops/base/elementary.h"
 #include "editor/edits/describe.h"
+#include "mesh_ops/base/elementary.h"
 
 #include <tbb/parallel_for.h>
 
