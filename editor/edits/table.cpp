@@ -6,13 +6,44 @@
 #include "mesh_ops/base/error.h"
 
 // The one table of edits, in the order of help. An edit is a line here and a file of its own.
-#define REBAKE_EDITS(X)                                                                                                \
-  X(Import)                                                                                                            \
-  X(Remove)                                                                                                            \
-  X(Rename) X(Duplicate) X(Group) X(Reorder) X(Show) X(Hide) X(Lock) X(Unlock) X(StoreView) X(Background) X(Transform) \
-      X(Select) X(SelectPicture) X(SelectConnected) X(SelectLike) X(SelectFloaters) X(SelectUnneeded)                  \
-          X(SelectTriangles) X(SelectFolded) X(Grow) X(Shrink) X(Fill) X(StoreSelection) X(DeleteSelected) X(Separate) \
-              X(Merge) X(Erase) X(CageDeform) X(HandlesDeform) X(Bend) X(Twist) X(Taper) X(Stretch)
+// clang-format off
+#define REBAKE_EDITS(X) \
+  X(Import) \
+  X(Remove) \
+  X(Rename) \
+  X(Duplicate) \
+  X(Group) \
+  X(Reorder) \
+  X(Show) \
+  X(Hide) \
+  X(Lock) \
+  X(Unlock) \
+  X(StoreView) \
+  X(Background) \
+  X(Transform) \
+  X(Select) \
+  X(SelectPicture) \
+  X(SelectConnected) \
+  X(SelectLike) \
+  X(SelectFloaters) \
+  X(SelectUnneeded) \
+  X(SelectTriangles) \
+  X(SelectFolded) \
+  X(Grow) \
+  X(Shrink) \
+  X(Fill) \
+  X(StoreSelection) \
+  X(DeleteSelected) \
+  X(Separate) \
+  X(Merge) \
+  X(Erase) \
+  X(CageDeform) \
+  X(HandlesDeform) \
+  X(Bend) \
+  X(Twist) \
+  X(Taper) \
+  X(Stretch)
+// clang-format on
 
 namespace rebake {
 
