@@ -38,9 +38,8 @@ fs::path state_folder(const BatchOptions& options) { return options.out / ".reba
 
 // What a result depends on, but for the files that the script itself names. A scene that was done under the same key
 // need not be done again.
-std::string key_of(const BatchOptions& options, const std::string& script, const fs::path& scene) {
-  std::string all = fmt::format("{} {:016x} {:016x} {:016x}", REBAKE_VERSION, content_hash(read_file(options.program)),
-                                content_hash(script), folder_hash(scene));
+std::string key_of(const BatchOptions& options, std::uint64_t program, std::uint64_t script, const fs::path& scene) {
+  std::string all = fmt::format("{} {:016x} {:016x} {:016x}", REBAKE_VERSION, program, script, folder_hash(scene));
   for (const std::string& variable : options.variables) all += '\n' + variable;
   return hash_text(content_hash(all));
 }
@@ -260,7 +259,8 @@ std::vector<fs::path> batch_scenes(const BatchOptions& options, std::vector<fs::
 
 std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& progress,
                                    const std::function<void(const BatchResult&)>& ended) {
-  const std::string script = read_file(options.script);
+  const std::uint64_t program = content_hash(read_file(options.program)),
+                      script = content_hash(read_file(options.script));
   std::vector<fs::path> all;
   const std::vector<fs::path> scenes = batch_scenes(options, &all);
   std::error_code error;
@@ -269,10 +269,10 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
   Processes running;
   std::vector<BatchResult> results(scenes.size());
   // No scene's script may write over another scene.
-  json protected_folders = json::array();
-  for (const fs::path& scene : all) protected_folders.push_back(fs::absolute(scene).string());
-  const fs::path sources = state_folder(options) / fmt::format("sources-{}-of-{}.json", options.shard, options.shards);
-  write_file_atomically(sources, protected_folders.dump(-1, ' ', false, json::error_handler_t::ignore), {});
+  std::string folders;
+  for (const fs::path& scene : all) folders += fs::absolute(scene).string() + '\0';
+  const fs::path sources = state_folder(options) / fmt::format("sources-{}-of-{}", options.shard, options.shards);
+  write_file_atomically(sources, folders, {});
   const Claims claims(state_folder(options) / "claims");
   std::size_t next = 0, over = 0;
   // Also where the wish to stop arrives.
@@ -294,7 +294,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
       const fs::path mark = state_folder(options) / (result.name + ".done");
       bool started = false;
       try {
-        const std::string key = key_of(options, script, scenes[k]);
+        const std::string key = key_of(options, program, script, scenes[k]);
         const Mark before = read_mark(mark);
         if (options.resume && still_done(before, key)) {
           result.status = BatchResult::Status::skipped;

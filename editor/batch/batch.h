@@ -36,8 +36,8 @@ const char* to_string(BatchResult::Status status);
 
 /// The folders that the patterns match and that are this shard's, by name; none where others have them all. Throws
 /// FieldError when a pattern matches nothing, when two scenes have one name, and when a result would replace its scene
-/// or lie where the report does.
-/// Also when report or results would lie in one. `all`, where given: those of every shard.
+/// or lie where the report does; FileError when results or the report would lie in a scene. `all`, where given, gets
+/// the folders of every shard.
 std::vector<std::filesystem::path> batch_scenes(const BatchOptions& options,
                                                 std::vector<std::filesystem::path>* all = nullptr);
 

@@ -70,7 +70,8 @@ void describe_run(CommandDescription& command) {
   command.option("--list-files", options->files,
                  "write there, one JSON object a line, what was read and exported, with hashes of the contents",
                  "FILE");
-  command.option("--protect", options->sources, "write over none of the folders that this JSON list names", "FILE");
+  command.option("--protect", options->sources,
+                 "write over none of the folders in this list, each ended by a zero byte", "FILE");
   command.option("--threads", options->threads, "use at most so many threads", "N [one a core]").between(1, 4096);
   command.option("--parent", options->parent, "end when the process with this number does", "PID");
   command.flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
@@ -96,9 +97,14 @@ void describe_run(CommandDescription& command) {
     Session session;
     session.progress = progress_bar();
     session.say = say_line;
-    if (!options->sources.empty())
-      for (const json& folder : json::parse(read_file(options->sources), nullptr, false))
-        session.document.protect(folder.get<std::string>());
+    if (!options->sources.empty()) {
+      const std::string folders = read_file(options->sources);
+      for (std::size_t begin = 0; begin < folders.size();) {
+        const std::size_t end = std::min(folders.find('\0', begin), folders.size());
+        session.document.protect(folders.substr(begin, end - begin));
+        begin = end + 1;
+      }
+    }
     const std::string script = read_input(options->script);
     if (!options->journal.empty()) session.document.keep_journal(options->journal);
     if (!options->scene.empty()) {

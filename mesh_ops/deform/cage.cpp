@@ -1,15 +1,15 @@
 #include "mesh_ops/deform/cage.h"
 
 #include <fmt/format.h>
+
 #include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numeric>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/union_find.h"
 
 namespace rebake {
 
@@ -84,19 +84,12 @@ double volume(const Cage& cage) {
 }
 
 std::vector<std::uint32_t> components(const Cage& cage) {
-  std::vector<std::uint32_t> parent(cage.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  UnionFind parts(cage.vertices.size());
   for (const Face& face : cage.faces)
-    for (std::size_t k = 1; k < 3; ++k) {
-      const std::uint32_t a = root(face[0]), b = root(face[k]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root(v);
-  return parent;
+    for (std::size_t k = 1; k < 3; ++k) parts.join(face[0], face[k]);
+  std::vector<std::uint32_t> lowest;
+  for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) lowest.push_back(parts.root(v));
+  return lowest;
 }
 
 Cage checked_cage(Cage cage) {

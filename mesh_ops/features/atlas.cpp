@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/union_find.h"
 
 namespace rebake {
 
@@ -30,23 +30,6 @@ struct Rect {
   }
   int width() const { return right - left + 1; }
   int height() const { return bottom - top + 1; }
-};
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-  std::size_t root(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
 };
 
 Rect rect_of(const TextureSet& set, const Face& face) {
@@ -88,12 +71,12 @@ Patches find_patches(const TextureSet& set) {
   constexpr int block = 32;
   constexpr std::size_t crowded = 64;
   UnionFind groups(rects.size());
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> in_block;
-  for (std::size_t r = 0; r < rects.size(); ++r) {
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> in_block;
+  for (std::uint32_t r = 0; r < rects.size(); ++r) {
     for (int y = rects[r].top / block; y <= rects[r].bottom / block; ++y) {
       for (int x = rects[r].left / block; x <= rects[r].right / block; ++x) {
         auto& others = in_block[static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x)];
-        for (const std::size_t other : others)
+        for (const std::uint32_t other : others)
           if (others.size() > crowded || rects[other].overlaps(rects[r])) groups.join(other, r);
         if (others.size() <= crowded) others.push_back(r);
       }
@@ -102,7 +85,7 @@ Patches find_patches(const TextureSet& set) {
   Patches result;
   std::unordered_map<std::size_t, std::size_t> patch_of_root;
   std::vector<std::size_t> patch_of_rect(rects.size());
-  for (std::size_t r = 0; r < rects.size(); ++r) {
+  for (std::uint32_t r = 0; r < rects.size(); ++r) {
     const auto [it, fresh] = patch_of_root.try_emplace(groups.root(r), result.rects.size());
     if (fresh)
       result.rects.push_back(rects[r]);

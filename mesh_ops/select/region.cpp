@@ -2,8 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include <numeric>
-
+#include "mesh_ops/base/union_find.h"
 #include "mesh_ops/index/index.h"
 
 namespace rebake {
@@ -30,18 +29,13 @@ TriangleSet triangles_by_centre(const BakedObject& object, const std::function<b
 
 TriangleSet triangles_connected(const BakedObject& object, std::size_t triangle) {
   const auto corners = corners_of(object);
-  std::vector<std::uint32_t> parent(corners->place_count);
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  UnionFind parts(corners->place_count);
   TriangleSet flags(object.triangle_count(), 0);
   const std::vector<std::uint32_t>& places = corners->places;
   for (std::size_t t = 0; t < flags.size(); ++t)
-    for (std::size_t k = 1; k < 3; ++k) parent[root(places[t * 3 + k])] = root(places[t * 3]);
-  const std::uint32_t wanted = root(places.at(triangle * 3));
-  for (std::size_t t = 0; t < flags.size(); ++t) flags[t] = root(places[t * 3]) == wanted ? 1 : 0;
+    for (std::size_t k = 1; k < 3; ++k) parts.join(places[t * 3], places[t * 3 + k]);
+  const std::uint32_t wanted = parts.root(places.at(triangle * 3));
+  for (std::size_t t = 0; t < flags.size(); ++t) flags[t] = parts.root(places[t * 3]) == wanted ? 1 : 0;
   return flags;
 }
 
