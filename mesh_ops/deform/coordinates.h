@@ -59,8 +59,8 @@ std::vector<MeanValueBatch> mean_value_batches();
 /// `batch`: another implementation than the one for this machine's processor, to compare them.
 std::unique_ptr<Coordinates> mean_value_coordinates(const Cage& cage, MeanValueBatch batch = mean_value_batches()[0]);
 std::unique_ptr<Coordinates> green_coordinates(const Cage& cage);
-/// Solved on a grid of `resolution` cells along the cage's longest side (8 … 256). Sums and linear functions
-/// are exact up to the solver's 1e-13; the rest of the error is the grid's.
+/// Solved on a grid of `resolution` cells along the cage's longest side (8 … 256), see DirichletGrid: of second order
+/// up to the surface. Sums and linear functions are exact to rounding.
 std::unique_ptr<Coordinates> harmonic_coordinates(const Cage& cage, int resolution, const Progress& progress = {});
 
 std::unique_ptr<Coordinates> coordinates_of(const Cage& cage, CageCoordinates kind, int resolution,

@@ -9,106 +9,23 @@
 #include <utility>
 
 #include "mesh_ops/deform/cage_deformation.h"
+#include "tests/support/coordinate_errors.h"
 #include "tests/support/gold.h"
 #include "tests/support/hard_cages.h"
 
 namespace rebake::test {
 namespace {
 
-// A tetrahedron with a face split at a point that lies `thin` from an edge: needles of that height.
-Cage needles(double thin) {
-  Cage cage;
-  cage.vertices = {{0, 0, 0}, {0.6, 0, 0}, {0, 0.6, 0}, {0, 0, 0.6}, {0.25, thin, 0}};
-  cage.faces = {{0, 3, 2}, {1, 2, 3}, {0, 1, 3}, {0, 4, 1}, {1, 4, 2}, {2, 4, 0}};
-  return checked_cage(cage);
-}
-// A tetrahedron with an edge split in two: exact for halves; and `lift` above the edge's middle otherwise.
-Cage cap(double lift) {
-  Cage cage;
-  cage.vertices = {{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}, {0.25, 0, lift}};
-  cage.faces = {{0, 2, 4}, {4, 2, 1}, {0, 4, 3}, {4, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-  return checked_cage(cage);
-}
-Cage flat(double thickness) {
-  return lattice_cage(Box(Vec3(-0.35, -0.35, -thickness / 2), Vec3(0.35, 0.35, thickness / 2)), 2, 2, 1);
-}
 std::vector<Vec3> points_inside_flat() {  // 1e-8 thick
   std::vector<Vec3> points;
   for (const double height : {-5e-9, -4.9e-9, 0.0, 1e-12, 5e-9})
     for (int k = 0; k < 40; ++k) points.emplace_back(-0.34 + 0.017 * k, 0.3 * std::sin(k), height);
   return points;
 }
-Cage scaled(Cage cage, double scale, const Vec3& offset = Vec3(0, 0, 0)) {
-  for (Vec3& v : cage.vertices) v = v * scale + offset;
-  return cage;
-}
-
-struct Errors {
-  double sum = 0, linear = 0;
-};
-
-// Sums of weights and of weighted vertices, in units of the cage's diagonal.
-Errors errors_of(const Coordinates& coordinates, const Cage& cage, const std::vector<Vec3>& points) {
-  Box box;
-  for (const Vec3& v : cage.vertices) box.extend(v);
-  const double size = box.diagonal().stableNorm();
-  Errors errors;
-  const std::size_t rows = coordinates.rows();
-  const double unit = frame_of(cage).scale * size;  // that ψ is measured in
-  std::vector<double> weights(rows * batch_lanes);
-  for (std::size_t first = 0; first < points.size(); first += batch_lanes) {
-    std::array<Vec3, batch_lanes> block;
-    for (std::size_t lane = 0; lane < batch_lanes; ++lane)
-      block[lane] = points[std::min(first + lane, points.size() - 1)];
-    std::array<std::uint8_t, batch_lanes> outside;
-    coordinates.weigh(block, weights.data(), nullptr, outside.data());
-    for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
-      EXPECT_EQ(outside[lane], 0) << block[lane].transpose();
-      double sum = 0;
-      Vec3 place(0, 0, 0);
-      for (std::size_t v = 0; v < cage.vertices.size(); ++v) {
-        const double w = weights[v * batch_lanes + lane];
-        EXPECT_TRUE(std::isfinite(w)) << "weight of point " << v << " at " << block[lane].transpose();
-        sum += w;
-        place += w * ((cage.vertices[v] - block[lane]) / size);
-      }
-      if (rows > cage.vertices.size())
-        for (std::size_t f = 0; f < cage.faces.size(); ++f) {
-          const Face& face = cage.faces[f];
-          const Vec3 u = (cage.vertices[face[1]] - cage.vertices[face[0]]) / size,
-                     v = (cage.vertices[face[2]] - cage.vertices[face[0]]) / size;
-          const Vec3 normal = u.cross(v);
-          if (normal.norm() > 0)
-            place += weights[(cage.vertices.size() + f) * batch_lanes + lane] / unit * normal.normalized();
-        }
-      errors.sum = std::max(errors.sum, std::abs(sum - 1));
-      errors.linear = std::max(errors.linear, place.norm());
-    }
-  }
-  return errors;
-}
-
-std::vector<std::pair<std::string, Cage>> hard_cages() {
-  std::vector<std::pair<std::string, Cage>> cages = {{"cube", cube()}, {"lattice", cube(2)}, {"dented", dented()}};
-  for (const double thin : {1e-3, 1e-6, 1e-9, 1e-12})
-    cages.emplace_back("needles " + std::to_string(thin), needles(thin));
-  cages.emplace_back("cap 1e-12", cap(1e-12));
-  cages.emplace_back("cap of no area", cap(0));
-  Cage doubled = needles(0.1);
-  doubled.vertices[4] = doubled.vertices[0];
-  cages.emplace_back("doubled point", doubled);
-  Cage floater = cube();
-  const Cage other = scaled(cube(), 0.1, Vec3(0.5, 0.1, 0));
-  for (const Face& face : other.faces) floater.faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8});
-  floater.vertices.insert(floater.vertices.end(), other.vertices.begin(), other.vertices.end());
-  cages.emplace_back("two components", floater);
-  return cages;
-}
-
 TEST(MeanValue, SumsAndLinearFunctionsAreExactEverywhere) {
   for (const auto& [name, cage] : hard_cages()) {
     SCOPED_TRACE(name);
-    const Errors errors = errors_of(*mean_value_coordinates(cage), cage, hard_points(cage));
+    const CoordinateErrors errors = errors_of(*mean_value_coordinates(cage), cage, hard_points(cage));
     EXPECT_LE(errors.sum, 1e-14) << name;
     EXPECT_LE(errors.linear, 2e-14) << name;
   }
@@ -119,46 +36,28 @@ TEST(MeanValue, TheSameAtAnyScaleAndFarFromTheOrigin) {
     const Cage cage = scaled(dented(), scale);
     std::vector<Vec3> points = hard_points(dented());
     for (Vec3& point : points) point *= scale;
-    const Errors errors = errors_of(*mean_value_coordinates(cage), cage, points);
+    const CoordinateErrors errors = errors_of(*mean_value_coordinates(cage), cage, points);
     EXPECT_LE(errors.sum, 1e-14) << scale;
     EXPECT_LE(errors.linear, 2e-14) << scale;
   }
   const Cage cage = scaled(dented(), 1, Vec3(1e6, -1e6, 1e6));
-  const Errors errors = errors_of(*mean_value_coordinates(cage), cage, hard_points(cage));
+  const CoordinateErrors errors = errors_of(*mean_value_coordinates(cage), cage, hard_points(cage));
   EXPECT_LE(errors.sum, 1e-14);
   EXPECT_LE(errors.linear, 2e-14);
 }
 
 TEST(MeanValue, InsideACageOfNoThicknessToSpeakOf) {
   const Cage cage = flat(1e-8);
-  const Errors errors = errors_of(*mean_value_coordinates(cage), cage, points_inside_flat());
+  const CoordinateErrors errors = errors_of(*mean_value_coordinates(cage), cage, points_inside_flat());
   EXPECT_LE(errors.sum, 1e-14);
   EXPECT_LE(errors.linear, 2e-14);
 }
 
 TEST(MeanValue, TenDiagonalsAwayWeightsAreLargeAndErrorsGrowWithThem) {
   for (const auto& [name, cage] : hard_cages()) {
-    const Errors errors = errors_of(*mean_value_coordinates(cage), cage, {Vec3(7, 5, 6)});
+    const CoordinateErrors errors = errors_of(*mean_value_coordinates(cage), cage, {Vec3(7, 5, 6)});
     EXPECT_LE(errors.linear, 2e-12) << name;
   }
-}
-
-// Weights of single points through the batch, which passes delicate ones on.
-std::vector<double> weights_at(const Coordinates& coordinates, const Vec3& point,
-                               std::vector<Vec3>* gradients = nullptr) {
-  std::array<Vec3, batch_lanes> block;
-  block.fill(point);
-  std::vector<double> weights(coordinates.rows() * batch_lanes), slopes(coordinates.rows() * 3 * batch_lanes);
-  std::array<std::uint8_t, batch_lanes> outside;
-  coordinates.weigh(block, weights.data(), gradients != nullptr ? slopes.data() : nullptr, outside.data());
-  std::vector<double> result;
-  for (std::size_t row = 0; row < coordinates.rows(); ++row) {
-    result.push_back(weights[row * batch_lanes]);
-    if (gradients != nullptr)
-      gradients->emplace_back(slopes[row * 3 * batch_lanes], slopes[(row * 3 + 1) * batch_lanes],
-                              slopes[(row * 3 + 2) * batch_lanes]);
-  }
-  return result;
 }
 
 // How far weights are from the exact ones beyond what moving the point by 1e-15 of the cage's diagonal does: a point
@@ -331,7 +230,7 @@ TEST(MeanValue, InFloatTheScaleDoesNotMatter) {
 
 TEST(Green, SumsAndLinearFunctionsAreExactInside) {
   for (const auto& [name, cage] : hard_cages()) {
-    const Errors errors = errors_of(*green_coordinates(cage), cage, inside_points(cage));
+    const CoordinateErrors errors = errors_of(*green_coordinates(cage), cage, inside_points(cage));
     EXPECT_LE(errors.sum, 1e-14) << name;
     EXPECT_LE(errors.linear, 1e-14) << name;
   }
@@ -351,7 +250,7 @@ TEST(Green, TheSameAtAnyScaleFarFromTheOriginAndInFlatCages) {
     for (Vec3& point : points) point *= scale;
     const auto coordinates = green_coordinates(cage);
     EXPECT_LE(beyond_rounding(cage, *coordinates, gold_green, points, 7), 1e-14) << scale;
-    const Errors errors = errors_of(*coordinates, cage, points);
+    const CoordinateErrors errors = errors_of(*coordinates, cage, points);
     EXPECT_LE(errors.sum, 1e-14) << scale;
     EXPECT_LE(errors.linear, 1e-14) << scale;
   }
@@ -362,7 +261,7 @@ TEST(Green, TheSameAtAnyScaleFarFromTheOriginAndInFlatCages) {
   for (const Vec3& point : points_inside_flat())
     if (std::abs(point.z()) < 4.95e-9) within.push_back(point);
   EXPECT_LE(beyond_rounding(thin, *green_coordinates(thin), gold_green, within, 7), 1e-14);
-  const Errors errors = errors_of(*green_coordinates(thin), thin, within);
+  const CoordinateErrors errors = errors_of(*green_coordinates(thin), thin, within);
   EXPECT_LE(errors.sum, 1e-14);
   EXPECT_LE(errors.linear, 1e-14);
 }
@@ -398,176 +297,6 @@ TEST(Green, RigidMotionsOfNeedlesStretchNothing) {
       const Vec3 want = (turn * normal - normal) / frame_of(cage).scale;
       EXPECT_LE((motions[cage.vertices.size() + f] - want).norm(), 1e-15) << thin << " face " << f;
     }
-  }
-}
-
-// The Jacobian of a given motion of the cage's rows.
-Mat3 jacobian_of(const std::vector<Vec3>& gradients, const std::vector<Vec3>& motions) {
-  Mat3 jacobian = Mat3::Identity();
-  for (std::size_t row = 0; row < gradients.size(); ++row) jacobian += motions[row] * gradients[row].transpose();
-  return jacobian;
-}
-
-void expect_gradients(const Cage& cage, const Coordinates& coordinates,
-                      std::vector<Gold> (*exact)(const Cage&, const Gold3&), double unit, bool corners) {
-  std::vector<Vec3> motions;
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> any(-0.3, 0.3);
-  for (std::size_t row = 0; row < coordinates.rows(); ++row)
-    motions.emplace_back(any(random), any(random), any(random));
-  std::vector<Vec3> in_cage_units = motions;
-  for (std::size_t row = cage.vertices.size(); row < motions.size(); ++row) in_cage_units[row] *= unit;
-  for (const auto& [distance, bar] :
-       {std::pair(1e-1, 1e-12), std::pair(1e-3, 1e-11), std::pair(1e-6, 1e-8), std::pair(1e-9, 1e-5)})
-    for (std::size_t f = 0; f < cage.faces.size(); f += 17) {
-      const Face& face = cage.faces[f];
-      const Vec3 &a = cage.vertices[face[0]], &b = cage.vertices[face[1]], &c = cage.vertices[face[2]];
-      const Vec3 inwards = -(b - a).cross(c - a).normalized();
-      const std::vector<Vec3> places = {(a + b + c) / 3, (a + b) / 2 + 0.3 * distance * (c - a), a};
-      for (const Vec3& place : places) {
-        const Vec3 point = place + distance * inwards;
-        // At corners it may lie on another face, where Green's coordinates have no gradient.
-        if (!corners && &place != &places.front()) continue;
-        std::vector<Vec3> gradients;
-        weights_at(coordinates, point, &gradients);
-        const Mat3 got = jacobian_of(gradients, motions),
-                   want = jacobian_of(gold_gradients(exact, cage, point), in_cage_units);
-        EXPECT_LE((got - want).norm(), bar * std::max(1.0, want.norm())) << "at " << distance << " from face " << f;
-      }
-    }
-}
-
-TEST(MeanValue, JacobiansAgreeWith120Digits) {
-  const Cage cage = dented();
-  expect_gradients(cage, *mean_value_coordinates(cage), gold_mean_value, 1, true);
-  // On the planes of other faces too, where they weigh nothing.
-  const Cage lattice = cube(2);
-  const auto coordinates = mean_value_coordinates(lattice);
-  const Vec3 point(0, 0, 0.1);
-  std::vector<Vec3> gradients;
-  weights_at(*coordinates, point, &gradients);
-  const std::vector<Vec3> exact = gold_gradients(gold_mean_value, lattice, point);
-  for (std::size_t v = 0; v < exact.size(); ++v) EXPECT_LE((exact[v] - gradients[v]).norm(), 1e-13);
-}
-
-TEST(Green, JacobiansAgreeWith120Digits) {
-  const Cage cage = dented();
-  expect_gradients(cage, *green_coordinates(cage), gold_green, frame_of(cage).scale, false);
-}
-
-// The gradient's limit from inside: that of the weights a step of 1e-30 along the surface's normal away.
-std::vector<Vec3> one_sided(std::vector<Gold> (*exact)(const Cage&, const Gold3&), const Cage& cage,
-                            const std::array<Vec3, 3>& from, const std::array<int, 3>& parts, const Vec3& inwards) {
-  // The point itself exactly on the surface: (Σ partsₖ fromₖ) / Σ partsₖ.
-  const Gold step("1e-40"), depth("1e-25");
-  const Gold whole = parts[0] + parts[1] + parts[2];
-  Gold3 at;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    at[axis] = depth * Gold(inwards[static_cast<int>(axis)]);
-    for (std::size_t k = 0; k < 3; ++k) at[axis] += Gold(from[k][static_cast<int>(axis)]) * parts[k] / whole;
-  }
-  std::vector<Vec3> result;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    Gold3 low = at, high = at;
-    low[axis] -= step;
-    high[axis] += step;
-    const std::vector<Gold> below = exact(cage, low), above = exact(cage, high);
-    result.resize(below.size());
-    for (std::size_t i = 0; i < below.size(); ++i)
-      result[i][static_cast<int>(axis)] = static_cast<double>((above[i] - below[i]) / (2 * step));
-  }
-  return result;
-}
-
-void expect_one_sided_limits(const Cage& cage, const Coordinates& coordinates,
-                             std::vector<Gold> (*exact)(const Cage&, const Gold3&), bool faces_only) {
-  std::vector<Vec3> motions;
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> any(-0.3, 0.3);
-  for (std::size_t row = 0; row < coordinates.rows(); ++row)
-    motions.emplace_back(any(random), any(random), any(random));
-  std::vector<Vec3> in_cage_units = motions;
-  for (std::size_t row = cage.vertices.size(); row < motions.size(); ++row) in_cage_units[row] *= frame_of(cage).scale;
-  const std::array<std::array<int, 3>, 5> faces{{{1, 1, 1}, {2, 1, 5}, {1, 7, 8}, {40, 1, 23}, {3, 60, 1}}};
-  const std::array<std::array<int, 3>, 6> all{{{1, 1, 1}, {2, 1, 5}, {1, 1, 0}, {0, 3, 5}, {1, 0, 0}, {0, 0, 1}}};
-  double worst = 0;
-  for (std::size_t f = 0; f<cage.faces.size(); f += cage.faces.size()> 20 ? 19 : 1) {
-    const Face& face = cage.faces[f];
-    const std::array<Vec3, 3> corners{cage.vertices[face[0]], cage.vertices[face[1]], cage.vertices[face[2]]};
-    const auto look = [&](const std::array<int, 3>& parts) {
-      const double whole = parts[0] + parts[1] + parts[2];
-      const Vec3 point = (parts[0] * corners[0] + parts[1] * corners[1] + parts[2] * corners[2]) / whole;
-      // Inwards at edges and corners: by all faces that hold the point, each by its angle there.
-      Vec3 outwards(0, 0, 0);
-      for (const Face& other : cage.faces) {
-        const Vec3 &a = cage.vertices[other[0]], &b = cage.vertices[other[1]], &c = cage.vertices[other[2]];
-        const Vec3 normal = (b - a).cross(c - a).normalized();
-        const Vec3 area((b - point).cross(c - point).dot(normal), (c - point).cross(a - point).dot(normal),
-                        (a - point).cross(b - point).dot(normal));
-        if (std::abs(normal.dot(point - a)) > 1e-14 || area.minCoeff() < -1e-14) continue;
-        double angle = 1;
-        for (std::size_t k = 0; k < 3; ++k)
-          if ((cage.vertices[other[k]] - point).norm() < 1e-14) {
-            const Vec3 u = cage.vertices[other[(k + 1) % 3]] - point, v = cage.vertices[other[(k + 2) % 3]] - point;
-            angle = std::atan2(u.cross(v).norm(), u.dot(v));
-          }
-        outwards += angle * normal;
-      }
-      std::vector<Vec3> gradients;
-      weights_at(coordinates, point, &gradients);
-      const Mat3 got = jacobian_of(gradients, motions),
-                 want = jacobian_of(one_sided(exact, cage, corners, parts, -outwards.normalized()), in_cage_units);
-      const double error = (got - want).norm() / std::max(1.0, want.norm());
-      EXPECT_LE(error, 1e-8) << "face " << f << " at " << parts[0] << ' ' << parts[1] << ' ' << parts[2];
-      worst = std::max(worst, error);
-    };
-    if (faces_only)
-      for (const auto& parts : faces) look(parts);
-    else
-      for (const auto& parts : all) look(parts);
-  }
-  testing::Test::RecordProperty("worst", std::to_string(worst));
-}
-
-// A cage's own box holds its points on its faces, edges and corners; a gradient of 0 there turned them by 180°.
-TEST(MeanValue, JacobiansOnFacesEdgesAndVerticesAreTheLimitsFromInside) {
-  for (const Cage& cage : {cube(), dented(), needles(1e-3)})
-    expect_one_sided_limits(cage, *mean_value_coordinates(cage), gold_mean_value, false);
-}
-
-TEST(Green, JacobiansOnFacesAreTheLimitsFromInside) {
-  for (const Cage& cage : {cube(), dented()}) expect_one_sided_limits(cage, *green_coordinates(cage), gold_green, true);
-}
-
-TEST(MeanValue, JacobiansOnEdgeExtensionsAgreeWith120Digits) {
-  const Cage cage = cube();
-  const double h = cage.vertices[1].cwiseAbs().maxCoeff();
-  const auto coordinates = mean_value_coordinates(cage);
-  std::vector<Vec3> points{{0.38867513459481295, -h, -h}, {h, -0.25868045533410799, -0.18867513459481292}};
-  for (const double aside : {0.0, 1e-17, 1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5, 1e-4, 1e-3, 1e-2})
-    for (const double along : {0.02, 0.1, 0.6})
-      for (const Vec3& direction : {Vec3(0, 1, 0), Vec3(0, 0, -1), Vec3(0, 0.3, 0.4), Vec3(0, -0.5, 0.2)})
-        points.push_back(Vec3(h + along, -h, -h) + aside * direction);
-  for (const Vec3& point : points) {
-    std::vector<Vec3> gradients;
-    weights_at(*coordinates, point, &gradients);
-    std::vector<Vec3> exact = gold_gradients(gold_mean_value, cage, point);
-    if (point.x() == h) {  // on a face: from inside
-      Gold3 at = gold(point);
-      at[0] -= Gold("1e-30");
-      exact.clear();
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        Gold3 low = at, high = at;
-        low[axis] -= Gold("1e-45");
-        high[axis] += Gold("1e-45");
-        const auto below = gold_mean_value(cage, low), above = gold_mean_value(cage, high);
-        exact.resize(below.size());
-        for (std::size_t v = 0; v < below.size(); ++v)
-          exact[v][static_cast<int>(axis)] = static_cast<double>((above[v] - below[v]) / Gold("2e-45"));
-      }
-    }
-    for (std::size_t v = 0; v < exact.size(); ++v)
-      EXPECT_LE((exact[v] - gradients[v]).norm(), 1e-8) << "at " << point.transpose() << " weight " << v;
   }
 }
 
@@ -611,31 +340,6 @@ TEST(MeanValue, FlippedFacesAreTurnedAndOpenCagesRefused) {
   cage = cube();
   cage.vertices[0].x() = std::nan("");
   EXPECT_THROW(checked_cage(cage), Error);
-}
-
-TEST(Harmonic, LinearFunctionsAreExact) {
-  const Cage cage = dented();
-  const auto coordinates = harmonic_coordinates(cage, 24);
-  std::vector<Vec3> points;
-  for (const Vec3& p : inside_points(cage)) points.push_back(p);
-  const Errors errors = errors_of(*coordinates, cage, points);
-  EXPECT_LE(errors.sum, 1e-10);
-  EXPECT_LE(errors.linear, 1e-10);
-  EXPECT_THROW(harmonic_coordinates(cage, 4), FieldError);
-}
-
-TEST(Harmonic, FinerGridsComeNearerToEachOther) {
-  const Cage cage = dented();
-  const std::vector<double> finest = weights_at(*harmonic_coordinates(cage, 48), Vec3(-0.1, 0.05, 0.02));
-  double before = 1;
-  for (const int resolution : {8, 12, 24}) {
-    const std::vector<double> weights = weights_at(*harmonic_coordinates(cage, resolution), Vec3(-0.1, 0.05, 0.02));
-    double worst = 0;
-    for (std::size_t v = 0; v < weights.size(); ++v) worst = std::max(worst, std::abs(weights[v] - finest[v]));
-    EXPECT_LT(worst, before);
-    before = worst;
-  }
-  EXPECT_LT(before, 0.02);
 }
 
 }  // namespace

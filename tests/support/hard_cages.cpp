@@ -23,6 +23,46 @@ Cage dented() {
   return checked_cage(cage);
 }
 
+Cage needles(double thin) {
+  Cage cage;
+  cage.vertices = {{0, 0, 0}, {0.6, 0, 0}, {0, 0.6, 0}, {0, 0, 0.6}, {0.25, thin, 0}};
+  cage.faces = {{0, 3, 2}, {1, 2, 3}, {0, 1, 3}, {0, 4, 1}, {1, 4, 2}, {2, 4, 0}};
+  return checked_cage(cage);
+}
+
+Cage cap(double lift) {
+  Cage cage;
+  cage.vertices = {{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}, {0.25, 0, lift}};
+  cage.faces = {{0, 2, 4}, {4, 2, 1}, {0, 4, 3}, {4, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return checked_cage(cage);
+}
+
+Cage flat(double thickness) {
+  return lattice_cage(Box(Vec3(-0.35, -0.35, -thickness / 2), Vec3(0.35, 0.35, thickness / 2)), 2, 2, 1);
+}
+
+Cage scaled(Cage cage, double scale, const Vec3& offset) {
+  for (Vec3& v : cage.vertices) v = v * scale + offset;
+  return cage;
+}
+
+std::vector<std::pair<std::string, Cage>> hard_cages() {
+  std::vector<std::pair<std::string, Cage>> cages = {{"cube", cube()}, {"lattice", cube(2)}, {"dented", dented()}};
+  for (const double thin : {1e-3, 1e-6, 1e-9, 1e-12})
+    cages.emplace_back("needles " + std::to_string(thin), needles(thin));
+  cages.emplace_back("cap 1e-12", cap(1e-12));
+  cages.emplace_back("cap of no area", cap(0));
+  Cage doubled = needles(0.1);
+  doubled.vertices[4] = doubled.vertices[0];
+  cages.emplace_back("doubled point", doubled);
+  Cage floater = cube();
+  const Cage other = scaled(cube(), 0.1, Vec3(0.5, 0.1, 0));
+  for (const Face& face : other.faces) floater.faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8});
+  floater.vertices.insert(floater.vertices.end(), other.vertices.begin(), other.vertices.end());
+  cages.emplace_back("two components", floater);
+  return cages;
+}
+
 std::vector<Vec3> hard_points(const Cage& cage) {
   std::vector<Vec3> points;
   std::mt19937 random(11);

@@ -1,0 +1,115 @@
+// Harmonic coordinates against solutions that are known: of second order up to the surface, linear functions exact.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "mesh_ops/deform/coordinates.h"
+#include "mesh_ops/deform/dirichlet_grid.h"
+#include "tests/support/coordinate_errors.h"
+#include "tests/support/hard_cages.h"
+
+namespace rebake::test {
+namespace {
+
+double linear(const Vec3& p) { return 0.3 + p.x() - 2 * p.y() + 0.7 * p.z(); }
+double quadratic(const Vec3& p) { return p.x() * p.x() + p.y() * p.z() - p.z() * p.z(); }
+double waves(const Vec3& p) { return std::exp(3 * p.x()) * std::sin(3 * p.y() + 0.4); }
+
+struct GridErrors {
+  double nodes = 0;   ///< largest at nodes inside
+  double points = 0;  ///< at points between them, most of them on the surface or beside it
+};
+
+// Of the grid's solution for a function's own values on the surface.
+GridErrors grid_errors(const Cage& cage, int resolution, double (*function)(const Vec3&)) {
+  DirichletGrid grid(cage, resolution);
+  EXPECT_TRUE(grid.lonely().empty());
+  std::vector<GridLanes> surface, values;
+  for (const SurfacePoint& point : grid.surface()) {
+    Vec3 place(0, 0, 0);
+    for (std::size_t k = 0; k < 3; ++k) place += point.corners[k] * cage.vertices[cage.faces[point.face][k]];
+    surface.push_back(GridLanes::Constant(function(place)));
+  }
+  grid.solve(surface, values, {});
+  GridErrors errors;
+  for (std::size_t node = 0; node < grid.inside_nodes(); ++node)
+    errors.nodes = std::max(errors.nodes, std::abs(values[node][3] - function(grid.place(node))));
+  const auto look = [&](const Vec3& p) {
+    DirichletGrid::Cell cell;
+    ASSERT_TRUE(grid.find_cell(p, cell));
+    double value = 0;
+    for (std::size_t k = 0; k < 8; ++k)
+      value += values[cell.nodes[k]][3] * ((k & 1U) != 0 ? cell.at.x() : 1 - cell.at.x()) *
+               ((k & 2U) != 0 ? cell.at.y() : 1 - cell.at.y()) * ((k & 4U) != 0 ? cell.at.z() : 1 - cell.at.z());
+    errors.points = std::max(errors.points, std::abs(value - function(p)));
+  };
+  for (const Vec3& p : inside_points(cage)) look(p);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (const Face& face : cage.faces)
+    for (int k = 0; k < 100; ++k) {
+      const double a = any(random), b = any(random) * (1 - a);
+      const Vec3 &u = cage.vertices[face[0]], &v = cage.vertices[face[1]], &w = cage.vertices[face[2]];
+      const Vec3 on = a * u + b * v + (1 - a - b) * w;
+      look(on);
+      look(on - 1e-3 * any(random) * (v - u).cross(w - u).normalized());
+    }
+  return errors;
+}
+
+TEST(Harmonic, LinearAndQuadraticSolutionsAreExactAtTheNodes) {
+  for (const auto& [name, cage] : {std::pair("cube", cube()), std::pair("dented", dented())})
+    for (const int resolution : {16, 33, 64}) {
+      const GridErrors flat = grid_errors(cage, resolution, linear), curved = grid_errors(cage, resolution, quadratic);
+      EXPECT_LE(flat.nodes, 1e-13) << name << ' ' << resolution;
+      EXPECT_LE(flat.points, 1e-13) << name << ' ' << resolution;
+      EXPECT_LE(curved.nodes, 1e-13) << name << ' ' << resolution;
+    }
+}
+
+// Half the step, a quarter of the error: nodes that took mean value weights near the surface halved it only.
+TEST(Harmonic, SecondOrderUpToTheSurface) {
+  for (const auto& [name, cage] : {std::pair("cube", cube()), std::pair("dented", dented())})
+    for (const auto function : {quadratic, waves}) {
+      const GridErrors coarse = grid_errors(cage, 16, function), fine = grid_errors(cage, 64, function);
+      EXPECT_LE(fine.points, coarse.points / 11) << name;
+      EXPECT_LE(fine.points, 5e-4) << name;
+      if (function == waves) {
+        EXPECT_LE(fine.nodes, coarse.nodes / 11) << name;
+      }
+    }
+}
+
+TEST(Harmonic, SumsAndLinearFunctionsAreExactOnHardCages) {
+  for (const auto& [name, cage] : hard_cages())
+    for (const int resolution : {8, 24}) {
+      const CoordinateErrors errors = errors_of(*harmonic_coordinates(cage, resolution), cage, inside_points(cage));
+      EXPECT_LE(errors.sum, 1e-12) << name << ' ' << resolution;
+      EXPECT_LE(errors.linear, 1e-12) << name << ' ' << resolution;
+    }
+  // Weights outside grow with a step's share of the thickness there, and roundings with them.
+  const Cage thin = flat(1e-8);
+  const double bar = 1e-16 * (0.7 / 24) / 1e-8;
+  const CoordinateErrors errors =
+      errors_of(*harmonic_coordinates(thin, 24), thin, {Vec3(0.1, 0.2, 0), Vec3(-0.3, 0, 3e-9)});
+  EXPECT_LE(errors.sum, bar);
+  EXPECT_LE(errors.linear, bar);
+}
+
+// Weights of harmonic coordinates are not negative anywhere (Joshi et al. 2007); at nodes the grid's are not either.
+TEST(Harmonic, WeightsAreNotNegative) {
+  const Cage cage = dented();
+  const auto coordinates = harmonic_coordinates(cage, 32);
+  for (const Vec3& p : {Vec3(-0.1, 0.05, 0.02), Vec3(0, 0, 0), Vec3(-0.2, 0.1, -0.1)})
+    for (const double weight : weights_at(*coordinates, p)) EXPECT_GE(weight, -1e-14);
+}
+
+TEST(Harmonic, ResolutionsThatMakeNoSenseAreRefused) {
+  EXPECT_THROW(harmonic_coordinates(dented(), 4), FieldError);
+  EXPECT_THROW(harmonic_coordinates(dented(), 257), FieldError);
+  EXPECT_THROW(harmonic_coordinates(cube(12), 256), FieldError);
+}
+
+}  // namespace
+}  // namespace rebake::test
