@@ -37,6 +37,11 @@ std::vector<T> split_numbers(const std::string& text, char separator) {
   return values;
 }
 
+double positive(double value, const char* option) {
+  if (!(value > 0) || !std::isfinite(value)) throw FieldError(option, "must be greater than 0");
+  return value;
+}
+
 }  // namespace
 
 Vec3 parse_vec3(const std::string& text, const char* option) {
@@ -107,7 +112,8 @@ View ViewOptions::view(const Scene& scene) const {
   view.height = pixels[1];
   view.samples = samples;
   if (view.width < 1 || view.height < 1) throw FieldError("--size", "must be at least 1x1");
-  view.camera = framing_of(scene, static_cast<double>(view.width) / view.height, fov.value_or(Camera{}.fov_degrees));
+  const double aspect = static_cast<double>(view.width) / view.height;
+  view.camera = framing_of(scene, aspect, fov.value_or(Camera{}.fov_degrees));
   if (!camera_file.empty()) {
     if (const auto found = scene.views.find(camera_file); found != scene.views.end()) {
       view.camera = found->second;
@@ -130,18 +136,15 @@ View ViewOptions::view(const Scene& scene) const {
   if (!eye.empty()) {
     view.camera.eye = parse_vec3(eye, "--eye");
     // The framing's planes belong to the framing's eye.
-    if (camera_file.empty()) {
-      const Box box = world_bounds(scene);
-      if (!box.isEmpty()) {
-        const double farthest = (box.center() - view.camera.eye).norm() + box.diagonal().norm();
-        const double nearest = box.exteriorDistance(view.camera.eye);
-        view.camera.far_plane = farthest;
-        view.camera.near_plane = std::max(nearest * 0.5, farthest * 1e-4);
-      }
-    }
+    if (camera_file.empty()) view.camera.near_plane = view.camera.far_plane = 0;
   }
-  if (near_plane) view.camera.near_plane = *near_plane;
-  if (far_plane) view.camera.far_plane = *far_plane;
+  if (near_plane || far_plane) {
+    // Who gives one plane leaves the other open, unless a camera brings it.
+    if (camera_file.empty()) view.camera.near_plane = view.camera.far_plane = 0;
+    if (near_plane) view.camera.near_plane = positive(*near_plane, "--near");
+    if (far_plane) view.camera.far_plane = positive(*far_plane, "--far");
+  }
+  view.camera = fitted(scene, view.camera, aspect);
   check(view);
   return view;
 }

@@ -17,6 +17,11 @@ Camera framing_of(const Scene& scene, double aspect, double fov_degrees) {
   return framing(world_bounds(scene), aspect, forward, fov_degrees);
 }
 
+Camera fitted(const Scene& scene, const Camera& camera, double aspect) {
+  if (camera.near_plane > 0 && camera.far_plane > 0) return camera;
+  return with_planes(camera, world_bounds(scene), aspect);
+}
+
 const Camera& stored_view(const Scene& scene, const std::string& name) {
   if (const auto found = scene.views.find(name); found != scene.views.end()) return found->second;
   std::vector<std::string> names;
@@ -33,9 +38,10 @@ View chosen_view(const Scene& scene, const std::optional<Camera>& camera, const 
   view.width = width;
   view.height = height;
   view.samples = samples;
-  view.camera = camera               ? *camera
-                : !view_name.empty() ? stored_view(scene, view_name)
-                                     : framing_of(scene, static_cast<double>(width) / std::max(height, 1));
+  const double aspect = static_cast<double>(width) / std::max(height, 1);
+  view.camera = camera               ? fitted(scene, *camera, aspect)
+                : !view_name.empty() ? fitted(scene, stored_view(scene, view_name), aspect)
+                                     : framing_of(scene, aspect);
   check(view);
   return view;
 }
@@ -67,16 +73,14 @@ std::optional<std::string> why_blank(const Scene& scene, const View& view, const
   if (box.isEmpty()) return nothing + "all that could be seen is hidden, deleted, or has no place";
   const double near = view.camera.near_plane, far = view.camera.far_plane;
   if (box.max().z() <= 0) return nothing + "the scene lies behind the camera";
-  if (box.min().z() >= far)
-    return nothing + fmt::format("the scene begins {:.3g} away, beyond the far plane at {:.3g}", box.min().z(), far);
-  if (box.max().z() <= near)
-    return nothing + fmt::format("the scene ends {:.3g} away, before the near plane at {:.3g}", box.max().z(), near);
-  if (seen.isEmpty())
-    return nothing + "the scene may lie beside what the camera sees; aim it at its target, or widen it";
-  if (seen.min().z() >= far || seen.max().z() <= near)
-    return nothing +
-           fmt::format("what the camera looks at lies {:.3g} to {:.3g} away, outside its planes at {:.3g} and {:.3g}",
-                       seen.min().z(), seen.max().z(), near, far);
+  // Planes are to blame only for what would be in the picture.
+  if (seen.isEmpty()) return nothing + "the scene may lie beside what the camera sees; aim it at its target, or widen it";
+  if (seen.min().z() >= far)
+    return nothing + fmt::format("the scene begins {:.3g} away, beyond the far plane at {:.3g}", seen.min().z(), far);
+  if (seen.max().z() <= near)
+    return nothing + fmt::format("the scene ends {:.3g} away, before the near plane at {:.3g}", seen.max().z(), near);
+  const double pixel = 2 * half_height(view.camera, seen.min().z()) / view.height;
+  if (box.sizes().head<2>().maxCoeff() < pixel) return nothing + "the scene is smaller than a pixel";
   return nothing + "what lies in view is transparent, or has the background's colour";
 }
 

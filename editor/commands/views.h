@@ -12,6 +12,9 @@ namespace rebake {
 /// The camera that frames everything visible; forward-facing when all objects are.
 Camera framing_of(const Scene& scene, double aspect, double fov_degrees = Camera{}.fov_degrees);
 
+/// The camera with planes that fit what is visible, where it leaves them open.
+Camera fitted(const Scene& scene, const Camera& camera, double aspect);
+
 /// The stored view of that name. Throws FieldError that names those there are.
 const Camera& stored_view(const Scene& scene, const std::string& name);
 

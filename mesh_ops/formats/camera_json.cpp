@@ -23,19 +23,28 @@ double number(const json& value, const std::string& key) {
   return value.get<double>();
 }
 
+double plane(const json& value, const std::string& key) {
+  const double distance = number(value, key);
+  if (!(distance > 0)) throw FieldError(key, "must be greater than 0; left out, it is fitted to the scene");
+  return distance;
+}
+
 }  // namespace
 
 nlohmann::json camera_json(const Camera& camera) {
-  json result = {{"eye", list(camera.eye)},   {"target", list(camera.target)}, {"up", list(camera.up)},
-                 {"fov", camera.fov_degrees}, {"near", camera.near_plane},     {"far", camera.far_plane}};
+  json result = {
+      {"eye", list(camera.eye)}, {"target", list(camera.target)}, {"up", list(camera.up)}, {"fov", camera.fov_degrees}};
+  if (camera.near_plane > 0) result["near"] = camera.near_plane;
+  if (camera.far_plane > 0) result["far"] = camera.far_plane;
   if (camera.orthographic()) result["ortho_height"] = camera.ortho_height;
   return result;
 }
 
-Camera read_camera_json(const nlohmann::json& value, const Camera& base) {
+Camera read_camera_json(const nlohmann::json& value) {
   if (!value.is_object())
     throw FieldError("camera", "must be an object with eye, target, up, fov, ortho_height, near, far");
-  Camera camera = base;
+  Camera camera;
+  camera.near_plane = camera.far_plane = 0;
   for (const auto& [key, field] : value.items()) {
     if (key == "eye")
       camera.eye = vector(field, key);
@@ -48,9 +57,9 @@ Camera read_camera_json(const nlohmann::json& value, const Camera& base) {
     else if (key == "ortho_height")
       camera.ortho_height = number(field, key);
     else if (key == "near")
-      camera.near_plane = number(field, key);
+      camera.near_plane = plane(field, key);
     else if (key == "far")
-      camera.far_plane = number(field, key);
+      camera.far_plane = plane(field, key);
     else
       throw FieldError(key, "is not a field of a camera (eye, target, up, fov, ortho_height, near, far)");
   }

@@ -6,8 +6,9 @@
 
 namespace rebake {
 
-/// {"eye", "target", "up", "fov", "near", "far"}. Reading takes what is missing from `base`; throws FieldError.
+/// {"eye", "target", "up", "fov", "ortho_height", "near", "far"}. What is left out has its usual value; planes are left
+/// open (see with_planes). Throws FieldError.
 nlohmann::json camera_json(const Camera& camera);
-Camera read_camera_json(const nlohmann::json& value, const Camera& base = {});
+Camera read_camera_json(const nlohmann::json& value);
 
 }  // namespace rebake

@@ -42,10 +42,32 @@ void check(const Camera& camera) {
     throw FieldError("fov", "must lie between 0 and 180 degrees");
   if (!(camera.ortho_height >= 0) || !std::isfinite(camera.ortho_height))
     throw FieldError("ortho_height", "must be greater than 0 (orthographic), or 0 (perspective)");
-  if (!(camera.near_plane > 0) || !std::isfinite(camera.near_plane)) throw FieldError("near", "must be greater than 0");
-  if (!(camera.far_plane > camera.near_plane) || !std::isfinite(camera.far_plane))
+  if (!(camera.near_plane >= 0) || !std::isfinite(camera.near_plane))
+    throw FieldError("near", "must be greater than 0");
+  if (camera.far_plane != 0 && (!(camera.far_plane > camera.near_plane) || !std::isfinite(camera.far_plane)))
     throw FieldError("far", "must be greater than near");
   world_to_camera(camera);
+}
+
+Camera with_planes(const Camera& camera, const Box& visible, double aspect) {
+  constexpr double depth_range = 1e4;  // of planes where the eye is among what it sees
+  Camera result = camera;
+  if (visible.isEmpty() || !visible.diagonal().allFinite()) {
+    if (result.near_plane == 0) result.near_plane = Camera{}.near_plane;
+    if (result.far_plane == 0) result.far_plane = std::max(Camera{}.far_plane, depth_range * result.near_plane);
+    return result;
+  }
+  const double farthest = (visible.center() - camera.eye).norm() + visible.diagonal().norm();
+  if (result.far_plane == 0) result.far_plane = std::max(farthest, 2 * result.near_plane);
+  if (result.near_plane == 0) {
+    // Of what lies at a distance in the picture's corner, the depth is less.
+    const double up = half_height(camera, 1), right = up * aspect;
+    const double corner = camera.orthographic() ? 0.0 : 1 / std::sqrt(1 + up * up + right * right);
+    const double nearest = visible.exteriorDistance(camera.eye) * std::min(0.5, corner);
+    result.near_plane = std::max(nearest, farthest / depth_range);
+    if (result.near_plane >= result.far_plane) result.near_plane = result.far_plane / depth_range;
+  }
+  return result;
 }
 
 Camera framing(const Box& bounds, double aspect, bool forward, double fov_degrees) {

@@ -9,10 +9,10 @@ struct Camera {
   Vec3 eye{0, 2, 3.464};
   Vec3 target{0, 0, 0};
   Vec3 up{0, 1, 0};
-  double fov_degrees = 39;  ///< vertical field of view of a pinhole, in (0, 180)
-  double ortho_height = 0;  ///< above 0 the camera is orthographic: its picture shows so much from top to bottom
-  double near_plane = 0.01;
-  double far_plane = 1000;
+  double fov_degrees = 39;   ///< vertical field of view of a pinhole, in (0, 180)
+  double ortho_height = 0;   ///< above 0 the camera is orthographic: its picture shows so much from top to bottom
+  double near_plane = 0.01;  ///< 0: with_planes fits it to the scene
+  double far_plane = 1000;   ///< likewise
 
   bool orthographic() const { return ortho_height > 0; }
   bool operator==(const Camera&) const = default;
@@ -30,6 +30,9 @@ struct ViewRay {
 /// Rows right, up, back: turns world directions into camera directions (the camera looks along −z).
 /// Throws FieldError if eye and target coincide; an `up` along the line of sight is replaced by another axis.
 Mat3 world_to_camera(const Camera& camera);
+
+/// The camera with near and far planes that cut nothing of `visible` off, where it leaves them open.
+Camera with_planes(const Camera& camera, const Box& visible, double aspect);
 
 /// Throws FieldError for fields that are not finite or out of range.
 void check(const Camera& camera);

@@ -105,7 +105,15 @@ TEST_F(Hostile, PicturesThatShowNothingSayWhy) {
   view.camera.near_plane = 0.1;
   view.camera.target = {0, 0, 8};
   EXPECT_NE(why().find("behind the camera"), std::string::npos) << why();
+  view.camera.target = {4, 0, 4};
+  view.camera.near_plane = 2;
+  EXPECT_NE(why().find("beside"), std::string::npos) << "planes that hide nothing are not named: " << why();
+  view.camera.near_plane = 0.1;
+  view.camera.far_plane = 1e6;
+  view.camera.eye = {0, 0, 1e5};
   view.camera.target = {0, 0, 0};
+  EXPECT_NE(why().find("smaller than a pixel"), std::string::npos) << why();
+  view.camera.eye = {0, 0, 4};
   run(R"({"op": "hide", "node": "ball"})");
   EXPECT_NE(why().find("hidden"), std::string::npos) << why();
 }

@@ -1,6 +1,7 @@
 // Cameras as values and as JSON.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +19,44 @@ TEST(Camera, JsonKeepsBothProjections) {
   camera.ortho_height = 0.7;
   EXPECT_EQ(read_camera_json(camera_json(camera)), camera);
   EXPECT_TRUE(read_camera_json(camera_json(camera)).orthographic());
+}
+
+TEST(Camera, PlanesThatAreLeftOutFitTheScene) {
+  const Camera open = read_camera_json({{"eye", {0, 0, 3000}}});
+  EXPECT_FALSE(camera_json(open).contains("near"));
+  EXPECT_EQ(read_camera_json(camera_json(open)), open);
+  EXPECT_THROW(read_camera_json({{"near", 0}}), FieldError);
+  EXPECT_THROW(read_camera_json({{"far", -1}}), FieldError);
+  const Box box(Vec3(-100, -100, -100), Vec3(100, 100, 100));
+  // From afar, from beside it with a wide picture, and from within, at any scale.
+  for (const double scale : {1e-9, 1.0, 1e9})
+    for (const Vec3& eye : {Vec3(0, 0, 3000), Vec3(120, 0, 150), Vec3(10, 20, 30)}) {
+      Camera camera = open;
+      camera.eye = eye * scale;
+      camera.fov_degrees = 150;
+      const Box scaled(box.min() * scale, box.max() * scale);
+      const Camera fitted = with_planes(camera, scaled, 2);
+      EXPECT_NO_THROW(check(fitted));
+      double nearest = 1e300, farthest = 0;
+      for (int k = 0; k < 8; ++k) {
+        const double distance = (scaled.corner(static_cast<Box::CornerType>(k)) - camera.eye).norm();
+        nearest = std::min(nearest, distance);
+        farthest = std::max(farthest, distance);
+      }
+      EXPECT_LT(fitted.near_plane, nearest);
+      EXPECT_LE(fitted.near_plane, std::max(scaled.exteriorDistance(camera.eye) / 2, farthest * 1e-3));
+      EXPECT_GT(fitted.near_plane, 0);
+      EXPECT_GE(fitted.far_plane, farthest);
+    }
+  // A plane that is given stays, and the other keeps clear of it.
+  Camera beyond = open, before = open;
+  beyond.near_plane = 1e6;
+  before.far_plane = 1e-3;
+  EXPECT_EQ(with_planes(beyond, box, 1).near_plane, 1e6);
+  EXPECT_NO_THROW(check(with_planes(beyond, box, 1)));
+  EXPECT_EQ(with_planes(before, box, 1).far_plane, 1e-3);
+  EXPECT_NO_THROW(check(with_planes(before, box, 1)));
+  EXPECT_NO_THROW(check(with_planes(open, Box(), 1)));
 }
 
 TEST(Camera, AHeightThatShowsNothingIsRefused) {

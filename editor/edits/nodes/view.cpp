@@ -14,7 +14,8 @@ Scene apply(const Scene& scene, const StoreView& edit) {
 REBAKE_DESCRIBE_EDIT(
     StoreView, "Stores a camera under a name.", (auto& edit, auto& visit) {
       visit("name", edit.name, Need::required, "name of the view");
-      visit("camera", edit.camera, Need::required, "the camera; what is left out has its usual value");
+      visit("camera", edit.camera, Need::required,
+            "the camera; what is left out has its usual value, and planes fit what is visible");
     })
 
 }  // namespace rebake

@@ -26,6 +26,12 @@ Picture picture_of(const Scene& scene, const PictureFields& fields) {
     }
     picture.camera = found->second;
   }
+  // Hidden nodes may be named to be selected on.
+  Box bounds;
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->object) bounds.extend(transformed(placed.node->object->bounds(), placed.to_world));
+  picture.camera =
+      with_planes(picture.camera, bounds, static_cast<double>(picture.width) / std::max(1, picture.height));
   return picture;
 }
 

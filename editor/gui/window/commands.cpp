@@ -164,6 +164,7 @@ void next_channel(Desk& desk) {
 void store_view(Desk& desk) {
   StoreView edit;
   edit.camera = desk.camera;
+  edit.camera.near_plane = edit.camera.far_plane = 0;  // to fit what the scene becomes
   for (int number = 1;; ++number) {
     edit.name = "view " + std::to_string(number);
     if (!desk.scene().views.contains(edit.name)) break;
