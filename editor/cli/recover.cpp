@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -45,9 +46,15 @@ void execute(const Options& options) {
   if (!options.replace && std::filesystem::exists(options.out))
     throw FileError(options.out, "is there already; choose another name, or --replace it");
   Document::Recovered recovered = Document::recover(options.journal, links_of(options.sources), progress_bar());
-  recovered.document.save(options.out, progress_bar());
+  // A project of nothing would stand in the way of the next attempt.
+  const bool nothing = recovered.edits == 0 && recovered.document.history().redo_count() == 0;
+  if (!nothing) recovered.document.save(options.out, progress_bar());
   clear_progress_bar();
-  fmt::print("{} edits recovered into {}\n", recovered.edits, printable(options.out));
+  if (nothing && recovered.lost.empty())
+    throw FileError(options.journal, "holds no edit, so no project is written; remove it if nothing is missed");
+  fmt::print("{} edits recovered{}\n", recovered.edits,
+             nothing ? "; no project is written" : " into " + printable(options.out));
+  if (recovered.nameless) say_line("note: the journal's first line is damaged; all behind it is whole");
   if (recovered.torn) say_line("note: one more edit was being written when the program ended; it is lost");
   if (recovered.lost.empty()) {
     // The project is on the disk now.
@@ -59,9 +66,13 @@ void execute(const Options& options) {
     return;
   }
   say_line("the journal stays where it is, since this could not be got back:");
-  for (const std::string& lost : recovered.lost) say_line("  " + lost);
+  constexpr std::size_t most_lines = 20;
+  for (std::size_t k = 0; k < std::min(most_lines, recovered.lost.size()); ++k) say_line("  " + recovered.lost[k]);
+  if (recovered.lost.size() > most_lines)
+    say_line(fmt::format("  and {} more edits behind these", recovered.lost.size() - most_lines));
   for (const SourcesGone::Source& source : recovered.gone)
-    say_line(fmt::format("if it lies elsewhere now: --source '{}=NEW'", source.path.string()));
+    say_line(fmt::format("if {} lies elsewhere now: --source '{}=NEW'", source.path.filename().string(),
+                         source.path.string()));
   throw ExitWith{1};
 }
 

@@ -26,8 +26,8 @@ namespace {
 using nlohmann::json;
 
 std::string line_of(const char* what, const std::filesystem::path& path, std::uint64_t content) {
-  return json{{what, std::filesystem::absolute(path).lexically_normal().string()}, {"content", hash_text(content)}}
-             .dump(-1, ' ', false, json::error_handler_t::replace) +
+  return json{{what, absolute_path(path).string()}, {"content", hash_text(content)}}.dump(
+             -1, ' ', false, json::error_handler_t::replace) +
          '\n';
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <vector>
 
@@ -71,6 +72,8 @@ std::size_t decoders_of(const Scene& scene) {
 }  // namespace
 
 void run(Session& session, const ExportAction& action) {
+  std::error_code error;
+  const bool replaces = std::filesystem::exists(action.out, error);
   const ExportReport report =
       export_scene(session.scene(), action.out, {action.layout, session.document.sources()}, session.progress);
   session.exports.push_back(action.out);
@@ -92,7 +95,7 @@ void run(Session& session, const ExportAction& action) {
           "sides {:.2g} % of pixels differ by more than 2/255, by {}/255 at most ({:.1f} dB)",
           loss.share_beyond * 100, loss.largest, loss.mean_db);
     });
-  session.say(fmt::format("exported {}", action.out));
+  session.say(fmt::format("exported {}{}", action.out, replaces ? ", in place of the folder that was there" : ""));
 }
 
 REBAKE_DESCRIBE_ACTION(

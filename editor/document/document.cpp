@@ -6,6 +6,7 @@
 
 #include "editor/document/project.h"
 #include "editor/edits/nodes/import.h"
+#include "mesh_ops/base/files.h"
 
 namespace rebake {
 
@@ -77,12 +78,12 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
     for (json one : edits_in(entry)) {
       const Scene& before = made.empty() ? result.document.scene() : made.back().second;
       if (one.value("op", "") == Import::op) {
-        const fs::path where = relinked(one.at("path").get<std::string>(), links);
-        one["path"] = where.string();
-        if (const std::string trouble = trouble_with(where, one.value("content", "")); !trouble.empty()) {
-          result.gone.push_back({where, trouble});
-          throw FileError(where, trouble);
+        const fs::path imported = one.at("path").get<std::string>();
+        if (const std::string trouble = trouble_with(imported, one.value("content", ""), links); !trouble.empty()) {
+          result.gone.push_back({imported, trouble});
+          throw FileError(imported, trouble);
         }
+        one["path"] = relinked(imported, links).string();
       }
       Edit edit = read_edit(one, before);
       Scene scene = rebake::apply(before, edit, progress).scene;
@@ -92,6 +93,11 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
     for (std::size_t k = 0; k < made.size(); ++k)
       history.add(std::move(made[k].first), std::move(made[k].second), k > 0);
   };
+  std::vector<fs::path> imports;
+  for (const std::string& text : contents.entries)
+    for (const json& one : edits_in(json::parse(text)))
+      if (one.value("op", "") == Import::op) imports.emplace_back(one.value("path", ""));
+  check_links(links, imports);
   std::size_t line = 1;
   for (const std::string& text : contents.entries) {
     progress.at("recovering", static_cast<double>(line) / static_cast<double>(contents.entries.size() + 1));
@@ -110,6 +116,7 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
       result.lost.push_back(fmt::format("{}: {}", named(line, entry), error.what()));
     }
   }
+  result.nameless = contents.damaged_line == 1;
   if (contents.damaged_line > 1) result.lost.push_back(fmt::format("line {} is damaged", contents.damaged_line));
   for (const Journal::Contents::Line& after : contents.after)
     result.lost.push_back(named(after.number, json::parse(after.entry)) + " (behind the damage)");
@@ -140,7 +147,7 @@ void Document::keep_journal(const fs::path& path) {
     first = end;
   }
   sources().check_file(path);
-  journal_ = Journal::create(fs::absolute(path).lexically_normal(), entries);
+  journal_ = Journal::create(absolute_path(path), entries);
 }
 
 void Document::edit(const Edit& edit, const Progress& progress) { edits({edit}, progress); }

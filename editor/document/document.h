@@ -62,9 +62,10 @@ class Document {
 
 struct Document::Recovered {
   Document document;
-  std::size_t edits = 0;                  ///< that were got back, undone ones not counted
-  bool torn = false;                      ///< an edit was being written when the program ended: it is lost
-  std::vector<std::string> lost;          ///< what could not be got back, a sentence each
+  std::size_t edits = 0;          ///< that were got back, undone ones not counted
+  bool nameless = false;          ///< its first line, which holds the version, is damaged; no edit is lost by it
+  bool torn = false;              ///< an edit was being written when the program ended: it is lost
+  std::vector<std::string> lost;  ///< what could not be got back, a sentence each
   std::vector<SourcesGone::Source> gone;  ///< sources that it wants, and that are not as they were
   std::optional<Journal> journal;         ///< the file itself, where the document does not go on writing it
 };

@@ -87,13 +87,15 @@ ReadProject read_project(const fs::path& path, const Relinked& links, const Prog
     check_form(path, root);
     std::string troubles;
     std::vector<SourcesGone::Source> gone;
+    std::vector<fs::path> imports;
     for (const json& source : root.at("sources")) {
-      const fs::path where = source_path(folder, source.at("path"), links);
-      const std::string trouble = trouble_with(where, source.at("content"));
+      const fs::path& imported = imports.emplace_back(source_path(folder, source.at("path"), {}));
+      const std::string trouble = trouble_with(imported, source.at("content"), links);
       if (trouble.empty()) continue;
-      troubles += fmt::format("\n  {} {}", where.string(), trouble);
-      gone.push_back({where, trouble});
+      troubles += fmt::format("\n  {} {}", imported.string(), trouble);
+      gone.push_back({imported, trouble});
     }
+    check_links(links, imports);
     if (!gone.empty())
       throw SourcesGone(path, "its sources are not as they were; put them back, or say where they lie now:" + troubles,
                         gone);

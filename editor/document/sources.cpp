@@ -1,6 +1,13 @@
 #include "editor/document/sources.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
 #include "editor/edits/nodes/import.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/scene_files.h"
 
@@ -10,33 +17,45 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path plain(const fs::path& path) {
-  const fs::path normal = fs::absolute(path).lexically_normal();
-  return normal.has_filename() ? normal : normal.parent_path();
+// The way from a folder to a source in it, "." for itself; nothing for one elsewhere.
+std::optional<fs::path> way_to(const fs::path& source, const fs::path& folder) {
+  const fs::path rest = absolute_path(source).lexically_relative(absolute_path(folder));
+  return rest.empty() || *rest.begin() == ".." ? std::nullopt : std::optional(rest);
 }
 
 }  // namespace
 
 fs::path relinked(const fs::path& source, const Relinked& links) {
-  const fs::path wanted = plain(source);
-  for (const auto& [from, to] : links) {
-    const fs::path rest = wanted.lexically_relative(plain(from));
-    if (rest == ".") return plain(to);
-    if (!rest.empty() && *rest.begin() != "..") return plain(to) / rest;
-  }
+  for (const auto& [from, to] : links)
+    if (const auto rest = way_to(source, from)) return *rest == "." ? absolute_path(to) : absolute_path(to) / *rest;
   return source;
 }
 
-std::string trouble_with(const fs::path& source, const std::string& content) {
+void check_links(const Relinked& links, const std::vector<fs::path>& sources) {
+  for (const auto& [from, to] : links) {
+    const bool used = std::any_of(sources.begin(), sources.end(),
+                                  [&](const fs::path& source) { return way_to(source, from).has_value(); });
+    std::string known;
+    for (const fs::path& source : std::set(sources.begin(), sources.end())) known += "\n  " + source.string();
+    if (!used)
+      throw FieldError("source", fmt::format("nothing was imported from \"{}\"{}", from.string(),
+                                             known.empty() ? "" : "; these were:" + known));
+  }
+}
+
+std::string trouble_with(const fs::path& source, const std::string& content, const Relinked& links) {
+  const fs::path where = relinked(source, links);
+  const std::string at = where == source ? "" : fmt::format(" (looked for at {})", where.string());
   std::error_code error;
-  if (!fs::exists(source, error)) return "is not there any more";
-  return hash_text(folder_hash(source)) == content ? "" : "has changed since it was imported";
+  if (!fs::exists(where, error)) return at.empty() ? "is not there any more" : "is not there" + at;
+  if (hash_text(folder_hash(where)) == content) return "";
+  return at.empty() ? "has changed since it was imported" : "is not what was imported" + at;
 }
 
 Edit completed(const Edit& edit) {
   if (!edit.is<Import>()) return edit;
   Import import = *edit.as<Import>();
-  import.path = fs::absolute(import.path).lexically_normal().string();
+  import.path = absolute_path(import.path).string();
   std::error_code error;
   // What is not there is reported by the import itself.
   if (import.content.empty() && fs::is_directory(scene_folder_of(import.path), error))

@@ -16,21 +16,23 @@ using Relinked = std::map<std::filesystem::path, std::filesystem::path>;
 
 /// The path of a source, relinked.
 std::filesystem::path relinked(const std::filesystem::path& source, const Relinked& links);
+/// Throws FieldError, naming the sources there are, for a link whose old path none of them lies at or in.
+void check_links(const Relinked& links, const std::vector<std::filesystem::path>& sources);
 
 /// Sources that are not as they were: moved, removed or changed.
 class SourcesGone : public FileError {
  public:
   struct Source {
-    std::filesystem::path path;
-    std::string trouble;  ///< what is wrong with it
+    std::filesystem::path path;  ///< as it was imported
+    std::string trouble;         ///< what is wrong with it
   };
   SourcesGone(const std::filesystem::path& file, const std::string& message, std::vector<Source> gone)
       : FileError(file, message), sources(std::move(gone)) {}
   std::vector<Source> sources;
 };
 
-/// What is wrong with a source of this content; empty when it is as it was.
-std::string trouble_with(const std::filesystem::path& source, const std::string& content);
+/// What is wrong with a source of this content where the links say it lies; empty when it is as it was.
+std::string trouble_with(const std::filesystem::path& source, const std::string& content, const Relinked& links);
 
 /// The edit with everything it needs to be repeated later: an import gets its absolute path and the hash of what lies
 /// there now. Throws FileError.

@@ -169,7 +169,7 @@ class Document:
         """Stores a camera under a name.
 
         name: name of the view
-        camera: the camera; what is left out has its usual value
+        camera: the camera; what is left out has its usual value, and planes fit what is visible
         """
     def background(self, *, color: Vector) -> None:
         """Sets the colour behind everything.
@@ -340,7 +340,7 @@ class Document:
         lattice: a box around the triangles, of so many cells along x, y and z
         wrap: a wrap of the triangles that show something; its coarseness as a share of their size, 0.005 to 0.5
         mesh: a closed triangle mesh in world space: a file (.obj, .off, .ply), or its vertices and faces
-        moves: what moves, one after the other; boxes and spheres in world units, with frame bounds in shares of the cage's box
+        moves: what moves, one after the other; boxes and spheres in world units, or in shares of the cage's box where the edit's field frame is bounds
         coordinates: mean_value: anywhere; green: keeps shapes, inside only; harmonic: around corners, not across, inside only, on a grid
         resolution: harmonic: cells of the grid along the cage's longest side, 8 to 256; finer is nearer and slower
         """
@@ -355,7 +355,7 @@ class Document:
         lattice: a box around the triangles, of so many cells along x, y and z
         wrap: a wrap of the triangles that show something; its coarseness as a share of their size, 0.005 to 0.5
         mesh: a closed triangle mesh in world space: a file (.obj, .off, .ply), or its vertices and faces
-        moves: points of the cage that are moved; boxes and spheres in world units, with frame bounds in shares of the cage's box
+        moves: points of the cage that are moved; boxes and spheres in world units, or in shares of the cage's box where the edit's field frame is bounds
         fixed: points of the cage that are held where they are
         iterations: 1 to 1000, at most; it ends sooner where nothing moves by more than a millionth of the cage's size
         """

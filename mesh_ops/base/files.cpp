@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -123,6 +124,17 @@ fs::path followed(const fs::path& path) {
 }  // namespace
 
 std::string read_file(const fs::path& path, std::uint64_t most) { return read_some(path, most, false); }
+fs::path absolute_path(const fs::path& path) {
+  fs::path result = fs::absolute(path);
+  if (std::find(result.begin(), result.end(), "..") != result.end()) {
+    std::error_code error;
+    const fs::path resolved = fs::weakly_canonical(result, error);
+    if (!error) result = resolved;
+  }
+  result = result.lexically_normal();
+  return result.has_filename() || !result.has_relative_path() ? result : result.parent_path();
+}
+
 std::string read_input(const fs::path& path, std::uint64_t most) { return read_some(path, most, true); }
 
 OutputFile::OutputFile(const fs::path& path, int flags)

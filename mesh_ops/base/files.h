@@ -14,6 +14,10 @@ namespace rebake {
 /// end.
 std::string read_file(const std::filesystem::path& path, std::uint64_t most = std::uint64_t{8} << 30);
 
+/// The absolute path without dots and a slash at the end. Links stay, but where ".." follows one: that leads up from
+/// what it points to.
+std::filesystem::path absolute_path(const std::filesystem::path& path);
+
 /// What a person names as input: a regular file, or a pipe that ends within `most` bytes. Throws FileError.
 std::string read_input(const std::filesystem::path& path, std::uint64_t most = std::uint64_t{256} << 20);
 

@@ -148,7 +148,7 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
   object->decoder = std::make_shared<const Decoder>(std::move(mlp.decoder));
   object->axes = axes;
   object->layout = unsplit ? Layout::unsplit : chunked ? Layout::chunked : Layout::split;
-  origin->folder = fs::absolute(folder).lexically_normal();
+  origin->folder = absolute_path(folder);
   origin->layout = object->layout;
   origin->mlp = source_of("mlp.json", mlp_text);
   origin->decoder = object->decoder;

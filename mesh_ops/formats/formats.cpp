@@ -1,6 +1,7 @@
 #include "mesh_ops/formats/formats.h"
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/scene_folder.h"
 
@@ -26,8 +27,8 @@ constexpr Format table[] = {
 }  // namespace
 
 std::string folder_title(const fs::path& path) {
-  fs::path normal = fs::absolute(path).lexically_normal();
-  if (!normal.has_filename() || normal.filename() == "scene.json") normal = normal.parent_path();
+  fs::path normal = absolute_path(path);
+  if (normal.filename() == "scene.json") normal = normal.parent_path();
   return normal.filename().string();
 }
 

@@ -86,5 +86,40 @@ TEST_F(Cli, FullDiskLeavesWhatWasThere) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 2) << "nothing half-written";
 }
 
+// A run that fails after some edits keeps them in its journal.
+TEST_F(Cli, RecoverWritesNoProjectOfNothingAndNamesWhatIsGone) {
+  write_file_atomically(in("s.jsonl"),
+                        R"({"op": "import", "path": ")" + in("ball") + R"("})" + "\n" +
+                            R"({"op": "hide", "node": "ball"})" + "\n" + R"({"op": "hide", "node": "nobody"})" + "\n",
+                        {});
+  ASSERT_EQ(rebake_run("run " + in("s.jsonl") + " --journal " + in("j")).code, 1);
+  std::filesystem::rename(in("ball"), in("moved"));
+  const Outcome gone = rebake_run("recover " + in("j") + " -o " + in("p.rebake"));
+  EXPECT_EQ(gone.code, 1) << gone.text;
+  EXPECT_NE(gone.text.find("--source '" + in("ball") + "=NEW'"), std::string::npos) << gone.text;
+  EXPECT_FALSE(std::filesystem::exists(in("p.rebake"))) << "it would stand in the way of the next attempt";
+  const Outcome wrong = rebake_run("recover " + in("j") + " -o " + in("p.rebake --source ") + in("bal=") + in("moved"));
+  EXPECT_NE(wrong.text.find("nothing was imported from"), std::string::npos) << wrong.text;
+  EXPECT_NE(wrong.text.find(in("ball")), std::string::npos) << wrong.text;
+  const Outcome missed = rebake_run("recover " + in("j") + " -o " + in("p.rebake --source ") + in("ball=") + in("mov"));
+  EXPECT_NE(missed.text.find("looked for at " + in("mov")), std::string::npos) << missed.text;
+  const Outcome found =
+      rebake_run("recover " + in("j") + " -o " + in("p.rebake --source ") + in("ball=") + in("moved"));
+  EXPECT_EQ(found.code, 0) << found.text;
+  EXPECT_TRUE(std::filesystem::exists(in("p.rebake")));
+  EXPECT_FALSE(std::filesystem::exists(in("j")));
+  // A journal that was being begun holds nothing to get back, and stays.
+  write_file_atomically(in("empty"), "", {});
+  EXPECT_EQ(rebake_run("recover " + in("empty") + " -o " + in("q.rebake")).code, 1);
+  EXPECT_TRUE(std::filesystem::exists(in("empty")));
+  EXPECT_FALSE(std::filesystem::exists(in("q.rebake")));
+}
+
+TEST_F(Cli, ExportSaysThatItReplaces) {
+  EXPECT_EQ(rebake_run("export " + in("ball") + " -o " + in("out")).text.find("in place of"), std::string::npos);
+  const Outcome again = rebake_run("export " + in("ball") + " -o " + in("out"));
+  EXPECT_NE(again.text.find("in place of the folder that was there"), std::string::npos) << again.text;
+}
+
 }  // namespace
 }  // namespace rebake::test

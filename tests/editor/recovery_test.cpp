@@ -102,6 +102,8 @@ TEST_F(Recovery, MovedSourcesAreNamedAndFoundWhereTheyLieNow) {
     found.document.save(path("p.rebake"));
     EXPECT_EQ(Document::open(path("p.rebake")).history().undo_count(), 4U);
   }
+  EXPECT_THROW(Document::recover(path("journal"), {{path("source"), path("elsewhere")}}), FieldError)
+      << "a link that nothing uses is a slip";
   // Another scene there is not taken for it.
   export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("other"), {});
   EXPECT_EQ(Document::recover(path("journal"), {{path("sources/ball"), path("other")}}).edits, 0U);

@@ -123,6 +123,17 @@ TEST(Files, PipesAndDevicesAreNoFiles) {
   EXPECT_THROW(read_any(folder.path() / "scene", Axes::y_up), FileError);
 }
 
+TEST(Files, DotsBehindALinkLeadUpFromWhatItPointsTo) {
+  const TemporaryFolder folder;
+  const fs::path root = fs::canonical(folder.path());
+  fs::create_directories(root / "deep/er");
+  fs::create_directory_symlink(root / "deep/er", root / "link");
+  EXPECT_EQ(absolute_path(root / "link/../x"), root / "deep/x");
+  EXPECT_EQ(absolute_path(root / "link/x/"), root / "link/x");
+  EXPECT_EQ(absolute_path(root / "./deep//er/."), root / "deep/er");
+  EXPECT_EQ(absolute_path("/"), "/");
+}
+
 TEST(SourceGuard, RefusesWhatIsEqualAboveBelowAndBehindLinks) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "x/ficus/below");

@@ -39,9 +39,8 @@ REBAKE_DESCRIBE_EDIT(
       DeformTarget::fields(edit.target, visit);
       CageSource::fields(edit.cage, visit);
       visit("moves", edit.moves, Need::required,
-            "what moves, one after the other; boxes and spheres in world units, with frame bounds in shares of the "
-            "cage's "
-            "box");
+            "what moves, one after the other; boxes and spheres in world units, or in shares of the cage's box where "
+            "the edit's field frame is bounds");
       visit(
           "coordinates", edit.coordinates, Need::optional,
           "mean_value: anywhere; green: keeps shapes, inside only; harmonic: around corners, not across, inside only, "

@@ -49,8 +49,8 @@ REBAKE_DESCRIBE_EDIT(
       DeformTarget::fields(edit.target, visit);
       CageSource::fields(edit.cage, visit);
       visit("moves", edit.moves, Need::required,
-            "points of the cage that are moved; boxes and spheres in world units, with frame bounds in shares of the "
-            "cage's box");
+            "points of the cage that are moved; boxes and spheres in world units, or in shares of the cage's box where "
+            "the edit's field frame is bounds");
       visit("fixed", edit.fixed, Need::optional, "points of the cage that are held where they are");
       visit("iterations", edit.iterations, Need::optional,
             "1 to 1000, at most; it ends sooner where nothing moves by more than a millionth of the cage's size");

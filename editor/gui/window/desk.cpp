@@ -125,7 +125,7 @@ void Desk::open(const std::vector<std::string>& paths, bool wanted) {
     import.path = path;
     worker.start(
         "import", [import](Session& session) { session.edit(import); },
-        [this, path] { settings.remember(fs::absolute(path).lexically_normal().string()); });
+        [this, path] { settings.remember(absolute_path(path).string()); });
   }
 }
 
