@@ -42,14 +42,6 @@ void for_each_part(const Scene& scene, Visit visit) {
   }
 }
 
-// What selecting knows of objects that are not in the scene any more takes memory that no budget counts.
-void forget_indexes(const Scene& before, const Scene& after) {
-  std::unordered_set<const BakedObject*> present;
-  for (const PlacedNode& placed : placed_nodes(after)) present.insert(placed.node->object.get());
-  for (const PlacedNode& placed : placed_nodes(before))
-    if (placed.node->object && !present.contains(placed.node->object.get())) placed.node->object->index.clear();
-}
-
 }  // namespace
 
 History::History(Scene start, std::uint64_t budget) : budget_(budget) {
@@ -82,7 +74,6 @@ std::vector<bool> History::joined() const {
 }
 
 void History::add(Edit edit, Scene scene, bool joined) {
-  forget_indexes(now(), scene);
   while (steps_.size() > position_ + 1) {
     drop(steps_.size() - 1);
     steps_.pop_back();
@@ -127,7 +118,6 @@ void History::go_to(std::size_t step, const Progress& progress) {
     scenes.push_back(rebake::apply(scenes.back(), *steps_[k].edit, progress).scene);
     if (scenes.size() > checkpoint_distance) scenes.pop_front();
   }
-  forget_indexes(now(), scenes.back());
   for (std::size_t k = step; k > from && !scenes.empty(); --k, scenes.pop_back()) keep(k, std::move(scenes.back()));
   position_ = step;
   fit_budget();

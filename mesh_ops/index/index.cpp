@@ -1,85 +1,84 @@
 #include "mesh_ops/index/index.h"
 
-#include <mutex>
-#include <optional>
+#include <utility>
 
 namespace rebake {
 
-/// The parts, each with its own lock: whoever wants traits does not wait for rays.
-class ObjectIndex {
- public:
-  Memo<std::vector<TriangleTraits>> traits;
-  Memo<RayTree> rays;
-
-  std::shared_ptr<const WeldedCorners> corners(const BakedObject& object, double tolerance) const {
-    const std::scoped_lock lock(corners_mutex_);
-    return kept(corners_, tolerance, 0.0,
-                [&] { return std::make_shared<const WeldedCorners>(weld(object, tolerance)); });
-  }
-  std::shared_ptr<const EdgeTable> edges(const BakedObject& object, double tolerance) const {
-    const auto welded = corners(object, tolerance);
-    const std::scoped_lock lock(edges_mutex_);
-    return kept(edges_, tolerance, 0.0, [&] { return std::make_shared<const EdgeTable>(edges_between(*welded)); });
-  }
-  std::shared_ptr<const Components> components(const BakedObject& object, const Joining& joining) const {
-    const auto welded = corners(object, joining.tolerance);
-    const auto table = edges(object, joining.tolerance);
-    const std::scoped_lock lock(components_mutex_);
-    return kept(components_, joining, Joining{}, [&] {
-      return std::make_shared<const Components>(opaque_components(object, *welded, *table, joining.gap));
-    });
-  }
-
- private:
-  // The default setting's result is kept for good, and that of the last other setting.
-  template <class Key, class T>
-  struct Kept {
-    std::shared_ptr<const T> standard;
-    std::optional<Key> other_key;
-    std::shared_ptr<const T> other;
-  };
-  template <class Key, class T, class Make>
-  static std::shared_ptr<const T> kept(Kept<Key, T>& store, const Key& key, const Key& standard, Make make) {
-    if (key == standard) return store.standard ? store.standard : store.standard = make();
-    if (store.other_key != key) {
-      store.other = make();
-      store.other_key = key;
-    }
-    return store.other;
-  }
-
-  mutable std::mutex corners_mutex_, edges_mutex_, components_mutex_;
-  mutable Kept<double, WeldedCorners> corners_;
-  mutable Kept<double, EdgeTable> edges_;
-  mutable Kept<Joining, Components> components_;
-};
-
 namespace {
 
-std::shared_ptr<const ObjectIndex> index_of(const BakedObject& object) {
-  return object.index.get([] { return std::make_shared<const ObjectIndex>(); });
+template <class T>
+std::uint64_t bytes_of(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+
+ArrayCache& cache() {
+  static ArrayCache cache(std::uint64_t{1} << 30);
+  return cache;
+}
+
+// What each depends on.
+ArrayCache::Arrays geometry_of(const BakedObject& object) {
+  ArrayCache::Arrays arrays;
+  for (const TextureSet& set : object.sets) {
+    arrays.push_back(set.soup.shared_positions());
+    arrays.push_back(set.soup.shared_faces());
+  }
+  return arrays;
+}
+ArrayCache::Arrays surface_of(const BakedObject& object) {
+  ArrayCache::Arrays arrays = geometry_of(object);
+  for (const TextureSet& set : object.sets) {
+    arrays.push_back(set.soup.shared_uvs());
+    arrays.push_back(set.texels);
+  }
+  return arrays;
+}
+
+// Trees look texels up in the object's arrays without keeping them; who uses one keeps both.
+std::shared_ptr<const RayTree> with_arrays(std::shared_ptr<const RayTree> tree, ArrayCache::Arrays arrays) {
+  if (!tree) return nullptr;
+  const RayTree* const plain = tree.get();
+  return {std::make_shared<std::pair<std::shared_ptr<const RayTree>, ArrayCache::Arrays>>(std::move(tree),
+                                                                                          std::move(arrays)),
+          plain};
 }
 
 }  // namespace
 
+std::uint64_t memory_of(const std::vector<TriangleTraits>& traits) { return bytes_of(traits); }
+std::uint64_t memory_of(const WeldedCorners& corners) { return bytes_of(corners.places); }
+std::uint64_t memory_of(const EdgeTable& edges) { return bytes_of(edges.half_edges) + bytes_of(edges.first_of); }
+std::uint64_t memory_of(const Components& parts) { return bytes_of(parts.part_of) + bytes_of(parts.triangles_in); }
+std::uint64_t memory_of(const RayTree& tree) { return tree.memory(); }
+
+const ArrayCache& index_cache() { return cache(); }
+
 std::shared_ptr<const std::vector<TriangleTraits>> traits_of(const BakedObject& object) {
-  return index_of(object)->traits.get(
-      [&] { return std::make_shared<const std::vector<TriangleTraits>>(triangle_traits(object)); });
+  ArrayCache::Arrays arrays = surface_of(object);
+  arrays.push_back(object.decoder);
+  return cache().get<std::vector<TriangleTraits>>(arrays, {}, [&] { return triangle_traits(object); });
 }
 std::shared_ptr<const WeldedCorners> corners_of(const BakedObject& object, double tolerance) {
-  return index_of(object)->corners(object, tolerance);
+  return cache().get<WeldedCorners>(geometry_of(object), {tolerance}, [&] { return weld(object, tolerance); });
 }
 std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tolerance) {
-  return index_of(object)->edges(object, tolerance);
+  return cache().get<EdgeTable>(geometry_of(object), {tolerance},
+                                [&] { return edges_between(*corners_of(object, tolerance)); });
 }
 std::shared_ptr<const Components> components_of(const BakedObject& object, const Joining& joining) {
-  return index_of(object)->components(object, joining);
+  return cache().get<Components>(surface_of(object), {joining.tolerance, joining.gap}, [&] {
+    return opaque_components(object, *corners_of(object, joining.tolerance), *edges_of(object, joining.tolerance),
+                             joining.gap);
+  });
 }
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object) {
-  return index_of(object)->rays.get([&] { return std::make_shared<const RayTree>(object); });
+  ArrayCache::Arrays arrays = surface_of(object);
+  return with_arrays(cache().get<RayTree>(arrays, {}, [&] { return RayTree(object); }), arrays);
 }
-
-std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object) { return index_of(object)->rays.if_there(); }
+std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object) {
+  ArrayCache::Arrays arrays = surface_of(object);
+  return with_arrays(cache().if_there<RayTree>(arrays, {}), arrays);
+}
 
 void prepare_index(const BakedObject& object, const Progress& progress) {
   progress.at("indexing", 0);

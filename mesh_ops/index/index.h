@@ -1,14 +1,16 @@
 #pragma once
 
 #include "mesh_ops/base/progress.h"
-#include "mesh_ops/index/connection.h"
+#include "mesh_ops/index/array_cache.h"
+#include "mesh_ops/index/components.h"
 #include "mesh_ops/index/traits.h"
 #include "mesh_ops/rays/ray_tree.h"
 
 namespace rebake {
 
-// What selecting on an object needs to know of it. Each part is computed when it is first asked for and kept with the
-// object; all scenes that share the object share it. Callable from any thread.
+// What selecting on an object needs to know of it. Each is computed when it is first asked for and kept by the object's
+// arrays (see ArrayCache): what moves vertices keeps what is known of texels, and the other way round. Callable from
+// any thread.
 
 std::shared_ptr<const std::vector<TriangleTraits>> traits_of(const BakedObject& object);
 std::shared_ptr<const WeldedCorners> corners_of(const BakedObject& object, double tolerance = 0);
@@ -20,5 +22,8 @@ std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object);
 
 /// Computes all of the above with their defaults, to be called off the window's thread before anything is selected.
 void prepare_index(const BakedObject& object, const Progress& progress = {});
+
+/// Where all of them are kept: one gigabyte at most.
+const ArrayCache& index_cache();
 
 }  // namespace rebake

@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -15,9 +16,16 @@ namespace {
 
 // What the filter needs to look a hit's texel up.
 struct Surface {
-  TextureSet set;
+  const std::vector<Face>* faces;
+  const std::vector<Vec2>* uvs;
+  const FeatureTexture* texels;
   std::uint32_t first_triangle;
 };
+
+bool count_bytes(void* sum, ssize_t bytes, bool /*after*/) {
+  *static_cast<std::atomic<std::int64_t>*>(sum) += bytes;
+  return true;
+}
 
 void let_through_transparent(const RTCFilterFunctionNArguments* args) {
   const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
@@ -25,10 +33,10 @@ void let_through_transparent(const RTCFilterFunctionNArguments* args) {
     if (args->valid[i] == 0) continue;
     const unsigned primitive = RTCHitN_primID(args->hit, args->N, i);
     const double u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
-    const Face& face = surface.set.soup.faces()[primitive];
-    const std::vector<Vec2>& uvs = surface.set.soup.uvs();
+    const Face& face = (*surface.faces)[primitive];
+    const std::vector<Vec2>& uvs = *surface.uvs;
     const Vec2 uv = uvs[face[0]] * (1 - u - v) + uvs[face[1]] * u + uvs[face[2]] * v;
-    if (!surface.set.texels->sample(uv.x(), uv.y()).opaque()) args->valid[i] = 0;
+    if (!surface.texels->sample(uv.x(), uv.y()).opaque()) args->valid[i] = 0;
   }
 }
 
@@ -52,6 +60,7 @@ class RayTree::Impl {
       // The same instructions on every processor, so that the same triangles are found at silhouettes too.
       : device_(rtcNewDevice("isa=sse2")), scene_(nullptr) {
     if (device_ == nullptr) throw DeviceError("Embree cannot be started; is its library whole?");
+    rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
     scene_ = rtcNewScene(device_);
     const Box box = object.bounds();
     if (!box.isEmpty() && box.sizes().allFinite()) {
@@ -66,7 +75,7 @@ class RayTree::Impl {
     std::uint32_t first = 0;
     surfaces_.reserve(object.sets.size());
     for (const TextureSet& set : object.sets) {
-      surfaces_.push_back({set, first});
+      surfaces_.push_back({&set.soup.faces(), &set.soup.uvs(), set.texels.get(), first});
       const Soup& soup = set.soup;
       first += static_cast<std::uint32_t>(soup.triangle_count());
       RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -91,6 +100,7 @@ class RayTree::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
+  std::uint64_t memory() const { return static_cast<std::uint64_t>(std::max<std::int64_t>(0, bytes_)); }
   std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const {
     const LocalRay local = local_ray(origin, direction, near, far);
     if (!local.meets) return std::nullopt;
@@ -201,6 +211,7 @@ class RayTree::Impl {
     if (device_ != nullptr) rtcReleaseDevice(device_);
   }
 
+  std::atomic<std::int64_t> bytes_ = 0;  ///< that Embree holds
   RTCDevice device_;
   RTCScene scene_;
   Vec3 center_{0, 0, 0};
@@ -210,7 +221,9 @@ class RayTree::Impl {
 };
 
 RayTree::RayTree(const BakedObject& object) : impl_(std::make_unique<Impl>(object)) {}
+RayTree::RayTree(RayTree&&) noexcept = default;
 RayTree::~RayTree() = default;
+std::uint64_t RayTree::memory() const { return impl_->memory(); }
 std::optional<RayTree::Hit> RayTree::nearest(const Vec3& origin, const Vec3& direction, double near, double far) const {
   return impl_->nearest(origin, direction, near, far);
 }

@@ -9,10 +9,11 @@
 namespace rebake {
 
 /// Finds the opaque triangle that a ray meets first. Transparent texels let rays through. Distances are found in single
-/// precision, relative to the object's centre: good to about 1e-6 of its size.
+/// precision, relative to the object's centre: good to about 1e-6 of its size. The object's arrays must outlive it.
 class RayTree {
  public:
   explicit RayTree(const BakedObject& object);
+  RayTree(RayTree&&) noexcept;
   ~RayTree();
 
   struct Hit {
@@ -33,6 +34,7 @@ class RayTree {
   void nearest(Bundle& rays, double near) const;
   /// Whether anything opaque lies at t in [near, far].
   bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const;
+  std::uint64_t memory() const;  ///< bytes
 
  private:
   class Impl;

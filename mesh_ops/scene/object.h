@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/base/memo.h"
 #include "mesh_ops/mesh/soup.h"
 #include "mesh_ops/texture/decoder.h"
 #include "mesh_ops/texture/texels.h"
@@ -50,8 +49,6 @@ struct Origin {
 /// A flag for each triangle of an object, numbered through its sets in order.
 using TriangleSet = std::vector<std::uint8_t>;
 
-class ObjectIndex;
-
 /// One baked scene: texture sets that share a decoder. Immutable once made; nodes share it.
 struct BakedObject {
   std::vector<TextureSet> sets;
@@ -59,7 +56,6 @@ struct BakedObject {
   Axes axes = Axes::y_up;
   Layout layout = Layout::split;
   std::shared_ptr<const Origin> origin;  ///< null for objects that were not read from a folder
-  Memo<ObjectIndex> index;               ///< see select/index.h
   /// Which triangles the last deformation folded or collapsed, until others come or go; null where none.
   std::shared_ptr<const TriangleSet> folded;
 

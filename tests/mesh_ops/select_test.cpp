@@ -6,6 +6,7 @@
 
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/select/duplicates.h"
+#include "mesh_ops/select/morphology.h"
 #include "mesh_ops/select/picture.h"
 #include "tests/support/made_scenes.h"
 
@@ -300,14 +301,6 @@ TEST(Select, OnlyTheEarlierOfEqualTrianglesIsADuplicate) {
   object.sets[0].soup =
       Soup(soup.shared_positions(), soup.shared_uvs(), std::make_shared<const std::vector<Face>>(faces));
   EXPECT_EQ(duplicate_triangles(object), (TriangleSet{0, 1, 0, 0, 0}));
-}
-
-TEST(Select, TheIndexIsKeptWithTheObjectAndNotCopied) {
-  const BakedObject object = strip(2, 0, everywhere);
-  EXPECT_EQ(traits_of(object), traits_of(object));
-  EXPECT_EQ(components_of(object, {.tolerance = 0.1, .gap = 0}), components_of(object, {.tolerance = 0.1, .gap = 0}));
-  const BakedObject copy = object;
-  EXPECT_NE(traits_of(object), traits_of(copy));
 }
 
 TEST(Select, NineMicsAreAtLeastNineParts) {

@@ -2,6 +2,7 @@
 
 #include "editor/edits/describe.h"
 #include "mesh_ops/index/index.h"
+#include "mesh_ops/select/morphology.h"
 
 namespace rebake {
 

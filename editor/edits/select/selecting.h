@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "editor/edits/support.h"
-#include "mesh_ops/index/connection.h"
+#include "mesh_ops/index/components.h"
 #include "mesh_ops/select/picture.h"
 
 namespace rebake {

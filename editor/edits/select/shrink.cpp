@@ -1,6 +1,7 @@
 #include "editor/edits/select/shrink.h"
 
 #include "editor/edits/describe.h"
+#include "mesh_ops/select/morphology.h"
 
 namespace rebake {
 

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "mesh_ops/index/edges.h"
+
+namespace rebake {
+
+/// The selection and the triangles that share a place with it.
+TriangleSet grown(const WeldedCorners& corners, const TriangleSet& selection);
+/// The selection without the triangles that share a place with others.
+TriangleSet shrunk(const WeldedCorners& corners, const TriangleSet& selection);
+/// The selection and the islands inside it: unselected triangles, joined through shared edges, that border selected
+/// ones and are fewer than `largest`.
+TriangleSet filled(const EdgeTable& edges, const TriangleSet& selection, std::size_t largest);
+
+}  // namespace rebake
