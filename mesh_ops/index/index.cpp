@@ -80,6 +80,14 @@ std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object) {
   return with_arrays(cache().if_there<RayTree>(arrays, {}), arrays);
 }
 
+SceneRays rays_through(const std::vector<PlacedNode>& objects) {
+  std::vector<SceneRays::Instance> instances;
+  for (const PlacedNode& placed : objects)
+    instances.push_back(
+        {rays_of(*placed.node->object), placed.to_world, placed.node->object->bounds().diagonal().norm()});
+  return SceneRays(std::move(instances));
+}
+
 void prepare_index(const BakedObject& object, const Progress& progress) {
   progress.at("indexing", 0);
   traits_of(object);

@@ -5,6 +5,8 @@
 #include "mesh_ops/index/components.h"
 #include "mesh_ops/index/traits.h"
 #include "mesh_ops/rays/ray_tree.h"
+#include "mesh_ops/rays/scene_rays.h"
+#include "mesh_ops/scene/scene.h"
 
 namespace rebake {
 
@@ -19,6 +21,9 @@ std::shared_ptr<const Components> components_of(const BakedObject& object, const
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object);
 /// Null where they are not there yet: for who must not wait.
 std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object);
+
+/// Rays through placed objects, in their order.
+SceneRays rays_through(const std::vector<PlacedNode>& objects);
 
 /// Computes all of the above with their defaults, to be called off the window's thread before anything is selected.
 void prepare_index(const BakedObject& object, const Progress& progress = {});

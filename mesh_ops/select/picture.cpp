@@ -139,47 +139,31 @@ TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, c
 
 std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, const Projector& project,
                                         const PixelMask& mask, double nearest, double farthest) {
-  struct Seen {
-    std::shared_ptr<const RayTree> rays;
-    Affine to_object;
-  };
-  std::vector<Seen> trees;
+  const SceneRays scene = rays_through(objects);
   std::vector<TriangleSet> flags;
-  for (const PlacedNode& placed : objects) {
-    const Affine to_object = placed.to_world.inverse();
-    trees.push_back({rays_of(*placed.node->object), to_object});
-    flags.emplace_back(placed.node->object->triangle_count(), 0);
-  }
+  for (const PlacedNode& placed : objects) flags.emplace_back(placed.node->object->triangle_count(), 0);
   struct Pick {
-    std::uint32_t object, triangle;
+    std::size_t object;
+    std::uint32_t triangle;
   };
   std::vector<std::vector<Pick>> picks(static_cast<std::size_t>(mask.height));
   tbb::parallel_for(0, mask.height, [&](int y) {
     for (int first = 0; first < mask.width; first += 8) {
-      std::array<ViewRay, 8> rays;
-      std::array<std::optional<Pick>, 8> picked;
-      RayTree::Bundle bundle;
+      SceneRays::Bundle rays;
       bool any = false;
       for (int i = 0; i < 8; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        rays[k] = project.ray(first + i, y);
-        bundle.far[k] = mask.at(first + i, y) ? project.camera().far_plane : -1;
+        const ViewRay ray = project.ray(first + i, y);
+        rays.origins[k] = ray.origin;
+        rays.directions[k] = ray.direction;
+        rays.far[k] = mask.at(first + i, y) ? project.camera().far_plane : -1;
         any = any || mask.at(first + i, y);
       }
       if (!any) continue;
-      for (std::uint32_t object = 0; object < trees.size(); ++object) {
-        const Affine& to_object = trees[object].to_object;
-        for (std::size_t k = 0; k < 8; ++k) {
-          bundle.origins[k] = to_object * rays[k].origin;
-          bundle.directions[k] = to_object.linear() * rays[k].direction;
-        }
-        trees[object].rays->nearest(bundle, project.camera().near_plane);
-        for (std::size_t k = 0; k < 8; ++k)
-          if (bundle.hit[k]) picked[k] = Pick{object, bundle.triangle[k]};
-      }
-      for (std::size_t k = 0; k < 8; ++k)
-        if (picked[k] && bundle.far[k] >= nearest && bundle.far[k] <= farthest)
-          picks[static_cast<std::size_t>(y)].push_back(*picked[k]);
+      scene.nearest(rays, project.camera().near_plane);
+      for (const auto& hit : rays.hits)
+        if (hit && hit->t >= nearest && hit->t <= farthest)
+          picks[static_cast<std::size_t>(y)].push_back({hit->instance, hit->triangle});
     }
   });
   for (const auto& row : picks)

@@ -12,36 +12,6 @@ namespace rebake {
 
 namespace {
 
-// Whether something opaque stands between a picture's eye and a world point.
-class Hiding {
- public:
-  Hiding(const Scene& scene, const Projector& projector) : projector_(projector) {
-    for (const PlacedNode& placed : visible_objects(scene))
-      objects_.push_back(
-          {rays_of(*placed.node->object), placed.to_world.inverse(), placed.node->object->bounds().diagonal().norm()});
-  }
-  bool operator()(const Vec3& world) const {
-    const Vec3 eye = projector_.eye_for(world);
-    for (const Object& object : objects_) {
-      const Vec3 from = object.to_object * eye, way = object.to_object * world - from;
-      const double distance = way.norm();
-      // Stops short of the point itself by more than the tree's rounding.
-      if (distance > 0 && object.rays->blocked(from, way, 0, 1 - 1e-5 * std::max(1.0, object.size / distance)))
-        return true;
-    }
-    return false;
-  }
-
- private:
-  struct Object {
-    std::shared_ptr<const RayTree> rays;
-    Affine to_object;
-    double size;
-  };
-  const Projector& projector_;
-  std::vector<Object> objects_;
-};
-
 Outcome erased(const Scene& scene, const std::vector<PlacedNode>& targets,
                const std::function<ObjectRegion(const PlacedNode&)>& region_in) {
   Scene result = scene;
@@ -71,12 +41,12 @@ Outcome apply(const Scene& scene, const Erase& edit) {
   if (ways != 1) throw FieldError("box", "exactly one of box, sphere, half_space and a picture's region must be given");
   if (in_picture) {
     const PictureRegion region(scene, edit.picture);
-    const std::optional<Hiding> hidden =
-        edit.through ? std::nullopt : std::optional<Hiding>(std::in_place, scene, region.projector());
+    const std::optional<SceneRays> rays =
+        edit.through ? std::nullopt : std::optional(rays_through(visible_objects(scene)));
     return erased(scene, targets, [&](const PlacedNode& placed) {
-      const auto inside = [&region, &hidden, to_world = placed.to_world](const Vec3& p) {
+      const auto inside = [&region, &rays, to_world = placed.to_world](const Vec3& p) {
         const Vec3 world = to_world * p;
-        return region.contains(world) && !(hidden && (*hidden)(world));
+        return region.contains(world) && !(rays && rays->blocked(region.projector().eye_for(world), world));
       };
       const auto may_touch = [&region, to_world = placed.to_world](const std::array<Vec3, 3>& corners) {
         return region.may_touch({to_world * corners[0], to_world * corners[1], to_world * corners[2]});

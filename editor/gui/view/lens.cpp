@@ -31,20 +31,14 @@ Vec3 Lens::motion(const Vec3& world, const Vec2& pixels) const {
 }
 
 std::optional<Picked> pick(const Scene& scene, const Lens& lens, const Vec2& pixel, bool waits) {
-  std::optional<Picked> nearest;
+  std::vector<PlacedNode> objects;
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.visible && placed.node->object && (waits || rays_if_there(*placed.node->object)))
+      objects.push_back(placed);
   const ViewRay ray = lens.ray(pixel);
-  double least = std::numeric_limits<double>::infinity();
-  for (const PlacedNode& placed : placed_nodes(scene)) {
-    if (!placed.visible || !placed.node->object) continue;
-    const auto rays = waits ? rays_of(*placed.node->object) : rays_if_there(*placed.node->object);
-    if (!rays) continue;
-    const Affine to_object = placed.to_world.inverse();
-    const auto hit = rays->nearest(to_object * ray.origin, to_object.linear() * ray.direction, 0, least);
-    if (!hit || hit->t >= least) continue;
-    least = hit->t;
-    nearest = Picked{placed.node->id, hit->triangle, ray.origin + hit->t * ray.direction};
-  }
-  return nearest;
+  const auto hit = rays_through(objects).nearest(ray.origin, ray.direction, 0, std::numeric_limits<double>::infinity());
+  if (!hit) return std::nullopt;
+  return Picked{objects[hit->instance].node->id, hit->triangle, ray.origin + hit->t * ray.direction};
 }
 
 }  // namespace rebake

@@ -1,0 +1,50 @@
+#include "mesh_ops/rays/scene_rays.h"
+
+#include <algorithm>
+
+namespace rebake {
+
+SceneRays::SceneRays(std::vector<Instance> instances) {
+  for (Instance& instance : instances)
+    placed_.push_back({std::move(instance.tree), instance.to_world.inverse(), instance.size});
+}
+
+std::optional<SceneRays::Hit> SceneRays::nearest(const Vec3& origin, const Vec3& direction, double near,
+                                                 double far) const {
+  std::optional<Hit> nearest;
+  for (std::size_t k = 0; k < placed_.size(); ++k) {
+    const Affine& to_object = placed_[k].to_object;
+    const auto hit = placed_[k].tree->nearest(to_object * origin, to_object.linear() * direction, near, far);
+    if (!hit || (nearest && hit->t >= far)) continue;
+    far = hit->t;
+    nearest = Hit{hit->t, k, hit->triangle};
+  }
+  return nearest;
+}
+
+void SceneRays::nearest(Bundle& rays, double near) const {
+  RayTree::Bundle local;
+  local.far = rays.far;
+  for (std::size_t k = 0; k < placed_.size(); ++k) {
+    const Affine& to_object = placed_[k].to_object;
+    for (std::size_t ray = 0; ray < 8; ++ray) {
+      local.origins[ray] = to_object * rays.origins[ray];
+      local.directions[ray] = to_object.linear() * rays.directions[ray];
+    }
+    placed_[k].tree->nearest(local, near);
+    for (std::size_t ray = 0; ray < 8; ++ray)
+      if (local.hit[ray]) rays.hits[ray] = Hit{local.far[ray], k, local.triangle[ray]};
+  }
+  rays.far = local.far;
+}
+
+bool SceneRays::blocked(const Vec3& from, const Vec3& to) const {
+  return std::any_of(placed_.begin(), placed_.end(), [&](const Placed& placed) {
+    const Vec3 start = placed.to_object * from, way = placed.to_object * to - start;
+    const double distance = way.norm();
+    constexpr double rounding = 1e-5;  // of the object's size, ten times the tree's
+    return distance > 0 && placed.tree->blocked(start, way, 0, 1 - rounding * std::max(1.0, placed.size / distance));
+  });
+}
+
+}  // namespace rebake

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mesh_ops/rays/ray_tree.h"
+
+namespace rebake {
+
+/// Rays in world space through placed objects, whose trees are shared by all nodes and scenes that show them. Each
+/// object keeps a frame of its own, in which floats tell its triangles apart: one tree over all of them would not,
+/// where nodes differ much in scale or lie far apart. What a ray does not come near costs a test against a box.
+class SceneRays {
+ public:
+  struct Instance {
+    std::shared_ptr<const RayTree> tree;
+    Affine to_world;
+    double size;  ///< of the object, the diagonal of its box in its own units
+  };
+  explicit SceneRays(std::vector<Instance> instances);
+
+  struct Hit {
+    double t;                ///< at origin + t · direction
+    std::size_t instance;    ///< number of the instance
+    std::uint32_t triangle;  ///< in the object's numbering
+  };
+  /// The nearest opaque triangle with t in [near, far]; of several at one t the first instance's.
+  std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const;
+  /// The same for eight rays that go much the same way. Those whose `far` is below `near` are left out. Where something
+  /// is hit, `far` becomes its t.
+  struct Bundle {
+    std::array<Vec3, 8> origins;
+    std::array<Vec3, 8> directions;
+    std::array<double, 8> far;
+    std::array<std::optional<Hit>, 8> hits{};
+  };
+  void nearest(Bundle& rays, double near) const;
+  /// Whether anything opaque lies between two points; not at `to` itself, within the trees' rounding.
+  bool blocked(const Vec3& from, const Vec3& to) const;
+
+ private:
+  struct Placed {
+    std::shared_ptr<const RayTree> tree;
+    Affine to_object;
+    double size;
+  };
+  std::vector<Placed> placed_;
+};
+
+}  // namespace rebake
