@@ -6,6 +6,7 @@
 
 #include "mesh_ops/base/types.h"
 #include "mesh_ops/scene/scene.h"
+#include "mesh_ops/select/regions.h"
 
 namespace rebake {
 
@@ -35,18 +36,6 @@ struct Scale {
   Vec3 value{1, 1, 1};
 };
 
-struct BoxRegion {
-  Vec3 min, max;
-};
-struct SphereRegion {
-  Vec3 center;
-  double radius = 0;
-};
-/// Points x with normal · (x − point) ≥ 0.
-struct HalfSpaceRegion {
-  Vec3 point, normal;
-};
-
 /// Corners of a polygon in pixels, x to the right and y down.
 struct PixelPolygon {
   std::vector<Vec2> corners;
@@ -69,7 +58,6 @@ struct PixelSize {
 };
 
 enum class SelectMode { set, add, remove, intersect };
-enum class CoordinateFrame { world, node, bounds };
 
 /// How a struct describes a field: `visit(name, member, need, help)`, and a unit where it has one.
 enum class Need { required, optional };

@@ -59,4 +59,15 @@ TriangleSet filled(const EdgeTable& edges, const TriangleSet& selection, std::si
   return result;
 }
 
+TriangleSet joined_to(const WeldedCorners& corners, std::size_t triangle) {
+  UnionFind parts(corners.place_count);
+  const std::vector<std::uint32_t>& places = corners.places;
+  TriangleSet flags(places.size() / 3, 0);
+  for (std::size_t t = 0; t < flags.size(); ++t)
+    for (std::size_t k = 1; k < 3; ++k) parts.join(places[t * 3], places[t * 3 + k]);
+  const std::uint32_t wanted = parts.root(places.at(triangle * 3));
+  for (std::size_t t = 0; t < flags.size(); ++t) flags[t] = parts.root(places[t * 3]) == wanted ? 1 : 0;
+  return flags;
+}
+
 }  // namespace rebake

@@ -12,4 +12,7 @@ TriangleSet shrunk(const WeldedCorners& corners, const TriangleSet& selection);
 /// ones and are fewer than `largest`.
 TriangleSet filled(const EdgeTable& edges, const TriangleSet& selection, std::size_t largest);
 
+/// Triangles that hang together with the given one through places they share, transparent ones too.
+TriangleSet joined_to(const WeldedCorners& corners, std::size_t triangle);
+
 }  // namespace rebake

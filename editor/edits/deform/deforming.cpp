@@ -6,11 +6,11 @@
 
 #include <limits>
 
-#include "editor/edits/select/regions.h"
 #include "editor/edits/select/selecting.h"
 #include "mesh_ops/formats/cage_file.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/index/opacity.h"
+#include "mesh_ops/select/regions.h"
 
 namespace rebake {
 

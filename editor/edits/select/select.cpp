@@ -4,8 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "editor/edits/select/regions.h"
-#include "mesh_ops/select/region.h"
+#include "mesh_ops/index/index.h"
+#include "mesh_ops/select/morphology.h"
+#include "mesh_ops/select/regions.h"
 
 namespace rebake {
 
@@ -61,7 +62,8 @@ Scene apply(const Scene& scene, const Select& edit) {
     if (edit.box) return triangles_by_centre(object, region_of(points, *edit.box).inside);
     if (edit.sphere) return triangles_by_centre(object, region_of(points, *edit.sphere).inside);
     if (edit.half_space) return triangles_by_centre(object, region_of(points, *edit.half_space).inside);
-    if (start && start->target == k && object.triangle_count() > 0) return triangles_connected(object, start->triangle);
+    if (start && start->target == k && object.triangle_count() > 0)
+      return joined_to(*corners_of(object), start->triangle);
     if (edit.texture_set) return triangles_of_set(placed, *edit.texture_set);
     if (const auto saved = placed.node->saved_selections.find(edit.saved);
         !edit.saved.empty() && saved != placed.node->saved_selections.end())

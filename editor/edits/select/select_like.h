@@ -1,7 +1,6 @@
 #pragma once
 
 #include "editor/edits/select/selecting.h"
-#include "mesh_ops/index/index.h"
 
 namespace rebake {
 

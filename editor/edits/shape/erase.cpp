@@ -4,9 +4,9 @@
 
 #include "editor/edits/describe.h"
 
-#include "editor/edits/select/regions.h"
 #include "mesh_ops/features/erase.h"
 #include "mesh_ops/index/index.h"
+#include "mesh_ops/select/regions.h"
 
 namespace rebake {
 

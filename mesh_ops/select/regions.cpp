@@ -1,32 +1,20 @@
-#pragma once
+#include "mesh_ops/select/regions.h"
+
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <functional>
-
-#include "editor/fields/values.h"
-#include "mesh_ops/select/region.h"
 
 namespace rebake {
 
-/// Turns object coordinates into those that a selection's numbers are given in, and back.
-class FramePoints {
- public:
-  FramePoints(CoordinateFrame frame, const PlacedNode& placed);
-  const Affine& from_object() const { return from_object_; }
-  Vec3 to_object(const Vec3& point) const { return from_object_.inverse() * point; }
-  /// What a radius is multiplied by, to be compared with distances in metric().
-  double radius_scale() const { return radius_scale_; }
-  /// Coordinates in which distances mean something: world, or the object's own.
-  const Affine& metric() const { return metric_; }
+namespace {
 
- private:
-  Affine from_object_ = Affine::Identity();
-  Affine metric_ = Affine::Identity();
-  double radius_scale_ = 1;
-};
+Vec3 centre(const Soup& soup, const Face& face) {
+  return (soup.positions()[face[0]] + soup.positions()[face[1]] + soup.positions()[face[2]]) / 3;
+}
 
-inline FramePoints::FramePoints(CoordinateFrame frame, const PlacedNode& placed) {
+}  // namespace
+
+FramePoints::FramePoints(CoordinateFrame frame, const PlacedNode& placed) {
   if (frame == CoordinateFrame::world) from_object_ = metric_ = placed.to_world;
   if (frame != CoordinateFrame::bounds) return;
   const Box box = placed.node->object->bounds();
@@ -40,14 +28,7 @@ inline FramePoints::FramePoints(CoordinateFrame frame, const PlacedNode& placed)
   }
 }
 
-/// A region of an object, in object space.
-struct ObjectRegion {
-  std::function<bool(const Vec3&)> inside;
-  /// False only where the triangle between the corners lies outside altogether.
-  std::function<bool(const std::array<Vec3, 3>&)> may_touch;
-};
-
-inline ObjectRegion region_of(const FramePoints& points, const BoxRegion& box) {
+ObjectRegion region_of(const FramePoints& points, const BoxRegion& box) {
   const Affine& from_object = points.from_object();
   const auto inside = [from_object, box](const Vec3& object_point) {
     const Vec3 p = from_object * object_point;
@@ -61,7 +42,7 @@ inline ObjectRegion region_of(const FramePoints& points, const BoxRegion& box) {
   return {inside, may_touch};
 }
 
-inline ObjectRegion region_of(const FramePoints& points, const SphereRegion& sphere) {
+ObjectRegion region_of(const FramePoints& points, const SphereRegion& sphere) {
   const Vec3 center = points.metric() * points.to_object(sphere.center);
   const double radius = sphere.radius * points.radius_scale();
   const Affine& metric = points.metric();
@@ -76,7 +57,7 @@ inline ObjectRegion region_of(const FramePoints& points, const SphereRegion& sph
   return {inside, may_touch};
 }
 
-inline ObjectRegion region_of(const FramePoints& points, const HalfSpaceRegion& half) {
+ObjectRegion region_of(const FramePoints& points, const HalfSpaceRegion& half) {
   const auto inside = [from_object = points.from_object(), half](const Vec3& object_point) {
     return half.normal.dot(from_object * object_point - half.point) >= 0;
   };
@@ -84,6 +65,18 @@ inline ObjectRegion region_of(const FramePoints& points, const HalfSpaceRegion& 
     return std::any_of(corners.begin(), corners.end(), inside);
   };
   return {inside, may_touch};
+}
+
+TriangleSet triangles_by_centre(const BakedObject& object, const std::function<bool(const Vec3&)>& inside) {
+  TriangleSet flags(object.triangle_count(), 0);
+  std::size_t first = 0;
+  for (const TextureSet& set : object.sets) {
+    const Soup& soup = set.soup;
+    tbb::parallel_for(std::size_t{0}, soup.triangle_count(),
+                      [&](std::size_t f) { flags[first + f] = inside(centre(soup, soup.faces()[f])) ? 1 : 0; });
+    first += soup.triangle_count();
+  }
+  return flags;
 }
 
 }  // namespace rebake

@@ -1,0 +1,90 @@
+#include "mesh_ops/select/likeness.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+
+#include "mesh_ops/base/elementary.h"
+#include "mesh_ops/index/index.h"
+
+namespace rebake {
+
+namespace {
+
+using Features = Eigen::Array<double, 8, 1>;
+
+Features features_of(const TriangleTraits& traits) {
+  return Eigen::Map<const Eigen::Array<float, 8, 1>>(traits.features.data()).cast<double>();
+}
+Vec3 vector_of(const std::array<float, 3>& v) { return Vec3(v[0], v[1], v[2]); }
+
+// How a node's transform changes areas and planes.
+class WorldShape {
+ public:
+  explicit WorldShape(const PlacedNode& placed)
+      : cofactor_(placed.to_world.linear().determinant() * placed.to_world.linear().inverse().transpose()) {}
+  // The triangle's area vector in the world: normal times area.
+  Vec3 area(const TriangleTraits& traits) const { return cofactor_ * vector_of(traits.normal) * traits.area; }
+
+ private:
+  Mat3 cofactor_;
+};
+
+}  // namespace
+
+Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector<TriangleSet>& picked) {
+  Likeness mean;
+  double total = 0;
+  // Planes have no sign: the axis that all normals agree on best is the largest eigenvector of their outer products.
+  Mat3 planes = Mat3::Zero();
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    if (count(picked[k]) == 0) continue;
+    const auto traits = traits_of(*objects[k].node->object);
+    const WorldShape shape(objects[k]);
+    for (std::size_t f = 0; f < picked[k].size(); ++f) {
+      if (picked[k][f] == 0) continue;
+      const TriangleTraits& t = (*traits)[f];
+      const Vec3 area = shape.area(t);
+      mean.color += vector_of(t.color);
+      mean.features += features_of(t);
+      mean.opacity += static_cast<double>(t.opacity);
+      mean.area += area.norm();
+      const Vec3 normal = area.stableNormalized();
+      planes += normal * normal.transpose();
+      total += 1;
+    }
+  }
+  mean.color /= total;
+  mean.features /= total;
+  mean.opacity /= total;
+  mean.area /= total;
+  mean.normal = Eigen::SelfAdjointEigenSolver<Mat3>(planes).eigenvectors().col(2);
+  return mean;
+}
+
+TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, const LikenessBounds& bounds) {
+  const double least_cosine =
+      bounds.orientation ? elementary::sine_cosine(std::min(*bounds.orientation, 90.0) * std::numbers::pi / 180).cosine
+                         : 0;
+  const auto traits = traits_of(*placed.node->object);
+  const WorldShape shape(placed);
+  TriangleSet flags(traits->size());
+  tbb::parallel_for(std::size_t{0}, flags.size(), [&](std::size_t f) {
+    const TriangleTraits& t = (*traits)[f];
+    if ((bounds.color || bounds.features) && t.opacity == 0) return;
+    if (bounds.color && (vector_of(t.color) - model.color).norm() > *bounds.color) return;
+    if (bounds.features && std::sqrt((features_of(t) - model.features).square().mean()) > *bounds.features) return;
+    if (bounds.opacity && std::abs(static_cast<double>(t.opacity) - model.opacity) > *bounds.opacity) return;
+    if (bounds.size || bounds.orientation) {
+      const Vec3 area = shape.area(t);
+      if (bounds.size && (area.norm() > model.area * *bounds.size || area.norm() * *bounds.size < model.area)) return;
+      if (bounds.orientation && std::abs(area.stableNormalized().dot(model.normal)) < least_cosine) return;
+    }
+    flags[f] = 1;
+  });
+  return flags;
+}
+
+}  // namespace rebake
