@@ -42,7 +42,7 @@ json object_info(const PlacedNode& placed) {
           {"bounds", {{"min", list(box.min())}, {"max", list(box.max())}}},
           {"axes", Codec<Axes>::write(object.axes)},
           {"decoder", {Decoder::inputs, object.decoder->hidden0(), object.decoder->hidden1(), 3}},
-          {"turned", object.any_turns()},
+          {"turned", object.any_rotations()},
           {"memory", object.memory()}};
 }
 

@@ -18,7 +18,8 @@ void for_each_part(const Scene& scene, Visit visit) {
     visit(soup.shared_positions().get(), soup.positions().size() * sizeof(Vec3));
     visit(soup.shared_uvs().get(), soup.uvs().size() * sizeof(Vec2));
     visit(soup.shared_faces().get(), soup.faces().size() * sizeof(Face));
-    if (soup.turns() != nullptr) visit(soup.shared_turns().get(), soup.turns()->size() * sizeof(Mat3));
+    for (const Attributes* attributes : {&soup.vertex_attributes(), &soup.face_attributes()})
+      for (const auto& [name, attribute] : *attributes) visit(attribute.get(), attribute->memory());
   };
   while (!open.empty()) {
     const NodePtr node = open.back();

@@ -54,7 +54,6 @@ std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vec
   if (sets.empty()) return nullptr;
   auto result = std::make_shared<BakedObject>(object);
   result->sets = std::move(sets);
-  result->folded = nullptr;  // it numbers triangles
   return result;
 }
 

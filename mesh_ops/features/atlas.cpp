@@ -208,8 +208,7 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
     std::vector<Vec3> positions;
     std::vector<Vec2> uvs;
     std::vector<Face> faces;
-    std::vector<Mat3> turns;
-    bool turned = false;
+    Attributes vertex_attributes, face_attributes;
   };
   constexpr auto absent = std::numeric_limits<std::uint32_t>::max();
   std::vector<Building> building(pages.size());
@@ -221,6 +220,10 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
     for (std::size_t f = 0; f < soup.faces().size(); ++f)
       for (const std::uint32_t vertex : soup.faces()[f]) patch_of_vertex[vertex] = patches[s].of_face[f];
     std::vector<std::uint32_t> renumbered(soup.positions().size(), absent);
+    struct Kept {
+      std::vector<std::uint32_t> vertices, faces;
+    };
+    std::vector<Kept> kept(pages.size());
     for (std::size_t v = 0; v < soup.positions().size(); ++v) {
       if (patch_of_vertex[v] == absent) continue;
       const Place& place = place_of[s][patch_of_vertex[v]];
@@ -232,13 +235,22 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
       const Vec2& uv = soup.uvs()[v];
       out.uvs.emplace_back((uv.x() * old_width + (place.x - rect.left)) / page.width,
                            1 - ((1 - uv.y()) * old_height + (place.y - rect.top)) / page.height);
-      out.turns.push_back(soup.turns() != nullptr ? (*soup.turns())[v] : Mat3(Mat3::Identity()));
-      out.turned = out.turned || soup.turns() != nullptr;
+      kept[place.page].vertices.push_back(static_cast<std::uint32_t>(v));
     }
     for (std::size_t f = 0; f < soup.faces().size(); ++f) {
       Face face = soup.faces()[f];
       for (std::uint32_t& vertex : face) vertex = renumbered[vertex];
-      building[place_of[s][patches[s].of_face[f]].page].faces.push_back(face);
+      const std::size_t page = place_of[s][patches[s].of_face[f]].page;
+      building[page].faces.push_back(face);
+      kept[page].faces.push_back(static_cast<std::uint32_t>(f));
+    }
+    for (std::size_t page = 0; page < pages.size(); ++page) {
+      Building& out = building[page];
+      const std::size_t vertices = kept[page].vertices.size(), faces = kept[page].faces.size();
+      out.vertex_attributes = out.vertex_attributes.followed_by(
+          out.positions.size() - vertices, soup.vertex_attributes().picked(kept[page].vertices), vertices);
+      out.face_attributes = out.face_attributes.followed_by(out.faces.size() - faces,
+                                                            soup.face_attributes().picked(kept[page].faces), faces);
     }
   }
   PackedSets result;
@@ -251,7 +263,7 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
     result.sets.push_back({Soup(std::make_shared<const std::vector<Vec3>>(std::move(b.positions)),
                                 std::make_shared<const std::vector<Vec2>>(std::move(b.uvs)),
                                 std::make_shared<const std::vector<Face>>(std::move(b.faces)),
-                                b.turned ? std::make_shared<const std::vector<Mat3>>(std::move(b.turns)) : nullptr),
+                                std::move(b.vertex_attributes), std::move(b.face_attributes)),
                            std::move(texels)});
     result.texel_area += static_cast<std::uint64_t>(pages[k].width) * static_cast<std::uint64_t>(pages[k].height);
   }

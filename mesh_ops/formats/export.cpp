@@ -17,7 +17,7 @@ namespace rebake {
 namespace {
 
 bool same_turn(const Soup& soup, std::size_t face, const Mat3& turn) {
-  return soup.turns() == nullptr ? turn.isIdentity(0) : (*soup.turns())[soup.faces()[face][0]] == turn;
+  return soup.rotations() == nullptr ? turn.isIdentity(0) : (*soup.rotations())[soup.faces()[face][0]] == turn;
 }
 
 // Of an object without bent faces.
@@ -25,10 +25,10 @@ std::vector<Mat3> distinct_turns(const BakedObject& object) {
   std::vector<Mat3> turns;
   for (const TextureSet& set : object.sets)
     for (const Face& face : set.soup.faces()) {
-      const Mat3 turn = set.soup.turns() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.turns())[face[0]];
+      const Mat3 turn = set.soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.rotations())[face[0]];
       if (turns.empty() || turns.back() != turn)
         if (std::find(turns.begin(), turns.end(), turn) == turns.end()) turns.push_back(turn);
-      if (set.soup.turns() == nullptr) break;
+      if (set.soup.rotations() == nullptr) break;
     }
   return turns;
 }
@@ -53,7 +53,7 @@ TurnGroups turn_groups(const BakedObject& object) {
   for (const TextureSet& set : object.sets)
     for (const Face& face : set.soup.faces()) {
       const auto turn = [&](std::size_t k) {
-        return set.soup.turns() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.turns())[face[k]];
+        return set.soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.rotations())[face[k]];
       };
       const Mat3 first = turn(0);
       if ((turn(1) - first).norm() > same_to_the_eye || (turn(2) - first).norm() > same_to_the_eye) {
@@ -87,8 +87,8 @@ Mat3 stand_in(const BakedObject& object, const TurnGroups& groups) {
   if (commonest != nullptr) return commonest->turn;
   Mat3 sum = Mat3::Zero();
   for (const TextureSet& set : object.sets)
-    if (set.soup.turns() != nullptr)
-      for (const Mat3& turn : *set.soup.turns()) sum += turn;
+    if (set.soup.rotations() != nullptr)
+      for (const Mat3& turn : *set.soup.rotations()) sum += turn;
   return local_rotation(sum).rotation;
 }
 
@@ -127,7 +127,7 @@ std::vector<TextureSet> world_sets(const BakedObject& object, const Mat3& turn, 
 Scene without_bends(const Scene& scene, std::vector<std::string>* bent) {
   Scene result = scene;
   for (const PlacedNode& placed : placed_nodes(scene)) {
-    if (!placed.visible || !placed.node->object || !placed.node->object->any_turns()) continue;
+    if (!placed.visible || !placed.node->object || !placed.node->object->any_rotations()) continue;
     const TurnGroups groups = turn_groups(*placed.node->object);
     if (groups.any_bent && bent != nullptr) bent->push_back(placed.node->name);
     const Mat3 other = groups.any_bent ? stand_in(*placed.node->object, groups) : Mat3(Mat3::Identity());

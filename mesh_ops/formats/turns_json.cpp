@@ -31,19 +31,20 @@ std::string write_turns_json(const std::vector<TextureSet>& sets) {
   json root = {{"rebake_turns", 1}, {"sets", json::array()}};
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const Soup& soup = sets[s].soup;
-    if (soup.turns() == nullptr) continue;
+    if (soup.rotations() == nullptr) continue;
     json runs = json::array();
     // Faces, not vertices: writing chunks renumbers vertices, but never faces.
     std::size_t first = 0;
     const auto same = [&](std::size_t a, std::size_t b) {
       for (std::size_t k = 0; k < 3; ++k)
-        if ((*soup.turns())[soup.faces()[a][k]] != (*soup.turns())[soup.faces()[b][k]]) return false;
+        if ((*soup.rotations())[soup.faces()[a][k]] != (*soup.rotations())[soup.faces()[b][k]]) return false;
       return true;
     };
     for (std::size_t f = 1; f <= soup.faces().size(); ++f) {
       if (f < soup.faces().size() && same(first, f)) continue;
       const Face& face = soup.faces()[first];
-      const Mat3 &a = (*soup.turns())[face[0]], &b = (*soup.turns())[face[1]], &c = (*soup.turns())[face[2]];
+      const Mat3 &a = (*soup.rotations())[face[0]], &b = (*soup.rotations())[face[1]],
+                 &c = (*soup.rotations())[face[2]];
       if (!(a.isIdentity(0) && b.isIdentity(0) && c.isIdentity(0))) {
         json turns = json::array({matrix_json(a)});
         if (a != b || a != c) turns = json::array({matrix_json(a), matrix_json(b), matrix_json(c)});
@@ -64,7 +65,7 @@ void read_turns_json(std::string_view text, const std::filesystem::path& name, s
       const auto s = whole_number(entry.at("set"), name);
       if (s >= sets.size()) throw FileError(name, fmt::format("names set {}, but the folder has {}", s, sets.size()));
       const Soup& soup = sets[s].soup;
-      auto turns = std::make_shared<std::vector<Mat3>>(soup.positions().size(), Mat3::Identity());
+      std::vector<Mat3> rotations(soup.positions().size(), Mat3::Identity());
       for (const json& run : entry.at("runs")) {
         const auto first = whole_number(run.at(0), name), count = whole_number(run.at(1), name);
         if (first > soup.faces().size() || count > soup.faces().size() - first)
@@ -73,13 +74,14 @@ void read_turns_json(std::string_view text, const std::filesystem::path& name, s
         for (std::size_t f = first; f < first + count; ++f)
           for (std::size_t k = 0; k < 3; ++k) {
             const json& values = matrices.at(matrices.size() == 3 ? k : 0);
-            Mat3& turn = (*turns)[soup.faces()[f][k]];
+            Mat3& turn = rotations[soup.faces()[f][k]];
             for (int i = 0; i < 9; ++i) turn(i / 3, i % 3) = values.at(static_cast<std::size_t>(i)).get<double>();
             if (!turn.isUnitary(1e-6))
               throw FileError(name, fmt::format("set {}: the turn of face {} is not orthogonal", s, f));
           }
       }
-      sets[s].soup = Soup(soup.shared_positions(), soup.shared_uvs(), soup.shared_faces(), turns);
+      sets[s].soup = Soup(soup.shared_positions(), soup.shared_uvs(), soup.shared_faces(),
+                          soup.vertex_attributes().with(Soup::rotation, Values<Mat3>::of(std::move(rotations))));
     }
   } catch (const json::exception& error) {
     throw FileError(name, std::string("is not a valid turns file: ") + error.what());

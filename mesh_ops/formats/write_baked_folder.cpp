@@ -92,7 +92,7 @@ Soup with_a_face_for_each_chunk(const Soup& soup) {
   if (soup.triangle_count() >= chunks_a_set) return soup;
   auto faces = std::make_shared<std::vector<Face>>(soup.faces());
   while (faces->size() < chunks_a_set) faces->push_back((*faces)[faces->size() % soup.triangle_count()]);
-  return Soup(soup.shared_positions(), soup.shared_uvs(), faces, soup.shared_turns());
+  return Soup(soup.shared_positions(), soup.shared_uvs(), faces, soup.vertex_attributes());
 }
 
 std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
@@ -167,7 +167,7 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
     mlp = write_mlp_json(file);
   }
   out.write(folder / "mlp.json", *mlp);
-  if (object.any_turns()) out.write(folder / "turns.json", write_turns_json(sets));
+  if (object.any_rotations()) out.write(folder / "turns.json", write_turns_json(sets));
   progress.at("writing", 1);
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -17,11 +18,19 @@ constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
 
 Soup::Soup() : Soup(std::vector<Vec3>{}, std::vector<Vec2>{}, std::vector<Face>{}) {}
 
-Soup::Soup(Positions positions, Uvs uvs, Faces faces, Turns turns)
-    : positions_(std::move(positions)), uvs_(std::move(uvs)), faces_(std::move(faces)), turns_(std::move(turns)) {
+Soup::Soup(Positions positions, Uvs uvs, Faces faces, Attributes vertex_attributes, Attributes face_attributes)
+    : positions_(std::move(positions)),
+      uvs_(std::move(uvs)),
+      faces_(std::move(faces)),
+      vertex_attributes_(std::move(vertex_attributes)),
+      face_attributes_(std::move(face_attributes)),
+      rotations_(vertex_attributes_.find<Mat3>(rotation)) {
   const std::size_t count = positions_->size();
-  if (uvs_->size() != count || (turns_ && turns_->size() != count))
-    throw std::invalid_argument("a soup needs as many UVs (and turns) as positions");
+  if (uvs_->size() != count) throw std::invalid_argument("a soup needs as many UVs as positions");
+  for (const auto& [name, attribute] : vertex_attributes_)
+    if (attribute->size() != count) throw std::invalid_argument("a soup needs one " + name + " a vertex");
+  for (const auto& [name, attribute] : face_attributes_)
+    if (attribute->size() != faces_->size()) throw std::invalid_argument("a soup needs one " + name + " a face");
   for (const Face& face : *faces_) {
     for (const std::uint32_t vertex : face) {
       if (vertex >= count) throw std::invalid_argument("a face names a vertex that is not there");
@@ -35,41 +44,46 @@ Soup::Soup(std::vector<Vec3> positions, std::vector<Vec2> uvs, std::vector<Face>
            std::make_shared<const std::vector<Vec2>>(std::move(uvs)),
            std::make_shared<const std::vector<Face>>(std::move(faces))) {}
 
+Soup Soup::with_face_attributes(Attributes attributes) const {
+  Soup result(positions_, uvs_, faces_, vertex_attributes_, std::move(attributes));
+  result.lineage_ = lineage_;
+  return result;
+}
+
 std::uint64_t Soup::memory() const {
-  return positions_->size() * sizeof(Vec3) + uvs_->size() * sizeof(Vec2) + faces_->size() * sizeof(Face) +
-         (turns_ ? turns_->size() * sizeof(Mat3) : 0);
+  std::uint64_t bytes = positions_->size() * sizeof(Vec3) + uvs_->size() * sizeof(Vec2) + faces_->size() * sizeof(Face);
+  for (const auto* attributes : {&vertex_attributes_, &face_attributes_})
+    for (const auto& [name, attribute] : *attributes) bytes += attribute->memory();
+  return bytes;
 }
 
 Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted) {
   std::vector<std::uint8_t> used(soup.positions().size(), 0);
   std::vector<Face> faces;
+  std::vector<std::uint32_t> kept_faces, kept_vertices;
   auto lineage = std::make_shared<Soup::Lineage>();
   lineage->whole = soup.lineage() ? soup.lineage()->whole : soup;
-  for (std::size_t f = 0; f < soup.faces().size(); ++f) {
+  for (std::uint32_t f = 0; f < soup.faces().size(); ++f) {
     if ((keep[first_flag + f] != 0) != wanted) continue;
     faces.push_back(soup.faces()[f]);
-    lineage->faces.push_back(soup.lineage() ? soup.lineage()->faces[f] : static_cast<std::uint32_t>(f));
+    kept_faces.push_back(f);
+    lineage->faces.push_back(soup.lineage() ? soup.lineage()->faces[f] : f);
     for (const std::uint32_t vertex : soup.faces()[f]) used[vertex] = 1;
   }
   std::vector<std::uint32_t> renumbered(soup.positions().size(), unused);
   auto positions = std::make_shared<std::vector<Vec3>>();
   auto uvs = std::make_shared<std::vector<Vec2>>();
-  auto turns = soup.turns() != nullptr ? std::make_shared<std::vector<Mat3>>() : nullptr;
-  bool any_turn = false;
-  for (std::size_t v = 0; v < used.size(); ++v) {
+  for (std::uint32_t v = 0; v < used.size(); ++v) {
     if (used[v] == 0) continue;
     renumbered[v] = static_cast<std::uint32_t>(positions->size());
     positions->push_back(soup.positions()[v]);
     uvs->push_back(soup.uvs()[v]);
-    if (turns) {
-      turns->push_back((*soup.turns())[v]);
-      any_turn = any_turn || !turns->back().isIdentity(0);
-    }
+    kept_vertices.push_back(v);
   }
   for (Face& face : faces)
     for (std::uint32_t& vertex : face) vertex = renumbered[vertex];
   Soup result(positions, uvs, std::make_shared<const std::vector<Face>>(std::move(faces)),
-              any_turn ? Soup::Turns(turns) : nullptr);
+              soup.vertex_attributes().picked(kept_vertices), soup.face_attributes().picked(kept_faces));
   result.lineage_ = std::move(lineage);
   return result;
 }
@@ -83,7 +97,8 @@ std::optional<Soup> reunited(const Soup& a, const Soup& b) {
   if (whole.shared_faces() != b.lineage()->whole.shared_faces() ||
       whole.shared_positions() != b.lineage()->whole.shared_positions() ||
       whole.shared_uvs() != b.lineage()->whole.shared_uvs() ||
-      whole.shared_turns() != b.lineage()->whole.shared_turns())
+      whole.vertex_attributes() != b.lineage()->whole.vertex_attributes() ||
+      whole.face_attributes() != b.lineage()->whole.face_attributes())
     return std::nullopt;
   std::vector<std::uint8_t> flags(whole.triangle_count(), 0);
   for (const Soup* part : {&a, &b})
@@ -104,17 +119,9 @@ Soup united(const Soup& a, const Soup& b) {
   positions->insert(positions->end(), b.positions().begin(), b.positions().end());
   uvs->insert(uvs->end(), b.uvs().begin(), b.uvs().end());
   for (const Face& face : b.faces()) faces->push_back({face[0] + base, face[1] + base, face[2] + base});
-  std::shared_ptr<std::vector<Mat3>> turns;
-  if (a.turns() != nullptr || b.turns() != nullptr) {
-    turns = std::make_shared<std::vector<Mat3>>();
-    for (const Soup* part : {&a, &b}) {
-      if (part->turns() != nullptr)
-        turns->insert(turns->end(), part->turns()->begin(), part->turns()->end());
-      else
-        turns->insert(turns->end(), part->positions().size(), Mat3::Identity());
-    }
-  }
-  return Soup(positions, uvs, faces, turns);
+  return Soup(positions, uvs, faces,
+              a.vertex_attributes().followed_by(a.positions().size(), b.vertex_attributes(), b.positions().size()),
+              a.face_attributes().followed_by(a.faces().size(), b.face_attributes(), b.faces().size()));
 }
 
 Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag,
@@ -127,45 +134,44 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
 
   auto positions = std::make_shared<std::vector<Vec3>>(soup.positions());
   auto uvs = std::make_shared<std::vector<Vec2>>(soup.uvs());
-  auto turns = std::make_shared<std::vector<Mat3>>();
-  if (soup.turns() != nullptr)
-    *turns = *soup.turns();
-  else
-    turns->assign(positions->size(), Mat3::Identity());
+  std::vector<Mat3> rotations =
+      soup.rotations() != nullptr ? *soup.rotations() : std::vector<Mat3>(positions->size(), Mat3::Identity());
 
-  bool any_position = false, any_change_of_turn = false;
-  std::vector<std::uint32_t> changed_vertex(soup.positions().size(), unused);
+  bool any_position = false, any_rotation = false;
+  std::vector<std::uint32_t> changed_vertex(soup.positions().size(), unused), old_vertex(soup.positions().size());
+  std::iota(old_vertex.begin(), old_vertex.end(), 0U);
   for (std::uint32_t v = 0; v < by_changed.size(); ++v) {
     if (by_changed[v] == 0) continue;
     changed_vertex[v] = v;
     Vec3 position = soup.positions()[v];
-    Mat3 turn = (*turns)[v];
-    change(v, position, turn);
-    const bool moves = position != soup.positions()[v], rotates = turn != (*turns)[v];
+    Mat3 rotation = rotations[v];
+    change(v, position, rotation);
+    const bool moves = position != soup.positions()[v], rotates = rotation != rotations[v];
     if (!moves && !rotates) continue;
     any_position = any_position || moves;
-    any_change_of_turn = any_change_of_turn || rotates;
+    any_rotation = any_rotation || rotates;
     if (by_others[v] != 0) {
       changed_vertex[v] = static_cast<std::uint32_t>(positions->size());
+      old_vertex.push_back(v);
       positions->push_back(position);
       uvs->push_back(soup.uvs()[v]);
-      turns->push_back(turn);
+      rotations.push_back(rotation);
     } else {
       (*positions)[v] = position;
-      (*turns)[v] = turn;
+      rotations[v] = rotation;
     }
   }
-  if (!any_position && !any_change_of_turn) return soup;
+  if (!any_position && !any_rotation) return soup;
   const bool split = positions->size() != soup.positions().size();
   auto faces = std::make_shared<std::vector<Face>>(soup.faces());
   if (split)
     for (std::size_t f = 0; f < faces->size(); ++f)
       if (flags[first_flag + f] != 0)
         for (std::uint32_t& vertex : (*faces)[f]) vertex = changed_vertex[vertex];
-  const bool any_turn = std::any_of(turns->begin(), turns->end(), [](const Mat3& t) { return !t.isIdentity(0); });
+  const Attributes attributes = split ? soup.vertex_attributes().picked(old_vertex) : soup.vertex_attributes();
   return Soup(any_position || split ? Soup::Positions(positions) : soup.shared_positions(),
               split ? Soup::Uvs(uvs) : soup.shared_uvs(), split ? Soup::Faces(faces) : soup.shared_faces(),
-              any_turn ? Soup::Turns(turns) : nullptr);
+              attributes.with(Soup::rotation, Values<Mat3>::of(std::move(rotations))), soup.face_attributes());
 }
 
 Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh_ops/base/types.h"
+#include "mesh_ops/mesh/attributes.h"
 
 namespace rebake {
 
@@ -17,23 +18,30 @@ class Soup {
   using Positions = std::shared_ptr<const std::vector<Vec3>>;
   using Uvs = std::shared_ptr<const std::vector<Vec2>>;
   using Faces = std::shared_ptr<const std::vector<Face>>;
-  using Turns = std::shared_ptr<const std::vector<Mat3>>;
 
   Soup();
-  /// Positions in object space, UVs with v up, one of each a vertex. `turns` is null, or holds for each vertex the
-  /// orthogonal matrix by which an edit turned it against its object. Faces must be in range (std::invalid_argument).
-  Soup(Positions positions, Uvs uvs, Faces faces, Turns turns = nullptr);
+  /// The vertex attribute that is the rotation field: by which orthogonal matrix an edit turned each vertex against its
+  /// object (Mat3).
+  static constexpr const char* rotation = "rotation";
+
+  /// Positions in object space, UVs with v up, one of each a vertex. Faces must be in range, and attributes as many as
+  /// vertices and faces (std::invalid_argument).
+  Soup(Positions positions, Uvs uvs, Faces faces, Attributes vertex_attributes = {}, Attributes face_attributes = {});
   Soup(std::vector<Vec3> positions, std::vector<Vec2> uvs, std::vector<Face> faces);
 
   const std::vector<Vec3>& positions() const { return *positions_; }
   const std::vector<Vec2>& uvs() const { return *uvs_; }
   const std::vector<Face>& faces() const { return *faces_; }
-  const std::vector<Mat3>* turns() const { return turns_.get(); }
+  /// Null where nothing was turned.
+  const std::vector<Mat3>* rotations() const { return rotations_; }
+  const Attributes& vertex_attributes() const { return vertex_attributes_; }
+  const Attributes& face_attributes() const { return face_attributes_; }
+  /// With other attributes of the faces.
+  Soup with_face_attributes(Attributes attributes) const;
 
   const Positions& shared_positions() const { return positions_; }
   const Uvs& shared_uvs() const { return uvs_; }
   const Faces& shared_faces() const { return faces_; }
-  const Turns& shared_turns() const { return turns_; }
 
   /// Of which soup this is a subset, so that parts can be put together again as they were; null for a whole soup and
   /// for one whose vertices were moved.
@@ -51,7 +59,9 @@ class Soup {
   Positions positions_;
   Uvs uvs_;
   Faces faces_;
-  Turns turns_;
+  Attributes vertex_attributes_;
+  Attributes face_attributes_;
+  const std::vector<Mat3>* rotations_ = nullptr;  ///< one of vertex_attributes_
   Box bounds_;
   std::shared_ptr<const Lineage> lineage_;
 };
@@ -68,12 +78,12 @@ Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t
 /// are there, bit for bit); others are put one after the other.
 Soup united(const Soup& a, const Soup& b);
 
-/// Gives the flagged faces' vertices other positions and turns: `change` is called once for each. Vertices that change
-/// and are shared with other faces are split; where nothing changes, nothing does.
+/// Gives the flagged faces' vertices other positions and rotations: `change` is called once for each. Vertices that
+/// change and are shared with other faces are split; where nothing changes, nothing does.
 Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag,
-                     const std::function<void(std::uint32_t vertex, Vec3& position, Mat3& turn)>& change);
+                     const std::function<void(std::uint32_t vertex, Vec3& position, Mat3& rotation)>& change);
 
-/// Moves the flagged faces by `motion`, recording `turn` (orthogonal, in object space) in their vertices' turns.
+/// Moves the flagged faces by `motion`, recording `turn` (orthogonal, in object space) in their rotations.
 /// Vertices shared by moved and unmoved faces are split.
 Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,
                 const Mat3& turn);

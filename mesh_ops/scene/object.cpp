@@ -31,8 +31,8 @@ Box BakedObject::bounds() const {
   return box;
 }
 
-bool BakedObject::any_turns() const {
-  return std::any_of(sets.begin(), sets.end(), [](const TextureSet& set) { return set.soup.turns() != nullptr; });
+bool BakedObject::any_rotations() const {
+  return std::any_of(sets.begin(), sets.end(), [](const TextureSet& set) { return set.soup.rotations() != nullptr; });
 }
 
 std::uint64_t BakedObject::memory() const {

@@ -56,14 +56,12 @@ struct BakedObject {
   Axes axes = Axes::y_up;
   Layout layout = Layout::split;
   std::shared_ptr<const Origin> origin;  ///< null for objects that were not read from a folder
-  /// Which triangles the last deformation folded or collapsed, until others come or go; null where none.
-  std::shared_ptr<const TriangleSet> folded;
 
   std::size_t triangle_count() const;
   std::size_t vertex_count() const;
   std::uint64_t opaque_texel_count() const;
   Box bounds() const;
-  bool any_turns() const;
+  bool any_rotations() const;
   std::uint64_t memory() const;
 };
 

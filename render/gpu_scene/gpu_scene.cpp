@@ -73,10 +73,10 @@ GpuMesh upload(const TextureSet& set, std::vector<Face> shown) {
   glEnableVertexAttribArray(1);
   glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(GpuVertex),
                         reinterpret_cast<const void*>(offsetof(GpuVertex, texel)));
-  if (soup.turns() != nullptr) {
+  if (soup.rotations() != nullptr) {
     std::vector<float> turns;
-    turns.reserve(soup.turns()->size() * 9);
-    for (const Mat3& turn : *soup.turns())
+    turns.reserve(soup.rotations()->size() * 9);
+    for (const Mat3& turn : *soup.rotations())
       for (Eigen::Index k = 0; k < 9; ++k) turns.push_back(static_cast<float>(turn.data()[k]));
     mesh.turns = gl::make_buffer(GL_ARRAY_BUFFER, turns.data(), turns.size() * sizeof(float));
     for (GLuint column = 0; column < 3; ++column) {

@@ -4,7 +4,7 @@ namespace rebake {
 
 MeshKey mesh_key(const TextureSet& set) {
   return {set.soup.shared_positions().get(), set.soup.shared_uvs().get(), set.soup.shared_faces().get(),
-          set.soup.shared_turns().get(), set.texels.get()};
+          set.soup.vertex_attributes().shared(Soup::rotation).get(), set.texels.get()};
 }
 
 ResourceDiff diff(const std::set<MeshKey>& held_meshes, const std::set<TextureKey>& held_textures, const Scene& scene) {

@@ -217,7 +217,7 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
       any_in_view = true;
       result.covered = join(result.covered, *rect);
       result.triangles += set.soup.triangle_count();
-      if (set.soup.turns() != nullptr) ++turned;
+      if (set.soup.rotations() != nullptr) ++turned;
       result.draws.push_back(
           {placed.node->id, set, *frame, to_camera, object.axes, placed.node->selection, first_triangle});
     }

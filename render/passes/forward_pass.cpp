@@ -14,7 +14,7 @@ void execute_forward(const PassInput& input) {
     const NodeFrame& frame = plan.frames[draw.frame];
     const gl::Program& shader =
         program(input.state, "geometry.vert", "forward.frag",
-                fmt::format("#define TURNED_MESH {}\n", draw.set.soup.turns() != nullptr ? 1 : 0) + decoder);
+                fmt::format("#define TURNED_MESH {}\n", draw.set.soup.rotations() != nullptr ? 1 : 0) + decoder);
     glUseProgram(shader.name());
     set_uniform(shader, "camera_to_fed", to_glm(camera_to_fed(plan, frame)));
     set_uniform(shader, "alpha_code", alpha_factors(frame.alpha_code));

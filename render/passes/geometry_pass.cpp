@@ -21,7 +21,7 @@ void execute_geometry(const PassInput& input) {
         program(input.state, "geometry.vert", "geometry.frag",
                 fmt::format("#define TURNED_MESH {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n#define "
                             "FRAME_TARGET {}\n#define RAY_TARGET {}\n",
-                            draw.set.soup.turns() != nullptr ? 1 : 0, targets.has_frames ? 1 : 0,
+                            draw.set.soup.rotations() != nullptr ? 1 : 0, targets.has_frames ? 1 : 0,
                             targets.has_rays ? 1 : 0, frame_target, ray_target));
     glUseProgram(shader.name());
     set_uniform(shader, "frame", static_cast<unsigned>(draw.frame));

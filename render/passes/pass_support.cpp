@@ -168,7 +168,7 @@ void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Progr
   set_uniform(program, "object_to_clip", to_glm(Eigen::Matrix4d(to_clip * to_camera.matrix())));
   set_uniform(program, "last_texel", glm::ivec2(texture.source->width() - 1, texture.source->height() - 1));
   set_uniform(program, "features", 0);
-  if (draw.set.soup.turns() != nullptr) {
+  if (draw.set.soup.rotations() != nullptr) {
     const Mat3 axes = axes_matrix(draw.axes);
     set_uniform(program, "parallel_rays", input.plan.view.camera.orthographic() ? 1 : 0);
     set_uniform(program, "object_to_camera", to_glm(Eigen::Matrix4d(to_camera.matrix())));

@@ -214,7 +214,7 @@ TEST_F(DeformScript, ScenesKeepTurnsAndPlainFoldersSayWhatTheyLose) {
   run(R"({"op": "remove", "node": "ball"}
 {"op": "import", "path": "{here}/plain", "as": "ball"})");
   EXPECT_LT(compare(picture(), bent, 2).psnr_db, 45);
-  EXPECT_EQ(ball().sets[0].soup.turns(), nullptr);
+  EXPECT_EQ(ball().sets[0].soup.rotations(), nullptr);
 }
 
 TEST_F(DeformScript, ExportKeepsWhatItCanOfTurns) {
@@ -232,7 +232,7 @@ TEST_F(DeformScript, ExportKeepsWhatItCanOfTurns) {
 {"op": "bend", "node": "read", "degrees": 5, "box": {"min": [0, 0, 0], "max": [1, 0.1, 1]}, "frame": "bounds"})");
   const Scene flat = without_bends(session.scene());
   std::size_t quarter = 0;
-  for (const Mat3& turn : *find(flat, "read")->object->sets[0].soup.turns())
+  for (const Mat3& turn : *find(flat, "read")->object->sets[0].soup.rotations())
     quarter += std::abs(turn(0, 2)) > 0.99 ? 1 : 0;
   EXPECT_GT(quarter, 500U);
 }

@@ -82,7 +82,7 @@ TEST(Deform, TheIdentityChangesNothing) {
       Eigen::Translation3d(0.1, 0.2, 0.3) * Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()) * Eigen::Scaling(0.7);
   const DeformedObject result = deformed(*object, placed, all(*object), 0, bend(0));
   EXPECT_EQ(result.object->sets[0].soup.shared_positions(), object->sets[0].soup.shared_positions());
-  EXPECT_EQ(result.object->sets[0].soup.turns(), nullptr);
+  EXPECT_EQ(result.object->sets[0].soup.rotations(), nullptr);
 }
 
 TEST(Deform, ASoftBorderLeavesNoCrackAndAHardOneSplits) {
@@ -149,16 +149,16 @@ TEST(Deform, FoldsAreCountedAndNothingBecomesNaN) {
   const DeformedObject bent = deformed(*object, Affine::Identity(), all(*object), 0, closed(form));
   EXPECT_GT(bent.report.folded, 0U);
   EXPECT_LT(bent.report.least_determinant, 0);
-  EXPECT_GT(count(*bent.object->folded), 0U);
-  EXPECT_LT(count(*bent.object->folded), object->triangle_count());
+  EXPECT_GT(count(folded_triangles(*bent.object)), 0U);
+  EXPECT_LT(count(folded_triangles(*bent.object)), object->triangle_count());
   // Collapsed to a plane, a line, a point; mirrored.
   for (const Vec3& scale : {Vec3(1, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(-1, 1, 1)}) {
     const DeformedObject flat = deformed(*object, Affine::Identity(), all(*object), 0, affine(scale.asDiagonal()));
     EXPECT_EQ(flat.report.folded, flat.report.points) << scale.transpose();
     for (const TextureSet& set : flat.object->sets) {
       for (const Vec3& p : set.soup.positions()) EXPECT_TRUE(p.allFinite());
-      if (set.soup.turns() == nullptr) continue;
-      for (const Mat3& turn : *set.soup.turns()) {
+      if (set.soup.rotations() == nullptr) continue;
+      for (const Mat3& turn : *set.soup.rotations()) {
         EXPECT_TRUE(turn.isUnitary(1e-12));
         EXPECT_GT(turn.determinant(), 0);
       }
@@ -185,12 +185,12 @@ TEST(Deform, RotationsAccumulateOverSeveralBends) {
   const Mat3 quarter = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
   const DeformedObject once = deformed(*object, Affine::Identity(), all(*object), 0, affine(quarter));
   const DeformedObject twice = deformed(*once.object, Affine::Identity(), all(*object), 0, affine(quarter));
-  for (const Mat3& turn : *twice.object->sets[0].soup.turns()) EXPECT_LE((turn - quarter * quarter).norm(), 1e-14);
+  for (const Mat3& turn : *twice.object->sets[0].soup.rotations()) EXPECT_LE((turn - quarter * quarter).norm(), 1e-14);
   // Seen from the object's own frame, in a node that is turned and scaled unevenly.
   const Affine placed = Eigen::AngleAxisd(1.1, Vec3(1, 1, 0).normalized()) * Eigen::Scaling(1.0, 3.0, 0.5);
   const DeformedObject turned = deformed(*object, placed, all(*object), 0, affine(quarter));
   const Mat3 frame = orthogonal_factor(placed.linear());
-  for (const Mat3& turn : *turned.object->sets[0].soup.turns())
+  for (const Mat3& turn : *turned.object->sets[0].soup.rotations())
     EXPECT_LE((turn - frame.transpose() * quarter * frame).norm(), 1e-12);
 }
 

@@ -190,9 +190,9 @@ TEST(Folder, SavedSceneKeepsEveryNode) {
   EXPECT_EQ(back.views, scene.views);
   EXPECT_EQ(after[0].node->object, after[2].node->object);  // one object in two places is stored once
   const Soup &a = turned->sets[0].soup, &b = after[3].node->object->sets[0].soup;
-  ASSERT_NE(b.turns(), nullptr);
+  ASSERT_NE(b.rotations(), nullptr);
   for (std::size_t f = 0; f < a.faces().size(); ++f)
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ((*a.turns())[a.faces()[f][k]], (*b.turns())[b.faces()[f][k]]);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ((*a.rotations())[a.faces()[f][k]], (*b.rotations())[b.faces()[f][k]]);
 }
 
 TEST(Folder, FeaturePngsCarryBytesAndNoColourChunks) {
@@ -352,9 +352,9 @@ TEST(Folder, TurnsOfAFewChunkedTrianglesSurvive) {
   save_scene_folder(scene_of(object), temporary.path() / "s", {});
   const auto back = read_any(temporary.path() / "s", Axes::y_up).roots[0]->object;
   const Soup &a = object->sets[0].soup, &b = back->sets[0].soup;
-  ASSERT_NE(b.turns(), nullptr);
+  ASSERT_NE(b.rotations(), nullptr);
   for (std::size_t f = 0; f < b.faces().size(); ++f)
-    EXPECT_EQ((*b.turns())[b.faces()[f][0]], (*a.turns())[a.faces()[f % 6][0]]) << f;
+    EXPECT_EQ((*b.rotations())[b.faces()[f][0]], (*a.rotations())[a.faces()[f % 6][0]]) << f;
 }
 
 TEST(Export, ChangedDrawingOrderIsSaid) {

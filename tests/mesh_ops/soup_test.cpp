@@ -25,23 +25,54 @@ TEST(Soup, MovedFacesSplitSharedVertices) {
   for (const std::uint32_t v : moved.faces()[1]) EXPECT_EQ(moved.positions()[v].z(), 5);
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_EQ(moved.uvs()[moved.faces()[1][k]], square().uvs()[square().faces()[1][k]]);
-  EXPECT_EQ(moved.turns(), nullptr);  // a move turns nothing
+  EXPECT_EQ(moved.rotations(), nullptr);  // a move turns nothing
 }
 
 TEST(Soup, TurnsAccumulateAndScaleDoesNotCount) {
   const Affine quarter(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()) * Eigen::Scaling(3.0));
   Soup soup = moved_part(square(), {1, 0}, 0, quarter);
-  ASSERT_NE(soup.turns(), nullptr);
-  EXPECT_TRUE((*soup.turns())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
-  EXPECT_TRUE((*soup.turns())[3].isIdentity(0));
+  ASSERT_NE(soup.rotations(), nullptr);
+  EXPECT_TRUE(
+      (*soup.rotations())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
+  EXPECT_TRUE((*soup.rotations())[3].isIdentity(0));
   soup = moved_part(soup, {1, 0}, 0, quarter);
-  EXPECT_TRUE((*soup.turns())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
+  EXPECT_TRUE((*soup.rotations())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
 }
 
 TEST(Soup, SubsetKeepsOrderAndDropsUnusedVertices) {
   const Soup part = subset(square(), {0, 1}, 0, true);
   EXPECT_EQ(part.positions(), (std::vector<Vec3>{{1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
   EXPECT_EQ(part.faces(), (std::vector<Face>{{0, 2, 1}}));
+}
+
+// Named values go wherever their vertices and faces go, whoever made them.
+TEST(Soup, AttributesFollowTheirVerticesAndFaces) {
+  const Soup plain = square();
+  const Soup soup(plain.shared_positions(), plain.shared_uvs(), plain.shared_faces(),
+                  Attributes().with("light", Values<float>::of({1, 2, 3, 4})),
+                  Attributes().with("label", Values<int>::of({7, 8})));
+  const auto light = [](const Soup& of, std::uint32_t v) { return of.vertex_attributes().find<float>("light")->at(v); };
+  const Soup part = subset(soup, {0, 1}, 0, true);
+  EXPECT_EQ(*part.vertex_attributes().find<float>("light"), (std::vector<float>{2, 3, 4}));
+  EXPECT_EQ(*part.face_attributes().find<int>("label"), (std::vector<int>{8}));
+  // Split corners keep their values, and get a rotation beside them.
+  const Soup moved = moved_part(soup, {0, 1}, 0, Affine(Eigen::AngleAxisd(1, Vec3::UnitZ())));
+  for (std::size_t f = 0; f < 2; ++f)
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(light(moved, moved.faces()[f][k]), light(soup, soup.faces()[f][k]));
+  EXPECT_NE(moved.rotations(), nullptr);
+  EXPECT_EQ(*moved.face_attributes().find<int>("label"), (std::vector<int>{7, 8}));
+  // Beside one without, which gets the neutral value.
+  const Soup both = united(moved, plain);
+  EXPECT_EQ(*both.face_attributes().find<int>("label"), (std::vector<int>{7, 8, 0, 0}));
+  EXPECT_EQ(light(both, static_cast<std::uint32_t>(moved.positions().size())), 0.0F);
+  EXPECT_TRUE(both.rotations()->back().isIdentity(0));
+  // Parts make the whole again, with all of it.
+  const Soup whole = united(subset(soup, {0, 1}, 0, false), part);
+  EXPECT_EQ(whole.vertex_attributes(), soup.vertex_attributes());
+  EXPECT_EQ(whole.face_attributes(), soup.face_attributes());
+  EXPECT_THROW(Soup(plain.shared_positions(), plain.shared_uvs(), plain.shared_faces(),
+                    Attributes().with("light", Values<float>::of({1}))),
+               std::invalid_argument);
 }
 
 TEST(Soup, FacesOutOfRangeAreRefused) { EXPECT_THROW(Soup({{0, 0, 0}}, {{0, 0}}, {{0, 0, 1}}), std::invalid_argument); }

@@ -43,7 +43,7 @@ TEST(GpuScene, WhatOnlyMovedIsDrawnAsIfItWereNew) {
   }
   // The same triangles with turned colours; and again, when fewer show something.
   Scene turned = bent(scene, 0.3, true);
-  ASSERT_TRUE(turned.roots[0]->object->any_turns());
+  ASSERT_TRUE(turned.roots[0]->object->any_rotations());
   for (int k = 0; k < 2; ++k) {
     Renderer fresh;
     const Image drawn = kept.render(turned, view);

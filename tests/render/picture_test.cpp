@@ -109,7 +109,7 @@ TEST_P(PictureBySamples, TurnedTriangles) {
   turned->sets[0].soup =
       moved_part(object->sets[0].soup, flags, 0,
                  Affine(Eigen::Translation3d(0.4, 0.1, 0) * Eigen::AngleAxisd(0.8, Vec3(1, 2, 0).normalized())));
-  ASSERT_TRUE(turned->any_turns());
+  ASSERT_TRUE(turned->any_rotations());
   expect_as_cast(scene_of(turned), view_from({0.5, 1.5, 4}, GetParam()));
   expect_as_cast(scene_of(turned), orthographic_view(GetParam()));
 }

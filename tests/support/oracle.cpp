@@ -74,13 +74,13 @@ void filter(const RTCFilterFunctionNArguments* args) {
   const Texel& texel = texels.at(x, y);
   if (texel.feat0[0] == 0) return;
   Vec3 direction = surface.world_to_object * context.ray;
-  if (soup.turns() != nullptr) {
+  if (soup.rotations() != nullptr) {
     // The corners' rays are turned back and interpolated unnormalised.
     Vec3 sum = Vec3::Zero();
     const double weight[3] = {1 - u - v, u, v};
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 corner_ray = surface.world_to_object * (context.parallel ? context.ray : surface.corners[face[k]]);
-      sum += weight[k] * ((*soup.turns())[face[k]].transpose() * corner_ray);
+      sum += weight[k] * ((*soup.rotations())[face[k]].transpose() * corner_ray);
     }
     direction = sum;
   }

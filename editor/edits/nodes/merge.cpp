@@ -68,7 +68,6 @@ Scene apply(const Scene& scene, const Merge& edit) {
   });
   std::map<const FeatureTexture*, std::shared_ptr<const FeatureTexture>> converted;
   auto merged = std::make_shared<BakedObject>(*first.node->object);
-  merged->folded = nullptr;  // it numbers triangles
   merged->sets.clear();
   for (const PlacedNode& part : parts) {
     if (part.node->object->origin != merged->origin) merged->origin = nullptr;

@@ -6,10 +6,8 @@
 namespace rebake {
 
 Scene apply(const Scene& scene, const SelectFolded& edit) {
-  return with_selected(scene, selectable(scene, edit.node), edit.mode, [](const PlacedNode& placed) {
-    const BakedObject& object = *placed.node->object;
-    return object.folded ? *object.folded : TriangleSet(object.triangle_count(), 0);
-  });
+  return with_selected(scene, selectable(scene, edit.node), edit.mode,
+                       [](const PlacedNode& placed) { return folded_triangles(*placed.node->object); });
 }
 
 REBAKE_DESCRIBE_EDIT(

@@ -54,7 +54,7 @@ std::vector<std::string> losses(const Scene& scene) {
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.node->object) continue;
     placed.visible ? ++objects : ++hidden;
-    if (placed.visible && placed.node->object->any_turns()) ++turned;
+    if (placed.visible && placed.node->object->any_rotations()) ++turned;
   }
   if (objects > 1)
     lines.push_back(

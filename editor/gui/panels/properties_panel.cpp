@@ -108,7 +108,7 @@ void PropertiesPanel::draw(Desk& desk) {
     triangles += one->object->triangle_count();
     sets += one->object->sets.size();
     bytes += one->object->memory();
-    bent = bent || one->object->any_turns();
+    bent = bent || one->object->any_rotations();
   }
   if (sets == 0) return;
   ImGui::Separator();
