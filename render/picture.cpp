@@ -20,62 +20,6 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-void fit_overlay(FrameTargets& targets, const FramePlan& plan, bool wanted) {
-  if (!wanted) {
-    targets.overlay_buffer = {};
-  } else if (!targets.overlay_buffer) {
-    targets.overlay_buffer = gl::make_framebuffer({&targets.picture}, nullptr);
-  }
-  if (!plan.runs("selection")) {
-    targets.mask_buffer = {};
-    targets.mask = {};
-  } else if (!targets.mask) {
-    targets.mask = gl::make_texture(GL_R8, targets.width, targets.height, 1);
-    targets.mask_buffer = gl::make_framebuffer({&targets.mask}, nullptr);
-  }
-}
-
-// Makes the buffers that the plan calls for, and frees those that it does not.
-void fit(FrameTargets& targets, const FramePlan& plan) {
-  const bool features = plan.runs("geometry"), frames = features && plan.runs("node frames"),
-             rays = features && plan.runs("turned rays");
-  const bool forward = plan.runs("forward") || plan.runs("inspect");
-  const bool overlay = plan.runs("selection") || plan.runs("guides");
-  const int side = plan.view.side();
-  const int width = plan.view.width, height = plan.view.height;
-  if (targets.picture && targets.width == width && targets.height == height && targets.side == side &&
-      targets.has_features == features && targets.has_frames == frames && targets.has_rays == rays &&
-      bool(targets.depth) == (features || forward)) {
-    fit_overlay(targets, plan, overlay);
-    return;
-  }
-  // Its size is set at the end: what fails in between is made anew.
-  targets = {};
-  targets.side = side;
-  targets.has_features = features;
-  targets.has_frames = frames;
-  targets.has_rays = rays;
-  targets.picture = gl::make_texture(GL_RGBA8, width, height, 4);
-  if (features || forward) targets.depth = gl::make_texture(GL_DEPTH_COMPONENT32F, width * side, height * side, 4);
-  if (features) {
-    targets.features = gl::make_texture(GL_RG32UI, width * side, height * side, 8);
-    std::vector<const gl::Texture*> colors{&targets.features};
-    if (frames) {
-      targets.frames = gl::make_texture(GL_R16UI, width * side, height * side, 2);
-      colors.push_back(&targets.frames);
-    }
-    if (rays) {
-      targets.rays = gl::make_texture(GL_RGBA32F, width * side, height * side, 16);
-      colors.push_back(&targets.rays);
-    }
-    targets.sample_buffer = gl::make_framebuffer(colors, &targets.depth);
-  }
-  targets.picture_buffer = gl::make_framebuffer({&targets.picture}, forward ? &targets.depth : nullptr);
-  targets.width = width;
-  targets.height = height;
-  fit_overlay(targets, plan, overlay);
-}
-
 }  // namespace
 
 class Renderer::Impl {
@@ -109,22 +53,22 @@ class Renderer::Impl {
     if (frame_plan.frames.size() > 65535)
       throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
     gpu_.update(scene);
-    fit(state_.targets, frame_plan);
-    if (!frame_plan.runs("selection")) state_.selected.clear();
-    glBindFramebuffer(GL_FRAMEBUFFER, state_.targets.picture_buffer.name());
+    state_.targets.fit(frame_plan);
+    if (!frame_plan.runs(effects::selection)) state_.selected.clear();
+    glBindFramebuffer(GL_FRAMEBUFFER, picture_buffer());
     glDisable(GL_SCISSOR_TEST);
     const Color& b = frame_plan.background;
     const float background[4] = {static_cast<float>(b.x()), static_cast<float>(b.y()), static_cast<float>(b.z()), 1};
     glClearBufferfv(GL_COLOR, 0, background);
     FrameTimes times;
-    for (const Pass& pass : pass_table) {
-      if (!frame_plan.runs(pass.name)) continue;
+    for (const Effect* pass : effect_table()) {
+      if (pass->execute == nullptr || !frame_plan.runs(*pass)) continue;
       if (each_pass) glFinish();
       const Clock::time_point pass_start = Clock::now();
-      pass.execute({frame_plan, gpu_, state_});
+      pass->execute({frame_plan, gpu_, state_, *pass});
       if (!each_pass) continue;
       glFinish();
-      times.pass_ms[pass.name] = milliseconds_since(pass_start);
+      times.pass_ms[pass->name] = milliseconds_since(pass_start);
     }
     glFinish();
     times.frame_ms = milliseconds_since(start);
@@ -135,7 +79,7 @@ class Renderer::Impl {
   }
 
   const std::string& device() const { return device_; }
-  unsigned texture() const { return state_.targets.picture.name(); }
+  unsigned texture() const { return state_.targets.texture(Target::picture).name(); }
 
   Image read_back() {
     const gl::Current current(*context_);
@@ -144,7 +88,7 @@ class Renderer::Impl {
         view.width, view.height,
         std::vector<std::uint8_t>(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * 3)};
     std::vector<std::uint8_t> rgba(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * 4);
-    glBindFramebuffer(GL_FRAMEBUFFER, state_.targets.picture_buffer.name());
+    glBindFramebuffer(GL_FRAMEBUFFER, picture_buffer());
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, view.width, view.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
     const auto width = static_cast<std::size_t>(view.width), height = static_cast<std::size_t>(view.height);
@@ -155,6 +99,8 @@ class Renderer::Impl {
   }
 
  private:
+  unsigned picture_buffer() { return state_.targets.framebuffer({Target::picture}, false).name(); }
+
   std::unique_ptr<gl::Context> context_;  // outlives the rest, which are names in it
   GpuScene gpu_;
   PassState state_;

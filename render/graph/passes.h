@@ -4,27 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "render/gl/objects.h"
 #include "render/gpu_scene/gpu_scene.h"
-#include "render/graph/plan.h"
+#include "render/graph/targets.h"
 
 namespace rebake {
-
-/// Buffers of one frame; those that the plan does not call for stay empty.
-struct FrameTargets {
-  int width = 0, height = 0, side = 1;  ///< picture size and samples along a pixel's side
-  bool has_features = false, has_frames = false, has_rays = false;
-  gl::Texture picture;   ///< RGBA8
-  gl::Texture features;  ///< RG32UI, a sample's 8 feature bytes
-  gl::Texture frames;    ///< R16UI, index into FramePlan::frames
-  gl::Texture rays;      ///< RGBA32F, fed direction of turned triangles, else 0
-  gl::Texture depth;
-  gl::Texture mask;  ///< R8, selected triangles
-  gl::Framebuffer mask_buffer;
-  gl::Framebuffer overlay_buffer;  ///< picture without depth
-  gl::Framebuffer sample_buffer;   ///< features, frames, rays and depth
-  gl::Framebuffer picture_buffer;  ///< picture, and depth for forward shading
-};
 
 /// Decoder weights on the GPU when they are fetched from buffers.
 struct DecoderTables {
@@ -48,7 +31,7 @@ using SelectionKey = std::pair<MeshKey, const TriangleSet*>;
 /// Lives as long as the renderer: shaders and buffers that frames share.
 struct PassState {
   std::map<std::string, gl::Program> programs;  ///< by their full source
-  FrameTargets targets;
+  TargetPool targets;
   DecoderTables tables;
   std::map<SelectionKey, SelectedFaces> selected;
   gl::VertexArray empty_array;
@@ -59,25 +42,13 @@ struct PassInput {
   const FramePlan& plan;
   const GpuScene& gpu;
   PassState& state;
-};
+  const Effect& effect;
 
-/// A pass that the plan can call for by name.
-struct Pass {
-  const char* name;
-  void (*execute)(const PassInput&);
-};
-
-void execute_geometry(const PassInput& input);
-void execute_resolve(const PassInput& input);
-void execute_forward(const PassInput& input);
-void execute_inspect(const PassInput& input);
-void execute_selection(const PassInput& input);
-void execute_guides(const PassInput& input);
-
-/// In the order in which they run.
-inline constexpr Pass pass_table[] = {
-    {"geometry", execute_geometry}, {"resolve", execute_resolve},     {"forward", execute_forward},
-    {"inspect", execute_inspect},   {"selection", execute_selection}, {"guides", execute_guides},
+  /// The texture's name, 0 where nothing wrote it in this frame. Throws std::logic_error for one that the effect does
+  /// not say it reads.
+  unsigned read(Target target) const;
+  /// From here on drawing goes there. Throws std::logic_error likewise.
+  void draw_to(const std::vector<Target>& colors, bool depth) const;
 };
 
 }  // namespace rebake

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mesh_ops/base/error.h"
+#include "render/graph/effects.h"
 
 namespace rebake {
 
@@ -16,15 +17,6 @@ namespace {
 
 constexpr std::size_t most_constant_decoders = 4;
 constexpr std::size_t most_constant_weights = 4096;
-
-// Largest share of its distance that a pixel may span for its samples' rays to be taken as one. The mean of unit
-// vectors spread by s differs from the unit vector of their mean position by O(s^2): at most 4e-6 here.
-constexpr double widest_single_ray = 1.0 / 256;
-
-// Width or height of a pixel over its distance along the view axis; nothing where rays are parallel.
-double pixel_span(const View& view) {
-  return view.camera.orthographic() ? 0 : 2 * half_height(view.camera, 1) / view.height;
-}
 
 std::size_t weight_count(const Decoder& d) {
   return static_cast<std::size_t>(d.weights0.size() + d.weights1.size() + d.weights2.size());
@@ -82,97 +74,22 @@ std::size_t frame_index(FramePlan& plan, const NodeFrame& frame) {
   return plan.frames.size() - 1;
 }
 
-std::string plural(std::size_t count, const std::string& one, const std::string& many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
-std::string layer_sizes(const Decoder& d) { return fmt::format("11-{}-{}-3", d.hidden0(), d.hidden1()); }
-
-void plan_passes(FramePlan& plan, std::size_t turned_draws, std::size_t culled, std::size_t hidden) {
-  const auto say = [&](const char* name, bool runs, std::string why) {
-    plan.passes.push_back({name, runs, std::move(why)});
-  };
-  const bool any = !plan.draws.empty();
-  const bool forward = plan.options.shading == RenderOptions::Shading::forward;
-  const int side = plan.view.side();
-  const std::string drawn = fmt::format("{}, {}", plural(plan.draws.size(), "draw", "draws"),
-                                        plural(plan.triangles, "triangle", "triangles"));
-  const std::string nothing = "nothing is in view";
-
-  say("geometry", any && !forward, !any ? nothing : forward ? "forward shading decodes while drawing" : drawn);
-  say("supersampling", any && plan.view.samples > 1,
-      !any                     ? nothing
-      : plan.view.samples == 1 ? "1 sample a pixel is asked for"
-                               : fmt::format("{} samples a pixel: buffers of {}×{}", plan.view.samples,
-                                             plan.view.width * side, plan.view.height * side));
-  say("node frames", any && plan.frames.size() > 1,
-      !any                      ? nothing
-      : plan.frames.size() == 1 ? "one decoder and orientation in view"
-                                : fmt::format("{} decoders or orientations in view", plan.frames.size()));
-  say("turned rays", turned_draws > 0,
-      !any                ? nothing
-      : turned_draws == 0 ? "no triangle was turned apart from its object"
-                          : plural(turned_draws, "draw has", "draws have") + " turned triangles");
-  say("decoder compositing", any && plan.decoders.size() > 1 && !forward,
-      !any                        ? nothing
-      : plan.decoders.size() == 1 ? "one decoder in view"
-      : forward                   ? "at 1 sample no pixel is mixed"
-                                  : fmt::format("{} decoders in view", plan.decoders.size()));
-  const double pixel = pixel_span(plan.view);
-  const bool resolved_rays = any && !forward && plan.view.samples > 1;
-  const bool mixed_rays = plan.frames.size() > 1 || turned_draws > 0;
-  say("ray per sample", resolved_rays && (mixed_rays || pixel > widest_single_ray),
-      !any             ? nothing
-      : !resolved_rays ? "a pixel has one sample"
-      : mixed_rays     ? "samples of a pixel may differ in orientation"
-      : pixel > widest_single_ray
-          ? fmt::format("a pixel spans {:.2g} of its distance", pixel)
-          : fmt::format("a pixel spans {:.2g} of its distance: one ray through the middle of its "
-                        "samples differs by less than {:.0e}",
-                        pixel, pixel * pixel / 4));
-  const bool constants = plan.options.weights == RenderOptions::Weights::constants;
-  const std::string how = any ? fmt::format("decoder {}, weights as {}", layer_sizes(*plan.decoders.front()),
-                                            constants ? "constants" : "a buffer")
-                              : nothing;
-  say("resolve", any && !forward, !any ? nothing : forward ? "forward shading decodes while drawing" : how);
-  say("forward", any && forward,
-      !any                    ? nothing
-      : forward               ? drawn + "; " + how
-      : plan.view.samples > 1 ? "features are averaged over a pixel's samples before they are decoded"
-                              : "deferred shading decodes each pixel once");
-  const std::string in_object = "clusters of triangles out of view are left out";
-  say("culling", any || culled > 0,
-      culled > 0 ? plural(culled, "object is", "objects are") + " out of view and cost no draw" +
-                       (any ? "; of the others, " + in_object : "")
-      : any ? in_object
-            : "no object is shown");
-  if (hidden > 0) say("hidden objects", false, plural(hidden, "is", "are") + " hidden by an edit");
-}
-
-void plan_guides(FramePlan& plan) {
-  const bool inspects = plan.guides.inspect != Guides::Inspect::none;
-  if (inspects)
-    for (PlannedPass& pass : plan.passes)
-      if (pass.name != "culling" && pass.runs) pass = {pass.name, false, "the triangles are inspected, not decoded"};
-  plan.passes.push_back({"inspect", inspects && !plan.draws.empty(),
-                         !inspects            ? "colours are asked for"
-                         : plan.draws.empty() ? "nothing is in view"
-                                              : "another look than colours is asked for"});
-  const std::size_t selected = static_cast<std::size_t>(
-      std::count_if(plan.draws.begin(), plan.draws.end(), [](const Draw& draw) { return draw.selection != nullptr; }));
-  plan.passes.push_back({"selection", plan.guides.selection && selected > 0,
-                         !plan.guides.selection ? "selections are not to be shown"
-                         : selected == 0        ? "nothing in view is selected"
-                                                : plural(selected, "draw has", "draws have") + " selected triangles"});
-  plan.passes.push_back({"guides", !plan.guides.lines.empty(),
-                         plan.guides.lines.empty() ? "no grid, cage or handle is shown"
-                                                   : plural(plan.guides.lines.size(), "line", "lines")});
+void plan_passes(FramePlan& plan, const FrameFacts& facts, bool overlays) {
+  const bool inspects = overlays && plan.guides.inspect != Guides::Inspect::none;
+  for (const Effect* effect : effect_table()) {
+    if (effect->kind == Effect::Kind::overlay && !overlays) continue;
+    std::optional<Decision> decision = effect->decide(facts);
+    if (!decision) continue;
+    if (inspects && decision->runs && effect->kind == Effect::Kind::colors)
+      decision = Decision{false, "the triangles are inspected, not decoded"};
+    plan.passes.push_back({effect, effect->name, decision->runs, std::move(decision->why)});
+  }
 }
 
 }  // namespace
 
-bool FramePlan::runs(const std::string& pass) const {
-  return std::any_of(passes.begin(), passes.end(), [&](const PlannedPass& p) { return p.name == pass && p.runs; });
+bool FramePlan::runs(const Effect& effect) const {
+  return std::any_of(passes.begin(), passes.end(), [&](const PlannedPass& p) { return p.effect == &effect && p.runs; });
 }
 
 FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options, const Guides* guides) {
@@ -234,11 +151,8 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
     result.options.shading = result.view.samples == 1 && result.options.weights == RenderOptions::Weights::constants
                                  ? RenderOptions::Shading::forward
                                  : RenderOptions::Shading::deferred;
-  plan_passes(result, turned, culled, hidden);
-  if (guides != nullptr) {
-    result.guides = *guides;
-    plan_guides(result);
-  }
+  if (guides != nullptr) result.guides = *guides;
+  plan_passes(result, {result, turned, culled, hidden}, guides != nullptr);
   return result;
 }
 

@@ -49,8 +49,11 @@ struct Draw {
   std::size_t first_triangle = 0;                ///< the set's, in the object's numbering
 };
 
+struct Effect;
+
 /// A pass or an optional part of one, and why it runs or not.
 struct PlannedPass {
+  const Effect* effect;
   std::string name;
   bool runs = false;
   std::string why;
@@ -75,7 +78,7 @@ struct FramePlan {
   std::size_t triangles = 0;
   Guides guides;
 
-  bool runs(const std::string& pass) const;
+  bool runs(const Effect& effect) const;
 };
 
 /// Pure. `guides`: what an editor wants over the picture, null for the picture alone. Throws FieldError for a view or

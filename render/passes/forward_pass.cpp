@@ -5,9 +5,11 @@
 
 namespace rebake {
 
-void execute_forward(const PassInput& input) {
+namespace {
+
+void execute(const PassInput& input) {
   const FramePlan& plan = input.plan;
-  glBindFramebuffer(GL_FRAMEBUFFER, input.state.targets.picture_buffer.name());
+  input.draw_to({Target::picture}, true);
   begin_geometry(plan, 1);
   const std::string decoder = decoder_preamble(input);
   for (const Draw& draw : plan.draws) {
@@ -25,5 +27,19 @@ void execute_forward(const PassInput& input) {
   }
   end_geometry();
 }
+
+std::optional<Decision> decide(const FrameFacts& facts) {
+  if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  if (facts.forward()) return Decision{true, drawn_words(facts.plan) + "; " + decoder_words(facts.plan)};
+  return Decision{false, facts.plan.view.samples > 1
+                             ? "features are averaged over a pixel's samples before they are decoded"
+                             : "deferred shading decodes each pixel once"};
+}
+
+constexpr Use writes[] = {{Target::picture}, {Target::depth}};
+
+}  // namespace
+
+const Effect effects::forward{"forward", Effect::Kind::colors, decide, execute, {}, writes};
 
 }  // namespace rebake

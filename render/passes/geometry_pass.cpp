@@ -5,14 +5,19 @@
 
 namespace rebake {
 
-void execute_geometry(const PassInput& input) {
-  const FrameTargets& targets = input.state.targets;
-  glBindFramebuffer(GL_FRAMEBUFFER, targets.sample_buffer.name());
-  begin_geometry(input.plan, targets.side);
+namespace {
+
+void execute(const PassInput& input) {
+  const bool has_frames = input.plan.runs(effects::node_frames), has_rays = input.plan.runs(effects::turned_rays);
+  std::vector<Target> colors{Target::features};
+  if (has_frames) colors.push_back(Target::frames);
+  if (has_rays) colors.push_back(Target::rays);
+  input.draw_to(colors, true);
+  begin_geometry(input.plan, input.plan.view.side());
   const GLuint nothing[4] = {};
   glClearBufferuiv(GL_COLOR, 0, nothing);
-  const int frame_target = 1, ray_target = targets.has_frames ? 2 : 1;
-  if (targets.has_rays) {
+  const int frame_target = 1, ray_target = has_frames ? 2 : 1;
+  if (has_rays) {
     const float no_ray[4] = {};
     glClearBufferfv(GL_COLOR, ray_target, no_ray);
   }
@@ -21,13 +26,52 @@ void execute_geometry(const PassInput& input) {
         program(input.state, "geometry.vert", "geometry.frag",
                 fmt::format("#define TURNED_MESH {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n#define "
                             "FRAME_TARGET {}\n#define RAY_TARGET {}\n",
-                            draw.set.soup.rotations() != nullptr ? 1 : 0, targets.has_frames ? 1 : 0,
-                            targets.has_rays ? 1 : 0, frame_target, ray_target));
+                            draw.set.soup.rotations() != nullptr ? 1 : 0, has_frames ? 1 : 0, has_rays ? 1 : 0,
+                            frame_target, ray_target));
     glUseProgram(shader.name());
     set_uniform(shader, "frame", static_cast<unsigned>(draw.frame));
     draw_set(input, draw, shader);
   }
   end_geometry();
 }
+
+std::optional<Decision> decide(const FrameFacts& facts) {
+  if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  if (facts.forward()) return Decision{false, "forward shading decodes while drawing"};
+  return Decision{true, drawn_words(facts.plan)};
+}
+
+std::optional<Decision> decide_supersampling(const FrameFacts& facts) {
+  const View& view = facts.plan.view;
+  if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  if (view.samples == 1) return Decision{false, "1 sample a pixel is asked for"};
+  return Decision{true, fmt::format("{} samples a pixel: buffers of {}×{}", view.samples, view.width * view.side(),
+                                    view.height * view.side())};
+}
+
+std::optional<Decision> decide_node_frames(const FrameFacts& facts) {
+  if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  const std::size_t count = facts.plan.frames.size();
+  if (count == 1) return Decision{false, "one decoder and orientation in view"};
+  return Decision{true, fmt::format("{} decoders or orientations in view", count)};
+}
+
+std::optional<Decision> decide_turned_rays(const FrameFacts& facts) {
+  if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  if (facts.turned_draws == 0) return Decision{false, "no triangle was turned apart from its object"};
+  return Decision{true, plural(facts.turned_draws, "draw has", "draws have") + " turned triangles"};
+}
+
+constexpr Use writes[] = {{Target::features},
+                          {Target::frames, &effects::node_frames},
+                          {Target::rays, &effects::turned_rays},
+                          {Target::depth}};
+
+}  // namespace
+
+const Effect effects::geometry{"geometry", Effect::Kind::colors, decide, execute, {}, writes};
+const Effect effects::supersampling{"supersampling", Effect::Kind::colors, decide_supersampling};
+const Effect effects::node_frames{"node frames", Effect::Kind::colors, decide_node_frames};
+const Effect effects::turned_rays{"turned rays", Effect::Kind::colors, decide_turned_rays};
 
 }  // namespace rebake

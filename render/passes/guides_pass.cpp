@@ -4,7 +4,9 @@
 
 namespace rebake {
 
-void execute_guides(const PassInput& input) {
+namespace {
+
+void execute(const PassInput& input) {
   struct Vertex {
     float position[3], color[4], hidden;
   };
@@ -19,7 +21,7 @@ void execute_guides(const PassInput& input) {
                           {c.x(), c.y(), c.z(), static_cast<float>(line.opacity)},
                           static_cast<float>(line.hidden_opacity)});
     }
-  glBindFramebuffer(GL_FRAMEBUFFER, input.state.targets.overlay_buffer.name());
+  input.draw_to({Target::picture}, false);
   begin_overlay(input.plan);
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -42,5 +44,18 @@ void execute_guides(const PassInput& input) {
   glDisable(GL_BLEND);
   end_geometry();
 }
+
+std::optional<Decision> decide(const FrameFacts& facts) {
+  const std::size_t lines = facts.plan.guides.lines.size();
+  if (lines == 0) return Decision{false, "no grid, cage or handle is shown"};
+  return Decision{true, plural(lines, "line", "lines")};
+}
+
+constexpr Use reads[] = {{Target::depth}};
+constexpr Use writes[] = {{Target::picture}};
+
+}  // namespace
+
+const Effect effects::guides{"guides", Effect::Kind::overlay, decide, execute, reads, writes};
 
 }  // namespace rebake

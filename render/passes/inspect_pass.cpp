@@ -18,11 +18,9 @@ glm::vec3 color_of(std::size_t number) {
   return {channel(0), channel(4), channel(2)};
 }
 
-}  // namespace
-
-void execute_inspect(const PassInput& input) {
+void execute(const PassInput& input) {
   const Guides& guides = input.plan.guides;
-  glBindFramebuffer(GL_FRAMEBUFFER, input.state.targets.picture_buffer.name());
+  input.draw_to({Target::picture}, true);
   begin_geometry(input.plan, 1);
   const gl::Program& shader =
       program(input.state, "geometry.vert", "inspect.frag",
@@ -47,5 +45,17 @@ void execute_inspect(const PassInput& input) {
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   end_geometry();
 }
+
+std::optional<Decision> decide(const FrameFacts& facts) {
+  if (facts.plan.guides.inspect == Guides::Inspect::none) return Decision{false, "colours are asked for"};
+  if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  return Decision{true, "another look than colours is asked for"};
+}
+
+constexpr Use writes[] = {{Target::picture}, {Target::depth}};
+
+}  // namespace
+
+const Effect effects::inspect{"inspect", Effect::Kind::overlay, decide, execute, {}, writes};
 
 }  // namespace rebake

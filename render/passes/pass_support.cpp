@@ -219,7 +219,7 @@ void begin_geometry(const FramePlan& plan, int side) {
   glDepthFunc(reversed_depth() ? GL_GEQUAL : GL_LEQUAL);
   const float farthest = reversed_depth() ? 0.0F : 1.0F;
   // Lines are compared with the depth of all pixels.
-  if (plan.runs("guides")) glDisable(GL_SCISSOR_TEST);
+  if (plan.runs(effects::guides)) glDisable(GL_SCISSOR_TEST);
   glClearBufferfv(GL_DEPTH, 0, &farthest);
   glEnable(GL_SCISSOR_TEST);
 }
@@ -234,9 +234,9 @@ void begin_overlay(const FramePlan& plan) {
 
 void bind_scene_depth(const PassInput& input, const gl::Program& program) {
   glActiveTexture(GL_TEXTURE1);
-  glBindTexture(GL_TEXTURE_2D, input.state.targets.depth.name());
+  glBindTexture(GL_TEXTURE_2D, input.read(Target::depth));
   set_uniform(program, "scene_depth", 1);
-  set_uniform(program, "side", input.plan.runs("forward") ? 1 : input.plan.view.side());
+  set_uniform(program, "side", input.plan.view.side());
   set_uniform(program, "nearer", reversed_depth() ? 1.0F : -1.0F);
 }
 

@@ -19,17 +19,16 @@ std::vector<float> frame_table(const FramePlan& plan) {
   return table;
 }
 
-void bind(int unit, GLenum target, const gl::Texture& texture) {
+void bind(int unit, GLenum target, unsigned texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(target, texture.name());
+  glBindTexture(target, texture);
 }
 
-}  // namespace
-
-void execute_resolve(const PassInput& input) {
+void execute(const PassInput& input) {
   const FramePlan& plan = input.plan;
-  const FrameTargets& targets = input.state.targets;
-  glBindFramebuffer(GL_FRAMEBUFFER, targets.picture_buffer.name());
+  const bool has_frames = plan.runs(effects::node_frames), has_rays = plan.runs(effects::turned_rays);
+  const int side = plan.view.side();
+  input.draw_to({Target::picture}, false);
   glViewport(0, 0, plan.view.width, plan.view.height);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
@@ -37,23 +36,23 @@ void execute_resolve(const PassInput& input) {
   glScissor(plan.covered.left, plan.view.height - plan.covered.bottom, plan.covered.right - plan.covered.left,
             plan.covered.bottom - plan.covered.top);
 
-  const gl::Program& shader = program(input.state, "fullscreen.vert", "resolve.frag",
-                                      fmt::format("#define SIDE {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n"
-                                                  "#define RAY_PER_SAMPLE {}\n",
-                                                  targets.side, targets.has_frames ? 1 : 0, targets.has_rays ? 1 : 0,
-                                                  plan.runs("ray per sample") ? 1 : 0) +
-                                          decoder_preamble(input));
+  const gl::Program& shader =
+      program(input.state, "fullscreen.vert", "resolve.frag",
+              fmt::format("#define SIDE {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n"
+                          "#define RAY_PER_SAMPLE {}\n",
+                          side, has_frames ? 1 : 0, has_rays ? 1 : 0, plan.runs(effects::ray_per_sample) ? 1 : 0) +
+                  decoder_preamble(input));
   glUseProgram(shader.name());
-  bind(0, GL_TEXTURE_2D, targets.features);
+  bind(0, GL_TEXTURE_2D, input.read(Target::features));
   set_uniform(shader, "features", 0);
   gl::Buffer table_buffer;
   gl::Texture table_texture;
-  if (targets.has_frames) {
+  if (has_frames) {
     const std::vector<float> table = frame_table(plan);
     table_buffer = gl::make_buffer(GL_TEXTURE_BUFFER, table.data(), table.size() * sizeof(float));
     table_texture = gl::make_buffer_texture(table_buffer);
-    bind(1, GL_TEXTURE_2D, targets.frames);
-    bind(2, GL_TEXTURE_BUFFER, table_texture);
+    bind(1, GL_TEXTURE_2D, input.read(Target::frames));
+    bind(2, GL_TEXTURE_BUFFER, table_texture.name());
     set_uniform(shader, "frames", 1);
     set_uniform(shader, "frame_table", 2);
     set_uniform(shader, "decoder_count", static_cast<float>(plan.decoders.size()));
@@ -61,17 +60,61 @@ void execute_resolve(const PassInput& input) {
     set_uniform(shader, "camera_to_fed", to_glm(camera_to_fed(plan, plan.frames.front())));
     set_uniform(shader, "alpha_code", alpha_factors(plan.frames.front().alpha_code));
   }
-  if (targets.has_rays) {
-    bind(3, GL_TEXTURE_2D, targets.rays);
+  if (has_rays) {
+    bind(3, GL_TEXTURE_2D, input.read(Target::rays));
     set_uniform(shader, "rays", 3);
   }
   bind_decoders(input, shader);
-  set_ray_uniforms(shader, plan.view, targets.side);
+  set_ray_uniforms(shader, plan.view, side);
   const Color& b = plan.background;
   set_uniform(shader, "background", glm::vec3(b.x(), b.y(), b.z()));
   glBindVertexArray(input.state.empty_array.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindVertexArray(0);
 }
+
+std::optional<Decision> decide(const FrameFacts& facts) {
+  if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  if (facts.forward()) return Decision{false, "forward shading decodes while drawing"};
+  return Decision{true, decoder_words(facts.plan)};
+}
+
+std::optional<Decision> decide_compositing(const FrameFacts& facts) {
+  if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  const std::size_t count = facts.plan.decoders.size();
+  if (count == 1) return Decision{false, "one decoder in view"};
+  if (facts.forward()) return Decision{false, "at 1 sample no pixel is mixed"};
+  return Decision{true, fmt::format("{} decoders in view", count)};
+}
+
+// Width or height of a pixel over its distance along the view axis; nothing where rays are parallel.
+double pixel_span(const View& view) {
+  return view.camera.orthographic() ? 0 : 2 * half_height(view.camera, 1) / view.height;
+}
+
+std::optional<Decision> decide_ray_per_sample(const FrameFacts& facts) {
+  // Largest share of its distance that a pixel may span for its samples' rays to be taken as one. The mean of unit
+  // vectors spread by s differs from the unit vector of their mean position by O(s^2): at most 4e-6 here.
+  constexpr double widest_single_ray = 1.0 / 256;
+  if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  if (facts.forward() || facts.plan.view.samples == 1) return Decision{false, "a pixel has one sample"};
+  if (facts.plan.frames.size() > 1 || facts.turned_draws > 0)
+    return Decision{true, "samples of a pixel may differ in orientation"};
+  const double pixel = pixel_span(facts.plan.view);
+  if (pixel > widest_single_ray) return Decision{true, fmt::format("a pixel spans {:.2g} of its distance", pixel)};
+  return Decision{false, fmt::format("a pixel spans {:.2g} of its distance: one ray through the middle of its samples "
+                                     "differs by less than {:.0e}",
+                                     pixel, pixel * pixel / 4)};
+}
+
+constexpr Use reads[] = {
+    {Target::features}, {Target::frames, &effects::node_frames}, {Target::rays, &effects::turned_rays}};
+constexpr Use writes[] = {{Target::picture}};
+
+}  // namespace
+
+const Effect effects::decoder_compositing{"decoder compositing", Effect::Kind::colors, decide_compositing};
+const Effect effects::ray_per_sample{"ray per sample", Effect::Kind::colors, decide_ray_per_sample};
+const Effect effects::resolve{"resolve", Effect::Kind::colors, decide, execute, reads, writes};
 
 }  // namespace rebake

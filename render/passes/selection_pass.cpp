@@ -1,5 +1,7 @@
 #include <epoxy/gl.h>
 
+#include <algorithm>
+
 #include "render/passes/pass_support.h"
 
 namespace rebake {
@@ -23,11 +25,8 @@ SelectedFaces upload(const Draw& draw, const GpuMesh& mesh) {
   return selected;
 }
 
-}  // namespace
-
-void execute_selection(const PassInput& input) {
-  FrameTargets& targets = input.state.targets;
-  glBindFramebuffer(GL_FRAMEBUFFER, targets.mask_buffer.name());
+void execute(const PassInput& input) {
+  input.draw_to({Target::mask}, false);
   begin_overlay(input.plan);
   const float nothing[4] = {};
   glClearBufferfv(GL_COLOR, 0, nothing);
@@ -54,17 +53,33 @@ void execute_selection(const PassInput& input) {
   glBlendEquation(GL_FUNC_ADD);
   end_geometry();
 
-  glBindFramebuffer(GL_FRAMEBUFFER, targets.overlay_buffer.name());
+  input.draw_to({Target::picture}, false);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   const gl::Program& tint = program(input.state, "fullscreen.vert", "selection.frag", "");
   glUseProgram(tint.name());
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, targets.mask.name());
+  glBindTexture(GL_TEXTURE_2D, input.read(Target::mask));
   set_uniform(tint, "mask", 0);
   glBindVertexArray(input.state.empty_array.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindVertexArray(0);
   glDisable(GL_BLEND);
 }
+
+std::optional<Decision> decide(const FrameFacts& facts) {
+  const FramePlan& plan = facts.plan;
+  const auto selected = static_cast<std::size_t>(
+      std::count_if(plan.draws.begin(), plan.draws.end(), [](const Draw& draw) { return draw.selection != nullptr; }));
+  if (!plan.guides.selection) return Decision{false, "selections are not to be shown"};
+  if (selected == 0) return Decision{false, "nothing in view is selected"};
+  return Decision{true, plural(selected, "draw has", "draws have") + " selected triangles"};
+}
+
+constexpr Use reads[] = {{Target::depth}, {Target::mask}};
+constexpr Use writes[] = {{Target::mask}, {Target::picture}};
+
+}  // namespace
+
+const Effect effects::selection{"selection", Effect::Kind::overlay, decide, execute, reads, writes};
 
 }  // namespace rebake

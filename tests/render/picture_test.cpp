@@ -1,6 +1,6 @@
 // The GPU's picture against the independent oracle: 45 dB and 99.5 % of pixels within 2/255, whatever the scene.
 #include "render/picture.h"
-#include "render/graph/plan.h"
+#include "render/graph/effects.h"
 
 #include <gtest/gtest.h>
 
@@ -79,7 +79,7 @@ TEST_P(PictureBySamples, OneRayForAllSamplesOfANarrowPixel) {
   const Scene scene = scene_of(made_object());
   View view = view_from({0.8, 2.4, 4.8}, GetParam());
   view.camera.fov_degrees = 25;  // just under the span at which each sample gets its own ray
-  EXPECT_FALSE(plan(scene, view).runs("ray per sample"));
+  EXPECT_FALSE(plan(scene, view).runs(effects::ray_per_sample));
   expect_as_cast(scene, view);
 }
 
@@ -91,7 +91,7 @@ View orthographic_view(int samples) {
 
 TEST_P(PictureBySamples, Orthographic) {
   const Scene scene = scene_of(made_object());
-  EXPECT_FALSE(plan(scene, orthographic_view(GetParam())).runs("ray per sample"));
+  EXPECT_FALSE(plan(scene, orthographic_view(GetParam())).runs(effects::ray_per_sample));
   expect_as_cast(scene, orthographic_view(GetParam()));
 }
 

@@ -1,7 +1,9 @@
 // The plan says what runs and why, without a GPU; what a scene does not call for must be left out.
-#include "render/graph/plan.h"
+#include "render/graph/effects.h"
 
 #include <gtest/gtest.h>
+
+#include <set>
 
 #include "mesh_ops/base/error.h"
 #include "render/gpu_scene/resources.h"
@@ -13,22 +15,22 @@ namespace {
 TEST(Plan, OneSampleNeedsNoSupersampling) {
   View view;
   view.samples = 1;
-  EXPECT_FALSE(plan(scene_of(made_object()), view).runs("supersampling"));
+  EXPECT_FALSE(plan(scene_of(made_object()), view).runs(effects::supersampling));
   view.samples = 4;
-  EXPECT_TRUE(plan(scene_of(made_object()), view).runs("supersampling"));
+  EXPECT_TRUE(plan(scene_of(made_object()), view).runs(effects::supersampling));
 }
 
 TEST(Plan, CompositingOnlyForSeveralDecoders) {
   Scene scene = scene_of(made_object({.seed = 1}));
-  EXPECT_FALSE(plan(scene, {}).runs("decoder compositing"));
+  EXPECT_FALSE(plan(scene, {}).runs(effects::decoder_compositing));
   Node other;
   other.object = made_object({.seed = 1});  // equal weights in another place of memory count as one
   scene = with_added(scene, other, NodeId::none, 9);
-  EXPECT_FALSE(plan(scene, {}).runs("decoder compositing"));
-  EXPECT_FALSE(plan(scene, {}).runs("node frames"));
+  EXPECT_FALSE(plan(scene, {}).runs(effects::decoder_compositing));
+  EXPECT_FALSE(plan(scene, {}).runs(effects::node_frames));
   other.object = made_object({.seed = 2});
   scene = with_added(scene, other, NodeId::none, 9);
-  EXPECT_TRUE(plan(scene, {}).runs("decoder compositing"));
+  EXPECT_TRUE(plan(scene, {}).runs(effects::decoder_compositing));
 }
 
 TEST(Plan, CulledAndHiddenObjectsCostNoDraw) {
@@ -39,8 +41,8 @@ TEST(Plan, CulledAndHiddenObjectsCostNoDraw) {
   for (const Vec3& away : {Vec3(50, 0, 0), Vec3(0, 50, 0), Vec3(0, 30, 50), Vec3(0, -900, -1600)}) {
     const FramePlan frame = plan(with_changed(scene, id, [&](Node& n) { n.to_parent.translation() = away; }), {});
     EXPECT_TRUE(frame.draws.empty()) << away.transpose();
-    EXPECT_TRUE(frame.runs("culling"));
-    EXPECT_FALSE(frame.runs("geometry"));
+    EXPECT_TRUE(frame.runs(effects::culling));
+    EXPECT_FALSE(frame.runs(effects::geometry));
   }
 }
 
@@ -52,19 +54,19 @@ TEST(Plan, ShadingIsChosenBySamplesAndWeights) {
   const Scene scene = scene_of(made_object());
   View view;
   view.samples = 1;
-  EXPECT_TRUE(plan(scene, view).runs("forward"));
-  EXPECT_TRUE(plan(scene, view, {RenderOptions::Weights::buffer, {}, {}}).runs("resolve"));
+  EXPECT_TRUE(plan(scene, view).runs(effects::forward));
+  EXPECT_TRUE(plan(scene, view, {RenderOptions::Weights::buffer, {}, {}}).runs(effects::resolve));
   view.samples = 4;
-  EXPECT_TRUE(plan(scene, view).runs("resolve"));
+  EXPECT_TRUE(plan(scene, view).runs(effects::resolve));
 }
 
 TEST(Plan, WidePixelsGetARayPerSample) {
   View view;
   view.height = 200;
   view.camera.fov_degrees = 40;
-  EXPECT_FALSE(plan(scene_of(made_object()), view).runs("ray per sample"));
+  EXPECT_FALSE(plan(scene_of(made_object()), view).runs(effects::ray_per_sample));
   view.camera.fov_degrees = 60;
-  EXPECT_TRUE(plan(scene_of(made_object()), view).runs("ray per sample"));
+  EXPECT_TRUE(plan(scene_of(made_object()), view).runs(effects::ray_per_sample));
 }
 
 TEST(Plan, ForwardShadingIsRefusedAtSeveralSamples) {
@@ -94,6 +96,23 @@ TEST(Resources, UnchangedPartsAreNotUploadedTwice) {
   EXPECT_TRUE(again.meshes.empty() && again.textures.empty() && again.released_meshes.empty());
   const auto gone = diff(meshes, textures, {});
   EXPECT_EQ(gone.released_meshes.size() + gone.released_textures.size(), 2U);
+}
+
+// What an effect reads an earlier one has written, and names are not used twice.
+TEST(Effects, ReadWhatEarlierOnesWrite) {
+  std::set<Target> written;
+  std::set<std::string> names;
+  for (const Effect* effect : effect_table()) {
+    EXPECT_TRUE(names.insert(effect->name).second) << effect->name;
+    if (effect->execute == nullptr) {
+      EXPECT_TRUE(effect->reads.empty() && effect->writes.empty()) << effect->name;
+    }
+    std::set<Target> own;
+    for (const Use& use : effect->writes) own.insert(use.target);
+    for (const Use& use : effect->reads)
+      EXPECT_TRUE(written.contains(use.target) || own.contains(use.target)) << effect->name;
+    written.merge(own);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+#include "render/graph/effects.h"
+
+#include <fmt/format.h>
+
+namespace rebake {
+
+namespace {
+
+constexpr const Effect* table[] = {
+    &effects::geometry,
+    &effects::supersampling,
+    &effects::node_frames,
+    &effects::turned_rays,
+    &effects::decoder_compositing,
+    &effects::ray_per_sample,
+    &effects::resolve,
+    &effects::forward,
+    &effects::culling,
+    &effects::hidden_objects,
+    &effects::inspect,
+    &effects::selection,
+    &effects::guides,
+};
+
+}  // namespace
+
+std::span<const Effect* const> effect_table() { return table; }
+
+std::string plural(std::size_t count, const std::string& one, const std::string& many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string drawn_words(const FramePlan& plan) {
+  return fmt::format("{}, {}", plural(plan.draws.size(), "draw", "draws"),
+                     plural(plan.triangles, "triangle", "triangles"));
+}
+
+std::string decoder_words(const FramePlan& plan) {
+  const Decoder& d = *plan.decoders.front();
+  return fmt::format("decoder 11-{}-{}-3, weights as {}", d.hidden0(), d.hidden1(),
+                     plan.options.weights == RenderOptions::Weights::constants ? "constants" : "a buffer");
+}
+
+}  // namespace rebake

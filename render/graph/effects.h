@@ -1,0 +1,74 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "render/graph/plan.h"
+
+namespace rebake {
+
+/// Buffers of a frame that effects pass on to each other.
+enum class Target {
+  picture,   ///< RGBA8, a pixel
+  features,  ///< RG32UI, a sample's 8 feature bytes
+  frames,    ///< R16UI, a sample's index into FramePlan::frames
+  rays,      ///< RGBA32F, a sample's fed direction where its triangle was turned, else 0
+  depth,     ///< a sample's depth
+  mask,      ///< R8, a pixel's selected triangles
+};
+inline constexpr std::size_t target_count = 6;
+
+struct Effect;
+struct PassInput;
+
+/// That an effect reads or writes a target; with `where` only in frames in which that one runs too.
+struct Use {
+  Target target;
+  const Effect* where = nullptr;
+};
+
+/// What a frame is made of, as far as it is planned.
+struct FrameFacts {
+  const FramePlan& plan;  ///< all but its passes
+  std::size_t turned_draws = 0, culled = 0, hidden = 0;
+
+  bool any_draw() const { return !plan.draws.empty(); }
+  bool forward() const { return plan.options.shading == RenderOptions::Shading::forward; }
+};
+
+struct Decision {
+  bool runs = false;
+  std::string why;
+};
+
+/// A pass, or an optional part of one: when it runs and why, what it reads and writes. Each is an object of its own, so
+/// that a name which does not exist does not compile.
+struct Effect {
+  /// What it is there for: inspecting leaves out what decodes colours, and a plain picture has no overlays.
+  enum class Kind { colors, always, overlay };
+
+  const char* name;
+  Kind kind;
+  std::optional<Decision> (*decide)(const FrameFacts& facts);  ///< nothing where it is not worth a word
+  void (*execute)(const PassInput& input) = nullptr;           ///< null for a part of another
+  std::span<const Use> reads{}, writes{};
+};
+
+namespace effects {
+extern const Effect geometry, supersampling, node_frames, turned_rays, decoder_compositing, ray_per_sample, resolve,
+    forward, culling, hidden_objects, inspect, selection, guides;
+}
+
+/// All of them, in the order in which they are said and run.
+std::span<const Effect* const> effect_table();
+
+/// "3 draws".
+std::string plural(std::size_t count, const std::string& one, const std::string& many);
+/// What is drawn, in words.
+std::string drawn_words(const FramePlan& plan);
+/// How it is decoded, in words. Something is drawn.
+std::string decoder_words(const FramePlan& plan);
+inline constexpr const char* nothing_in_view = "nothing is in view";
+
+}  // namespace rebake
