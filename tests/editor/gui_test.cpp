@@ -97,26 +97,26 @@ TEST(Desk, CostsAreMeasuredInTheView) {
   const TemporaryFolder home;  // for the journal
   ::setenv("XDG_STATE_HOME", home.path().c_str(), 1);
   Desk desk({}, [] {});
-  desk.view_width = 160;
-  desk.view_height = 120;
+  desk.view.width = 160;
+  desk.view.height = 120;
   const auto wait = [&desk] {
-    while (desk.worker.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (desk.jobs.worker.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     desk.update();
-    ASSERT_EQ(desk.error, "");
+    ASSERT_EQ(desk.messages.error, "");
   };
-  desk.open({REBAKE_SOURCE "/samples/scenes/ficus"});
+  desk.project.open({REBAKE_SOURCE "/samples/scenes/ficus"});
   wait();
-  desk.measure_costs();
+  desk.jobs.measure_costs(desk.view, desk.scene());
   wait();
-  ASSERT_TRUE(desk.costs);
-  ASSERT_EQ(desk.costs->rows.size(), 7U);
-  const auto decibels = [&](std::size_t row) { return desk.costs->rows[row].values[1]; };
+  ASSERT_TRUE(desk.jobs.costs);
+  ASSERT_EQ(desk.jobs.costs->rows.size(), 7U);
+  const auto decibels = [&](std::size_t row) { return desk.jobs.costs->rows[row].values[1]; };
   EXPECT_GT(decibels(2), decibels(1)) << "16 samples are nearer to 64 than 4";
   EXPECT_GT(decibels(1), decibels(0));
   EXPECT_NEAR(decibels(3), decibels(0), 0.01) << "all of the resolution at 1 sample is 1 sample";
   EXPECT_GT(decibels(3), decibels(6)) << "a third of the resolution is worse than all of it";
-  for (const StudyTable::Row& row : desk.costs->rows) EXPECT_GT(row.values[0], 0) << row.choice;
-  desk.worker.start("end", [](Session& session) { session.document.discard_journal(); });
+  for (const StudyTable::Row& row : desk.jobs.costs->rows) EXPECT_GT(row.values[0], 0) << row.choice;
+  desk.jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
   wait();
 }
 

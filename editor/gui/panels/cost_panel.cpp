@@ -7,11 +7,10 @@ namespace rebake {
 
 namespace {
 
-void draw_measured(const Desk& desk) {
-  const Desk::Costs& costs = *desk.costs;
-  const bool same = costs.view.camera == desk.camera && costs.view.width == desk.view_width &&
-                    costs.view.height == desk.view_height && costs.roots == desk.scene().roots &&
-                    costs.background == desk.scene().background;
+void draw_measured(const Jobs::Costs& costs, const ViewState& view, const Scene& scene) {
+  const bool same = costs.view.camera == view.camera && costs.view.width == view.width &&
+                    costs.view.height == view.height && costs.roots == scene.roots &&
+                    costs.background == scene.background;
   ImGui::TextDisabled("%s",
                       fmt::format("against 64 samples, {}x{}, {}{}", costs.view.width, costs.view.height, costs.device,
                                   same ? "" : "; of the view or scene as it was: measure again for this one")
@@ -33,28 +32,28 @@ void draw_measured(const Desk& desk) {
 
 }  // namespace
 
-void draw_costs(Desk& desk, const FrameReport& report, bool& each_pass) {
-  ImGui::Text(
-      "%s", fmt::format("{:.1f} ms a picture at {} samples a pixel, {:.0f} % of the resolution; at most {:.1f} MB on "
-                        "the GPU; {:.1f} MB of history; {:.0f} pictures a second while moving",
-                        report.times.frame_ms, report.samples, report.scale * 100,
-                        static_cast<double>(report.gpu_bytes) / 1e6, static_cast<double>(desk.now->history_bytes) / 1e6,
-                        report.pictures_a_second)
-                .c_str());
+void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameReport& report, bool& each_pass) {
+  ImGui::Text("%s",
+              fmt::format("{:.1f} ms a picture at {} samples a pixel, {:.0f} % of the resolution; at most {:.1f} MB on "
+                          "the GPU; {:.1f} MB of history; {:.0f} pictures a second while moving",
+                          report.times.frame_ms, report.samples, report.scale * 100,
+                          static_cast<double>(report.gpu_bytes) / 1e6, static_cast<double>(now.history_bytes) / 1e6,
+                          report.pictures_a_second)
+                  .c_str());
   ImGui::TextDisabled("%s", report.device.c_str());
   ImGui::Checkbox("time each pass (waits between them)", &each_pass);
   ImGui::SameLine();
   for (const int samples : {1, 4, 16}) {
     if (ImGui::RadioButton(fmt::format("{} sample{}", samples, samples == 1 ? "" : "s").c_str(),
-                           desk.samples == samples))
-      desk.samples = samples;
+                           view.samples == samples))
+      view.samples = samples;
     ImGui::SameLine();
   }
-  ImGui::BeginDisabled(desk.worker.busy() || desk.scene().roots.empty());
-  if (ImGui::Button("Measure this view")) desk.measure_costs();
+  ImGui::BeginDisabled(jobs.worker.busy() || now.scene.roots.empty());
+  if (ImGui::Button("Measure this view")) jobs.measure_costs(view, now.scene);
   ImGui::EndDisabled();
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("times each choice and compares it with 64 samples a pixel");
-  if (desk.costs) draw_measured(desk);
+  if (jobs.costs) draw_measured(*jobs.costs, view, now.scene);
   if (!ImGui::BeginTable("passes", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) return;
   for (const PlannedPass& pass : report.passes) {
     ImGui::TableNextRow();
@@ -69,14 +68,6 @@ void draw_costs(Desk& desk, const FrameReport& report, bool& each_pass) {
     ImGui::TextUnformatted(pass.why.c_str());
   }
   ImGui::EndTable();
-}
-
-void draw_log(const Desk& desk) {
-  for (const Desk::Line& line : desk.log)
-    if (line.failed)
-      ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", line.text.c_str());
-    else
-      ImGui::TextWrapped("%s", line.text.c_str());
 }
 
 }  // namespace rebake

@@ -74,20 +74,20 @@ std::vector<std::string> losses(const Scene& scene) {
 }  // namespace
 
 void Dialogs::draw_path(Desk& desk) {
-  if (desk.question == PathQuestion::none) {
+  if (desk.asking.path == PathQuestion::none) {
     asked_ = PathQuestion::none;
     return;
   }
-  const Question& question = question_of(desk.question);
-  const bool first = asked_ != desk.question;
+  const Question& question = question_of(desk.asking.path);
+  const bool first = asked_ != desk.asking.path;
   if (first) {
-    asked_ = desk.question;
+    asked_ = desk.asking.path;
     replacing_.clear();
-    width_ = desk.view_width;
-    height_ = desk.view_height;
+    width_ = desk.view.width;
+    height_ = desk.view.height;
     std::error_code gone;
-    path_ = desk.question == PathQuestion::save_project && !desk.project.empty()
-                ? desk.project.string()
+    path_ = desk.asking.path == PathQuestion::save_project && !desk.project.path.empty()
+                ? desk.project.path.string()
                 : fs::current_path(gone).string() + "/";
   }
   // Another question may have closed it meanwhile.
@@ -95,7 +95,7 @@ void Dialogs::draw_path(Desk& desk) {
   ImGui::SetNextWindowSize({620, 420}, ImGuiCond_Appearing);
   bool open = true;
   if (!ImGui::BeginPopupModal((std::string(question.title) + "###path").c_str(), &open)) {
-    if (!open) desk.question = PathQuestion::none;
+    if (!open) desk.asking.path = PathQuestion::none;
     return;
   }
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
@@ -105,8 +105,8 @@ void Dialogs::draw_path(Desk& desk) {
   const fs::path typed(path_);
   std::error_code error;
   const fs::path folder = fs::is_directory(typed, error) ? typed : typed.parent_path();
-  const bool pictures = desk.question == PathQuestion::screenshot || desk.question == PathQuestion::turntable;
-  const bool roomy = desk.question != PathQuestion::export_folder && !pictures;
+  const bool pictures = desk.asking.path == PathQuestion::screenshot || desk.asking.path == PathQuestion::turntable;
+  const bool roomy = desk.asking.path != PathQuestion::export_folder && !pictures;
   ImGui::BeginChild("entries", {0, roomy ? 290.0F : 200.0F}, true);
   if (ImGui::Selectable("..")) path_ = (folder / "..").lexically_normal().string();
   std::vector<fs::path> entries;
@@ -122,12 +122,12 @@ void Dialogs::draw_path(Desk& desk) {
     if (ImGui::Selectable((entry.filename().string() + (is_folder ? "/" : "")).c_str()))
       path_ = entry.string() + (is_folder ? "/" : "");
   }
-  if (desk.question == PathQuestion::open)
+  if (desk.asking.path == PathQuestion::open)
     for (const std::string& recent : desk.settings.recent) {
       if (ImGui::Selectable(fmt::format("recent: {}", recent).c_str())) path_ = recent;
     }
   ImGui::EndChild();
-  if (desk.question == PathQuestion::export_folder)
+  if (desk.asking.path == PathQuestion::export_folder)
     for (const std::string& line : losses(desk.scene())) ImGui::TextWrapped("- %s", line.c_str());
   if (pictures) {
     const auto pixels = [](const char* label, int& value, int least, int most) {
@@ -138,7 +138,7 @@ void Dialogs::draw_path(Desk& desk) {
     pixels("wide", width_, 16, 8192);
     ImGui::SameLine();
     pixels("high, pixels", height_, 16, 8192);
-    if (desk.question == PathQuestion::turntable) {
+    if (desk.asking.path == PathQuestion::turntable) {
       ImGui::SameLine();
       pixels("pictures", pictures_, 2, 1000);
     }
@@ -149,9 +149,9 @@ void Dialogs::draw_path(Desk& desk) {
   fs::path path(path_);
   if (!path.has_filename()) path = path.parent_path();
   if (question.ending[0] != '\0' && path.extension() != question.ending) path += question.ending;
-  const bool writes = desk.question != PathQuestion::open && desk.question != PathQuestion::run_script;
+  const bool writes = desk.asking.path != PathQuestion::open && desk.asking.path != PathQuestion::run_script;
   const bool filled = fs::is_directory(path, error) && !fs::is_empty(path, error);
-  const bool replaces = writes && path != desk.project && (fs::is_regular_file(path, error) || filled);
+  const bool replaces = writes && path != desk.project.path && (fs::is_regular_file(path, error) || filled);
   if (done && replaces && replacing_ != path) {
     replacing_ = path;
     done = false;
@@ -160,63 +160,63 @@ void Dialogs::draw_path(Desk& desk) {
   if (replaces && replacing_ == path)
     ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s is there already: once more to replace it", path.filename().c_str());
   if (done && !path_.empty()) {
-    switch (desk.question) {
+    switch (desk.asking.path) {
       case PathQuestion::open:
-        desk.open({path.string()});
+        desk.project.open({path.string()});
         break;
       case PathQuestion::save_project:
-        desk.save_project(path);
+        desk.project.save(path);
         break;
       case PathQuestion::save_scene:
-        desk.save_scene(path);
+        desk.project.save_scene(path);
         break;
       case PathQuestion::export_folder:
-        desk.export_to(path);
+        desk.project.export_to(path);
         break;
       case PathQuestion::screenshot:
-        desk.screenshot = Desk::Screenshot{path, width_, height_};
+        desk.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
         break;
       case PathQuestion::turntable:
-        desk.turntable = Desk::Turntable{path, width_, height_, pictures_};
+        desk.jobs.turntable = Jobs::Turntable{path, width_, height_, pictures_};
         break;
       case PathQuestion::save_script:
-        desk.save_script(path);
+        desk.project.save_script(path);
         break;
       default:
-        desk.run_script(path);
+        desk.project.run_script(path);
     }
   }
   if (done || cancelled) {
-    desk.question = PathQuestion::none;
+    desk.asking.path = PathQuestion::none;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
 }
 
-void Dialogs::draw_error(Desk& desk) {
+void Dialogs::draw_error(Messages& messages) {
   const char* const title = "It could not be done";
   if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   if (!begin_question(title)) return;
   ImGui::PushTextWrapPos(520);
-  ImGui::TextUnformatted(desk.error.c_str());
+  ImGui::TextUnformatted(messages.error.c_str());
   ImGui::PopTextWrapPos();
   if (ImGui::Button("OK") || entered()) {
-    desk.error.clear();
+    messages.error.clear();
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
 }
 
-void Dialogs::draw_recovery(Desk& desk) {
+void Dialogs::draw_recovery(Project& project) {
   const char* const title = "Unsaved work";
   if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   if (!begin_question(title)) return;
   ImGui::TextUnformatted("The editor ended without saving. Its work can be got back:");
   bool done = false;
-  for (const Desk::LostWork& lost : desk.recoverable) {
+  for (const Project::LostWork& lost : project.recoverable) {
     ImGui::PushID(lost.journal.c_str());
     if (ImGui::Button("Recover")) {
-      desk.recover(lost.journal);
+      project.recover(lost.journal);
       done = true;
     }
     ImGui::SameLine();
@@ -226,70 +226,70 @@ void Dialogs::draw_recovery(Desk& desk) {
   if (ImGui::Button("Later")) done = true;
   ImGui::SameLine();
   if (ImGui::Button("Drop all of it")) {
-    for (const Desk::LostWork& lost : desk.recoverable) {
+    for (const Project::LostWork& lost : project.recoverable) {
       std::error_code ignored;
       fs::remove(lost.journal, ignored);
     }
     done = true;
   }
   if (done) {
-    desk.recoverable.clear();
+    project.recoverable.clear();
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
 }
 
 void Dialogs::draw_quitting(Desk& desk) {
-  if (!desk.unsaved() && !desk.worker.busy()) {
+  if (!desk.project.unsaved() && !desk.jobs.worker.busy()) {
     may_quit_ = true;
     return;
   }
   const char* const title = "Unsaved changes";
   if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   if (!begin_question(title)) return;
-  ImGui::TextUnformatted(desk.worker.busy() ? "Something is still being done."
-                                            : "There are changes that no project holds yet.");
-  if (ImGui::Button(desk.project.empty() ? "Save..." : "Save and quit")) {
-    if (desk.project.empty()) {
-      desk.quitting = false;
-      desk.question = PathQuestion::save_project;
+  ImGui::TextUnformatted(desk.jobs.worker.busy() ? "Something is still being done."
+                                                 : "There are changes that no project holds yet.");
+  if (ImGui::Button(desk.project.path.empty() ? "Save..." : "Save and quit")) {
+    if (desk.project.path.empty()) {
+      desk.asking.quitting = false;
+      desk.asking.path = PathQuestion::save_project;
       ImGui::CloseCurrentPopup();
     } else {
-      desk.save_project(desk.project);
+      desk.project.save(desk.project.path);
     }
   }
   ImGui::SameLine();
   if (ImGui::Button("Quit without saving")) may_quit_ = true;
   ImGui::SameLine();
   if (ImGui::Button("Go on")) {
-    desk.quitting = false;
+    desk.asking.quitting = false;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
 }
 
-void Dialogs::draw_replacing(Desk& desk) {
+void Dialogs::draw_replacing(Project& project) {
   const char* const title = "Open another project";
   if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   if (!begin_question(title)) return;
   ImGui::TextUnformatted("There are changes that no project holds yet; opening another project drops them.");
   const bool drops = ImGui::Button("Drop them and open");
   ImGui::SameLine();
-  if (drops) desk.open(desk.to_open, true);
+  if (drops) project.open(project.to_open, true);
   if (ImGui::Button("Go on") || drops) {
-    desk.to_open.clear();
+    project.to_open.clear();
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
 }
 
-void Dialogs::draw_relinking(Desk& desk) {
+void Dialogs::draw_relinking(Project& project) {
   const char* const title = "Where are the sources now?";
   if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   if (!begin_question(title)) return;
   ImGui::PushTextWrapPos(560);
-  ImGui::Text("%s wants what is not as it was:", desk.relinking->wanted_by.filename().c_str());
-  for (Desk::Relinking::Source& source : desk.relinking->sources) {
+  ImGui::Text("%s wants what is not as it was:", project.relinking->wanted_by.filename().c_str());
+  for (Project::Relinking::Source& source : project.relinking->sources) {
     ImGui::PushID(source.path.c_str());
     ImGui::TextUnformatted((source.path.string() + " " + source.trouble).c_str());
     ImGui::SetNextItemWidth(540);
@@ -299,19 +299,19 @@ void Dialogs::draw_relinking(Desk& desk) {
   ImGui::PopTextWrapPos();
   bool done = false;
   if (ImGui::Button("Try again")) {
-    desk.relink(false);
+    project.relink(false);
     done = true;
   }
   ImGui::SameLine();
-  if (desk.relinking && desk.relinking->wanted_by.extension() == ".journal") {
+  if (project.relinking && project.relinking->wanted_by.extension() == ".journal") {
     if (ImGui::Button("Go on without them")) {
-      desk.relink(true);
+      project.relink(true);
       done = true;
     }
     ImGui::SameLine();
   }
   if (ImGui::Button("Cancel")) {
-    desk.relinking.reset();
+    project.relinking.reset();
     done = true;
   }
   if (done) ImGui::CloseCurrentPopup();
@@ -319,18 +319,18 @@ void Dialogs::draw_relinking(Desk& desk) {
 }
 
 bool Dialogs::escape(Desk& desk) {
-  if (!desk.error.empty())
-    desk.error.clear();
-  else if (desk.quitting)
-    desk.quitting = false;
-  else if (!desk.to_open.empty())
-    desk.to_open.clear();
-  else if (desk.relinking)
-    desk.relinking.reset();
-  else if (!desk.recoverable.empty())
-    desk.recoverable.clear();
-  else if (desk.question != PathQuestion::none)
-    desk.question = PathQuestion::none;
+  if (!desk.messages.error.empty())
+    desk.messages.error.clear();
+  else if (desk.asking.quitting)
+    desk.asking.quitting = false;
+  else if (!desk.project.to_open.empty())
+    desk.project.to_open.clear();
+  else if (desk.project.relinking)
+    desk.project.relinking.reset();
+  else if (!desk.project.recoverable.empty())
+    desk.project.recoverable.clear();
+  else if (desk.asking.path != PathQuestion::none)
+    desk.asking.path = PathQuestion::none;
   else
     return false;
   closes_ = true;
@@ -340,16 +340,16 @@ bool Dialogs::escape(Desk& desk) {
 // One at a time, the most urgent first.
 void Dialogs::draw(Desk& desk) {
   if (std::exchange(closes_, false)) ImGui::ClosePopupsOverWindow(nullptr, false);
-  if (!desk.error.empty())
-    draw_error(desk);
-  else if (desk.quitting)
+  if (!desk.messages.error.empty())
+    draw_error(desk.messages);
+  else if (desk.asking.quitting)
     draw_quitting(desk);
-  else if (!desk.to_open.empty())
-    draw_replacing(desk);
-  else if (desk.relinking)
-    draw_relinking(desk);
-  else if (!desk.recoverable.empty())
-    draw_recovery(desk);
+  else if (!desk.project.to_open.empty())
+    draw_replacing(desk.project);
+  else if (desk.project.relinking)
+    draw_relinking(desk.project);
+  else if (!desk.project.recoverable.empty())
+    draw_recovery(desk.project);
   else
     draw_path(desk);
 }

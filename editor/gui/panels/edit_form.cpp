@@ -24,7 +24,7 @@ const EditType* type_named(const std::string& op) {
 }  // namespace
 
 void EditForm::begin(const Desk& desk) {
-  op_ = desk.form_op;
+  op_ = desk.asking.form;
   problem_.clear();
   previewed_.clear();
   values_ = json::object();
@@ -47,7 +47,7 @@ void EditForm::show(Desk& desk) {
   json line = values_;
   line["op"] = op_;
   const bool same = line.dump() == previewed_ && previewed_on_ == desk.scene().roots;
-  if (same || desk.worker.busy() || ImGui::IsAnyMouseDown()) return;
+  if (same || desk.jobs.worker.busy() || ImGui::IsAnyMouseDown()) return;
   previewed_ = line.dump();
   previewed_on_ = desk.scene().roots;
   try {
@@ -55,7 +55,7 @@ void EditForm::show(Desk& desk) {
     // Only what changes the picture: an import would be read twice.
     if (edit.is<Import>()) return;
     auto made = std::make_shared<std::optional<Desk::Preview>>();
-    desk.worker.start(
+    desk.jobs.worker.start(
         "preview",
         [edit, made](Session& session) {
           try {
@@ -65,7 +65,7 @@ void EditForm::show(Desk& desk) {
           }
         },
         [&desk, made, op = op_] {
-          if (desk.form_op == op) desk.preview = std::move(*made);
+          if (desk.asking.form == op) desk.preview = std::move(*made);
         });
     problem_.clear();
   } catch (const Error& error) {
@@ -74,12 +74,12 @@ void EditForm::show(Desk& desk) {
 }
 
 void EditForm::draw(Desk& desk) {
-  if (desk.form_op.empty()) {
+  if (desk.asking.form.empty()) {
     if (!op_.empty()) desk.preview.reset();
     op_.clear();
     return;
   }
-  if (op_ != desk.form_op) begin(desk);
+  if (op_ != desk.asking.form) begin(desk);
   bool open = true;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   // Beside the picture, so that what the edit does can be seen.
@@ -162,7 +162,7 @@ void EditForm::draw(Desk& desk) {
   ImGui::SameLine();
   if (ImGui::Checkbox("preview", &previews_) && !previews_) desk.preview.reset();
   ImGui::End();
-  if (!open) desk.form_op.clear();
+  if (!open) desk.asking.form.clear();
 }
 
 }  // namespace rebake

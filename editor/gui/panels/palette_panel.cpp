@@ -53,7 +53,7 @@ std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
 }  // namespace
 
 void PalettePanel::draw(Desk& desk) {
-  if (!desk.palette_open) {
+  if (!desk.asking.palette) {
     was_open_ = false;
     return;
   }
@@ -61,7 +61,7 @@ void PalettePanel::draw(Desk& desk) {
   ImGui::SetNextWindowPos({screen.x / 2, screen.y * 0.15F}, ImGuiCond_Always, {0.5F, 0});
   ImGui::SetNextWindowSize({std::min(720.0F, screen.x * 0.8F), screen.y * 0.6F});
   ImGui::SetNextWindowBgAlpha(1);
-  ImGui::Begin("All commands", &desk.palette_open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
+  ImGui::Begin("All commands", &desk.asking.palette, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
   if (!was_open_) {
     filter_.clear();
     ImGui::SetKeyboardFocusHere();
@@ -83,13 +83,13 @@ void PalettePanel::draw(Desk& desk) {
     }
     first = false;
     if (!taken) continue;
-    desk.palette_open = false;
+    desk.asking.palette = false;
     if (entry.command != nullptr)
       entry.command->run(desk);
     else if (entry.view != nullptr)
-      desk.camera = *entry.view;
+      desk.view.camera = *entry.view;
     else
-      desk.form_op = entry.title;
+      desk.asking.form = entry.title;
     break;
   }
   ImGui::EndChild();

@@ -64,10 +64,10 @@ struct FrameReport {
   int samples = 4;
   double pictures_a_second = 0;  ///< while the view last moved
 };
-void draw_costs(Desk& desk, const FrameReport& report, bool& each_pass);
+void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameReport& report, bool& each_pass);
 
 /// What was said, newest last.
-void draw_log(const Desk& desk);
+void draw_log(const Messages& messages);
 
 /// All commands and edits by name.
 class PalettePanel {
@@ -108,11 +108,11 @@ class Dialogs {
 
  private:
   void draw_path(Desk& desk);
-  void draw_error(Desk& desk);
-  void draw_recovery(Desk& desk);
+  void draw_error(Messages& messages);
+  void draw_recovery(Project& project);
   void draw_quitting(Desk& desk);
-  void draw_replacing(Desk& desk);
-  void draw_relinking(Desk& desk);
+  void draw_replacing(Project& project);
+  void draw_relinking(Project& project);
   std::string path_;
   PathQuestion asked_ = PathQuestion::none;
   std::filesystem::path replacing_;  ///< is there already: asked for once

@@ -16,9 +16,9 @@ void ScriptPanel::draw(Desk& desk) {
     ImGui::SetClipboardText(text.c_str());
   }
   ImGui::SameLine();
-  if (ImGui::Button("Save...")) desk.question = PathQuestion::save_script;
+  if (ImGui::Button("Save...")) desk.asking.path = PathQuestion::save_script;
   ImGui::SameLine();
-  if (ImGui::Button("Run...")) desk.question = PathQuestion::run_script;
+  if (ImGui::Button("Run...")) desk.asking.path = PathQuestion::run_script;
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1);
   if (ImGui::InputTextWithHint("##line", "a line, e.g. {\"op\": \"select\", \"all\": true}", &line_,
@@ -29,7 +29,7 @@ void ScriptPanel::draw(Desk& desk) {
       if (const Edit* edit = std::get_if<Edit>(&command))
         desk.edit(*edit);
       else
-        desk.worker.start("script line", std::get<Action>(command));
+        desk.jobs.worker.start("script line", std::get<Action>(command));
       line_.clear();
       problem_.clear();
     } catch (const nlohmann::json::exception& error) {

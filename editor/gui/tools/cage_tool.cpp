@@ -33,7 +33,7 @@ CageTool::~CageTool() = default;
 void CageTool::make(Desk& desk) {
   const std::optional<DeformTarget> target = desk.deform_target();
   if (!target) {
-    desk.error = "there is nothing to put a cage around: open a folder first";
+    desk.messages.error = "there is nothing to put a cage around: open a folder first";
     return;
   }
   CageDeform edit = edit_;
@@ -46,7 +46,7 @@ void CageTool::make(Desk& desk) {
   else
     edit.cage.lattice = {cells_[0], cells_[1], cells_[2]};
   auto made = std::make_shared<std::shared_ptr<const Bound>>();
-  desk.worker.start(
+  desk.jobs.worker.start(
       "cage",
       [edit, made](Session& session) {
         auto bound = std::make_shared<Bound>();
@@ -130,7 +130,7 @@ void CageTool::preview(Desk& desk) {
     }
     desk.show_preview(std::move(scene));
   } catch (const Error& error) {
-    desk.error = error.what();
+    desk.messages.error = error.what();
     desk.preview.reset();
   }
 }

@@ -68,7 +68,7 @@ std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) c
   const auto first = find_placed(desk.scene(), target.nodes.front());
   target.pivot = box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center());
   target.local = orthogonal_factor(first->to_world.linear());
-  if (desk.local_axes) target.axes = target.local;
+  if (desk.tools.local_axes) target.axes = target.local;
   target.towards_eye = lens.towards_eye(target.pivot);
   return target;
 }
@@ -179,13 +179,13 @@ void Gizmo::end(Desk& desk) {
   axis_presses_ = 0;
   typed_.clear();
   if (!std::exchange(by_key_, false)) return;
-  const std::optional<ToolKind> before = std::exchange(desk.tool_before, std::nullopt);
-  if (before && desk.tool == kind_) desk.tool = *before;
+  const std::optional<ToolKind> before = std::exchange(desk.tools.before, std::nullopt);
+  if (before && desk.tools.kind == kind_) desk.tools.kind = *before;
 }
 
 void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   if (held_ == none) {
-    const bool by_key = std::exchange(desk.drag_begins, std::nullopt).has_value();
+    const bool by_key = std::exchange(desk.tools.drag_begins, std::nullopt).has_value();
     if (!by_key && (!pointer.pressed || !pointer.inside)) return;
     const std::optional<Target> here = target(desk, lens);
     if (!here) {
@@ -198,8 +198,8 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     return;
   }
   // A view turned meanwhile changes what the same way of the pointer means.
-  const bool moved = now_ != pointer.at || std::exchange(constrained_, false) || !(camera_ == desk.camera);
-  camera_ = desk.camera;
+  const bool moved = now_ != pointer.at || std::exchange(constrained_, false) || !(camera_ == desk.view.camera);
+  camera_ = desk.view.camera;
   now_ = pointer.at;
   const double before = amount_;
   amount_ = amount(lens, pointer);
@@ -271,8 +271,8 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
 }
 
 void Gizmo::options(Desk& desk) {
-  ImGui::Checkbox("local axes", &desk.local_axes);
-  const Lens lens(desk.camera, desk.view_width, desk.view_height);
+  ImGui::Checkbox("local axes", &desk.tools.local_axes);
+  const Lens lens(desk.view.camera, desk.view.width, desk.view.height);
   const std::optional<Target> here = target(desk, lens);
   if (!here)
     flow_text("pick a node in the outline, or select triangles");

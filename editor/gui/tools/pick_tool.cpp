@@ -36,7 +36,7 @@ void PickTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   pressed_at_ = Vec2(-1e9, -1e9);
   // On the worker: what was not looked through yet takes its time.
   auto picked = std::make_shared<std::optional<Picked>>();
-  desk.worker.start(
+  desk.jobs.worker.start(
       "pick", [picked, lens, at = pointer.at](Session& session) { *picked = pick(session.scene(), lens, at); },
       [&desk, picked, pointer, floods = floods_] { take(desk, *picked, pointer, floods); });
 }

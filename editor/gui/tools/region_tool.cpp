@@ -16,8 +16,8 @@ constexpr double closing_reach = 10;  // pixels from a polygon's first corner th
 
 PictureFields picture_of(const Desk& desk) {
   PictureFields picture;
-  picture.camera = desk.camera;
-  picture.size = {desk.view_width, desk.view_height};
+  picture.camera = desk.view.camera;
+  picture.size = {desk.view.width, desk.view.height};
   return picture;
 }
 
@@ -59,13 +59,13 @@ void RegionTool::finish(Desk& desk) {
   if (kind_ == ToolKind::erase) {
     Erase erase;
     erase.picture = picture;
-    erase.through = !desk.visible_only;
+    erase.through = !desk.tools.visible_only;
     desk.edit(erase);
     return;
   }
   SelectPicture select;
   select.picture = picture;
-  select.through = !desk.visible_only;
+  select.through = !desk.tools.visible_only;
   select.mode = mode_;
   desk.edit(select);
 }
@@ -103,7 +103,7 @@ bool RegionTool::key(Desk& desk, const KeyPress& press) {
 }
 
 void RegionTool::options(Desk& desk) {
-  ImGui::Checkbox("visible only", &desk.visible_only);
+  ImGui::Checkbox("visible only", &desk.tools.visible_only);
   if (paints()) {
     auto radius = static_cast<float>(desk.settings.brush_radius);
     flow(150);

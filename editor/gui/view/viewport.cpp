@@ -32,13 +32,13 @@ Viewport::~Viewport() = default;
 bool Viewport::key(Desk& desk, const KeyPress& press) { return tool(desk).key(desk, press); }
 
 bool Viewport::cancel(Desk& desk) {
-  if (desk.flying) {
-    desk.flying = false;
+  if (desk.view.flying) {
+    desk.view.flying = false;
     return true;
   }
-  if (std::exchange(desk.drag_begins, std::nullopt)) {
-    desk.tool = desk.tool_before.value_or(desk.tool);
-    desk.tool_before.reset();
+  if (std::exchange(desk.tools.drag_begins, std::nullopt)) {
+    desk.tools.kind = desk.tools.before.value_or(desk.tools.kind);
+    desk.tools.before.reset();
     return true;
   }
   const bool held = tool(desk).busy();
@@ -49,7 +49,7 @@ bool Viewport::cancel(Desk& desk) {
 bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
 
 double Viewport::next_frame_in(const Desk& desk) const {
-  if (desk.turntable || desk.flying) return 0;
+  if (desk.jobs.turntable || desk.view.flying) return 0;
   if (!moving()) return made_ && made_->view.width != made_->shown_width ? 0 : -1;
   return std::chrono::duration<double>(settle_time).count();
 }
@@ -67,16 +67,16 @@ void Viewport::fly(Desk& desk) {
   const double right = held(GLFW_KEY_RIGHT, 'D') - held(GLFW_KEY_LEFT, 'A'), up = held('E', 'E') - held('Q', 'Q'),
                forward = held(GLFW_KEY_UP, 'W') - held(GLFW_KEY_DOWN, 'S');
   if (right == 0 && up == 0 && forward == 0) return;
-  const bool parallel = desk.camera.orthographic();
-  desk.camera =
-      flown(desk.camera, right * speed * seconds, up * speed * seconds, parallel ? 0 : forward * speed * seconds);
+  const bool parallel = desk.view.camera.orthographic();
+  desk.view.camera =
+      flown(desk.view.camera, right * speed * seconds, up * speed * seconds, parallel ? 0 : forward * speed * seconds);
   // Where nothing grows by coming nearer, forward enlarges.
-  if (parallel) desk.camera = zoomed(desk.camera, desk.camera.target, std::exp(-2 * forward * seconds));
+  if (parallel) desk.view.camera = zoomed(desk.view.camera, desk.view.camera.target, std::exp(-2 * forward * seconds));
 }
 
 void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
   const ImGuiIO& io = ImGui::GetIO();
-  const bool picks = desk.tool == ToolKind::pick;
+  const bool picks = desk.tools.kind == ToolKind::pick;
   if (pointer.inside) {
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) (io.KeyShift ? panning_ : orbiting_) = true;
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && !pointer.let_go) panning_ = true;
@@ -86,8 +86,8 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
       // Towards what lies under the pointer; beside everything, towards the target's depth there.
       const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false);
       const ViewRay ray = lens.ray(pointer.at);
-      const Vec3 at = picked ? picked->world : Vec3(ray.origin + ray.direction * lens.depth(desk.camera.target));
-      desk.camera = zoomed(desk.camera, at, std::pow(0.85, static_cast<double>(io.MouseWheel)));
+      const Vec3 at = picked ? picked->world : Vec3(ray.origin + ray.direction * lens.depth(desk.view.camera.target));
+      desk.view.camera = zoomed(desk.view.camera, at, std::pow(0.85, static_cast<double>(io.MouseWheel)));
     }
   }
   if (!io.MouseDown[0] && !io.MouseDown[2]) orbiting_ = false;
@@ -95,16 +95,16 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
   const double dx = static_cast<double>(io.MouseDelta.x), dy = static_cast<double>(io.MouseDelta.y);
   if (dx == 0 && dy == 0) return;
   if (orbiting_)
-    desk.camera =
-        desk.flying ? looked(desk.camera, dx, dy, desk.view_height) : orbited(desk.camera, dx, dy, desk.view_height);
+    desk.view.camera = desk.view.flying ? looked(desk.view.camera, dx, dy, desk.view.height)
+                                        : orbited(desk.view.camera, dx, dy, desk.view.height);
   else if (panning_)
-    desk.camera = panned(desk.camera, dx, dy, desk.view_height);
+    desk.view.camera = panned(desk.view.camera, dx, dy, desk.view.height);
 }
 
 // Of all that is drawn. An orthographic camera stands before it; for a perspective one the scene does.
 Box Viewport::drawn_bounds(const Desk& desk) const {
   Box box = world_bounds(desk.scene());
-  if (!desk.camera.orthographic()) return box;
+  if (!desk.view.camera.orthographic()) return box;
   if (desk.preview) box.extend(world_bounds(desk.shown()));
   for (const Guides::Line& line : guides(desk).lines) box.extend(line.from).extend(line.to);
   return box;
@@ -127,9 +127,9 @@ void Viewport::add_grid(const Desk& desk, std::vector<Guides::Line>& lines) {
 
 Guides Viewport::guides(const Desk& desk) const {
   Guides result;
-  result.selection = desk.show_selection;
-  result.inspect = desk.inspect;
-  result.channel = desk.channel;
+  result.selection = desk.view.show_selection;
+  result.inspect = desk.view.inspect;
+  result.channel = desk.view.channel;
   if (desk.settings.grid) add_grid(desk, result.lines);
   for (const NodeId id : desk.active) {
     const Box box = subtree_bounds(desk.shown(), id);
@@ -141,34 +141,34 @@ Guides Viewport::guides(const Desk& desk) const {
                                   box.corner(static_cast<Box::CornerType>(corner | 1 << axis)), Color(1, 0.7, 0.2), 0.9,
                                   0.25});
   }
-  tools_.at(desk.tool)->add_guides(desk, result.lines);
+  tools_.at(desk.tools.kind)->add_guides(desk, result.lines);
   return result;
 }
 
 void Viewport::picture(Desk& desk) {
-  const bool still = !moving() && !desk.flying;
+  const bool still = !moving() && !desk.view.flying;
   const double wanted_picture_ms = std::max(10.0, wanted_ms - rest_ms_);
   View view;
   const Scene& scene = desk.shown();
-  view.camera = desk.camera;
-  view.samples = desk.samples;
+  view.camera = desk.view.camera;
+  view.samples = desk.view.samples;
   double scale = 1;
   if (!still && full_ms_ > wanted_picture_ms) {
     view.samples = 1;
     scale = moving_scale_;
   }
-  view.width = std::max(16, static_cast<int>(std::lround(desk.view_width * scale)));
-  view.height = std::max(16, static_cast<int>(std::lround(desk.view_height * scale)));
-  Made wanted{scene, view, guides(desk), each_pass_, desk.wipe, desk.view_width, desk.view_height};
+  view.width = std::max(16, static_cast<int>(std::lround(desk.view.width * scale)));
+  view.height = std::max(16, static_cast<int>(std::lround(desk.view.height * scale)));
+  Made wanted{scene, view, guides(desk), each_pass_, desk.view.wipe, desk.view.width, desk.view.height};
   if (made_ && same_scene(made_->scene, scene) && same_view(made_->view, view) && made_->guides == wanted.guides &&
-      made_->each_pass == each_pass_ && made_->wipe == desk.wipe)
+      made_->each_pass == each_pass_ && made_->wipe == desk.view.wipe)
     return;
   // Whether it can be drawn or not: what cannot is said once.
   made_ = wanted;
   texture_ = 0;
   const Renderer::Shown shown = renderer_.show(scene, view, {}, wanted.guides, each_pass_);
   const double ms = shown.times.frame_ms;
-  if (view.width == desk.view_width && view.samples == desk.samples) full_ms_ = ms;
+  if (view.width == desk.view.width && view.samples == desk.view.samples) full_ms_ = ms;
   // The time goes with the pixels, as far as it goes with anything that can be chosen here.
   if (!still && full_ms_ > wanted_picture_ms)
     moving_scale_ = std::clamp(scale * std::sqrt(wanted_picture_ms / ms), 0.35, 1.0);
@@ -179,16 +179,16 @@ void Viewport::picture(Desk& desk) {
   double rate = report_.pictures_a_second;
   if (!still && since < 0.5) rate = rate > 0 ? 0.8 * rate + 0.2 / since : 1 / since;
   report_ = {shown.times, shown.passes, renderer_.peak_gpu_bytes(), report_.device, scale, view.samples, rate};
-  if (!desk.wipe) {
+  if (!desk.view.wipe) {
     before_.reset();
   } else {
     // A renderer of its own keeps what the scene was on the GPU, as long as it is compared with.
     if (!before_) before_ = std::make_unique<Renderer>(window_context_());
     Guides before;
-    before.inspect = desk.inspect;
-    before.channel = desk.channel;
+    before.inspect = desk.view.inspect;
+    before.channel = desk.view.channel;
     if (desk.settings.grid) add_grid(desk, before.lines);
-    before_texture_ = before_->show(desk.imported, view, {}, before, false).texture;
+    before_texture_ = before_->show(desk.project.imported, view, {}, before, false).texture;
   }
   texture_ = shown.texture;
   drew_ = true;
@@ -203,13 +203,13 @@ void Viewport::frame_took(double ms) {
 // The line between before and after, which the pointer moves. True while it does, or is about to.
 bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer) {
   constexpr double grab = 8;  // pixels
-  const double at = desk.wipe_at * desk.view_width;
+  const double at = desk.view.wipe_at * desk.view.width;
   const bool hot = pointer.inside && std::abs(pointer.at.x() - at) < grab;
   if (hot && pointer.pressed) wiping_ = true;
   if (!pointer.down) wiping_ = false;
-  if (wiping_) desk.wipe_at = std::clamp(pointer.at.x() / desk.view_width, 0.02, 0.98);
-  const float x = origin.x + static_cast<float>(desk.wipe_at * desk.view_width);
-  const float bottom = origin.y + static_cast<float>(desk.view_height);
+  if (wiping_) desk.view.wipe_at = std::clamp(pointer.at.x() / desk.view.width, 0.02, 0.98);
+  const float x = origin.x + static_cast<float>(desk.view.wipe_at * desk.view.width);
+  const float bottom = origin.y + static_cast<float>(desk.view.height);
   list.AddLine({x, origin.y}, {x, bottom}, IM_COL32(0, 0, 0, 200), 4);
   list.AddLine({x, origin.y}, {x, bottom}, hot || wiping_ ? IM_COL32(255, 230, 60, 255) : IM_COL32(255, 255, 255, 255),
                2);
@@ -221,7 +221,7 @@ bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, con
 // What the colours mean when they are not the scene's.
 void Viewport::draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin) {
   std::string text;
-  switch (desk.inspect) {
+  switch (desk.view.inspect) {
     case Guides::Inspect::none:
       return;
     case Guides::Inspect::wireframe:
@@ -234,20 +234,20 @@ void Viewport::draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& ori
       text = "Texture sets: a colour for each";
       break;
     case Guides::Inspect::channel:
-      text = fmt::format("Feature channel {}{}: black is 0, white 255", desk.channel,
-                         desk.channel == 0 ? " (opacity)" : "");
+      text = fmt::format("Feature channel {}{}: black is 0, white 255", desk.view.channel,
+                         desk.view.channel == 0 ? " (opacity)" : "");
       break;
     case Guides::Inspect::overdraw:
       text = "Overdraw: the brighter, the more triangles behind each other";
       break;
   }
-  draw_label(list, {origin.x + 10, origin.y + static_cast<float>(desk.view_height) - ImGui::GetFontSize() - 12}, text);
+  draw_label(list, {origin.x + 10, origin.y + static_cast<float>(desk.view.height) - ImGui::GetFontSize() - 12}, text);
 }
 
 bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, bool over) {
   constexpr float arm = 34, knob = 9;
   const ImVec2 middle{corner.x - arm - 16, corner.y + arm + 16};
-  const Mat3 rows = world_to_camera(desk.camera);
+  const Mat3 rows = world_to_camera(desk.view.camera);
   struct Knob {
     double depth;
     ImVec2 at;
@@ -284,7 +284,7 @@ bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, boo
     const float dx = mouse.x - one.at.x, dy = mouse.y - one.at.y;
     if (dx * dx + dy * dy > knob * knob || !over) continue;
     hovered = true;
-    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) desk.camera = along_axis(desk.camera, one.axis);
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) desk.view.camera = along_axis(desk.view.camera, one.axis);
   }
   return hovered;
 }
@@ -292,43 +292,44 @@ bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, boo
 void Viewport::write_pictures(Desk& desk) {
   const auto written = [&](const Camera& camera, int width, int height, const std::filesystem::path& path) {
     made_.reset();
-    const View view{with_depth_for(camera, world_bounds(desk.scene())), width, height, desk.samples};
+    const View view{with_depth_for(camera, world_bounds(desk.scene())), width, height, desk.view.samples};
     write_png(renderer_.render(desk.scene(), view), path, desk.now->sources);
   };
   try {
-    if (const auto shot = std::exchange(desk.screenshot, std::nullopt)) {
-      written(desk.camera, shot->width, shot->height, shot->path);
-      desk.log.push_back({"screenshot " + shot->path.string()});
+    if (const auto shot = std::exchange(desk.jobs.screenshot, std::nullopt)) {
+      written(desk.view.camera, shot->width, shot->height, shot->path);
+      desk.messages.log.push_back({"screenshot " + shot->path.string()});
     }
-    if (desk.turntable) {
-      Desk::Turntable& turntable = *desk.turntable;
+    if (desk.jobs.turntable) {
+      Jobs::Turntable& turntable = *desk.jobs.turntable;
       std::filesystem::create_directories(turntable.folder);
-      const double turn = 2.0 * desk.view_height * turntable.next / turntable.count;
-      written(orbited(desk.camera, turn, 0, desk.view_height), turntable.width, turntable.height,
+      const double turn = 2.0 * desk.view.height * turntable.next / turntable.count;
+      written(orbited(desk.view.camera, turn, 0, desk.view.height), turntable.width, turntable.height,
               turntable.folder / fmt::format("{:03}.png", turntable.next));
       if (++turntable.next == turntable.count) {
-        desk.log.push_back({fmt::format("turntable of {} pictures in {}", turntable.count, turntable.folder.string())});
-        desk.turntable.reset();
+        desk.messages.log.push_back(
+            {fmt::format("turntable of {} pictures in {}", turntable.count, turntable.folder.string())});
+        desk.jobs.turntable.reset();
       }
     }
   } catch (const std::exception& error) {
-    desk.turntable.reset();
-    desk.error = error.what();
+    desk.jobs.turntable.reset();
+    desk.messages.error = error.what();
   }
 }
 
 void Viewport::draw(Desk& desk) {
   const ImVec2 size = ImGui::GetContentRegionAvail(), origin = ImGui::GetCursorScreenPos();
-  desk.view_width = std::max(16, static_cast<int>(size.x));
-  desk.view_height = std::max(16, static_cast<int>(size.y));
-  if (desk.drag_begins && *desk.drag_begins != desk.tool) {
+  desk.view.width = std::max(16, static_cast<int>(size.x));
+  desk.view.height = std::max(16, static_cast<int>(size.y));
+  if (desk.tools.drag_begins && *desk.tools.drag_begins != desk.tools.kind) {
     // Another tool was taken before the drag could begin.
-    desk.drag_begins.reset();
-    desk.tool_before.reset();
+    desk.tools.drag_begins.reset();
+    desk.tools.before.reset();
   }
-  if (desk.tool != last_tool_) {
+  if (desk.tools.kind != last_tool_) {
     tools_.at(last_tool_)->cancel(desk);
-    last_tool_ = desk.tool;
+    last_tool_ = desk.tools.kind;
   }
   ImGui::InvisibleButton(
       "viewport", size,
@@ -353,28 +354,28 @@ void Viewport::draw(Desk& desk) {
   list.ChannelsSetCurrent(1);
   draw_legend(desk, list, origin);
   const bool on_axes = draw_axes(desk, list, {origin.x + size.x, origin.y}, pointer.inside && !tool(desk).busy());
-  if (on_axes || (desk.wipe && draw_wipe(desk, list, origin, pointer))) {
+  if (on_axes || (desk.view.wipe && draw_wipe(desk, list, origin, pointer))) {
     pointer.inside = false;
     pointer.pressed = false;
   }
   try {
-    navigate(desk, Lens(desk.camera, desk.view_width, desk.view_height), pointer);
+    navigate(desk, Lens(desk.view.camera, desk.view.width, desk.view.height), pointer);
   } catch (const std::exception& error) {
-    desk.error = error.what();
+    desk.messages.error = error.what();
   }
-  if (desk.flying) fly(desk);
+  if (desk.view.flying) fly(desk);
   // What edits select through this camera is what is drawn through it.
-  desk.camera = with_depth_for(desk.camera, drawn_bounds(desk));
-  const Lens lens(desk.camera, desk.view_width, desk.view_height);
+  desk.view.camera = with_depth_for(desk.view.camera, drawn_bounds(desk));
+  const Lens lens(desk.view.camera, desk.view.width, desk.view.height);
   try {
-    if (!desk.worker.busy() || tool(desk).busy()) tool(desk).pointer(desk, lens, pointer);
-    last_tool_ = desk.tool;  // a drag that a key began ends with the tool before it, and what it did stays
+    if (!desk.jobs.worker.busy() || tool(desk).busy()) tool(desk).pointer(desk, lens, pointer);
+    last_tool_ = desk.tools.kind;  // a drag that a key began ends with the tool before it, and what it did stays
   } catch (const std::exception& error) {
-    desk.error = error.what();
+    desk.messages.error = error.what();
     tool(desk).cancel(desk);
   }
-  if (!(desk.camera == last_camera_)) {
-    last_camera_ = desk.camera;
+  if (!(desk.view.camera == last_camera_)) {
+    last_camera_ = desk.view.camera;
     moved_at_ = Clock::now();
   }
   try {
@@ -382,14 +383,14 @@ void Viewport::draw(Desk& desk) {
     picture(desk);
     tool(desk).draw(desk, lens, pointer, list, origin);
   } catch (const std::exception& error) {
-    desk.error = error.what();
+    desk.messages.error = error.what();
   }
   list.ChannelsSetCurrent(0);
   if (texture_ != 0)
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), origin,
                   {origin.x + size.x, origin.y + size.y}, {0, 1}, {1, 0});
-  if (desk.wipe && before_) {
-    const auto share = static_cast<float>(desk.wipe_at);
+  if (desk.view.wipe && before_) {
+    const auto share = static_cast<float>(desk.view.wipe_at);
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(before_texture_)), origin,
                   {origin.x + share * size.x, origin.y + size.y}, {0, 1}, {share, 0});
   }

@@ -21,7 +21,7 @@ class Viewport {
   bool key(Desk& desk, const KeyPress& press);
   /// Lets go of what the tool holds; false when it holds nothing.
   bool cancel(Desk& desk);
-  ViewTool& tool(const Desk& desk) { return *tools_.at(desk.tool); }
+  ViewTool& tool(const Desk& desk) { return *tools_.at(desk.tools.kind); }
 
   /// Seconds until there is something to draw without any event; negative for never.
   double next_frame_in(const Desk& desk) const;

@@ -35,20 +35,20 @@ bool has_either(const Desk& desk) { return has_active(desk) || has_selection(des
 
 template <ToolKind kind>
 void take(Desk& desk) {
-  desk.tool = kind;
+  desk.tools.kind = kind;
 }
 // Blender's keys begin a drag, and come back to the tool that was in hand.
 template <ToolKind kind>
 void grab(Desk& desk) {
   if (desk.settings.blender_keys && has_either(desk)) {
-    desk.tool_before = desk.tool;
-    desk.drag_begins = kind;
+    desk.tools.before = desk.tools.kind;
+    desk.tools.drag_begins = kind;
   }
-  desk.tool = kind;
+  desk.tools.kind = kind;
 }
 template <PathQuestion question>
 void ask(Desk& desk) {
-  desk.question = question;
+  desk.asking.path = question;
 }
 
 void select(Desk& desk, bool all, bool none, bool invert) {
@@ -96,8 +96,8 @@ bool selects_triangles(ToolKind tool) {
 void remove(Desk& desk) {
   if (has_selection(desk))
     desk.edit(DeleteSelected{});
-  else if (selects_triangles(desk.tool))
-    desk.log.push_back({"delete: nothing is selected (with Pick or Move in hand, picked nodes are removed)"});
+  else if (selects_triangles(desk.tools.kind))
+    desk.messages.log.push_back({"delete: nothing is selected (with Pick or Move in hand, picked nodes are removed)"});
   else
     each_active<Remove>(desk);
 }
@@ -131,10 +131,10 @@ void group(Desk& desk) {
 }
 
 void save(Desk& desk) {
-  if (desk.project.empty())
-    desk.question = PathQuestion::save_project;
+  if (desk.project.path.empty())
+    desk.asking.path = PathQuestion::save_project;
   else
-    desk.save_project(desk.project);
+    desk.project.save(desk.project.path);
 }
 
 void brush_by(Desk& desk, double factor) {
@@ -145,25 +145,26 @@ template <int axis, int sign>
 void look_along(Desk& desk) {
   Vec3 direction(0, 0, 0);
   direction[axis] = sign;
-  desk.camera = along_axis(desk.camera, direction);
+  desk.view.camera = along_axis(desk.view.camera, direction);
 }
 
-void project_otherwise(Desk& desk) { desk.camera = projected_otherwise(desk.camera); }
+void project_otherwise(Desk& desk) { desk.view.camera = projected_otherwise(desk.view.camera); }
 
 template <Guides::Inspect inspect>
 void look_at(Desk& desk) {
-  desk.inspect = inspect;
+  desk.view.inspect = inspect;
 }
 
 void next_channel(Desk& desk) {
-  desk.channel = desk.inspect == Guides::Inspect::channel ? (desk.channel + 1) % 8 : 0;
-  desk.inspect = Guides::Inspect::channel;
-  desk.log.push_back({"feature channel " + std::to_string(desk.channel) + (desk.channel == 0 ? ": opacity" : "")});
+  desk.view.channel = desk.view.inspect == Guides::Inspect::channel ? (desk.view.channel + 1) % 8 : 0;
+  desk.view.inspect = Guides::Inspect::channel;
+  desk.messages.log.push_back(
+      {"feature channel " + std::to_string(desk.view.channel) + (desk.view.channel == 0 ? ": opacity" : "")});
 }
 
 void store_view(Desk& desk) {
   StoreView edit;
-  edit.camera = desk.camera;
+  edit.camera = desk.view.camera;
   edit.camera.near_plane = edit.camera.far_plane = 0;  // to fit what the scene becomes
   for (int number = 1;; ++number) {
     edit.name = "view " + std::to_string(number);
@@ -185,12 +186,12 @@ const std::vector<Command>& command_table() {
       {"File", "Turntable...", "", "", has_scene, ask<PathQuestion::turntable>},
       {"File", "Save as script...", "", "", has_scene, ask<PathQuestion::save_script>},
       {"File", "Run script...", "", "", always, ask<PathQuestion::run_script>},
-      {"File", "Quit", "Ctrl+Q", "Ctrl+Q", always, [](Desk& desk) { desk.quitting = true; }},
+      {"File", "Quit", "Ctrl+Q", "Ctrl+Q", always, [](Desk& desk) { desk.asking.quitting = true; }},
       {"Edit", "Undo", "Ctrl+Z", "Ctrl+Z", [](const Desk& desk) { return !desk.now->done.empty(); },
        [](Desk& desk) { desk.undo(); }, true},
       {"Edit", "Redo", "Ctrl+Shift+Z Ctrl+Y", "Ctrl+Shift+Z",
        [](const Desk& desk) { return !desk.now->undone.empty(); }, [](Desk& desk) { desk.redo(); }, true},
-      {"Edit", "All commands...", "Ctrl+P", "F3 Ctrl+P", always, [](Desk& desk) { desk.palette_open = true; }},
+      {"Edit", "All commands...", "Ctrl+P", "F3 Ctrl+P", always, [](Desk& desk) { desk.asking.palette = true; }},
       {"Edit", "Delete", "Delete", "X Delete", has_either, remove},
       {"Edit", "Duplicate", "Ctrl+D", "Shift+D", has_active, duplicate},
       {"Edit", "Group", "Ctrl+G", "Ctrl+G", has_active, group},
@@ -203,7 +204,8 @@ const std::vector<Command>& command_table() {
       {"Select", "Grow", "Ctrl+]", "Ctrl+KP_ADD", has_selection, [](Desk& desk) { desk.edit(Grow{}); }},
       {"Select", "Shrink", "Ctrl+[", "Ctrl+KP_SUBTRACT", has_selection, [](Desk& desk) { desk.edit(Shrink{}); }},
       {"Select", "Connected", "Ctrl+L", "L", has_selection, [](Desk& desk) { desk.edit(SelectConnected{}); }},
-      {"Select", "Visible only", "T", "Alt+Z", always, [](Desk& desk) { desk.visible_only = !desk.visible_only; }},
+      {"Select", "Visible only", "T", "Alt+Z", always,
+       [](Desk& desk) { desk.tools.visible_only = !desk.tools.visible_only; }},
       {"Tool", "Pick nodes", "V", "W", always, take<ToolKind::pick>},
       {"Tool", "Rectangle", "R", "B", always, take<ToolKind::rectangle>},
       {"Tool", "Lasso", "L", "Ctrl+Shift+L", always, take<ToolKind::lasso>},
@@ -216,10 +218,10 @@ const std::vector<Command>& command_table() {
       {"Tool", "Scale", "3", "S", always, grab<ToolKind::scale>},
       {"Tool", "Cage", "C", "Shift+C", always, take<ToolKind::cage>},
       {"Tool", "Bend, twist, taper", "N", "Shift+N", always, take<ToolKind::bend>},
-      {"Tool", "Bend by numbers...", "", "", has_scene, [](Desk& desk) { desk.form_op = Bend::op; }},
-      {"Tool", "Twist by numbers...", "", "", has_scene, [](Desk& desk) { desk.form_op = Twist::op; }},
-      {"Tool", "Taper by numbers...", "", "", has_scene, [](Desk& desk) { desk.form_op = Taper::op; }},
-      {"Tool", "Local axes", "X", "Comma", always, [](Desk& desk) { desk.local_axes = !desk.local_axes; }},
+      {"Tool", "Bend by numbers...", "", "", has_scene, [](Desk& desk) { desk.asking.form = Bend::op; }},
+      {"Tool", "Twist by numbers...", "", "", has_scene, [](Desk& desk) { desk.asking.form = Twist::op; }},
+      {"Tool", "Taper by numbers...", "", "", has_scene, [](Desk& desk) { desk.asking.form = Taper::op; }},
+      {"Tool", "Local axes", "X", "Comma", always, [](Desk& desk) { desk.tools.local_axes = !desk.tools.local_axes; }},
       {"Tool", "Smaller brush", "[", "[", always, [](Desk& desk) { brush_by(desk, 1 / 1.25); }, true},
       {"Tool", "Larger brush", "]", "]", always, [](Desk& desk) { brush_by(desk, 1.25); }, true},
       {"View", "Frame selection", "F", "KP_DECIMAL Home", has_scene, [](Desk& desk) { desk.frame_view(); }},
@@ -230,18 +232,19 @@ const std::vector<Command>& command_table() {
       {"View", "Top", "KP_7", "KP_7", always, look_along<1, 1>},
       {"View", "Bottom", "Ctrl+KP_7", "Ctrl+KP_7", always, look_along<1, -1>},
       {"View", "Orthographic or perspective", "5 KP_5", "KP_5", always, project_otherwise},
-      {"View", "Fly (W A S D Q E)", "Shift+F", "Shift+F", always, [](Desk& desk) { desk.flying = !desk.flying; }},
+      {"View", "Fly (W A S D Q E)", "Shift+F", "Shift+F", always,
+       [](Desk& desk) { desk.view.flying = !desk.view.flying; }},
       {"View", "Grid", "G", "Shift+G", always, [](Desk& desk) { desk.settings.grid = !desk.settings.grid; }},
       {"View", "Show selection", "Shift+T", "Shift+T", always,
-       [](Desk& desk) { desk.show_selection = !desk.show_selection; }},
-      {"View", "Before and after", "Y", "Y", has_scene, [](Desk& desk) { desk.wipe = !desk.wipe; }},
+       [](Desk& desk) { desk.view.show_selection = !desk.view.show_selection; }},
+      {"View", "Before and after", "Y", "Y", has_scene, [](Desk& desk) { desk.view.wipe = !desk.view.wipe; }},
       {"View", "Show colours", "Alt+1", "Alt+1", always, look_at<Guides::Inspect::none>},
       {"View", "Show wireframe", "Alt+2", "Alt+2", always, look_at<Guides::Inspect::wireframe>},
       {"View", "Show opacity", "Alt+3", "Alt+3", always, look_at<Guides::Inspect::opacity>},
       {"View", "Show texture sets", "Alt+4", "Alt+4", always, look_at<Guides::Inspect::texture_sets>},
       {"View", "Show next feature channel", "Alt+5", "Alt+5", always, next_channel},
       {"View", "Show overdraw", "Alt+6", "Alt+6", always, look_at<Guides::Inspect::overdraw>},
-      {"View", "Restart graphics", "", "", always, [](Desk& desk) { desk.restarts_graphics = true; }},
+      {"View", "Restart graphics", "", "", always, [](Desk& desk) { desk.jobs.restarts_graphics = true; }},
       {"View", "Store view", "", "", has_scene, store_view},
       {"View", "Dark or light", "", "", always, [](Desk& desk) { desk.settings.dark = !desk.settings.dark; }},
       {"View", "Keys of Blender", "", "", always,

@@ -61,21 +61,21 @@ class EditorWindow {
         lost_(lost_work()),
         desk_(kept_settings_, WindowSystem::wake) {
     begin_graphics();
-    if (!settings_problem_.empty()) desk_.log.push_back({settings_problem_, true});
-    desk_.recoverable = std::move(lost_);
-    if (!paths.empty()) desk_.open(paths);
+    if (!settings_problem_.empty()) desk_.messages.log.push_back({settings_problem_, true});
+    desk_.project.recoverable = std::move(lost_);
+    if (!paths.empty()) desk_.project.open(paths);
   }
 
   void run() {
     int frames = frames_after_event;
     while (!dialogs_.may_quit()) {
-      const double pause = frames > 0 ? 0 : desk_.worker.busy() ? 0.1 : viewport().next_frame_in(desk_);
-      if (window().wait(pause) || desk_.worker.busy()) frames = frames_after_event;
-      if (desk_.now != desk_.worker.snapshot()) frames = frames_after_event;
+      const double pause = frames > 0 ? 0 : desk_.jobs.worker.busy() ? 0.1 : viewport().next_frame_in(desk_);
+      if (window().wait(pause) || desk_.jobs.worker.busy()) frames = frames_after_event;
+      if (desk_.now != desk_.jobs.worker.snapshot()) frames = frames_after_event;
       frames = std::max(0, frames - 1);
       if (window().wants_to_close()) {
         window().stay_open();
-        desk_.quitting = true;
+        desk_.asking.quitting = true;
         frames = frames_after_event;
       }
       desk_.update();
@@ -83,16 +83,16 @@ class EditorWindow {
       draw();
       viewport().frame_took(
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count());
-      if (desk_.restarts_graphics || window().lost()) {
+      if (desk_.jobs.restarts_graphics || window().lost()) {
         restart_graphics();
         frames = frames_after_event;
       }
       keep_settings();
     }
     // The work is saved, or not wanted.
-    desk_.worker.cancel();
-    desk_.worker.start("end", [](Session& session) { session.document.discard_journal(); });
-    while (desk_.worker.busy()) window().wait(0.02);
+    desk_.jobs.worker.cancel();
+    desk_.jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
+    while (desk_.jobs.worker.busy()) window().wait(0.02);
   }
 
  private:
@@ -120,21 +120,21 @@ class EditorWindow {
       try {
         key(press);
       } catch (const std::exception& error) {
-        desk_.error = error.what();
+        desk_.messages.error = error.what();
       }
     };
     window().on_drop = [this](const std::vector<std::string>& dropped) {
       try {
-        desk_.open(dropped);
+        desk_.project.open(dropped);
       } catch (const std::exception& error) {
-        desk_.error = error.what();
+        desk_.messages.error = error.what();
       }
     };
   }
 
   // The document is not touched: it lives in the worker. Nor are the tools.
   void restart_graphics() {
-    desk_.restarts_graphics = false;
+    desk_.jobs.restarts_graphics = false;
     graphics_.reset();
     // A driver that was reset may need a while.
     constexpr int tries = 20;
@@ -149,13 +149,13 @@ class EditorWindow {
       }
     }
     begin_graphics();
-    desk_.worker.drop_renderer();
-    desk_.log.push_back({"the graphics were made anew; the work is as it was"});
+    desk_.jobs.worker.drop_renderer();
+    desk_.messages.log.push_back({"the graphics were made anew; the work is as it was"});
   }
 
   // What other editors left behind when they ended without saving, the latest first.
-  static std::vector<Desk::LostWork> lost_work() {
-    std::vector<Desk::LostWork> found;
+  static std::vector<Project::LostWork> lost_work() {
+    std::vector<Project::LostWork> found;
     std::error_code error;
     for (fs::directory_iterator at(journal_folder(), error), end; !error && at != end; at.increment(error)) {
       const fs::path& path = at->path();
@@ -193,7 +193,7 @@ class EditorWindow {
     try {
       write_settings(kept_settings_, settings_file_);
     } catch (const Error& error) {
-      desk_.log.push_back({error.what(), true});
+      desk_.messages.log.push_back({error.what(), true});
     }
   }
 
@@ -209,7 +209,7 @@ class EditorWindow {
     if (viewport().key(desk_, press)) return;
     if (viewport().tool(desk_).busy()) return;  // nothing else happens during a drag
     const bool letter = press.key >= 'A' && press.key <= 'Z';
-    if (desk_.flying && plain && letter &&
+    if (desk_.view.flying && plain && letter &&
         std::string_view("WASDQE").find(static_cast<char>(press.key)) != std::string_view::npos)
       return;
     const Command* command = command_for(press, desk_);
@@ -217,7 +217,7 @@ class EditorWindow {
     if (command->enabled(desk_))
       command->run(desk_);
     else
-      desk_.log.push_back({std::string(command->title) + ": there is nothing to do it with"});
+      desk_.messages.log.push_back({std::string(command->title) + ": there is nothing to do it with"});
   }
 
   void escape() {
@@ -226,20 +226,21 @@ class EditorWindow {
       dialogs_.close_popups();  // a menu or a list of choices
       return;
     }
-    if (desk_.palette_open) {
-      desk_.palette_open = false;
-    } else if (desk_.turntable) {
-      desk_.log.push_back({fmt::format("turntable stopped: {} of {} pictures are in {}", desk_.turntable->next,
-                                       desk_.turntable->count, desk_.turntable->folder.string())});
-      desk_.turntable.reset();
-    } else if (!desk_.form_op.empty()) {
-      desk_.form_op.clear();
+    if (desk_.asking.palette) {
+      desk_.asking.palette = false;
+    } else if (desk_.jobs.turntable) {
+      desk_.messages.log.push_back(
+          {fmt::format("turntable stopped: {} of {} pictures are in {}", desk_.jobs.turntable->next,
+                       desk_.jobs.turntable->count, desk_.jobs.turntable->folder.string())});
+      desk_.jobs.turntable.reset();
+    } else if (!desk_.asking.form.empty()) {
+      desk_.asking.form.clear();
     } else if (viewport().cancel(desk_)) {
       return;
-    } else if (desk_.worker.busy()) {
-      desk_.worker.cancel();
+    } else if (desk_.jobs.worker.busy()) {
+      desk_.jobs.worker.cancel();
     } else {
-      desk_.tool = ToolKind::pick;
+      desk_.tools.kind = ToolKind::pick;
     }
   }
 
@@ -336,12 +337,12 @@ class EditorWindow {
       if (name == std::string_view("File") && ImGui::BeginMenu("Recent", !desk_.settings.recent.empty())) {
         const std::vector<std::string> recent = desk_.settings.recent;
         for (const std::string& path : recent)
-          if (ImGui::MenuItem(path.c_str())) desk_.open({path});
+          if (ImGui::MenuItem(path.c_str())) desk_.project.open({path});
         ImGui::EndMenu();
       }
       if (name == std::string_view("View") && ImGui::BeginMenu("Stored views", !desk_.scene().views.empty())) {
         for (const auto& [view, camera] : desk_.scene().views)
-          if (ImGui::MenuItem(view.c_str())) desk_.camera = camera;
+          if (ImGui::MenuItem(view.c_str())) desk_.view.camera = camera;
         ImGui::EndMenu();
       }
       ImGui::EndMenu();
@@ -359,9 +360,9 @@ class EditorWindow {
           Button{ToolKind::polygon, "Poly"}, Button{ToolKind::brush, "Brush"}, Button{ToolKind::flood, "Flood"},
           Button{ToolKind::erase, "Erase"}, Button{ToolKind::move, "Move"}, Button{ToolKind::turn, "Turn"},
           Button{ToolKind::scale, "Scale"}, Button{ToolKind::cage, "Cage"}, Button{ToolKind::bend, "Bend"}}) {
-      const bool taken = desk_.tool == button.kind;
+      const bool taken = desk_.tools.kind == button.kind;
       if (taken) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-      if (ImGui::Button(button.label, {-1, 0})) desk_.tool = button.kind;
+      if (ImGui::Button(button.label, {-1, 0})) desk_.tools.kind = button.kind;
       if (taken) ImGui::PopStyleColor();
     }
   }
@@ -377,27 +378,28 @@ class EditorWindow {
     };
     tab("History", [&] { history_.draw(desk_); });
     tab("Script", [&] { script_.draw(desk_); });
-    tab("Cost", [&] { draw_costs(desk_, viewport().report(), viewport().each_pass()); });
-    tab("Log", [&] { draw_log(desk_); });
+    tab("Cost", [&] { draw_costs(desk_.jobs, desk_.view, *desk_.now, viewport().report(), viewport().each_pass()); });
+    tab("Log", [&] { draw_log(desk_.messages); });
     ImGui::EndTabBar();
   }
 
   void status() {
-    if (desk_.turntable) {
-      ImGui::Text("turntable: picture %d of %d (Esc ends it)", desk_.turntable->next + 1, desk_.turntable->count);
+    if (desk_.jobs.turntable) {
+      ImGui::Text("turntable: picture %d of %d (Esc ends it)", desk_.jobs.turntable->next + 1,
+                  desk_.jobs.turntable->count);
       return;
     }
-    if (desk_.worker.busy()) {
-      const Worker::Status status = desk_.worker.status();
-      if (ImGui::SmallButton("Cancel")) desk_.worker.cancel();
+    if (desk_.jobs.worker.busy()) {
+      const Worker::Status status = desk_.jobs.worker.status();
+      if (ImGui::SmallButton("Cancel")) desk_.jobs.worker.cancel();
       ImGui::SameLine();
       ImGui::ProgressBar(static_cast<float>(status.share), {160, 0});
       ImGui::SameLine();
       ImGui::TextUnformatted((status.what.empty() ? status.title : status.title + ": " + status.what).c_str());
       return;
     }
-    if (!desk_.log.empty()) {
-      const Desk::Line& last = desk_.log.back();
+    if (!desk_.messages.log.empty()) {
+      const Messages::Line& last = desk_.messages.log.back();
       ImGui::TextUnformatted(last.text.substr(0, 160).c_str());
     } else {
       ImGui::TextDisabled(
@@ -407,8 +409,8 @@ class EditorWindow {
 
   void set_title() {
     std::string title = "Rebake";
-    if (!desk_.project.empty()) title = desk_.project.filename().string() + " - " + title;
-    if (desk_.unsaved()) title = "* " + title;
+    if (!desk_.project.path.empty()) title = desk_.project.path.filename().string() + " - " + title;
+    if (desk_.project.unsaved()) title = "* " + title;
     if (title != title_) window().set_title(title_ = title);
   }
 
@@ -418,7 +420,7 @@ class EditorWindow {
   WindowSystem system_;
   Tools tools_;
   std::unique_ptr<Graphics> graphics_;
-  std::vector<Desk::LostWork> lost_;  ///< looked for before this editor's own journal is begun
+  std::vector<Project::LostWork> lost_;  ///< looked for before this editor's own journal is begun
   Desk desk_;
   OutlinePanel outline_;
   PropertiesPanel properties_;

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "mesh_ops/scene/camera.h"
+#include "render/graph/guides.h"
+
+namespace rebake {
+
+/// How the document is looked at. No edit, and nothing of it is kept with the work.
+struct ViewState {
+  Camera camera;
+  int width = 1, height = 1;  ///< the viewport's pixels
+  bool flying = false;
+  bool show_selection = true;
+  int samples = 4;  ///< a pixel, at rest
+  Guides::Inspect inspect = Guides::Inspect::none;
+  int channel = 1;       ///< of the features, when they are inspected
+  bool wipe = false;     ///< the scene as imported is shown left of `wipe_at`
+  double wipe_at = 0.5;  ///< share of the viewport's width
+
+  double aspect() const { return static_cast<double>(width) / height; }
+};
+
+}  // namespace rebake

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+namespace rebake {
+
+/// A file or folder that a dialog asks for.
+enum class PathQuestion {
+  none,
+  open,
+  save_project,
+  save_scene,
+  export_folder,
+  screenshot,
+  turntable,
+  save_script,
+  run_script
+};
+
+/// What the window asks people just now.
+struct Asking {
+  PathQuestion path = PathQuestion::none;
+  std::string form;  ///< the edit whose form is open, empty for none
+  bool palette = false, quitting = false;
+};
+
+}  // namespace rebake

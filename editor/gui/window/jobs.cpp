@@ -1,0 +1,26 @@
+#include "editor/gui/window/jobs.h"
+
+#include <utility>
+
+namespace rebake {
+
+void Jobs::measure_costs(const ViewState& view, const Scene& scene) {
+  auto measured = std::make_shared<Costs>();
+  measured->view = {view.camera, view.width, view.height, 4};
+  measured->roots = scene.roots;
+  measured->background = scene.background;
+  worker.start(
+      "measure",
+      [measured](Session& session) {
+        constexpr int frames = 3;  // the median counts
+        const StudyInput input{[&session]() -> Renderer& { return session.renderer(); }, session.scene(),
+                               measured->view, frames, session.progress};
+        for (const auto study : {study_samples, study_resolution})
+          for (StudyTable::Row& row : study(input).rows) measured->rows.push_back(std::move(row));
+        measured->device = session.renderer().device();
+        session.drop_renderer();  // a second copy of the scene on the GPU
+      },
+      [this, measured] { costs = measured; });
+}
+
+}  // namespace rebake

@@ -1,0 +1,188 @@
+#include "editor/gui/window/project.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "editor/commands/export.h"
+#include "editor/commands/save.h"
+#include "editor/document/project.h"
+#include "editor/edits/nodes/import.h"
+#include "editor/script/script.h"
+#include "mesh_ops/base/files.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void keep_journal(Document& document) {
+  const fs::path folder = journal_folder();
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw FileError(folder, "cannot be made, so work is not kept safe: " + failed.message());
+  const auto since = std::chrono::system_clock::now().time_since_epoch();
+  document.keep_journal(folder / fmt::format("{}-{}.journal",
+                                             std::chrono::duration_cast<std::chrono::milliseconds>(since).count(),
+                                             ::getpid()));
+}
+
+}  // namespace
+
+void Project::begin_journal() {
+  worker_.start("journal", [](Session& session) { keep_journal(session.document); });
+}
+
+void Project::open(const std::vector<std::string>& paths, bool wanted) {
+  if (paths.size() == 1 && is_project_file(paths.front())) {
+    if (unsaved() && !wanted) {
+      to_open = paths;
+      return;
+    }
+    open_project(fs::absolute(paths.front()), {});
+    return;
+  }
+  for (const std::string& source : paths) {
+    Import import;
+    import.path = source;
+    worker_.start(
+        "import", [import](Session& session) { session.edit(import); },
+        [this, source] { settings_.remember(absolute_path(source).string()); });
+  }
+}
+
+void Project::open_project(const fs::path& file, const Relinked& links) {
+  auto gone = std::make_shared<std::vector<SourcesGone::Source>>();
+  worker_.start(
+      "open",
+      [file, links, gone](Session& session) {
+        try {
+          Document opened = Document::open(file, links, session.progress);
+          keep_journal(opened);
+          session.document.discard_journal();
+          session.document = std::move(opened);
+        } catch (const SourcesGone& moved) {
+          *gone = moved.sources;  // asked for
+        }
+      },
+      [this, file, gone] {
+        if (!gone->empty()) {
+          ask_for_sources(file, *gone);
+          return;
+        }
+        path = file;
+        saved_ = now_->scene;
+        imported = now_->scene;
+        settings_.remember(file.string());
+        opened_();
+      });
+}
+
+void Project::recover(const fs::path& journal, const Relinked& links, bool go_on_without) {
+  auto gone = std::make_shared<std::vector<SourcesGone::Source>>();
+  worker_.start(
+      "recover",
+      [journal, links, gone, go_on_without](Session& session) {
+        Document::Recovered recovered = Document::recover(journal, links, session.progress);
+        *gone = recovered.gone;
+        if (!gone->empty() && !go_on_without) return;  // asked for
+        if (!recovered.document.keeps_journal()) keep_journal(recovered.document);
+        session.document.discard_journal();
+        session.document = std::move(recovered.document);
+        std::string said = fmt::format("{} edits recovered", recovered.edits);
+        if (recovered.torn) said += "; one more was being made when the editor ended: it is lost";
+        session.say(said);
+        if (recovered.lost.empty()) {
+          // The new journal holds it all.
+          if (recovered.journal) recovered.journal->discard();
+          return;
+        }
+        said = fmt::format("not all could be got back; {} keeps what there is:", journal.string());
+        for (const std::string& lost : recovered.lost) said += "\n" + lost;
+        throw Error(said);
+      },
+      [this, journal, gone, go_on_without] {
+        if (!gone->empty() && !go_on_without) {
+          ask_for_sources(journal, *gone);
+          return;
+        }
+        path.clear();
+        saved_.reset();
+        imported = {};
+      });
+}
+
+void Project::ask_for_sources(const fs::path& wanted_by, const std::vector<SourcesGone::Source>& gone) {
+  relinking = Relinking{wanted_by, {}};
+  for (const SourcesGone::Source& source : gone)
+    relinking->sources.push_back({source.path, source.trouble, source.path.string()});
+}
+
+void Project::relink(bool go_on_without) {
+  const Relinking wanted = *std::exchange(relinking, std::nullopt);
+  Relinked links;
+  for (const Relinking::Source& source : wanted.sources)
+    if (source.now != source.path.string() && !source.now.empty()) links[source.path] = source.now;
+  if (is_project_file(wanted.wanted_by)) {
+    open_project(wanted.wanted_by, links);
+    return;
+  }
+  recover(wanted.wanted_by, links, go_on_without);
+}
+
+void Project::save(const fs::path& file) {
+  auto saved = std::make_shared<Scene>();
+  worker_.start(
+      "save",
+      [file, saved](Session& session) {
+        session.document.save(file, session.progress);
+        *saved = session.scene();
+      },
+      [this, file, saved] {
+        path = file;
+        saved_ = *saved;
+        settings_.remember(file.string());
+        messages_.log.push_back({"saved " + file.string()});
+      });
+}
+
+void Project::save_scene(const fs::path& folder) {
+  worker_.start("save scene", [folder](Session& session) {
+    SaveAction action;
+    action.out = folder.string();
+    run(session, action);
+  });
+}
+
+void Project::export_to(const fs::path& folder) {
+  worker_.start("export", [folder](Session& session) {
+    ExportAction action;
+    action.out = folder.string();
+    run(session, action);
+  });
+}
+
+void Project::save_script(const fs::path& file) {
+  std::string text;
+  for (const Edit& one : now_->done) text += to_json(one).dump() + "\n";
+  worker_.start("save script", [file, text](Session& session) {
+    write_file_atomically(file, text, session.document.sources());
+    session.say("saved " + file.string());
+  });
+}
+
+void Project::run_script(const fs::path& file) {
+  worker_.start("script", [file](Session& session) { rebake::run_script(session, read_input(file), file, {}); });
+}
+
+bool Project::unsaved() const {
+  const Scene& kept = saved_ ? *saved_ : imported;
+  return now_->scene.roots != kept.roots || now_->scene.views != kept.views ||
+         now_->scene.background != kept.background;
+}
+
+}  // namespace rebake
