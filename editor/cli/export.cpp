@@ -15,6 +15,7 @@ namespace rebake {
 void describe_export(CommandDescription& command) {
   struct Options {
     std::string folder, out, layout;
+    std::string format = ExportAction().format;
     std::string axes = "360";
   };
   auto options = std::make_shared<Options>();
@@ -22,6 +23,7 @@ void describe_export(CommandDescription& command) {
   command.option("-o,--out", options->out, "folder to write; replaced whole or not at all", "FOLDER").required();
   command.option("--layout", options->layout, "convert the layout", "split|chunked|unsplit [as read]")
       .one_of(std::vector<std::string>{"split", "chunked", "unsplit"});
+  command.option("--format", options->format, "what to write", "mobilenerf|rebake [mobilenerf]");
   add_axes_option(command, options->axes);
   command.does([options] {
     Session session;
@@ -33,6 +35,7 @@ void describe_export(CommandDescription& command) {
     opened.sources.check_folder(options->out);
     ExportAction action;
     action.out = options->out;
+    action.format = options->format;
     if (!options->layout.empty()) action.layout = Codec<Layout>::read(nlohmann::json(options->layout), session.scene());
     run(session, action);
   });

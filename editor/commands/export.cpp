@@ -69,15 +69,8 @@ std::size_t decoders_of(const Scene& scene) {
   return found.size();
 }
 
-}  // namespace
-
-void run(Session& session, const ExportAction& action) {
-  std::error_code error;
-  const bool replaces = std::filesystem::exists(action.out, error);
-  const ExportReport report =
-      export_scene(session.scene(), action.out, {action.layout, session.document.sources()}, session.progress);
-  session.exports.push_back(action.out);
-  for (const std::string& note : report.notes) session.say("note: " + note);
+// What the export shows otherwise than the scene, by pictures of both.
+void say_losses(Session& session, const ExportAction& action, const ExportReport& report) {
   std::vector<std::string> bent;
   const Scene flat = without_bends(session.scene(), &bent);
   if (!bent.empty())
@@ -95,13 +88,28 @@ void run(Session& session, const ExportAction& action) {
           "sides {:.2g} % of pixels differ by more than 2/255, by {}/255 at most ({:.1f} dB)",
           loss.share_beyond * 100, loss.largest, loss.mean_db);
     });
+}
+
+}  // namespace
+
+void run(Session& session, const ExportAction& action) {
+  std::error_code error;
+  const bool replaces = std::filesystem::exists(action.out, error);
+  const ExportReport report =
+      format_named(action.format)
+          .write(session.scene(), action.out, {action.layout, session.document.sources()}, session.progress);
+  session.exports.push_back(action.out);
+  for (const std::string& note : report.notes) session.say("note: " + note);
+  if (!report.keeps_everything) say_losses(session, action, report);
   session.say(fmt::format("exported {}{}", action.out, replaces ? ", in place of the folder that was there" : ""));
 }
 
 REBAKE_DESCRIBE_ACTION(
-    ExportAction, "Writes the scene in the MobileNeRF format, or as scene.json where one folder cannot hold it.",
+    ExportAction,
+    "Writes the scene in the MobileNeRF format (as scene.json where one folder cannot hold it) or another.",
     (auto& action, auto& visit) {
       visit("out", action.out, Need::required, "folder to write");
+      visit("format", action.format, Need::optional, "mobilenerf: what viewers read; rebake: keeps every node");
       visit("layout", action.layout, Need::optional, "convert to this layout; left out: as read");
     })
 

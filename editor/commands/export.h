@@ -6,10 +6,11 @@
 
 namespace rebake {
 
-/// Writes the scene in the MobileNeRF format, or as scene.json where one folder cannot hold it.
+/// Writes the scene in a format of the table; in MobileNeRF's, as scene.json where one folder cannot hold it.
 struct ExportAction {
   static constexpr const char* op = "export";
   std::string out;
+  std::string format = "mobilenerf";
   std::optional<Layout> layout;
 };
 template <>

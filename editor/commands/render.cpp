@@ -24,8 +24,8 @@ REBAKE_DESCRIBE_ACTION(
       visit("view", action.view, Need::optional,
             "name of a stored view; left out: the camera, or one that frames the scene");
       visit("camera", action.camera, Need::optional, "the camera");
-      visit("width", action.width, Need::optional, "pixels");
-      visit("height", action.height, Need::optional, "pixels");
+      visit("width", action.width, Need::optional, "of the picture", Unit::pixels);
+      visit("height", action.height, Need::optional, "of the picture", Unit::pixels);
       visit("samples", action.samples, Need::optional, "a pixel: 1, 4 or 16");
     })
 

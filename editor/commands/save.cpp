@@ -4,14 +4,14 @@
 
 #include <fmt/format.h>
 
-#include "mesh_ops/formats/scene_folder.h"
+#include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
 void run(Session& session, const SaveAction& action) {
-  for (const std::string& note :
-       save_scene_folder(session.scene(), action.out, session.document.sources(), session.progress))
-    session.say("note: " + note);
+  const ExportReport report =
+      format_named("rebake").write(session.scene(), action.out, {{}, session.document.sources()}, session.progress);
+  for (const std::string& note : report.notes) session.say("note: " + note);
   session.say(fmt::format("saved {}", action.out));
 }
 

@@ -353,13 +353,23 @@ const char* to_string(Unit unit) {
       return "degrees";
     case Unit::length:
       return "scene units";
+    case Unit::object_length:
+      return "the object's units";
     case Unit::pixels:
       return "pixels";
     case Unit::share:
-      return "share, 0 to 1";
+      return "share";
+    case Unit::factor:
+      return "factor";
     default:
       return "";
   }
+}
+
+std::string words_of(const FieldLine& field) {
+  if (field.unit == Unit::none) return field.type.words;
+  const bool bare = field.unit == Unit::share || field.unit == Unit::factor;  // numbers without a dimension
+  return fmt::format("{}, {} {}", field.type.words, bare ? "as a" : "in", to_string(field.unit));
 }
 
 const json* FieldReader::find(const char* name, Need need) const {

@@ -16,7 +16,9 @@ struct FieldLine {
   bool required = false;
 };
 
-/// How a unit is written behind a number; empty for none.
+/// In words; empty for none.
 const char* to_string(Unit unit);
+/// What a field takes, with its unit: "number, in degrees".
+std::string words_of(const FieldLine& field);
 
 }  // namespace rebake

@@ -61,6 +61,6 @@ enum class SelectMode { set, add, remove, intersect };
 
 /// How a struct describes a field: `visit(name, member, need, help)`, and a unit where it has one.
 enum class Need { required, optional };
-enum class Unit { none, degrees, length, pixels, share };
+enum class Unit { none, degrees, length, object_length, pixels, share, factor };
 
 }  // namespace rebake

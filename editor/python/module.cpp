@@ -23,7 +23,7 @@
 #include "editor/python/work.h"
 #include "mesh_ops/deform/cage_deformation.h"
 #include "mesh_ops/deform/wrap.h"
-#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "render/picture.h"
 
@@ -367,18 +367,18 @@ PYBIND11_MODULE(rebake, module) {
       py::arg("path"), "Writes a project (.rebake), or a scene folder that keeps every node.");
   type.def(
       "export",
-      [](PyDocument& document, const std::filesystem::path& path, const py::object& layout) {
+      [](PyDocument& document, const std::filesystem::path& path, const py::object& layout, const std::string& format) {
         std::optional<Layout> wanted;
         if (!layout.is_none()) wanted = Codec<Layout>::read(to_json(layout), {});
         std::vector<std::string> notes;
         document.work([&](Session& session) {
           const ExportOptions options{wanted, session.document.sources()};
-          notes = export_scene(session.scene(), path, options, session.progress).notes;
+          notes = format_named(format).write(session.scene(), path, options, session.progress).notes;
         });
         return notes;
       },
-      py::arg("path"), py::arg("layout") = py::none(),
-      "Writes the MobileNeRF format; returns what the result cannot hold or was converted.");
+      py::arg("path"), py::arg("layout") = py::none(), py::arg("format") = "mobilenerf",
+      "Writes the MobileNeRF format or another; returns what the result cannot hold or was converted.");
   type.def("render", &render_picture, py::arg("width") = 800, py::arg("height") = 800, py::arg("samples") = 4,
            py::arg("camera") = py::none(), py::arg("view") = "", "A picture, height × width × 3.");
   type.def(

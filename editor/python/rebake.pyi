@@ -86,8 +86,9 @@ class Document:
     def discard_journal(self) -> None: ...
     def save(self, path: str | PathLike[str]) -> None:
         """Writes a project (.rebake), or a scene folder that keeps every node."""
-    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None) -> list[str]:
-        """Writes the MobileNeRF format; returns what the result cannot hold or was converted."""
+    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None,
+               format: Literal["mobilenerf", "rebake"] = "mobilenerf") -> list[str]:
+        """Writes the MobileNeRF format or another; returns what the result cannot hold or was converted."""
     def render(self, width: int = 800, height: int = 800, samples: int = 4, camera: Camera | None = None,
                view: str = "") -> NDArray[np.uint8]:
         """A picture, height × width × 3; without camera and view, one that frames the scene."""
@@ -174,14 +175,14 @@ class Document:
     def background(self, *, color: Vector) -> None:
         """Sets the colour behind everything.
 
-        color: display red, green, blue from 0 to 1
+        color: display red, green and blue (share)
         """
     def transform(self, *, node: Node, selection: bool = False, translate: Vector = [0.0,0.0,0.0], rotate: Rotation = [1.0,0.0,0.0,0.0], scale: float | Vector = [1.0,1.0,1.0], scale_axes: Rotation = [1.0,0.0,0.0,0.0], pivot: Vector | None = None) -> None:
         """Scales, then turns, then moves a node or its selected triangles about a pivot.
 
         node: node to transform
         selection: only the selected triangles
-        translate: in scene units
+        translate: how far it moves (scene units)
         rotate: rotation
         scale: factor; negative mirrors, 0 is refused
         scale_axes: turn of the axes along which scale acts, from the world's
@@ -209,7 +210,7 @@ class Document:
         node: only of this node and those inside it; left out: of all that is visible
         polygon: inside a polygon in the picture
         brush: under a brush stroke in the picture
-        depth: only at these depths along the view axis
+        depth: only at these depths along the view axis (scene units)
         view: name of the stored view whose picture it is
         camera: the camera whose picture it is
         size: the picture's size, in whose pixels points are given
@@ -221,8 +222,8 @@ class Document:
 
         node: only of this node and those inside it; left out: of all that is visible
         point: world point, near a triangle that shows something; left out: from the present selection
-        tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
-        gap: opaque texels at most this far apart hang together too, in the object's units
+        tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
+        gap: opaque texels at most this far apart hang together too (the object's units)
         mode: how the result joins the present selection
         """
     def select_like(self, *, node: Node | None = None, point: Vector | None = None, color: float | None = None, features: float | None = None, opacity: float | None = None, size: float | None = None, orientation: float | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
@@ -231,10 +232,10 @@ class Document:
         node: only of this node and those inside it; left out: of all that is visible
         point: world point, near a triangle that shows something; left out: like the present selection
         color: distance of mean decoded colours, channels 0 to 1
-        features: root mean square difference of mean features, 0 to 1
-        opacity: difference of the share of opaque texels, 0 to 1
-        size: factor between areas in the world, at least 1
-        orientation: degrees between planes in the world, 0 to 90
+        features: root mean square difference of mean features (share)
+        opacity: difference of the share of opaque texels (share)
+        size: between areas in the world, at least 1 (factor)
+        orientation: between planes in the world, 0 to 90 (degrees)
         mode: how the result joins the present selection
         """
     def select_floaters(self, *, node: Node | None = None, at_most: int = 100, tolerance: float = 0.0, gap: float = 0.0, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
@@ -242,8 +243,8 @@ class Document:
 
         node: only of this node and those inside it; left out: of all that is visible
         at_most: triangles of a part that counts as floating
-        tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
-        gap: opaque texels at most this far apart hang together too, in the object's units
+        tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
+        gap: opaque texels at most this far apart hang together too (the object's units)
         mode: how the result joins the present selection
         """
     def select_unneeded(self, *, node: Node | None = None, transparent: bool = False, duplicates: bool = False, unseen: int = 0, distance: float = 3.0, unseen_from: Sequence[str] | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
@@ -275,21 +276,21 @@ class Document:
 
         node: only of this node and those inside it; left out: of all that is visible
         steps: how often
-        tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
+        tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
         """
     def shrink(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> dict[str, NDArray[np.bool_]]:
         """Takes away the selected triangles that share a corner with others.
 
         node: only of this node and those inside it; left out: of all that is visible
         steps: how often
-        tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
+        tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
         """
     def fill(self, *, node: Node | None = None, at_most: int = 1000, tolerance: float = 0.0) -> dict[str, NDArray[np.bool_]]:
         """Adds the islands inside the selection: unselected triangles, joined through edges, that border it.
 
         node: only of this node and those inside it; left out: of all that is visible
         at_most: triangles of an island that is filled
-        tolerance: corners at most this far apart count as one, in the object's units; 0: only equal ones
+        tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
         """
     def store_selection(self, *, name: str) -> None:
         """Stores the present selection of all nodes under a name, for select's field saved; replaces what had the name.
@@ -323,7 +324,7 @@ class Document:
         frame: of box, sphere and half_space, as for select
         polygon: inside a polygon in the picture
         brush: under a brush stroke in the picture
-        depth: only at these depths along the view axis
+        depth: only at these depths along the view axis (scene units)
         view: name of the stored view whose picture it is
         camera: the camera whose picture it is
         size: the picture's size, in whose pixels points are given
@@ -336,9 +337,9 @@ class Document:
         selection: only its selected triangles
         box: only triangles whose centre lies inside
         frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
-        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
+        falloff: width of the soft border towards triangles that are not deformed; 0: a hard border (scene units)
         lattice: a box around the triangles, of so many cells along x, y and z
-        wrap: a wrap of the triangles that show something; its coarseness as a share of their size, 0.005 to 0.5
+        wrap: a wrap of the triangles that show something; its coarseness of their size, 0.005 to 0.5 (share)
         mesh: a closed triangle mesh in world space: a file (.obj, .off, .ply), or its vertices and faces
         moves: what moves, one after the other; boxes and spheres in world units, or in shares of the cage's box where the edit's field frame is bounds
         coordinates: mean_value: anywhere; green: keeps shapes, inside only; harmonic: around corners, not across, inside only, on a grid
@@ -351,9 +352,9 @@ class Document:
         selection: only its selected triangles
         box: only triangles whose centre lies inside
         frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
-        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
+        falloff: width of the soft border towards triangles that are not deformed; 0: a hard border (scene units)
         lattice: a box around the triangles, of so many cells along x, y and z
-        wrap: a wrap of the triangles that show something; its coarseness as a share of their size, 0.005 to 0.5
+        wrap: a wrap of the triangles that show something; its coarseness of their size, 0.005 to 0.5 (share)
         mesh: a closed triangle mesh in world space: a file (.obj, .off, .ply), or its vertices and faces
         moves: points of the cage that are moved; boxes and spheres in world units, or in shares of the cage's box where the edit's field frame is bounds
         fixed: points of the cage that are held where they are
@@ -366,12 +367,12 @@ class Document:
         selection: only its selected triangles
         box: only triangles whose centre lies inside
         frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
-        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
-        degrees: in all, from one limit to the other
+        falloff: width of the soft border towards triangles that are not deformed; 0: a hard border (scene units)
+        degrees: in all, from one limit to the other (degrees)
         axis: direction of the axis, in world axes
         origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
-        from_: where it begins, in scene units along the axis from the origin; left out: where the triangles begin
-        to: where it ends; left out: where the triangles end
+        from_: where it begins along the axis, from the origin; left out: where the triangles begin (scene units)
+        to: where it ends; left out: where the triangles end (scene units)
         direction: where the far end goes; its part across the axis counts
         """
     def twist(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None) -> None:
@@ -381,12 +382,12 @@ class Document:
         selection: only its selected triangles
         box: only triangles whose centre lies inside
         frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
-        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
-        degrees: in all, from one limit to the other
+        falloff: width of the soft border towards triangles that are not deformed; 0: a hard border (scene units)
+        degrees: in all, from one limit to the other (degrees)
         axis: direction of the axis, in world axes
         origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
-        from_: where it begins, in scene units along the axis from the origin; left out: where the triangles begin
-        to: where it ends; left out: where the triangles end
+        from_: where it begins along the axis, from the origin; left out: where the triangles begin (scene units)
+        to: where it ends; left out: where the triangles end (scene units)
         """
     def taper(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None) -> None:
         """Makes triangles thinner or thicker across an axis, more and more between the limits.
@@ -395,12 +396,12 @@ class Document:
         selection: only its selected triangles
         box: only triangles whose centre lies inside
         frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
-        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
-        factor: size at the upper limit, as a share of now
+        falloff: width of the soft border towards triangles that are not deformed; 0: a hard border (scene units)
+        factor: size at the upper limit, of what it is now (factor)
         axis: direction of the axis, in world axes
         origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
-        from_: where it begins, in scene units along the axis from the origin; left out: where the triangles begin
-        to: where it ends; left out: where the triangles end
+        from_: where it begins along the axis, from the origin; left out: where the triangles begin (scene units)
+        to: where it ends; left out: where the triangles end (scene units)
         """
     def stretch(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None) -> None:
         """Makes triangles longer or shorter along an axis, between the limits.
@@ -409,10 +410,10 @@ class Document:
         selection: only its selected triangles
         box: only triangles whose centre lies inside
         frame: of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1
-        falloff: width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border
-        factor: length between the limits, as a share of now
+        falloff: width of the soft border towards triangles that are not deformed; 0: a hard border (scene units)
+        factor: length between the limits, of what it is now (factor)
         axis: direction of the axis, in world axes
         origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
-        from_: where it begins, in scene units along the axis from the origin; left out: where the triangles begin
-        to: where it ends; left out: where the triangles end
+        from_: where it begins along the axis, from the origin; left out: where the triangles begin (scene units)
+        to: where it ends; left out: where the triangles end (scene units)
         """

@@ -34,7 +34,9 @@ struct Signature {
       else
         optional.push_back(
             fmt::format("{}: {} = {}", name, field.type.python, python_value(nlohmann::json::parse(field.initial))));
-      lines.push_back(fmt::format("{}: {}", name, field.help));
+      const std::string help =
+          field.unit == Unit::none ? field.help : fmt::format("{} ({})", field.help, to_string(field.unit));
+      lines.push_back(fmt::format("{}: {}", name, help));
     }
   }
 };
@@ -127,8 +129,9 @@ class Document:
     def discard_journal(self) -> None: ...
     def save(self, path: str | PathLike[str]) -> None:
         """Writes a project (.rebake), or a scene folder that keeps every node."""
-    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None) -> list[str]:
-        """Writes the MobileNeRF format; returns what the result cannot hold or was converted."""
+    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None,
+               format: Literal["mobilenerf", "rebake"] = "mobilenerf") -> list[str]:
+        """Writes the MobileNeRF format or another; returns what the result cannot hold or was converted."""
     def render(self, width: int = 800, height: int = 800, samples: int = 4, camera: Camera | None = None,
                view: str = "") -> NDArray[np.uint8]:
         """A picture, height × width × 3; without camera and view, one that frames the scene."""

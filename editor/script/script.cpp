@@ -32,7 +32,7 @@ std::string filled_in(const std::string& text, const std::map<std::string, std::
 std::string reference_of(const char* op, const char* help, const std::vector<FieldLine>& lines) {
   std::string out = fmt::format("### `{}`\n{}\n\n| field | value | default | meaning |\n|---|---|---|---|\n", op, help);
   for (const FieldLine& line : lines)
-    out += fmt::format("| `{}` | {} | {} | {} |\n", line.name, line.type.words,
+    out += fmt::format("| `{}` | {} | {} | {} |\n", line.name, words_of(line),
                        line.required                                    ? "required"
                        : line.initial.empty() || line.initial == "\"\"" ? "–"
                                                                         : "`" + line.initial + "`",

@@ -18,10 +18,25 @@ Scene read_mobilenerf(const fs::path& folder, Axes axes, const Progress& progres
   return with_added({}, node, NodeId::none, 0);
 }
 
+Scene read_rebake(const fs::path& folder, Axes /*said there*/, const Progress& progress) {
+  return read_scene_folder(folder, progress);
+}
+
+ExportReport write_rebake(const Scene& scene, const fs::path& folder, const ExportOptions& options,
+                          const Progress& progress) {
+  if (options.layout) throw FieldError("layout", "is not for Rebake scenes: every object keeps its own");
+  ExportReport report;
+  report.keeps_everything = true;
+  report.notes = save_scene_folder(scene, folder, options.sources, progress);
+  return report;
+}
+
+// The first that recognises a folder reads it.
 constexpr Format table[] = {
-    {"Rebake scene", [](const fs::path& folder) { return fs::exists(folder / "scene.json"); },
-     [](const fs::path& folder, Axes, const Progress& progress) { return read_scene_folder(folder, progress); }},
-    {"MobileNeRF", [](const fs::path& folder) { return fs::exists(folder / "mlp.json"); }, read_mobilenerf},
+    {"rebake", "Rebake scene", [](const fs::path& folder) { return fs::exists(folder / "scene.json"); }, read_rebake,
+     write_rebake},
+    {"mobilenerf", "MobileNeRF", [](const fs::path& folder) { return fs::exists(folder / "mlp.json"); },
+     read_mobilenerf, export_scene},
 };
 
 }  // namespace
@@ -33,6 +48,15 @@ std::string folder_title(const fs::path& path) {
 }
 
 std::span<const Format> formats() { return table; }
+
+const Format& format_named(const std::string& name) {
+  std::string known;
+  for (const Format& format : formats()) {
+    if (format.name == name) return format;
+    known += (known.empty() ? "" : ", ") + std::string(format.name);
+  }
+  throw FieldError("format", "\"" + name + "\" is not known (known: " + known + ")");
+}
 
 Scene read_any(const fs::path& path, Axes axes, const Progress& progress) {
   // scene.json itself may be named in place of its folder.

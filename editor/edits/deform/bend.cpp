@@ -18,7 +18,7 @@ REBAKE_DESCRIBE_EDIT(
     Bend, "Bends triangles along an axis into an arc: the axis keeps its length, what lies beyond the limits follows.",
     (auto& edit, auto& visit) {
       DeformTarget::fields(edit.target, visit);
-      visit("degrees", edit.degrees, Need::required, "in all, from one limit to the other");
+      visit("degrees", edit.degrees, Need::required, "in all, from one limit to the other", Unit::degrees);
       DeformAxis::fields(edit.axis, visit);
       visit("direction", edit.direction, Need::optional, "where the far end goes; its part across the axis counts");
     })

@@ -24,7 +24,7 @@ struct DeformTarget {
     visit("frame", self.frame, Need::optional,
           "of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1");
     visit("falloff", self.falloff, Need::optional,
-          "width of the soft border towards triangles that are not deformed, in scene units; 0: a hard border");
+          "width of the soft border towards triangles that are not deformed; 0: a hard border", Unit::length);
   }
 };
 
@@ -64,7 +64,7 @@ struct CageMove {
     visit("points", self.points, Need::optional, "numbers of cage points");
     visit("box", self.box, Need::optional, "cage points inside a box");
     visit("sphere", self.sphere, Need::optional, "cage points inside a sphere");
-    visit("translate", self.translate, Need::optional, "in scene units");
+    visit("translate", self.translate, Need::optional, "how far the points move", Unit::length);
     visit("rotate", self.rotate, Need::optional, "rotation");
     visit("scale", self.scale, Need::optional, "factor");
     visit("pivot", self.pivot, Need::optional, "what scale and rotation keep; left out: the points' centre");
@@ -96,7 +96,7 @@ struct CageSource {
   static void fields(Self& self, Visitor& visit) {
     visit("lattice", self.lattice, Need::optional, "a box around the triangles, of so many cells along x, y and z");
     visit("wrap", self.wrap, Need::optional,
-          "a wrap of the triangles that show something; its coarseness as a share of their size, 0.005 to 0.5");
+          "a wrap of the triangles that show something; its coarseness of their size, 0.005 to 0.5", Unit::share);
     visit("mesh", self.mesh, Need::optional,
           "a closed triangle mesh in world space: a file (.obj, .off, .ply), or its vertices and faces");
   }

@@ -17,8 +17,8 @@ struct DeformAxis {
     visit("origin", self.origin, Need::optional,
           "world point on the axis; left out: where it enters the box of what is deformed, in the middle");
     visit("from", self.from, Need::optional,
-          "where it begins, in scene units along the axis from the origin; left out: where the triangles begin");
-    visit("to", self.to, Need::optional, "where it ends; left out: where the triangles end");
+          "where it begins along the axis, from the origin; left out: where the triangles begin", Unit::length);
+    visit("to", self.to, Need::optional, "where it ends; left out: where the triangles end", Unit::length);
   }
 };
 

@@ -14,7 +14,7 @@ Outcome apply(const Scene& scene, const Stretch& edit) {
 REBAKE_DESCRIBE_EDIT(
     Stretch, "Makes triangles longer or shorter along an axis, between the limits.", (auto& edit, auto& visit) {
       DeformTarget::fields(edit.target, visit);
-      visit("factor", edit.factor, Need::required, "length between the limits, as a share of now");
+      visit("factor", edit.factor, Need::required, "length between the limits, of what it is now", Unit::factor);
       DeformAxis::fields(edit.axis, visit);
     })
 

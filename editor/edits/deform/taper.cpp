@@ -15,7 +15,7 @@ REBAKE_DESCRIBE_EDIT(
     Taper, "Makes triangles thinner or thicker across an axis, more and more between the limits.",
     (auto& edit, auto& visit) {
       DeformTarget::fields(edit.target, visit);
-      visit("factor", edit.factor, Need::required, "size at the upper limit, as a share of now");
+      visit("factor", edit.factor, Need::required, "size at the upper limit, of what it is now", Unit::factor);
       DeformAxis::fields(edit.axis, visit);
     })
 

@@ -16,7 +16,7 @@ Outcome apply(const Scene& scene, const Twist& edit) {
 REBAKE_DESCRIBE_EDIT(
     Twist, "Twists triangles about an axis, more and more between the limits.", (auto& edit, auto& visit) {
       DeformTarget::fields(edit.target, visit);
-      visit("degrees", edit.degrees, Need::required, "in all, from one limit to the other");
+      visit("degrees", edit.degrees, Need::required, "in all, from one limit to the other", Unit::degrees);
       DeformAxis::fields(edit.axis, visit);
     })
 

@@ -13,7 +13,8 @@ Scene apply(const Scene& scene, const Background& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Background, "Sets the colour behind everything.",
-    (auto& edit, auto& visit) { visit("color", edit.color, Need::required, "display red, green, blue from 0 to 1"); })
+    Background, "Sets the colour behind everything.", (auto& edit, auto& visit) {
+      visit("color", edit.color, Need::required, "display red, green and blue", Unit::share);
+    })
 
 }  // namespace rebake

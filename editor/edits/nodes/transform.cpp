@@ -70,7 +70,7 @@ REBAKE_DESCRIBE_EDIT(
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::required, "node to transform");
       visit("selection", edit.selection, Need::optional, "only the selected triangles");
-      visit("translate", edit.translate, Need::optional, "in scene units");
+      visit("translate", edit.translate, Need::optional, "how far it moves", Unit::length);
       visit("rotate", edit.rotate, Need::optional, "rotation");
       visit("scale", edit.scale, Need::optional, "factor; negative mirrors, 0 is refused");
       visit("scale_axes", edit.scale_axes, Need::optional, "turn of the axes along which scale acts, from the world's");

@@ -42,10 +42,10 @@ REBAKE_DESCRIBE_EDIT(
       visit("point", edit.point, Need::optional,
             "world point, near a triangle that shows something; left out: like the present selection");
       visit("color", edit.color, Need::optional, "distance of mean decoded colours, channels 0 to 1");
-      visit("features", edit.features, Need::optional, "root mean square difference of mean features, 0 to 1");
-      visit("opacity", edit.opacity, Need::optional, "difference of the share of opaque texels, 0 to 1");
-      visit("size", edit.size, Need::optional, "factor between areas in the world, at least 1");
-      visit("orientation", edit.orientation, Need::optional, "degrees between planes in the world, 0 to 90");
+      visit("features", edit.features, Need::optional, "root mean square difference of mean features", Unit::share);
+      visit("opacity", edit.opacity, Need::optional, "difference of the share of opaque texels", Unit::share);
+      visit("size", edit.size, Need::optional, "between areas in the world, at least 1", Unit::factor);
+      visit("orientation", edit.orientation, Need::optional, "between planes in the world, 0 to 90", Unit::degrees);
       visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
     })
 

@@ -38,7 +38,7 @@ struct WeldingField {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("tolerance", self.tolerance, Need::optional,
-          "corners at most this far apart count as one, in the object's units; 0: only equal ones");
+          "corners at most this far apart count as one; 0: only equal ones", Unit::object_length);
   }
   /// Throws FieldError.
   void check() const;
@@ -52,8 +52,8 @@ struct JoiningFields {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     WeldingField::fields(self.welding, visit);
-    visit("gap", self.gap, Need::optional,
-          "opaque texels at most this far apart hang together too, in the object's units");
+    visit("gap", self.gap, Need::optional, "opaque texels at most this far apart hang together too",
+          Unit::object_length);
   }
   /// Throws FieldError.
   Joining checked() const;
@@ -77,7 +77,7 @@ struct PictureFields {
   static void fields(Self& self, Visitor& visit) {
     visit("polygon", self.polygon, Need::optional, "inside a polygon in the picture");
     visit("brush", self.brush, Need::optional, "under a brush stroke in the picture");
-    visit("depth", self.depth, Need::optional, "only at these depths along the view axis");
+    visit("depth", self.depth, Need::optional, "only at these depths along the view axis", Unit::length);
     visit("view", self.view, Need::optional, "name of the stored view whose picture it is");
     visit("camera", self.camera, Need::optional, "the camera whose picture it is");
     visit("size", self.size, Need::optional, "the picture's size, in whose pixels points are given");

@@ -135,8 +135,7 @@ void EditForm::draw(Desk& desk) {
       }
     }
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s%s\n%s%s%s", field.help.c_str(), field.required ? " (needed)" : "", field.type.words.c_str(),
-                        field.unit == Unit::none ? "" : ", in ", to_string(field.unit));
+      ImGui::SetTooltip("%s%s\n%s", field.help.c_str(), field.required ? " (needed)" : "", words_of(field).c_str());
     if (problem_.find("\"" + field.name + "\"") != std::string::npos)
       ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
     ImGui::PopID();
