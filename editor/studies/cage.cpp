@@ -97,7 +97,7 @@ StudyTable study_cage(const StudyInput& input) {
     std::unique_ptr<CageBinding> binding;
     const double bind = median_milliseconds(kind == CageCoordinates::mean_value ? std::min(input.frames, 3) : 1, [&] {
       coordinates = coordinates_of(cage, kind, resolution);
-      binding = std::make_unique<CageBinding>(*coordinates, cage, soup.places, false);
+      binding = std::make_unique<CageBinding>(*coordinates, cage, soup.places);
     });
     std::vector<Vec3> out;
     const double drag = median_milliseconds(input.frames, [&] { binding->positions(setting.moved, out); });
@@ -107,7 +107,7 @@ StudyTable study_cage(const StudyInput& input) {
                            reproduction(setting, *coordinates), largest(exact.points, reference, soup.diagonal)}});
     if (kind == CageCoordinates::harmonic) return;
     // The same, as dragging keeps it.
-    const CageBinding kept(*coordinates, cage, setting.points, false);
+    const CageBinding kept(*coordinates, cage, setting.points);
     kept.positions(setting.moved, out);
     std::vector<Vec3> nowhere;
     kept.positions(std::vector<Vec3>(cage.vertices.size(), Vec3(0, 0, 0)), nowhere);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "editor/studies/deforming.h"
+#include "editor/studies/gradient_binding.h"
 #include "editor/studies/study.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/deform/cage_deformation.h"
@@ -99,7 +100,7 @@ StudyTable study_rotation(const StudyInput& input) {
     add(fmt::format("finite differences, step {:g}", share), time, rotations);
   }
 
-  const CageBinding binding(*coordinates, cage, soup.places, true);
+  const GradientBinding binding(*coordinates, cage, soup.places);
   for (const std::size_t stride : {1U, 4U, 16U, 64U})
     for (const bool interpolated : {false, true}) {
       if (stride == 1 && interpolated) continue;

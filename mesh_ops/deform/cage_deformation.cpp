@@ -4,47 +4,15 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 
-#include "mesh_ops/base/polar.h"
+#include "mesh_ops/deform/point_blocks.h"
 #include "mesh_ops/deform/row_sums.h"
 
 namespace rebake {
 
 namespace {
-
-std::size_t blocks_of(std::size_t points) { return (points + batch_lanes - 1) / batch_lanes; }
-
-// The points of one block; the last is repeated where the block is not full.
-std::array<Vec3, batch_lanes> block_points(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& order,
-                                           std::size_t block) {
-  std::array<Vec3, batch_lanes> result;
-  for (std::size_t lane = 0; lane < batch_lanes; ++lane)
-    result[lane] = points[order[std::min(block * batch_lanes + lane, order.size() - 1)]];
-  return result;
-}
-
-// Calls visit(block, weights, gradients, outside) for every block, on all threads.
-template <class Visit>
-void for_blocks(const Coordinates& coordinates, const std::vector<Vec3>& points,
-                const std::vector<std::uint32_t>& order, bool gradients, const Progress& progress, Visit visit) {
-  const std::size_t blocks = blocks_of(order.size());
-  std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 64), [&](const auto& range) {
-    std::vector<double> weights(coordinates.rows() * batch_lanes);
-    std::vector<double> slopes(gradients ? coordinates.rows() * 3 * batch_lanes : 0);
-    std::array<std::uint8_t, batch_lanes> outside;
-    for (std::size_t block = range.begin(); block < range.end(); ++block) {
-      coordinates.weigh(block_points(points, order, block), weights.data(), gradients ? slopes.data() : nullptr,
-                        outside.data());
-      visit(block, weights, slopes, outside);
-    }
-    progress.at("cage weights", static_cast<double>(done += range.size()) / static_cast<double>(blocks));
-  });
-}
 
 // What all vertices move alike, taken out of their motions where it is most of them: their weights sum to 1 but for
 // rounding, which a long way would multiply.
@@ -117,46 +85,22 @@ DeformedPoints deform_points(const Coordinates& coordinates, const Cage& rest, c
 }
 
 CageBinding::CageBinding(const Coordinates& coordinates, const Cage& rest, const std::vector<Vec3>& points,
-                         bool gradients, const Progress& progress)
+                         const Progress& progress)
     : rest_(rest), coordinates_(coordinates), points_(points), order_(curve_order(points)) {
   if (points.empty()) return;
-  const std::size_t row = batch_lanes, blocks = blocks_of(points.size());
-  weights_.resize(blocks * coordinates.rows() * row);
-  if (gradients) gradients_.resize(blocks * coordinates.rows() * 3 * row);
-  for_blocks(coordinates, points_, order_, gradients, progress,
-             [&](std::size_t block, const std::vector<double>& weights, const std::vector<double>& slopes,
+  weights_.resize(blocks_of(points.size()) * coordinates.rows() * batch_lanes);
+  for_blocks(coordinates, points_, order_, false, progress,
+             [&](std::size_t block, const std::vector<double>& weights, const std::vector<double>&,
                  const std::array<std::uint8_t, batch_lanes>&) {
-               const auto narrow = [](double a) { return static_cast<float>(a); };
                std::transform(weights.begin(), weights.end(),
-                              weights_.begin() + static_cast<std::ptrdiff_t>(block * weights.size()), narrow);
-               std::transform(slopes.begin(), slopes.end(),
-                              gradients_.begin() + static_cast<std::ptrdiff_t>(block * slopes.size()), narrow);
+                              weights_.begin() + static_cast<std::ptrdiff_t>(block * weights.size()),
+                              [](double weight) { return static_cast<float>(weight); });
              });
 }
 
 std::uint64_t CageBinding::memory() const {
-  return (weights_.size() + gradients_.size()) * sizeof(float) +
-         points_.size() * (sizeof(Vec3) + sizeof(std::uint32_t));
+  return weights_.size() * sizeof(float) + points_.size() * (sizeof(Vec3) + sizeof(std::uint32_t));
 }
-
-namespace {
-
-// Rows that move, and how far.
-struct MovingRows {
-  std::vector<std::uint32_t> rows;
-  std::vector<float> motions;
-};
-MovingRows moving_rows(const std::vector<Vec3>& motions) {
-  MovingRows moving;
-  for (std::uint32_t row = 0; row < motions.size(); ++row) {
-    if (motions[row].isZero(0)) continue;
-    moving.rows.push_back(row);
-    for (int axis = 0; axis < 3; ++axis) moving.motions.push_back(static_cast<float>(motions[row][axis]));
-  }
-  return moving;
-}
-
-}  // namespace
 
 void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& out) const {
   out.resize(points_.size());
@@ -177,49 +121,6 @@ void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& o
                                    static_cast<double>(sums[2 * batch_lanes + lane])));
       }
     }
-  });
-}
-
-void CageBinding::rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& out, std::size_t stride,
-                            bool interpolated) const {
-  if (gradients_.empty() && !points_.empty()) throw std::logic_error("bound without gradients");
-  out.assign(points_.size(), Mat3::Identity());
-  const MovingRows moving = moving_rows(coordinates_.row_motions(rest_, moved));
-  const RowSums sum_rows = row_sums();
-  const std::size_t block_size = coordinates_.rows() * 3 * batch_lanes;
-  const std::size_t step = std::max<std::size_t>(stride, 1);
-  const std::size_t samples = (order_.size() + step - 1) / step;
-  // Whole blocks where every point is wanted; else single lanes of those that hold one.
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_of(points_.size()), 64), [&](const auto& range) {
-    for (std::size_t block = range.begin(); block < range.end(); ++block) {
-      const std::size_t first = block * batch_lanes, last = std::min(first + batch_lanes, order_.size());
-      const std::size_t sample = (first + step - 1) / step * step;
-      if (sample >= last) continue;
-      std::array<float, 9 * batch_lanes> sums;
-      sum_rows(gradients_.data() + block * block_size, moving.rows.data(), moving.motions.data(), moving.rows.size(), 3,
-               sums.data());
-      for (std::size_t at = sample; at < last; at += step) {
-        Mat3 jacobian = Mat3::Identity();
-        for (int to = 0; to < 3; ++to)
-          for (int axis = 0; axis < 3; ++axis)
-            jacobian(to, axis) +=
-                static_cast<double>(sums[static_cast<std::size_t>(to * 3 + axis) * batch_lanes + at - first]);
-        out[order_[at]] = local_rotation(jacobian).rotation;
-      }
-    }
-  });
-  if (step == 1) return;
-  tbb::parallel_for(std::size_t{0}, order_.size(), [&](std::size_t at) {
-    if (at % step == 0) return;
-    const std::size_t below = at / step * step, above = below + step < samples * step ? below + step : below;
-    const Vec3& here = points_[order_[at]];
-    const double to_below = (points_[order_[below]] - here).norm(), to_above = (points_[order_[above]] - here).norm();
-    if (!interpolated || to_below + to_above == 0) {
-      out[order_[at]] = out[order_[to_above < to_below ? above : below]];
-      return;
-    }
-    const double share = to_below / (to_below + to_above);
-    out[order_[at]] = local_rotation((1 - share) * out[order_[below]] + share * out[order_[above]]).rotation;
   });
 }
 

@@ -20,20 +20,14 @@ struct DeformedPoints {
 DeformedPoints deform_points(const Coordinates& coordinates, const Cage& rest, const std::vector<Vec3>& moved,
                              const std::vector<Vec3>& points, bool jacobians, const Progress& progress = {});
 
-/// Points bound to a cage once, to be dragged many times: weights computed in double, kept as float. Rotations need
-/// gradients, which take three times the memory of the weights.
+/// Points bound to a cage once, to be dragged many times: weights computed in double, kept as float.
 class CageBinding {
  public:
-  CageBinding(const Coordinates& coordinates, const Cage& rest, const std::vector<Vec3>& points, bool gradients,
+  CageBinding(const Coordinates& coordinates, const Cage& rest, const std::vector<Vec3>& points,
               const Progress& progress = {});
 
   /// Where the points are when the cage's vertices are at `moved`. Costs as many rows as move.
   void positions(const std::vector<Vec3>& moved, std::vector<Vec3>& out) const;
-  /// Local rotations there; of every `stride`-th point in an order in which neighbours lie side by side, and for those
-  /// between the nearest of them, or with `interpolated` between their two neighbours by distance. What either costs in
-  /// degrees: `rebake study rotation`. Throws std::logic_error when bound without gradients.
-  void rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& out, std::size_t stride = 1,
-                 bool interpolated = false) const;
 
   std::size_t point_count() const { return order_.size(); }
   std::uint64_t memory() const;
@@ -44,7 +38,6 @@ class CageBinding {
   std::vector<Vec3> points_;
   std::vector<std::uint32_t> order_;  ///< points along a space-filling curve
   std::vector<float> weights_;        ///< a block of batch_lanes points: [row][lane]
-  std::vector<float> gradients_;      ///< [row][axis][lane]
 };
 
 /// Numbers of the points along a Z-order curve, so that what is processed together lies together.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 
+#include "editor/studies/gradient_binding.h"
 #include "mesh_ops/deform/deform_object.h"
 #include "mesh_ops/deform/wrap.h"
 #include "render/picture.h"
@@ -55,13 +56,13 @@ std::vector<Vec3> bent(const Cage& cage, std::size_t moving) {
   return moved;
 }
 
-void bind(benchmark::State& state, bool gradients) {
+void bind(benchmark::State& state) {
   const Case& mic = mic_case();
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) {
     const auto coordinates = mean_value_coordinates(mic.cage);
-    const CageBinding binding(*coordinates, mic.cage, mic.points, gradients);
+    const CageBinding binding(*coordinates, mic.cage, mic.points);
     state.counters["MB"] = static_cast<double>(binding.memory()) / 1e6;
   }
   state.counters["faces"] = static_cast<double>(mic.cage.faces.size());
@@ -92,7 +93,8 @@ void green(benchmark::State& state) {
 
 struct Bound {
   std::unique_ptr<Coordinates> coordinates = mean_value_coordinates(mic_case().cage);
-  CageBinding binding{*coordinates, mic_case().cage, mic_case().points, true};
+  CageBinding binding{*coordinates, mic_case().cage, mic_case().points};
+  GradientBinding gradients{*coordinates, mic_case().cage, mic_case().points};
 };
 const Bound& bound() {
   static const Bound made;
@@ -114,7 +116,7 @@ void drag_rotations(benchmark::State& state) {
   const std::vector<Vec3> moved = bent(mic_case().cage, 1000000);
   std::vector<Mat3> out;
   bound();
-  for (auto _ : state) bound().binding.rotations(moved, out, static_cast<std::size_t>(state.range(1)));
+  for (auto _ : state) bound().gradients.rotations(moved, out, static_cast<std::size_t>(state.range(1)));
 }
 
 // As the real soup is: corners that coincide are bound once, and written to every corner.
@@ -137,7 +139,7 @@ void drag_corners(benchmark::State& state) {
       made.place_of.push_back(place->second);
     }
     made.coordinates = mean_value_coordinates(mic.cage);
-    made.binding = std::make_unique<CageBinding>(*made.coordinates, mic.cage, made.points, false);
+    made.binding = std::make_unique<CageBinding>(*made.coordinates, mic.cage, made.points);
     return made;
   }();
   const std::vector<Vec3> moved = bent(mic.cage, 1000000);
@@ -189,7 +191,7 @@ void drag_preview(benchmark::State& state) {
     turn += 0.01;
     for (Vec3& v : moved) v = Eigen::AngleAxisd(turn * v.y(), Vec3::UnitY()) * v;
     DeformedObject made = deformed(*object, Affine::Identity(), all, 0, [&](const std::vector<Vec3>& world) {
-      if (!binding) binding = std::make_unique<CageBinding>(*coordinates, mic.cage, world, false);
+      if (!binding) binding = std::make_unique<CageBinding>(*coordinates, mic.cage, world);
       DeformedPoints points{{}, std::vector<Mat3>(world.size(), Mat3::Identity()), {}};
       binding->positions(moved, points.points);
       return points;
@@ -199,8 +201,7 @@ void drag_preview(benchmark::State& state) {
   state.counters["vertices"] = static_cast<double>(vertices);
 }
 
-BENCHMARK_CAPTURE(bind, mean_value, false)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(bind, mean_value_with_gradients, true)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(bind)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(weigh, mean_value, false)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(weigh, mean_value_with_gradients, true)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(green)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -62,7 +62,7 @@ void CageTool::make(Desk& desk) {
                      return DeformedPoints{world, std::vector<Mat3>(world.size(), Mat3::Identity()), {}};
                    });
           bound->bindings.push_back(
-              std::make_unique<CageBinding>(*bound->coordinates, bound->cage, places, false, session.progress));
+              std::make_unique<CageBinding>(*bound->coordinates, bound->cage, places, session.progress));
         }
         for (const Face& face : bound->cage.faces)
           for (std::size_t k = 0; k < 3; ++k)
