@@ -6,12 +6,14 @@
 
 #include "editor/cli/commands.h"
 #include "editor/cli/terminal.h"
+#include "editor/document/result_store.h"
 #include "mesh_ops/base/error.h"
 
 int main(int argc, char** argv) {
   // A full quota then fails a write, which is reported, instead of ending the program.
   std::signal(SIGXFSZ, SIG_IGN);
   rebake::stop_on_interrupt();
+  rebake::keep_results_in(rebake::ResultStore::of_user());
   const auto fail = [](const std::string& what) {
     rebake::clear_progress_bar();
     fmt::print(stderr, "{} {}\n", rebake::coloured("error:", "1;31"), rebake::printable(what));

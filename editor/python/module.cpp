@@ -15,6 +15,7 @@
 #include "editor/commands/session.h"
 #include "editor/commands/views.h"
 #include "editor/document/project.h"
+#include "editor/document/result_store.h"
 #include "editor/edits/deform/cage.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/select/select_triangles.h"
@@ -306,6 +307,7 @@ std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journa
 
 PYBIND11_MODULE(rebake, module) {
   py::module_::import("numpy");  // here, since two threads must not be the first to want it
+  keep_results_in(ResultStore::of_user());
   module.doc() = "Edit and compose baked NeRF scenes (MobileNeRF format).";
   const auto& error = py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
   py::register_exception<FileError>(module, "FileError", error);

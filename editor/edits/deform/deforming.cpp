@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "editor/edits/results.h"
 #include "editor/edits/select/selecting.h"
 #include "mesh_ops/formats/cage_file.h"
 #include "mesh_ops/index/index.h"
@@ -255,6 +256,33 @@ std::vector<std::string> notes_on(const Cage& cage, const std::vector<Vec3>& mov
   return notes;
 }
 
+namespace {
+
+// Wraps take from a tenth of a second to several.
+Cage kept_wrap(const TriangleList& triangles, double coarseness, const Progress& progress) {
+  const std::shared_ptr<Results> results = kept_results();
+  if (!results) return wrap(triangles, coarseness, progress);
+  const auto bytes_of = [](const auto& values) {
+    return std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
+  };
+  const std::array<double, 1> setting{coarseness};
+  const std::string key = result_key(
+      "wrap1", std::string(bytes_of(setting)).append(bytes_of(triangles.points)).append(bytes_of(triangles.faces)));
+  if (const auto bytes = results->find(key)) {
+    try {
+      return Codec<Cage>::read(nlohmann::json::from_cbor(*bytes), {});
+    } catch (const std::exception&) {
+      // Not one of ours after all.
+    }
+  }
+  Cage cage = wrap(triangles, coarseness, progress);
+  const std::vector<std::uint8_t> bytes = nlohmann::json::to_cbor(Codec<Cage>::write(cage));
+  results->keep(key, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return cage;
+}
+
+}  // namespace
+
 Cage cage_of(const CageSource& source, const DeformSet& set, const Progress& progress) {
   if (int{!source.lattice.empty()} + int{source.wrap.has_value()} + int{!source.mesh.faces.empty()} > 1)
     throw FieldError("wrap", "at most one of lattice, wrap and mesh can be given");
@@ -262,7 +290,7 @@ Cage cage_of(const CageSource& source, const DeformSet& set, const Progress& pro
   if (source.lattice.empty()) {
     const TriangleList opaque = set.opaque_triangles();
     if (opaque.faces.empty()) throw EditError("no triangle shows anything, so there is nothing to wrap; use a lattice");
-    return wrap(opaque, source.wrap.value_or(0.1), progress);
+    return kept_wrap(opaque, source.wrap.value_or(0.1), progress);
   }
   if (source.lattice.size() != 3) throw FieldError("lattice", "must be three whole numbers: cells along x, y and z");
   // A little larger, so that no point lies on the surface.

@@ -1,0 +1,94 @@
+#include "editor/document/result_store.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t digits = 16;  // of the checksum that a file begins with
+constexpr const char* extension = ".result";
+
+}  // namespace
+
+ResultStore::ResultStore(fs::path folder, std::uint64_t limit) : folder_(std::move(folder)), limit_(limit) {}
+
+std::shared_ptr<ResultStore> ResultStore::of_user() {
+  if (const char* chosen = std::getenv("REBAKE_RESULTS"))
+    return *chosen != '\0' ? std::make_shared<ResultStore>(chosen) : nullptr;
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  // XDG's folders must be absolute, else they do not count.
+  if (cache != nullptr && fs::path(cache).is_absolute())
+    return std::make_shared<ResultStore>(fs::path(cache) / "rebake" / "results");
+  const char* home = std::getenv("HOME");
+  if (home != nullptr && fs::path(home).is_absolute())
+    return std::make_shared<ResultStore>(fs::path(home) / ".cache" / "rebake" / "results");
+  return nullptr;
+}
+
+std::optional<std::string> ResultStore::find(const std::string& key) {
+  const fs::path path = folder_ / (key + extension);
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;
+  try {
+    std::string bytes = read_file(path);
+    if (bytes.size() < digits ||
+        hash_text(content_hash(std::string_view(bytes).substr(digits))) != bytes.substr(0, digits)) {
+      fs::remove(path, error);
+      return std::nullopt;
+    }
+    fs::last_write_time(path, fs::file_time_type::clock::now(), error);
+    ++found_;
+    return bytes.substr(digits);
+  } catch (const FileError&) {
+    return std::nullopt;  // another program removed it
+  }
+}
+
+void ResultStore::keep(const std::string& key, std::string_view bytes) {
+  if (bytes.size() + digits > limit_) return;
+  const std::scoped_lock lock(mutex_);
+  try {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    write_file_atomically(folder_ / (key + extension), hash_text(content_hash(bytes)) + std::string(bytes), {});
+    fit_limit();
+  } catch (const FileError&) {
+    // A full disk or a folder that nobody may write: it is made again next time.
+  }
+}
+
+void ResultStore::fit_limit() const {
+  struct Kept {
+    fs::file_time_type used;
+    fs::path path;
+    std::uint64_t bytes;
+  };
+  std::vector<Kept> files;
+  std::uint64_t total = 0;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
+    if (entry.path().extension() != extension) continue;
+    const std::uint64_t bytes = entry.file_size(error);
+    if (error) continue;
+    files.push_back({entry.last_write_time(error), entry.path(), bytes});
+    total += bytes;
+  }
+  std::sort(files.begin(), files.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });
+  for (const Kept& file : files) {
+    if (total <= limit_) return;
+    fs::remove(file.path, error);
+    total -= file.bytes;
+  }
+}
+
+}  // namespace rebake

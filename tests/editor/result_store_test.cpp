@@ -1,0 +1,117 @@
+// Expensive results are found again, whatever happens to the folder that they lie in.
+#include "editor/document/result_store.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "mesh_ops/base/files.h"
+#include "tests/support/document_fixture.h"
+
+namespace rebake::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::size_t files_in(const fs::path& folder) {
+  std::error_code error;
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder, error), fs::directory_iterator()));
+}
+
+TEST(ResultStore, FindsWhatItKeptAndNothingElse) {
+  const TemporaryFolder folder;
+  ResultStore store(folder.path() / "deep/er");
+  EXPECT_FALSE(store.find("wrap1-1"));
+  const std::string bytes("a\0b\n", 4);
+  store.keep("wrap1-1", bytes);
+  EXPECT_EQ(store.find("wrap1-1"), bytes);
+  EXPECT_EQ(ResultStore(folder.path() / "deep/er").find("wrap1-1"), bytes) << "another run";
+  EXPECT_FALSE(store.find("wrap1-2"));
+  EXPECT_NE(result_key("wrap1", "x"), result_key("wrap1", "y"));
+  EXPECT_NE(result_key("wrap1", "x"), result_key("wrap2", "x"));
+}
+
+TEST(ResultStore, DamagedFilesCountAsNotThere) {
+  const TemporaryFolder folder;
+  ResultStore store(folder.path());
+  store.keep("k", "some bytes");
+  const fs::path file = fs::directory_iterator(folder.path())->path();
+  std::string bytes = read_file(file);
+  bytes.back() ^= 1;
+  write_file_atomically(file, bytes, {});
+  EXPECT_FALSE(store.find("k"));
+  EXPECT_FALSE(fs::exists(file));
+  store.keep("k", "some bytes");
+  std::ofstream(file, std::ios::binary | std::ios::trunc) << "short";
+  EXPECT_FALSE(store.find("k"));
+}
+
+TEST(ResultStore, KeepsToItsLimitAndDropsWhatWasNotUsedForLongest) {
+  const TemporaryFolder folder;
+  ResultStore store(folder.path(), 300);
+  const std::string block(80, 'x');  // 96 bytes on the disk
+  const auto age = [&](const std::string& key, int minutes) {
+    fs::last_write_time(folder.path() / (key + ".result"),
+                        fs::file_time_type::clock::now() - std::chrono::minutes(minutes));
+  };
+  for (const char* key : {"a", "b", "c"}) store.keep(key, block);
+  age("a", 3);
+  age("b", 2);
+  age("c", 1);
+  EXPECT_TRUE(store.find("a"));  // used now
+  store.keep("d", block);
+  EXPECT_FALSE(store.find("b"));
+  for (const char* key : {"a", "c", "d"}) EXPECT_TRUE(store.find(key)) << key;
+  store.keep("large", std::string(400, 'x'));
+  EXPECT_EQ(files_in(folder.path()), 3U);
+}
+
+TEST(ResultStore, AFolderThatCannotBeWrittenIsNoTrouble) {
+  const TemporaryFolder folder;
+  write_file_atomically(folder.path() / "file", "", {});
+  ResultStore store(folder.path() / "file" / "results");
+  EXPECT_NO_THROW(store.keep("k", "bytes"));
+  EXPECT_FALSE(store.find("k"));
+}
+
+// A wrap is made once: replay, opening and undo find it, and bytes are those of a run without a store.
+class KeptWraps : public DocumentTest {
+ protected:
+  ~KeptWraps() override { keep_results_in(nullptr); }
+  void bend(Document& document) const {
+    import(document);
+    act(document,
+        R"({"op": "cage", "node": "ball", "wrap": 0.3, "moves": [{"points": [0, 3], "translate": [0.2, 0, 0]}]})");
+  }
+};
+
+TEST_F(KeptWraps, AreFoundByReplayOpeningAndUndo) {
+  Document without;
+  bend(without);
+  const auto bytes = exported(without.scene());
+  const auto store = std::make_shared<ResultStore>(path("results"));
+  keep_results_in(store);
+  Document first;
+  bend(first);
+  EXPECT_EQ(store->found(), 0U);
+  EXPECT_EQ(files_in(path("results")), 1U);
+  first.save(path("p.rebake"));
+  EXPECT_EQ(exported(Document::open(path("p.rebake")).scene()), bytes);
+  EXPECT_EQ(store->found(), 1U);
+  Document again({}, 1);  // keeps no scenes: redo computes
+  bend(again);
+  again.undo();
+  again.redo();
+  EXPECT_EQ(exported(again.scene()), bytes);
+  EXPECT_GE(store->found(), 3U);
+  // Another wrap is another result; what is no cage is made again.
+  const auto file = fs::directory_iterator(path("results"))->path();
+  const std::string key = file.stem().string();
+  store->keep(key, "no cage");
+  Document mended;
+  bend(mended);
+  EXPECT_EQ(exported(mended.scene()), bytes);
+}
+
+}  // namespace
+}  // namespace rebake::test
