@@ -14,7 +14,7 @@ namespace rebake {
 
 namespace {
 
-struct Options {
+struct Recovery {
   std::string journal, out;
   std::vector<std::string> sources;
   bool keep = false, replace = false;
@@ -36,7 +36,7 @@ bool holds_project(const std::filesystem::path& path) {
   return read_file(path).find("\"rebake_project\"") != std::string::npos;
 }
 
-void execute(const Options& options) {
+void recover(const Recovery& options) {
   if (!options.out.ends_with(".rebake")) throw FieldError("--out", "must end in .rebake, by which projects are known");
   std::error_code error;
   if (std::filesystem::equivalent(options.out, options.journal, error))
@@ -79,13 +79,13 @@ void execute(const Options& options) {
 }  // namespace
 
 void describe_recover(CommandDescription& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<Recovery>();
   command.option("journal", options->journal, "journal that run --journal or the editor kept", "JOURNAL").required();
   command.option("-o,--out", options->out, "project to write", "FILE.rebake").required();
   command.option("--source", options->sources, "where a source lies now that was moved", "OLD=NEW...");
   command.flag("--replace", options->replace, "replace a project that is there already");
   command.flag("--keep", options->keep, "leave the journal where it is");
-  command.does([options] { execute(*options); });
+  command.does([options] { recover(*options); });
 }
 
 }  // namespace rebake

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Options {
+struct Rendering {
   std::vector<std::string> folders;
   std::string out;
   std::string axes = "360";
@@ -68,7 +68,7 @@ void print_times(const json& times) {
              times.at("peak_gpu_bytes").get<double>() / 1e6);
 }
 
-void execute(const Options& options) {
+void render(const Rendering& options) {
   if (options.out.empty() && !options.plan && options.time == 0)
     throw FieldError("-o", "is missing: name a PNG to write (or give --plan or --time)");
   if (!options.out.empty() && std::filesystem::path(options.out).extension() == ".jpg")
@@ -104,7 +104,7 @@ void execute(const Options& options) {
 }  // namespace
 
 void describe_render(CommandDescription& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<Rendering>();
   command.option("folders", options->folders, "what to draw, together in one scene", "FOLDER|SCENE...").required();
   command.option("-o,--out", options->out, "PNG to write", "OUT.png");
   options->view.add_to(command);
@@ -112,7 +112,7 @@ void describe_render(CommandDescription& command) {
   command.flag("--plan", options->plan, "print which passes run, which do not, and why");
   command.option("--time", options->time, "time this many frames", "N").between(1, 100000);
   command.flag("--json", options->json, "plan and times as JSON");
-  command.does([options] { execute(*options); });
+  command.does([options] { render(*options); });
 }
 
 }  // namespace rebake

@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int version = 2;
-constexpr std::size_t digits = 16;
+constexpr int journal_version = 2;
+constexpr std::size_t checksum_digits = 16;
 
 std::string line_of(const json& entry) {
   std::string text;
@@ -45,10 +45,10 @@ std::string first_line(int of) { return line_of({{"rebake_journal", of}}); }
 
 // The JSON behind a line's checksum, where that is right.
 std::optional<json> whole(std::string_view line) {
-  if (line.size() <= digits + 1 || line[digits] != ' ' ||
-      hash_text(content_hash(line.substr(digits + 1))) != line.substr(0, digits))
+  if (line.size() <= checksum_digits + 1 || line[checksum_digits] != ' ' ||
+      hash_text(content_hash(line.substr(checksum_digits + 1))) != line.substr(0, checksum_digits))
     return std::nullopt;
-  json entry = json::parse(line.substr(digits + 1), nullptr, false);
+  json entry = json::parse(line.substr(checksum_digits + 1), nullptr, false);
   return entry.is_object() ? std::optional(std::move(entry)) : std::nullopt;
 }
 
@@ -56,7 +56,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
   Parsed parsed;
   Journal::Contents& contents = parsed.contents;
   // A piece of a first line: the journal was being begun.
-  for (const int of : {1, version})
+  for (const int of : {1, journal_version})
     if (bytes.size() < first_line(of).size() && first_line(of).starts_with(bytes)) {
       contents.torn = true;
       return parsed;
@@ -70,7 +70,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
     begin = ends ? end + 1 : bytes.size();
     if (number == 0 && entry && entry->contains("rebake_journal")) {
       const json& of = entry->at("rebake_journal");
-      if (!of.is_number_unsigned() || of.get<std::uint64_t>() > version)
+      if (!of.is_number_unsigned() || of.get<std::uint64_t>() > journal_version)
         throw FileError(path, "was written by a newer version of Rebake; open it with that one");
       parsed.begun = true;
       parsed.good_bytes = begin;
@@ -117,7 +117,7 @@ class Journal::File {
     damaged_ = parsed.contents.damaged_line != 0;
     if (damaged_) return std::move(parsed.contents);
     if (file_calls().ftruncate(descriptor_.value, static_cast<off_t>(end_)) != 0) fail();
-    if (!parsed.begun) append({json{{"rebake_journal", version}}});
+    if (!parsed.begun) append({json{{"rebake_journal", journal_version}}});
     return std::move(parsed.contents);
   }
 
@@ -182,7 +182,7 @@ Journal& Journal::operator=(Journal&&) noexcept = default;
 
 Journal Journal::create(const fs::path& path, const std::vector<json>& entries) {
   Journal journal(std::make_unique<File>(path, O_WRONLY | O_CREAT | O_EXCL));
-  std::vector<json> lines{json{{"rebake_journal", version}}};
+  std::vector<json> lines{json{{"rebake_journal", journal_version}}};
   lines.insert(lines.end(), entries.begin(), entries.end());
   try {
     journal.file_->append(lines);

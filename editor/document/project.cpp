@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int version = 2;
+constexpr int project_version = 2;
 
 std::string checksum(json root) {
   root.erase("checksum");
@@ -34,7 +34,7 @@ fs::path source_path(const fs::path& folder, const json& name, const Relinked& l
 void check_form(const fs::path& path, const json& root) {
   if (!root.is_object() || !root.contains("rebake_project")) throw FileError(path, "is not a project of Rebake");
   const json& of = root.at("rebake_project");
-  if (!of.is_number_unsigned() || of.get<std::uint64_t>() > version)
+  if (!of.is_number_unsigned() || of.get<std::uint64_t>() > project_version)
     throw FileError(path, "was written by a newer version of Rebake; open it with that one");
   for (const auto& [key, value] : root.items())
     if (key != "rebake_project" && key != "sources" && key != "edits" && key != "joined" && key != "checksum")
@@ -56,7 +56,7 @@ bool is_project_file(const fs::path& path) {
 void write_project(const fs::path& path, const std::vector<Edit>& edits, const std::vector<bool>& joined,
                    const SourceGuard& guard, const Progress& progress) {
   const fs::path folder = real_folder_of(path);
-  json root = {{"rebake_project", version}, {"sources", json::array()}, {"edits", json::array()}};
+  json root = {{"rebake_project", project_version}, {"sources", json::array()}, {"edits", json::array()}};
   for (std::size_t k = 0; k < edits.size(); ++k) {
     progress.at("saving", static_cast<double>(k) / static_cast<double>(edits.size()));
     root["edits"].push_back(to_json(edits[k]));

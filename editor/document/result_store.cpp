@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t digits = 16;  // of the checksum that a file begins with
+constexpr std::size_t header_bytes = 16;  // of the checksum that a file begins with
 constexpr const char* extension = ".result";
 
 }  // namespace
@@ -41,21 +41,21 @@ std::optional<std::string> ResultStore::find(const std::string& key) {
   if (!fs::is_regular_file(path, error)) return std::nullopt;
   try {
     std::string bytes = read_file(path);
-    if (bytes.size() < digits ||
-        hash_text(content_hash(std::string_view(bytes).substr(digits))) != bytes.substr(0, digits)) {
+    if (bytes.size() < header_bytes ||
+        hash_text(content_hash(std::string_view(bytes).substr(header_bytes))) != bytes.substr(0, header_bytes)) {
       fs::remove(path, error);
       return std::nullopt;
     }
     fs::last_write_time(path, fs::file_time_type::clock::now(), error);
     ++found_;
-    return bytes.substr(digits);
+    return bytes.substr(header_bytes);
   } catch (const FileError&) {
     return std::nullopt;  // another program removed it
   }
 }
 
 void ResultStore::keep(const std::string& key, std::string_view bytes) {
-  if (bytes.size() + digits > limit_) return;
+  if (bytes.size() + header_bytes > limit_) return;
   const std::scoped_lock lock(mutex_);
   try {
     std::error_code error;

@@ -1,8 +1,12 @@
 #include <fmt/format.h>
+#include <getopt.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
 #include <chrono>
-#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/export.h"
@@ -61,22 +65,52 @@ double make(const Model& model, const std::filesystem::path& out, const BakeOpti
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"Bakes the sample scenes and compares 20 held-out views of each with the traced truth.",
-                   "rebake_bakery"};
+  constexpr const char* usage =
+      "Bakes the sample scenes and compares 20 held-out views of each with the traced truth.\n"
+      "Usage: rebake_bakery -o FOLDER [--epochs N] [--pictures FOLDER] [ficus] [kettle] [courtyard] [shelf]\n"
+      "  -o, --out FOLDER    folder for the baked scenes\n"
+      "  --epochs N          passes of the fit\n"
+      "  --pictures FOLDER   also write some held-out views there, baked and true\n"
+      "Without names, all are baked.\n";
+  const option long_options[] = {{"out", required_argument, nullptr, 'o'},
+                                 {"epochs", required_argument, nullptr, 'e'},
+                                 {"pictures", required_argument, nullptr, 'p'},
+                                 {"help", no_argument, nullptr, 'h'},
+                                 {nullptr, 0, nullptr, 0}};
+  const auto refuse = [&](const std::string& why) {
+    fmt::print(stderr, "error: {}\n{}", why, usage);
+    return 2;
+  };
   std::string out, pictures;
-  std::vector<std::string> names;
   BakeOptions options;
-  program.add_option("-o,--out", out, "folder for the baked scenes")->required();
-  program.add_option("names", names, "ficus, kettle, courtyard, shelf; none: all")
-      ->check(CLI::IsMember({"ficus", "kettle", "courtyard", "shelf"}));
-  program.add_option("--epochs", options.epochs, "passes of the fit")->capture_default_str();
-  program.add_option("--pictures", pictures, "also write some held-out views there, baked and true");
-  CLI11_PARSE(program, argc, argv);
+  for (int letter; (letter = getopt_long(argc, argv, "o:h", long_options, nullptr)) != -1;) {
+    if (letter == 'o') {
+      out = optarg;
+    } else if (letter == 'p') {
+      pictures = optarg;
+    } else if (letter == 'e') {
+      const std::string_view text = optarg;
+      const auto [end, error] = std::from_chars(text.begin(), text.end(), options.epochs);
+      if (error != std::errc() || end != text.end() || options.epochs < 1)
+        return refuse("--epochs must be a whole number of at least 1");
+    } else if (letter == 'h') {
+      fmt::print("{}", usage);
+      return 0;
+    } else {
+      return refuse("see above");
+    }
+  }
+  const std::vector<std::string> names(argv + optind, argv + argc);
+  if (out.empty()) return refuse("--out is missing");
   try {
+    const std::vector<Model> models{ficus(), kettle(), courtyard(), shelf()};
+    for (const std::string& name : names)
+      if (std::none_of(models.begin(), models.end(), [&](const Model& model) { return model.name == name; }))
+        return refuse("\"" + name + "\" is no sample");
     if (!pictures.empty()) std::filesystem::create_directories(pictures);
     double sum = 0;
     int count = 0;
-    for (const Model& model : {ficus(), kettle(), courtyard(), shelf()}) {
+    for (const Model& model : models) {
       if (!names.empty() && std::find(names.begin(), names.end(), model.name) == names.end()) continue;
       sum += make(model, out, options, pictures);
       ++count;

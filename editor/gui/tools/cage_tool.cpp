@@ -13,7 +13,7 @@ namespace rebake {
 
 namespace {
 
-constexpr double grab_pixels = 10;
+constexpr double cage_grab_pixels = 10;
 
 }  // namespace
 
@@ -137,7 +137,7 @@ void CageTool::preview(Desk& desk) {
 
 int CageTool::point_at(const Lens& lens, const Vec2& at) const {
   int found = -1;
-  double least = grab_pixels;
+  double least = cage_grab_pixels;
   for (std::size_t v = 0; v < moved_.size(); ++v)
     if (const auto pixel = lens.pixel(moved_[v]); pixel && (*pixel - at).norm() < least) {
       least = (*pixel - at).norm();

@@ -13,7 +13,7 @@ namespace rebake {
 
 namespace {
 
-constexpr double handle_pixels = 90, grab_pixels = 9;
+constexpr double handle_pixels = 90, gizmo_grab_pixels = 9;
 constexpr ImU32 axis_colors[] = {IM_COL32(235, 70, 70, 255), IM_COL32(100, 200, 60, 255), IM_COL32(70, 130, 245, 255),
                                  IM_COL32(235, 235, 235, 255)};
 
@@ -78,9 +78,9 @@ double Gizmo::reach(const Lens& lens, const Vec3& pivot) { return handle_pixels 
 int Gizmo::handle_at(const Target& target, const Lens& lens, const Vec2& at) const {
   const auto middle = lens.pixel(target.pivot);
   if (!middle) return none;
-  if (kind_ != ToolKind::turn && (*middle - at).norm() < grab_pixels) return all;
+  if (kind_ != ToolKind::turn && (*middle - at).norm() < gizmo_grab_pixels) return all;
   int found = none;
-  double least = grab_pixels;
+  double least = gizmo_grab_pixels;
   for (int axis = 0; axis < (kind_ == ToolKind::turn ? 4 : 3); ++axis) {
     const std::vector<Vec2> line =
         outline(kind_, target.pivot, target.axis(axis), reach(lens, target.pivot), lens, axis);
