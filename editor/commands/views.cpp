@@ -74,7 +74,8 @@ std::optional<std::string> why_blank(const Scene& scene, const View& view, const
   const double near = view.camera.near_plane, far = view.camera.far_plane;
   if (box.max().z() <= 0) return nothing + "the scene lies behind the camera";
   // Planes are to blame only for what would be in the picture.
-  if (seen.isEmpty()) return nothing + "the scene may lie beside what the camera sees; aim it at its target, or widen it";
+  if (seen.isEmpty())
+    return nothing + "the scene may lie beside what the camera sees; aim it at its target, or widen it";
   if (seen.min().z() >= far)
     return nothing + fmt::format("the scene begins {:.3g} away, beyond the far plane at {:.3g}", seen.min().z(), far);
   if (seen.max().z() <= near)
