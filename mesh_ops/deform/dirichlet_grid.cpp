@@ -98,7 +98,7 @@ DirichletGrid::DirichletGrid(const Cage& surface, int resolution, const Progress
   for (const Vec3& v : surface.vertices) vertices.emplace_back((v - origin_) / step_);
   distance_.assign(nodes, std::numeric_limits<float>::infinity());
   nearest_.assign(nodes, none);
-  find_distances(vertices, surface.faces);
+  find_distances(vertices, surface.faces, progress);
   const std::vector<std::uint8_t> inside = find_inside(vertices, surface.faces, progress);
   GridDomain domain;
   domain.size = size_;
@@ -108,13 +108,15 @@ DirichletGrid::DirichletGrid(const Cage& surface, int resolution, const Progress
       domain.slot_of[node] = static_cast<std::uint32_t>(domain.node_of.size());
       domain.node_of.push_back(static_cast<std::uint32_t>(node));
     }
-  cut_links(domain, vertices, surface.faces);
+  cut_links(domain, vertices, surface.faces, progress);
   multigrid_ = std::make_unique<GridMultigrid>(std::move(domain));
   continue_outwards(vertices, surface.faces, progress);
 }
 
-void DirichletGrid::find_distances(const std::vector<Vec3>& vertices, const std::vector<Face>& faces) {
+void DirichletGrid::find_distances(const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
+                                   const Progress& progress) {
   for (std::uint32_t number_of_face = 0; number_of_face < faces.size(); ++number_of_face) {
+    progress.at(task, 0);
     const Face& face = faces[number_of_face];
     const Vec3 &a = vertices[face[0]], &b = vertices[face[1]], &c = vertices[face[2]];
     std::array<int, 3> low, high;
@@ -181,7 +183,8 @@ std::vector<std::uint8_t> DirichletGrid::find_inside(const std::vector<Vec3>& ve
   return inside;
 }
 
-void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& vertices, const std::vector<Face>& faces) {
+void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
+                              const Progress& progress) {
   // Where lines of the grid meet faces. A line through an edge meets both of its faces, rather than neither.
   struct Hit {
     std::size_t node;
@@ -194,7 +197,8 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
     if (domain.slot_of[static_cast<std::size_t>(node)] != none)
       hits.push_back({static_cast<std::size_t>(node), direction, std::max(share, least_cut), point});
   };
-  for (std::uint32_t f = 0; f < faces.size(); ++f)
+  for (std::uint32_t f = 0; f < faces.size(); ++f) {
+    progress.at(task, 0);
     for (int axis = 0; axis < 3; ++axis) {
       const int right = (axis + 1) % 3, up = (axis + 2) % 3;
       const std::array<const Vec3*, 3> corners{&vertices[faces[f][0]], &vertices[faces[f][1]], &vertices[faces[f][2]]};
@@ -244,6 +248,7 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
           }
         }
     }
+  }
   // Where rounding hid what lies between a node inside and one outside: the surface beside the nearer.
   std::vector<std::uint8_t> cut(domain.node_of.size() * grid_directions, 0);
   for (const Hit& hit : hits) cut[domain.slot_of[hit.node] * grid_directions + hit.direction] = 1;
@@ -374,7 +379,7 @@ std::vector<DirichletGrid::Term> DirichletGrid::continuation(const Outer& outer,
 }
 
 void DirichletGrid::solve(const std::vector<GridLanes>& surface_values, std::vector<GridLanes>& values,
-                          const Progress& progress) {
+                          const std::function<void()>& check_stop) {
   const GridDomain& domain = multigrid_->domain();
   const std::size_t inside = inside_nodes();
   std::vector<GridLanes> right(inside, GridLanes::Zero());
@@ -383,7 +388,7 @@ void DirichletGrid::solve(const std::vector<GridLanes>& surface_values, std::vec
       if (const std::uint32_t point = cut_points_[row][direction]; point != none)
         right[domain.cut_slots[row]] += multigrid_->surface_coefficient(row, direction) * surface_values[point];
   values.resize(nodes());
-  const std::vector<GridLanes>& solved = multigrid_->solve(right, progress);
+  const std::vector<GridLanes>& solved = multigrid_->solve(right, check_stop);
   std::copy(solved.begin(), solved.begin() + static_cast<std::ptrdiff_t>(inside), values.begin());
   tbb::parallel_for(std::size_t{0}, outer_.size(), [&](std::size_t k) {
     GridLanes sum = GridLanes::Zero();

@@ -20,7 +20,8 @@ struct SurfacePoint {
 /// Functions that are harmonic inside a closed surface and have given values on it, on a regular grid. Nodes inside
 /// solve Laplace's equation (see GridMultigrid); those outside that cells of inside points use continue the function
 /// linearly from the surface. Values inside and up to the surface are right to second order in the step; linear
-/// functions are exact everywhere.
+/// functions are exact everywhere. Where two parts of the surface lie less than a step apart, points between the last
+/// nodes take from both.
 class DirichletGrid {
  public:
   /// `resolution` cells along the longest side of the surface's box.
@@ -31,7 +32,10 @@ class DirichletGrid {
   /// Nodes inside and those outside that cells of inside points use.
   std::size_t nodes() const { return inside_nodes() + outer_.size(); }
   /// `surface_values` one a point of surface(), `values` one a node. Those of lonely() nodes are zero.
-  void solve(const std::vector<GridLanes>& surface_values, std::vector<GridLanes>& values, const Progress& progress);
+  /// `check_stop` is called now and then, and may throw.
+  void solve(
+      const std::vector<GridLanes>& surface_values, std::vector<GridLanes>& values,
+      const std::function<void()>& check_stop = [] {});
 
   /// Of the nodes, how many lie inside: the first ones. The others' values are continued.
   std::size_t inside_nodes() const { return multigrid_->domain().node_of.size(); }
@@ -60,10 +64,11 @@ class DirichletGrid {
 
   std::size_t number(int x, int y, int z) const;
   Vec3 place_of(std::size_t node) const;  ///< in steps
-  void find_distances(const std::vector<Vec3>& vertices, const std::vector<Face>& faces);
+  void find_distances(const std::vector<Vec3>& vertices, const std::vector<Face>& faces, const Progress& progress);
   std::vector<std::uint8_t> find_inside(const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
                                         const Progress& progress) const;
-  void cut_links(GridDomain& domain, const std::vector<Vec3>& vertices, const std::vector<Face>& faces);
+  void cut_links(GridDomain& domain, const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
+                 const Progress& progress);
   void continue_outwards(const std::vector<Vec3>& vertices, const std::vector<Face>& faces, const Progress& progress);
   std::vector<Term> continuation(const Outer& outer, double reach, const std::vector<Vec3>& surface_places) const;
 

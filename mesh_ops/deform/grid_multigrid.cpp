@@ -5,6 +5,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "mesh_ops/base/error.h"
@@ -201,12 +202,16 @@ void GridMultigrid::add_correction(std::size_t number) {
     GridLanes sum = GridLanes::Zero();
     double share = 1;
     for (const int a : at) share *= a % 2 == 0 ? 1 : 0.5;
-    for (int z = at[2] / 2; z <= (at[2] + 1) / 2; ++z)
-      for (int y = at[1] / 2; y <= (at[1] + 1) / 2; ++y)
-        for (int x = at[0] / 2; x <= (at[0] + 1) / 2; ++x) {
-          const std::uint32_t from =
-              coarse.domain
-                  .slot_of[static_cast<std::size_t>((z * coarse.domain.size[1] + y) * coarse.domain.size[0] + x)];
+    // Behind the last coarse node lies none inside.
+    const auto last = [&](std::size_t axis) { return std::min((at[axis] + 1) / 2, coarse.domain.size[axis] - 1); };
+    for (int z = at[2] / 2; z <= last(2); ++z)
+      for (int y = at[1] / 2; y <= last(1); ++y)
+        for (int x = at[0] / 2; x <= last(0); ++x) {
+          const std::size_t node = (static_cast<std::size_t>(z) * static_cast<std::size_t>(coarse.domain.size[1]) +
+                                    static_cast<std::size_t>(y)) *
+                                       static_cast<std::size_t>(coarse.domain.size[0]) +
+                                   static_cast<std::size_t>(x);
+          const std::uint32_t from = coarse.domain.slot_of[node];
           if (from != GridDomain::none) sum += coarse.values[from];
         }
     fine.values[slot] += share * sum;
@@ -235,7 +240,8 @@ double GridMultigrid::cycle(std::size_t number) {
   return left;
 }
 
-const std::vector<GridLanes>& GridMultigrid::solve(const std::vector<GridLanes>& right, const Progress& progress) {
+const std::vector<GridLanes>& GridMultigrid::solve(const std::vector<GridLanes>& right,
+                                                   const std::function<void()>& check_stop) {
   Level& finest = levels_.front();
   double scale = 0;
   for (std::size_t slot = 0; slot < right.size(); ++slot) {
@@ -244,9 +250,14 @@ const std::vector<GridLanes>& GridMultigrid::solve(const std::vector<GridLanes>&
     const std::uint32_t row = finest.domain.cuts_of[slot];
     if (row != GridDomain::none) scale = std::max(scale, right[slot].abs().maxCoeff() * 6 / finest.rows[row].diagonal);
   }
+  double before = std::numeric_limits<double>::infinity();
   for (int done = 0; done < most_cycles; ++done) {
-    progress.at("harmonic coordinates", 0);
-    if (cycle(0) <= converged * scale) return finest.values;
+    check_stop();
+    const double left = cycle(0);
+    if (left <= converged * scale) return finest.values;
+    // As near as rounding lets it come.
+    if (left <= 100 * converged * scale && left > before / 2) return finest.values;
+    before = left;
   }
   throw Error("the harmonic coordinates did not converge; try another resolution");
 }

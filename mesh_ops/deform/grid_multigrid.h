@@ -3,10 +3,9 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
-
-#include "mesh_ops/base/progress.h"
 
 namespace rebake {
 
@@ -51,8 +50,9 @@ class GridMultigrid {
   double surface_coefficient(std::size_t row, std::size_t direction) const {
     return levels_.front().rows[row].links[direction];
   }
-  /// `right` and the result: one a slot. Throws Error where it does not converge, which no closed surface has shown.
-  const std::vector<GridLanes>& solve(const std::vector<GridLanes>& right, const Progress& progress);
+  /// `right` and the result: one a slot. `check_stop` is called now and then, and may throw. Throws Error where it does
+  /// not converge, which no closed surface has shown.
+  const std::vector<GridLanes>& solve(const std::vector<GridLanes>& right, const std::function<void()>& check_stop);
 
  private:
   struct Row {

@@ -12,8 +12,9 @@ namespace rebake {
 
 namespace {
 
-// A weight for every cage point at every node that cells inside use.
-constexpr double most_bytes = 2e9;
+// A weight for every cage point at every node that cells inside use, and what the solver takes for eight at a time.
+constexpr double most_bytes = 6e9;
+constexpr double solver_bytes = 450;  // a node
 
 // Weights are linear on every face and harmonic inside.
 class Harmonic final : public Coordinates {
@@ -39,7 +40,8 @@ class Harmonic final : public Coordinates {
           if (lane < grid_lanes) surface[k][static_cast<Eigen::Index>(lane)] += point.corners[corner];
         }
       }
-      grid_->solve(surface, values, progress);
+      const double share = static_cast<double>(first) / static_cast<double>(rows());
+      grid_->solve(surface, values, [&] { progress.at("harmonic coordinates", share); });
       const std::size_t lanes = std::min(grid_lanes, rows() - first);
       for (std::size_t node = 0; node < values.size(); ++node)
         std::copy_n(values[node].data(), lanes, &values_[node * rows() + first]);
@@ -83,7 +85,7 @@ class Harmonic final : public Coordinates {
 
  private:
   void check_memory(int resolution, double nodes) const {
-    const double bytes = nodes * static_cast<double>(rows() * sizeof(double));
+    const double bytes = nodes * (static_cast<double>(rows() * sizeof(double)) + solver_bytes);
     if (bytes > most_bytes)
       throw FieldError("resolution",
                        fmt::format("{} would need {:.1f} GB for this cage, {:.0f} at most; choose a lower one or a "

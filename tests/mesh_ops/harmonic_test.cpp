@@ -31,7 +31,7 @@ GridErrors grid_errors(const Cage& cage, int resolution, double (*function)(cons
     for (std::size_t k = 0; k < 3; ++k) place += point.corners[k] * cage.vertices[cage.faces[point.face][k]];
     surface.push_back(GridLanes::Constant(function(place)));
   }
-  grid.solve(surface, values, {});
+  grid.solve(surface, values);
   GridErrors errors;
   for (std::size_t node = 0; node < grid.inside_nodes(); ++node)
     errors.nodes = std::max(errors.nodes, std::abs(values[node][3] - function(grid.place(node))));
@@ -78,6 +78,24 @@ TEST(Harmonic, SecondOrderUpToTheSurface) {
       if (function == waves) {
         EXPECT_LE(fine.nodes, coarse.nodes / 11) << name;
       }
+    }
+}
+
+// Coarse grids end where fine ones do, wherever that is: every number of cells along every axis.
+TEST(Harmonic, BoxesOfEveryNumberOfCells) {
+  constexpr int most = 40;
+  const auto look = [](const Vec3& size) {
+    const Cage box = lattice_cage(Box(Vec3(0, 0, 0), size), 1, 1, 1);
+    const CoordinateErrors errors = errors_of(*harmonic_coordinates(box, most), box, {size / 2, size / 3, size * 0.9});
+    EXPECT_LE(errors.sum, 1e-12) << size.transpose();
+    EXPECT_LE(errors.linear, 1e-12) << size.transpose();
+  };
+  for (int cells = 8; cells <= most; ++cells)
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 size = Vec3::Constant(17.0 / most);
+      size[(axis + 1) % 3] = 1;
+      size[axis] = (cells - 0.01) / most;
+      look(size);
     }
 }
 
