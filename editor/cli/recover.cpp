@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -26,7 +25,8 @@ Relinked links_of(const std::vector<std::string>& pairs) {
     const std::size_t equals = pair.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == pair.size())
       throw FieldError("--source", "\"" + pair + "\" must be OLD=NEW");
-    links[pair.substr(0, equals)] = pair.substr(equals + 1);
+    if (!links.emplace(absolute_path(pair.substr(0, equals)), pair.substr(equals + 1)).second)
+      throw FieldError("--source", "\"" + pair.substr(0, equals) + "\" is given twice");
   }
   return links;
 }
@@ -47,13 +47,18 @@ void recover(const Recovery& options) {
     throw FileError(options.out, "is there already; choose another name, or --replace it");
   Document::Recovered recovered = Document::recover(options.journal, links_of(options.sources), progress_bar());
   // A project of nothing would stand in the way of the next attempt.
-  const bool nothing = recovered.edits == 0 && recovered.document.history().redo_count() == 0;
+  const bool nothing = recovered.edits == 0;
   if (!nothing) recovered.document.save(options.out, progress_bar());
   clear_progress_bar();
+  const std::size_t undone = recovered.document.history().redo_count();
   if (nothing && recovered.lost.empty())
-    throw FileError(options.journal, "holds no edit, so no project is written; remove it if nothing is missed");
-  fmt::print("{} edits recovered{}\n", recovered.edits,
+    throw FileError(options.journal, undone > 0 ? "holds only edits that were undone, so no project is written"
+                                     : recovered.torn
+                                         ? "holds no whole edit: the first was being written when the program ended"
+                                         : "holds no edit, so no project is written; remove it if nothing is missed");
+  fmt::print("{} {} recovered{}\n", recovered.edits, recovered.edits == 1 ? "edit" : "edits",
              nothing ? "; no project is written" : " into " + printable(options.out));
+  if (undone > 0) say_line(fmt::format("note: {} that were undone are not part of a project", undone));
   if (recovered.nameless) say_line("note: the journal's first line is damaged; all behind it is whole");
   if (recovered.torn) say_line("note: one more edit was being written when the program ended; it is lost");
   if (recovered.lost.empty()) {
@@ -66,10 +71,7 @@ void recover(const Recovery& options) {
     return;
   }
   say_line("the journal stays where it is, since this could not be got back:");
-  constexpr std::size_t most_lines = 20;
-  for (std::size_t k = 0; k < std::min(most_lines, recovered.lost.size()); ++k) say_line("  " + recovered.lost[k]);
-  if (recovered.lost.size() > most_lines)
-    say_line(fmt::format("  and {} more edits behind these", recovered.lost.size() - most_lines));
+  for (const std::string& lost : recovered.first_lost()) say_line("  " + lost);
   for (const SourcesGone::Source& source : recovered.gone)
     say_line(fmt::format("if {} lies elsewhere now: --source '{}=NEW'", source.path.filename().string(),
                          source.path.string()));

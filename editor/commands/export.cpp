@@ -93,6 +93,7 @@ void say_losses(Session& session, const ExportAction& action, const ExportReport
 }  // namespace
 
 void run(Session& session, const ExportAction& action) {
+  if (action.out.empty()) throw FieldError("out", "is empty");
   std::error_code error;
   const bool replaces = std::filesystem::exists(action.out, error);
   const ExportReport report =

@@ -9,6 +9,7 @@
 namespace rebake {
 
 void run(Session& session, const SaveAction& action) {
+  if (action.out.empty()) throw FieldError("out", "is empty");
   const ExportReport report =
       format_named("rebake").write(session.scene(), action.out, {{}, session.document.sources()}, session.progress);
   for (const std::string& note : report.notes) session.say("note: " + note);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "editor/document/project.h"
@@ -126,6 +127,13 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
   else
     result.journal = std::move(journal);
   return result;
+}
+
+std::vector<std::string> Document::Recovered::first_lost() const {
+  constexpr std::size_t most = 20;
+  std::vector<std::string> lines(lost.begin(), lost.begin() + static_cast<std::ptrdiff_t>(std::min(most, lost.size())));
+  if (lost.size() > most) lines.push_back(fmt::format("and {} more behind these", lost.size() - most));
+  return lines;
 }
 
 SourceGuard Document::sources() const {

@@ -67,7 +67,9 @@ struct Document::Recovered {
   bool torn = false;              ///< an edit was being written when the program ended: it is lost
   std::vector<std::string> lost;  ///< what could not be got back, a sentence each
   std::vector<SourcesGone::Source> gone;  ///< sources that it wants, and that are not as they were
-  std::optional<Journal> journal;         ///< the file itself, where the document does not go on writing it
+  /// The first of `lost`, and how many more there are.
+  std::vector<std::string> first_lost() const;
+  std::optional<Journal> journal;  ///< the file itself, where the document does not go on writing it
 };
 
 }  // namespace rebake

@@ -1,6 +1,7 @@
 #include "editor/document/result_store.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <utility>
 #include <vector>
@@ -49,7 +50,7 @@ std::optional<std::string> ResultStore::find(const std::string& key) {
     fs::last_write_time(path, fs::file_time_type::clock::now(), error);
     ++found_;
     return bytes.substr(header_bytes);
-  } catch (const FileError&) {
+  } catch (const std::exception&) {
     return std::nullopt;  // another program removed it
   }
 }
@@ -62,7 +63,7 @@ void ResultStore::keep(const std::string& key, std::string_view bytes) {
     fs::create_directories(folder_, error);
     write_file_atomically(folder_ / (key + extension), hash_text(content_hash(bytes)) + std::string(bytes), {});
     fit_limit();
-  } catch (const FileError&) {
+  } catch (const std::exception&) {
     // A full disk or a folder that nobody may write: it is made again next time.
   }
 }
@@ -76,11 +77,18 @@ void ResultStore::fit_limit() const {
   std::vector<Kept> files;
   std::uint64_t total = 0;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
+  for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
+    const fs::directory_entry& entry = *at;
+    std::error_code gone;
+    const auto used = entry.last_write_time(gone);
+    // What a killed program was writing; nobody writes for an hour.
+    if (!gone && entry.path().extension() == ".partial" &&
+        fs::file_time_type::clock::now() - used > std::chrono::hours(1))
+      fs::remove(entry.path(), gone);
     if (entry.path().extension() != extension) continue;
-    const std::uint64_t bytes = entry.file_size(error);
-    if (error) continue;
-    files.push_back({entry.last_write_time(error), entry.path(), bytes});
+    const std::uint64_t bytes = entry.file_size(gone);
+    if (gone) continue;
+    files.push_back({used, entry.path(), bytes});
     total += bytes;
   }
   std::sort(files.begin(), files.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });

@@ -25,20 +25,33 @@ std::optional<fs::path> way_to(const fs::path& source, const fs::path& folder) {
 
 }  // namespace
 
+namespace {
+
+// The link that says most about where a source lies: the longest.
+const Relinked::value_type* link_for(const fs::path& source, const Relinked& links) {
+  const Relinked::value_type* chosen = nullptr;
+  for (const Relinked::value_type& link : links)
+    if (way_to(source, link.first) && (chosen == nullptr || way_to(link.first, chosen->first))) chosen = &link;
+  return chosen;
+}
+
+}  // namespace
+
 fs::path relinked(const fs::path& source, const Relinked& links) {
-  for (const auto& [from, to] : links)
-    if (const auto rest = way_to(source, from)) return *rest == "." ? absolute_path(to) : absolute_path(to) / *rest;
-  return source;
+  const Relinked::value_type* link = link_for(source, links);
+  if (link == nullptr) return source;
+  const fs::path way = *way_to(source, link->first);
+  return way == "." ? absolute_path(link->second) : absolute_path(link->second) / way;
 }
 
 void check_links(const Relinked& links, const std::vector<fs::path>& sources) {
-  for (const auto& [from, to] : links) {
+  for (const Relinked::value_type& link : links) {
     const bool used = std::any_of(sources.begin(), sources.end(),
-                                  [&](const fs::path& source) { return way_to(source, from).has_value(); });
+                                  [&](const fs::path& source) { return way_to(source, link.first).has_value(); });
     std::string known;
     for (const fs::path& source : std::set(sources.begin(), sources.end())) known += "\n  " + source.string();
     if (!used)
-      throw FieldError("source", fmt::format("nothing was imported from \"{}\"{}", from.string(),
+      throw FieldError("source", fmt::format("nothing was imported from \"{}\"{}", link.first.string(),
                                              known.empty() ? "" : "; these were:" + known));
   }
 }
@@ -55,6 +68,7 @@ std::string trouble_with(const fs::path& source, const std::string& content, con
 Edit completed(const Edit& edit) {
   if (!edit.is<Import>()) return edit;
   Import import = *edit.as<Import>();
+  if (import.path.empty()) throw FieldError("path", "is empty");
   import.path = absolute_path(import.path).string();
   std::error_code error;
   // What is not there is reported by the import itself.

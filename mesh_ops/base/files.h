@@ -14,8 +14,8 @@ namespace rebake {
 /// end.
 std::string read_file(const std::filesystem::path& path, std::uint64_t most = std::uint64_t{8} << 30);
 
-/// The absolute path without dots and a slash at the end. Links stay, but where ".." follows one: that leads up from
-/// what it points to.
+/// The absolute path without dots and a slash at the end. Links stay, but in a path with "..": there they are followed,
+/// since ".." leads up from what a link points to.
 std::filesystem::path absolute_path(const std::filesystem::path& path);
 
 /// What a person names as input: a regular file, or a pipe that ends within `most` bytes. Throws FileError.

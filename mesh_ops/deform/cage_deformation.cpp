@@ -68,7 +68,7 @@ DeformedPoints deform_points(const Coordinates& coordinates, const Cage& rest, c
                for (std::size_t lane = 0; lane < batch_lanes && block * batch_lanes + lane < order.size(); ++lane) {
                  const std::uint32_t point = order[block * batch_lanes + lane];
                  result.outside[point] = outside[lane];
-                 if (!points[point].allFinite()) continue;
+                 if (!points[point].allFinite() || outside[lane] != 0) continue;
                  Vec3 motion(0, 0, 0);
                  Mat3 jacobian = Mat3::Identity();
                  for (std::size_t row = 0; row < motions.size(); ++row) {
@@ -89,9 +89,12 @@ CageBinding::CageBinding(const Coordinates& coordinates, const Cage& rest, const
     : rest_(rest), coordinates_(coordinates), points_(points), order_(curve_order(points)) {
   if (points.empty()) return;
   weights_.resize(blocks_of(points.size()) * coordinates.rows() * batch_lanes);
+  outside_.resize(points.size());
   for_blocks(coordinates, points_, order_, false, progress,
              [&](std::size_t block, const std::vector<double>& weights, const std::vector<double>&,
-                 const std::array<std::uint8_t, batch_lanes>&) {
+                 const std::array<std::uint8_t, batch_lanes>& outside) {
+               for (std::size_t lane = 0; lane < batch_lanes && block * batch_lanes + lane < order_.size(); ++lane)
+                 outside_[order_[block * batch_lanes + lane]] = outside[lane];
                std::transform(weights.begin(), weights.end(),
                               weights_.begin() + static_cast<std::ptrdiff_t>(block * weights.size()),
                               [](double weight) { return static_cast<float>(weight); });
@@ -116,9 +119,10 @@ void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& o
                sums.data());
       for (std::size_t lane = 0; lane < batch_lanes && block * batch_lanes + lane < order_.size(); ++lane) {
         const std::uint32_t point = order_[block * batch_lanes + lane];
-        out[point] = points_[point] +
-                     (shift + Vec3(static_cast<double>(sums[lane]), static_cast<double>(sums[batch_lanes + lane]),
-                                   static_cast<double>(sums[2 * batch_lanes + lane])));
+        out[point] = points_[point];
+        if (outside_[point] != 0) continue;
+        out[point] += (shift + Vec3(static_cast<double>(sums[lane]), static_cast<double>(sums[batch_lanes + lane]),
+                                    static_cast<double>(sums[2 * batch_lanes + lane])));
       }
     }
   });

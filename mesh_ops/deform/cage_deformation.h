@@ -36,8 +36,9 @@ class CageBinding {
   Cage rest_;
   const Coordinates& coordinates_;
   std::vector<Vec3> points_;
-  std::vector<std::uint32_t> order_;  ///< points along a space-filling curve
-  std::vector<float> weights_;        ///< a block of batch_lanes points: [row][lane]
+  std::vector<std::uint32_t> order_;   ///< points along a space-filling curve
+  std::vector<float> weights_;         ///< a block of batch_lanes points: [row][lane]
+  std::vector<std::uint8_t> outside_;  ///< a flag a point: it stays
 };
 
 /// Numbers of the points along a Z-order curve, so that what is processed together lies together.

@@ -3,6 +3,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
+#include <CGAL/version.h>
 #include <fmt/format.h>
 
 #include "mesh_ops/base/error.h"
@@ -73,5 +74,7 @@ Cage wrap(const TriangleList& triangles, double coarseness, const Progress& prog
   }
   return checked_cage(std::move(cage));
 }
+
+const char* wrap_version() { return "wrap1-cgal" CGAL_VERSION_STR; }
 
 }  // namespace rebake

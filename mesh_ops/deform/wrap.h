@@ -19,4 +19,7 @@ struct TriangleList {
 /// Triangles with a corner that is not finite are left out. Throws Error when none is left.
 Cage wrap(const TriangleList& triangles, double coarseness, const Progress& progress = {});
 
+/// What makes wraps: other versions of it may make others.
+const char* wrap_version();
+
 }  // namespace rebake

@@ -18,7 +18,7 @@ struct ExportOptions {
 
 struct ExportReport {
   bool keeps_everything = false;  ///< what is read back is the scene
-  bool one_folder = true;         ///< a plain MobileNeRF folder; else scene.json with `folders` folders
+  bool one_folder = true;         ///< MobileNeRF: a plain folder; else scene.json with `folders` folders
   std::size_t folders = 1;
   std::vector<std::string> notes;  ///< what the result cannot hold, was converted or dropped
 };

@@ -15,7 +15,7 @@ std::optional<SceneRays::Hit> SceneRays::nearest(const Vec3& origin, const Vec3&
   for (std::size_t k = 0; k < placed_.size(); ++k) {
     const Affine& to_object = placed_[k].to_object;
     const auto hit = placed_[k].tree->nearest(to_object * origin, to_object.linear() * direction, near, far);
-    if (!hit || (nearest && hit->t >= far)) continue;
+    if (!hit || hit->t > far) continue;
     far = hit->t;
     nearest = Hit{hit->t, k, hit->triangle};
   }

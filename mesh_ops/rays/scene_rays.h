@@ -26,7 +26,7 @@ class SceneRays {
     std::size_t instance;    ///< number of the instance
     std::uint32_t triangle;  ///< in the object's numbering
   };
-  /// The nearest opaque triangle with t in [near, far]; of several at one t the first instance's.
+  /// The nearest opaque triangle with t in [near, far]; of several at one t the last instance's, as pictures show.
   std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const;
   /// The same for eight rays that go much the same way. Those whose `far` is below `near` are left out. Where something
   /// is hit, `far` becomes its t.

@@ -52,12 +52,15 @@ void check(const Camera& camera) {
 Camera with_planes(const Camera& camera, const Box& visible, double aspect) {
   constexpr double depth_range = 1e4;  // of planes where the eye is among what it sees
   Camera result = camera;
-  if (visible.isEmpty() || !visible.diagonal().allFinite()) {
+  const bool extends = !visible.isEmpty() && visible.min().allFinite() && visible.max().allFinite() &&
+                       (visible.center() != camera.eye || visible.min() != visible.max());
+  if (!extends) {
     if (result.near_plane == 0) result.near_plane = Camera{}.near_plane;
     if (result.far_plane == 0) result.far_plane = std::max(Camera{}.far_plane, depth_range * result.near_plane);
     return result;
   }
-  const double farthest = (visible.center() - camera.eye).norm() + visible.diagonal().norm();
+  const double farthest = (visible.center() - camera.eye).stableNorm() + visible.diagonal().stableNorm();
+  if (!std::isfinite(farthest)) throw FieldError("eye", "is farther from the scene than numbers reach");
   if (result.far_plane == 0) result.far_plane = std::max(farthest, 2 * result.near_plane);
   if (result.near_plane == 0) {
     // Of what lies at a distance in the picture's corner, the depth is less.

@@ -31,7 +31,8 @@ struct ViewRay {
 /// Throws FieldError if eye and target coincide; an `up` along the line of sight is replaced by another axis.
 Mat3 world_to_camera(const Camera& camera);
 
-/// The camera with near and far planes that cut nothing of `visible` off, where it leaves them open.
+/// The camera with near and far planes that fit `visible`, where it leaves them open: nothing in the picture is cut
+/// off, but for what lies nearer than a ten-thousandth of the farthest. Throws FieldError for an eye too far away.
 Camera with_planes(const Camera& camera, const Box& visible, double aspect);
 
 /// Throws FieldError for fields that are not finite or out of range.

@@ -17,7 +17,6 @@ class TargetPool {
   /// Throws DeviceError.
   void fit(const FramePlan& plan);
 
-  bool has(Target target) const { return static_cast<bool>(texture(target)); }
   const gl::Texture& texture(Target target) const { return textures_[static_cast<std::size_t>(target)]; }
   /// What draws into these, in this order, and with `depth` into depth too. All are there.
   const gl::Framebuffer& framebuffer(const std::vector<Target>& colors, bool depth);

@@ -121,5 +121,24 @@ TEST_F(Cli, ExportSaysThatItReplaces) {
   EXPECT_NE(again.text.find("in place of the folder that was there"), std::string::npos) << again.text;
 }
 
+// A project holds what is done, not what was undone: where that is all, the journal stays.
+TEST_F(Cli, RecoverKeepsAJournalOfUndoneEdits) {
+  write_file_atomically(in("s.jsonl"),
+                        R"({"op": "import", "path": ")" + in("ball") + R"("})" + "\n" + R"({"op": "undo"})" + "\n" +
+                            R"({"op": "hide", "node": "nobody"})" + "\n",
+                        {});
+  ASSERT_EQ(rebake_run("run " + in("s.jsonl") + " --journal " + in("j")).code, 1);
+  const Outcome undone = rebake_run("recover " + in("j") + " -o " + in("p.rebake"));
+  EXPECT_EQ(undone.code, 1);
+  EXPECT_NE(undone.text.find("only edits that were undone"), std::string::npos) << undone.text;
+  EXPECT_TRUE(std::filesystem::exists(in("j")));
+  EXPECT_FALSE(std::filesystem::exists(in("p.rebake")));
+  write_file_atomically(in("torn"), read_file(in("j")).substr(0, 60), {});
+  const Outcome torn = rebake_run("recover " + in("torn") + " -o " + in("p.rebake"));
+  EXPECT_NE(torn.text.find("the first was being written"), std::string::npos) << torn.text;
+  const Outcome twice = rebake_run("recover " + in("j") + " -o " + in("p.rebake --source a=b --source ./a=c"));
+  EXPECT_NE(twice.text.find("given twice"), std::string::npos) << twice.text;
+}
+
 }  // namespace
 }  // namespace rebake::test

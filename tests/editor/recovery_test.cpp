@@ -102,6 +102,11 @@ TEST_F(Recovery, MovedSourcesAreNamedAndFoundWhereTheyLieNow) {
     found.document.save(path("p.rebake"));
     EXPECT_EQ(Document::open(path("p.rebake")).history().undo_count(), 4U);
   }
+  // Of several the one that says most counts.
+  EXPECT_EQ(
+      Document::recover(path("journal"), {{path("."), path("nowhere")}, {path("sources/ball"), path("elsewhere/ball")}})
+          .edits,
+      4U);
   EXPECT_THROW(Document::recover(path("journal"), {{path("source"), path("elsewhere")}}), FieldError)
       << "a link that nothing uses is a slip";
   // Another scene there is not taken for it.

@@ -57,6 +57,24 @@ TEST(CageDeformation, RigidMotionsOfTheCageAreRigidMotions) {
   }
 }
 
+TEST(CageDeformation, PointsThatTheCoordinatesDoNotReachStayWhateverMoves) {
+  const Cage cage = cube();
+  std::vector<Vec3> moved = cage.vertices;
+  for (Vec3& v : moved) v.x() += 1;
+  const std::vector<Vec3> points{{3, 3, 3}, {0, 0, 0}};
+  for (const CageCoordinates kind : {CageCoordinates::green, CageCoordinates::harmonic}) {
+    const auto coordinates = coordinates_of(cage, kind, 16);
+    const DeformedPoints result = deform_points(*coordinates, cage, moved, points, true);
+    EXPECT_EQ(result.points[0], points[0]);
+    EXPECT_TRUE(result.jacobians[0].isIdentity(0));
+    EXPECT_NEAR(result.points[1].x(), 1, 1e-12);
+    std::vector<Vec3> bound;
+    CageBinding(*coordinates, cage, points).positions(moved, bound);
+    EXPECT_EQ(bound[0], points[0]);
+    EXPECT_NEAR(bound[1].x(), 1, 1e-6);
+  }
+}
+
 TEST(CageDeformation, BoundPointsFollowToAMillionth) {
   const Cage cage = dented();
   const auto coordinates = mean_value_coordinates(cage);

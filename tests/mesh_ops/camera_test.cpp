@@ -57,6 +57,18 @@ TEST(Camera, PlanesThatAreLeftOutFitTheScene) {
   EXPECT_EQ(with_planes(before, box, 1).far_plane, 1e-3);
   EXPECT_NO_THROW(check(with_planes(before, box, 1)));
   EXPECT_NO_THROW(check(with_planes(open, Box(), 1)));
+  // The eye on a scene of one point; one that no distance can be told to.
+  EXPECT_NO_THROW(check(with_planes(open, Box(open.eye, open.eye), 1)));
+  Camera away = open;
+  away.eye = Vec3(1e160, 0, 0);
+  EXPECT_NO_THROW(check(with_planes(away, box, 1)));
+  away.eye = Vec3(1.7e308, 1.7e308, 0);
+  try {
+    with_planes(away, box, 1);
+    FAIL();
+  } catch (const FieldError& error) {
+    EXPECT_NE(std::string(error.what()).find("eye"), std::string::npos) << error.what();
+  }
 }
 
 TEST(Camera, AHeightThatShowsNothingIsRefused) {

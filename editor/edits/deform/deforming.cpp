@@ -266,8 +266,9 @@ Cage kept_wrap(const TriangleList& triangles, double coarseness, const Progress&
     return std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
   };
   const std::array<double, 1> setting{coarseness};
-  const std::string key = result_key(
-      "wrap1", std::string(bytes_of(setting)).append(bytes_of(triangles.points)).append(bytes_of(triangles.faces)));
+  const std::string key =
+      result_key(wrap_version(),
+                 std::string(bytes_of(setting)).append(bytes_of(triangles.points)).append(bytes_of(triangles.faces)));
   if (const auto bytes = results->find(key)) {
     try {
       return Codec<Cage>::read(nlohmann::json::from_cbor(*bytes), {});

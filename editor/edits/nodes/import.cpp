@@ -9,6 +9,7 @@
 namespace rebake {
 
 Scene apply(const Scene& scene, const Import& edit, const Progress& progress) {
+  if (edit.path.empty()) throw FieldError("path", "is empty");
   if (!edit.content.empty() && hash_text(folder_hash(edit.path)) != edit.content)
     throw EditError(edit.path + ": has changed since it was imported; put the files back as they were");
   const Scene read = read_any(edit.path, edit.axes, progress);

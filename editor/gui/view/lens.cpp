@@ -31,14 +31,20 @@ Vec3 Lens::motion(const Vec3& world, const Vec2& pixels) const {
 }
 
 std::optional<Picked> pick(const Scene& scene, const Lens& lens, const Vec2& pixel, bool waits) {
-  std::vector<PlacedNode> objects;
-  for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.visible && placed.node->object && (waits || rays_if_there(*placed.node->object)))
-      objects.push_back(placed);
+  std::vector<NodeId> ids;
+  std::vector<SceneRays::Instance> instances;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.visible || !placed.node->object) continue;
+    auto tree = waits ? rays_of(*placed.node->object) : rays_if_there(*placed.node->object);
+    if (!tree) continue;
+    ids.push_back(placed.node->id);
+    instances.push_back({std::move(tree), placed.to_world, placed.node->object->bounds().diagonal().norm()});
+  }
   const ViewRay ray = lens.ray(pixel);
-  const auto hit = rays_through(objects).nearest(ray.origin, ray.direction, 0, std::numeric_limits<double>::infinity());
+  const auto hit =
+      SceneRays(std::move(instances)).nearest(ray.origin, ray.direction, 0, std::numeric_limits<double>::infinity());
   if (!hit) return std::nullopt;
-  return Picked{objects[hit->instance].node->id, hit->triangle, ray.origin + hit->t * ray.direction};
+  return Picked{ids[hit->instance], hit->triangle, ray.origin + hit->t * ray.direction};
 }
 
 }  // namespace rebake

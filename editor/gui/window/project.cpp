@@ -69,9 +69,9 @@ void Project::open_project(const fs::path& file, const Relinked& links) {
           *gone = moved.sources;  // asked for
         }
       },
-      [this, file, gone] {
+      [this, file, links, gone] {
         if (!gone->empty()) {
-          ask_for_sources(file, *gone);
+          ask_for_sources(file, *gone, links);
           return;
         }
         path = file;
@@ -84,9 +84,10 @@ void Project::open_project(const fs::path& file, const Relinked& links) {
 
 void Project::recover(const fs::path& journal, const Relinked& links, bool go_on_without) {
   auto gone = std::make_shared<std::vector<SourcesGone::Source>>();
+  auto problem = std::make_shared<std::string>();
   worker_.start(
       "recover",
-      [journal, links, gone, go_on_without](Session& session) {
+      [journal, links, gone, problem, go_on_without](Session& session) {
         Document::Recovered recovered = Document::recover(journal, links, session.progress);
         *gone = recovered.gone;
         if (!gone->empty() && !go_on_without) return;  // asked for
@@ -101,32 +102,37 @@ void Project::recover(const fs::path& journal, const Relinked& links, bool go_on
           if (recovered.journal) recovered.journal->discard();
           return;
         }
-        said = fmt::format("not all could be got back; {} keeps what there is:", journal.string());
-        for (const std::string& lost : recovered.lost) said += "\n" + lost;
-        throw Error(said);
+        *problem = fmt::format("not all could be got back; {} keeps what there is:", journal.string());
+        for (const std::string& lost : recovered.first_lost()) *problem += "\n" + lost;
       },
-      [this, journal, gone, go_on_without] {
+      [this, journal, links, gone, problem, go_on_without] {
         if (!gone->empty() && !go_on_without) {
-          ask_for_sources(journal, *gone);
+          ask_for_sources(journal, *gone, links);
           return;
         }
         path.clear();
         saved_.reset();
         imported = {};
+        if (problem->empty()) return;
+        messages_.error = *problem;
+        messages_.log.push_back({*problem, true});
       });
 }
 
-void Project::ask_for_sources(const fs::path& wanted_by, const std::vector<SourcesGone::Source>& gone) {
-  relinking = Relinking{wanted_by, {}};
+void Project::ask_for_sources(const fs::path& wanted_by, const std::vector<SourcesGone::Source>& gone,
+                              const Relinked& links) {
+  relinking = Relinking{wanted_by, {}, links};
   for (const SourcesGone::Source& source : gone)
-    relinking->sources.push_back({source.path, source.trouble, source.path.string()});
+    relinking->sources.push_back({source.path, source.trouble, relinked(source.path, links).string()});
 }
 
 void Project::relink(bool go_on_without) {
   const Relinking wanted = *std::exchange(relinking, std::nullopt);
-  Relinked links;
-  for (const Relinking::Source& source : wanted.sources)
+  Relinked links = wanted.known;
+  for (const Relinking::Source& source : wanted.sources) {
+    links.erase(source.path);
     if (source.now != source.path.string() && !source.now.empty()) links[source.path] = source.now;
+  }
   if (is_project_file(wanted.wanted_by)) {
     open_project(wanted.wanted_by, links);
     return;

@@ -38,6 +38,7 @@ class Project {
     };
     std::filesystem::path wanted_by;
     std::vector<Source> sources;
+    Relinked known;  ///< what was said before
   };
   std::optional<Relinking> relinking;
 
@@ -60,7 +61,8 @@ class Project {
 
  private:
   void open_project(const std::filesystem::path& file, const Relinked& links);
-  void ask_for_sources(const std::filesystem::path& wanted_by, const std::vector<SourcesGone::Source>& gone);
+  void ask_for_sources(const std::filesystem::path& wanted_by, const std::vector<SourcesGone::Source>& gone,
+                       const Relinked& links);
 
   Worker& worker_;
   Settings& settings_;
