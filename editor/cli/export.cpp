@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -33,11 +34,14 @@ void describe_export(CommandDescription& command) {
     session.document = Document(std::move(opened.scene));
     // What names the folders must stay as well as they.
     opened.sources.check_folder(options->out);
+    std::error_code error;
+    const bool replaces = std::filesystem::exists(options->out, error);
     ExportAction action;
     action.out = options->out;
     action.format = options->format;
     if (!options->layout.empty()) action.layout = Codec<Layout>::read(nlohmann::json(options->layout), session.scene());
     run(session, action);
+    if (replaces) say_line("note: it took the place of the folder that was there");
   });
 }
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <vector>
 
@@ -94,15 +93,13 @@ void say_losses(Session& session, const ExportAction& action, const ExportReport
 
 void run(Session& session, const ExportAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
-  std::error_code error;
-  const bool replaces = std::filesystem::exists(action.out, error);
   const ExportReport report =
       format_named(action.format)
           .write(session.scene(), action.out, {action.layout, session.document.sources()}, session.progress);
   session.exports.push_back(action.out);
   for (const std::string& note : report.notes) session.say("note: " + note);
   if (!report.keeps_everything) say_losses(session, action, report);
-  session.say(fmt::format("exported {}{}", action.out, replaces ? ", in place of the folder that was there" : ""));
+  session.say(fmt::format("exported {}", action.out));
 }
 
 REBAKE_DESCRIBE_ACTION(

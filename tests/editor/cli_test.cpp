@@ -116,9 +116,9 @@ TEST_F(Cli, RecoverWritesNoProjectOfNothingAndNamesWhatIsGone) {
 }
 
 TEST_F(Cli, ExportSaysThatItReplaces) {
-  EXPECT_EQ(rebake_run("export " + in("ball") + " -o " + in("out")).text.find("in place of"), std::string::npos);
+  EXPECT_EQ(rebake_run("export " + in("ball") + " -o " + in("out")).text.find("took the place"), std::string::npos);
   const Outcome again = rebake_run("export " + in("ball") + " -o " + in("out"));
-  EXPECT_NE(again.text.find("in place of the folder that was there"), std::string::npos) << again.text;
+  EXPECT_NE(again.text.find("took the place of the folder that was there"), std::string::npos) << again.text;
 }
 
 // A project holds what is done, not what was undone: where that is all, the journal stays.
