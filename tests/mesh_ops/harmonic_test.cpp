@@ -60,7 +60,7 @@ GridErrors grid_errors(const Cage& cage, int resolution, double (*function)(cons
 
 TEST(Harmonic, LinearAndQuadraticSolutionsAreExactAtTheNodes) {
   for (const auto& [name, cage] : {std::pair("cube", cube()), std::pair("dented", dented())})
-    for (const int resolution : {16, 33, 64}) {
+    for (const int resolution : {16, 33}) {
       const GridErrors flat = grid_errors(cage, resolution, linear), curved = grid_errors(cage, resolution, quadratic);
       EXPECT_LE(flat.nodes, 1e-13) << name << ' ' << resolution;
       EXPECT_LE(flat.points, 1e-13) << name << ' ' << resolution;
@@ -72,9 +72,9 @@ TEST(Harmonic, LinearAndQuadraticSolutionsAreExactAtTheNodes) {
 TEST(Harmonic, SecondOrderUpToTheSurface) {
   for (const auto& [name, cage] : {std::pair("cube", cube()), std::pair("dented", dented())})
     for (const auto function : {quadratic, waves}) {
-      const GridErrors coarse = grid_errors(cage, 16, function), fine = grid_errors(cage, 64, function);
+      const GridErrors coarse = grid_errors(cage, 12, function), fine = grid_errors(cage, 48, function);
       EXPECT_LE(fine.points, coarse.points / 11) << name;
-      EXPECT_LE(fine.points, 5e-4) << name;
+      EXPECT_LE(fine.points, 1e-3) << name;
       if (function == waves) {
         EXPECT_LE(fine.nodes, coarse.nodes / 11) << name;
       }
@@ -83,7 +83,7 @@ TEST(Harmonic, SecondOrderUpToTheSurface) {
 
 // Coarse grids end where fine ones do, wherever that is: every number of cells along every axis.
 TEST(Harmonic, BoxesOfEveryNumberOfCells) {
-  constexpr int most = 40;
+  constexpr int most = 24;
   const auto look = [](const Vec3& size) {
     const Cage box = lattice_cage(Box(Vec3(0, 0, 0), size), 1, 1, 1);
     const CoordinateErrors errors = errors_of(*harmonic_coordinates(box, most), box, {size / 2, size / 3, size * 0.9});
@@ -92,7 +92,7 @@ TEST(Harmonic, BoxesOfEveryNumberOfCells) {
   };
   for (int cells = 8; cells <= most; ++cells)
     for (int axis = 0; axis < 3; ++axis) {
-      Vec3 size = Vec3::Constant(17.0 / most);
+      Vec3 size = Vec3::Constant(11.0 / most);
       size[(axis + 1) % 3] = 1;
       size[axis] = (cells - 0.01) / most;
       look(size);
