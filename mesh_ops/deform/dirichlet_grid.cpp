@@ -76,7 +76,8 @@ std::size_t DirichletGrid::number(int x, int y, int z) const {
 
 Vec3 DirichletGrid::place_of(std::size_t node) const {
   const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]);
-  return {static_cast<double>(node % nx), static_cast<double>(node / nx % ny), static_cast<double>(node / nx / ny)};
+  const std::array<std::size_t, 3> at{node % nx, node / nx % ny, node / nx / ny};
+  return {static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])};
 }
 
 Vec3 DirichletGrid::place(std::size_t node) const {
