@@ -58,7 +58,7 @@ void recover(const Recovery& options) {
                                          : "holds no edit, so no project is written; remove it if nothing is missed");
   fmt::print("{} {} recovered{}\n", recovered.edits, recovered.edits == 1 ? "edit" : "edits",
              nothing ? "; no project is written" : " into " + printable(options.out));
-  if (undone > 0) say_line(fmt::format("note: {} that were undone are not part of a project", undone));
+  if (undone > 0) say_line(fmt::format("note: what was undone ({}) is not part of a project", undone));
   if (recovered.nameless) say_line("note: the journal's first line is damaged; all behind it is whole");
   if (recovered.torn) say_line("note: one more edit was being written when the program ended; it is lost");
   if (recovered.lost.empty()) {

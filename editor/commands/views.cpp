@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "editor/edits/stored_view.h"
 #include "mesh_ops/base/error.h"
 
 namespace rebake {
@@ -20,15 +21,6 @@ Camera framing_of(const Scene& scene, double aspect, double fov_degrees) {
 Camera fitted(const Scene& scene, const Camera& camera, double aspect) {
   if (camera.near_plane > 0 && camera.far_plane > 0) return camera;
   return with_planes(camera, world_bounds(scene), aspect);
-}
-
-const Camera& stored_view(const Scene& scene, const std::string& name) {
-  if (const auto found = scene.views.find(name); found != scene.views.end()) return found->second;
-  std::vector<std::string> names;
-  for (const auto& [known, camera] : scene.views) names.push_back(known);
-  throw FieldError("view", names.empty()
-                               ? fmt::format("there is no view \"{}\"; store it with the view edit first", name)
-                               : fmt::format("there is no view \"{}\"; there are {}", name, fmt::join(names, ", ")));
 }
 
 View chosen_view(const Scene& scene, const std::optional<Camera>& camera, const std::string& view_name, int width,

@@ -15,9 +15,6 @@ Camera framing_of(const Scene& scene, double aspect, double fov_degrees = Camera
 /// The camera with planes that fit what is visible, where it leaves them open.
 Camera fitted(const Scene& scene, const Camera& camera, double aspect);
 
-/// The stored view of that name. Throws FieldError that names those there are.
-const Camera& stored_view(const Scene& scene, const std::string& name);
-
 /// What the command line, scripts, the window and Python draw: the camera that is given, else the stored view of a
 /// name, else one that frames the scene. Throws FieldError when both are given, and for a size, number of samples or
 /// camera that cannot be drawn.

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh_ops/base/error.h"
+#include "editor/document/user_folder.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 
@@ -26,14 +26,8 @@ ResultStore::ResultStore(fs::path folder, std::uint64_t limit) : folder_(std::mo
 std::shared_ptr<ResultStore> ResultStore::of_user() {
   if (const char* chosen = std::getenv("REBAKE_RESULTS"))
     return *chosen != '\0' ? std::make_shared<ResultStore>(chosen) : nullptr;
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  // XDG's folders must be absolute, else they do not count.
-  if (cache != nullptr && fs::path(cache).is_absolute())
-    return std::make_shared<ResultStore>(fs::path(cache) / "rebake" / "results");
-  const char* home = std::getenv("HOME");
-  if (home != nullptr && fs::path(home).is_absolute())
-    return std::make_shared<ResultStore>(fs::path(home) / ".cache" / "rebake" / "results");
-  return nullptr;
+  const auto cache = user_folder("XDG_CACHE_HOME", ".cache");
+  return cache ? std::make_shared<ResultStore>(*cache / "rebake" / "results") : nullptr;
 }
 
 std::optional<std::string> ResultStore::find(const std::string& key) {

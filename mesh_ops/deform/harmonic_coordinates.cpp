@@ -12,9 +12,9 @@ namespace rebake {
 
 namespace {
 
-// A weight for every cage point at every node that cells inside use, and what the solver takes for eight at a time.
-constexpr double most_bytes = 6e9;
-constexpr double solver_bytes = 450;  // a node
+// A weight for every cage point at every node that cells inside use, kept; and what the solver takes beside them.
+constexpr double most_bytes = 2e9, most_solver_bytes = 8e9;
+constexpr double solver_bytes = 450;  // a node, for eight functions at a time
 
 // Weights are linear on every face and harmonic inside.
 class Harmonic final : public Coordinates {
@@ -85,12 +85,15 @@ class Harmonic final : public Coordinates {
 
  private:
   void check_memory(int resolution, double nodes) const {
-    const double bytes = nodes * (static_cast<double>(rows() * sizeof(double)) + solver_bytes);
-    if (bytes > most_bytes)
-      throw FieldError("resolution",
-                       fmt::format("{} would need {:.1f} GB for this cage, {:.0f} at most; choose a lower one or a "
-                                   "coarser cage",
-                                   resolution, bytes * 1e-9, most_bytes * 1e-9));
+    const auto check = [&](const char* what, double bytes, double most) {
+      if (bytes > most)
+        throw FieldError("resolution",
+                         fmt::format("{} would {} {:.1f} GB for this cage, {:.0f} at most; choose a lower one or a "
+                                     "coarser cage",
+                                     resolution, what, bytes * 1e-9, most * 1e-9));
+    };
+    check("need", nodes * static_cast<double>(rows() * sizeof(double)), most_bytes);
+    check("be solved in", nodes * solver_bytes, most_solver_bytes);
   }
 
   CageFrame frame_;

@@ -74,15 +74,15 @@ pl::Seen<WideDual> seen_from(const WideFace& face, const pl::Point<WideDual>& pl
 
 }  // namespace
 
-double least_distance(const CageFrame& cage, const Vec3& local, std::span<const FaceFrame* const> near) {
+double near_faces::least_distance(const CageFrame& cage, const Vec3& local, std::span<const FaceFrame* const> near) {
   double least = std::numeric_limits<double>::infinity();
   for (const FaceFrame* face : near)
     least = std::min(least, distance_of(pl::seen(cage, *face, pl::local_point(local, 0.0))));
   return least;
 }
 
-std::vector<WideDual> wide_weights(const CageFrame& cage, const Vec3& local, std::span<const FaceFrame* const> near,
-                                   std::vector<WideDual> sums) {
+std::vector<WideDual> near_faces::wide_weights(const CageFrame& cage, const Vec3& local,
+                                               std::span<const FaceFrame* const> near, std::vector<WideDual> sums) {
   const pl::Point<WideDual> place = gradient_place(cage, local, near);
   WideDual total;
   for (const WideDual& sum : sums) total += sum;
@@ -100,15 +100,15 @@ std::vector<WideDual> wide_weights(const CageFrame& cage, const Vec3& local, std
 
 bool mend_gradients(const CageFrame& cage, const pl::Point<Dual>& local, std::span<const FaceFrame* const> near,
                     std::span<pl::GreenTerms<Dual>> terms) {
-  const Vec3 at = values_of(local);
-  if (near.empty() || least_distance(cage, at, near) >= quad_distance) return false;
-  if (near.size() == 1 && is_over(pl::seen(cage, *near.front(), local))) return false;
+  const Vec3 at = near_faces::values_of(local);
+  if (near.empty() || near_faces::least_distance(cage, at, near) >= near_faces::quad_distance) return false;
+  if (near.size() == 1 && near_faces::is_over(pl::seen(cage, *near.front(), local))) return false;
   const pl::Point<WideDual> place = gradient_place(cage, at, near);
   for (std::size_t n = 0; n < near.size(); ++n) {
     const WideFace wide = wide_face(cage, *near[n]);
     const auto exact = pl::green(wide.frame, seen_from(wide, place));
-    for (std::size_t k = 0; k < 3; ++k) set_gradient(terms[n].corners[k], exact.corners[k]);
-    set_gradient(terms[n].face, exact.face);
+    for (std::size_t k = 0; k < 3; ++k) near_faces::set_gradient(terms[n].corners[k], exact.corners[k]);
+    near_faces::set_gradient(terms[n].face, exact.face);
   }
   return true;
 }

@@ -31,9 +31,11 @@ void add_near_faces(const CageFrame& cage, const plane_local::Point<T>& local, s
 bool mend_gradients(const CageFrame& cage, const plane_local::Point<Dual>& local,
                     std::span<const FaceFrame* const> near, std::span<plane_local::GreenTerms<Dual>> terms);
 
-// What follows is for add_near_faces alone.
-
 using WideDual = DualOf<Quad>;
+
+// For add_near_faces alone.
+namespace near_faces {
+
 /// Nearer than this to an edge, double leaves less than eight digits of a gradient.
 inline constexpr double quad_distance = 1e-8;
 /// From the nearest of `near`.
@@ -114,34 +116,38 @@ R part_of(const DualOf<R>& number) {
   return number.v;
 }
 
+}  // namespace near_faces
+
 template <class T>
 void add_near_faces(const CageFrame& cage, const plane_local::Point<T>& local, std::span<const FaceFrame* const> near,
                     std::vector<T>& weights) {
   if (near.size() == 1) {
     const plane_local::Seen<T> s = plane_local::seen(cage, *near.front(), local);
-    if (is_over(s)) {
-      add_face_below(*near.front(), s, weights);
+    if (near_faces::is_over(s)) {
+      near_faces::add_face_below(*near.front(), s, weights);
       return;
     }
   }
   if constexpr (plane_local::has_gradient<T>) {
-    const Vec3 at = values_of(local);
-    if (!near.empty() && least_distance(cage, at, near) < quad_distance) {
+    const Vec3 at = near_faces::values_of(local);
+    if (!near.empty() && near_faces::least_distance(cage, at, near) < near_faces::quad_distance) {
       using R = typename plane_local::RealOf<T>::type;
       std::vector<R> values;
-      for (const T& weight : weights) values.push_back(part_of(weight));
-      add_faces<R>(cage, {part_of(local[0]), part_of(local[1]), part_of(local[2])}, near, values);
+      for (const T& weight : weights) values.push_back(near_faces::part_of(weight));
+      near_faces::add_faces<R>(
+          cage, {near_faces::part_of(local[0]), near_faces::part_of(local[1]), near_faces::part_of(local[2])}, near,
+          values);
       std::vector<T> result(weights.size());
       for (std::size_t v = 0; v < values.size(); ++v) result[v].v = values[v];
       std::vector<WideDual> sums;
       for (const T& weight : weights) sums.push_back({Quad(weight.v), Quad(weight.x), Quad(weight.y), Quad(weight.z)});
-      sums = wide_weights(cage, at, near, std::move(sums));
-      for (std::size_t v = 0; v < sums.size(); ++v) set_gradient(result[v], sums[v]);
+      sums = near_faces::wide_weights(cage, at, near, std::move(sums));
+      for (std::size_t v = 0; v < sums.size(); ++v) near_faces::set_gradient(result[v], sums[v]);
       weights = std::move(result);
       return;
     }
   }
-  add_faces(cage, local, near, weights);
+  near_faces::add_faces(cage, local, near, weights);
 }
 
 }  // namespace rebake

@@ -66,6 +66,17 @@ TEST(ResultStore, KeepsToItsLimitAndDropsWhatWasNotUsedForLongest) {
   EXPECT_EQ(files_in(folder.path()), 3U);
 }
 
+TEST(ResultStore, LeftoversOfKilledWritesAreSwept) {
+  const TemporaryFolder folder;
+  ResultStore store(folder.path());
+  for (const char* name : {"old.result.x.partial", "new.result.x.partial"})
+    write_file_atomically(folder.path() / name, "half", {});
+  fs::last_write_time(folder.path() / "old.result.x.partial", fs::file_time_type::clock::now() - std::chrono::hours(2));
+  store.keep("k", "bytes");
+  EXPECT_FALSE(fs::exists(folder.path() / "old.result.x.partial"));
+  EXPECT_TRUE(fs::exists(folder.path() / "new.result.x.partial")) << "somebody may be writing it";
+}
+
 TEST(ResultStore, AFolderThatCannotBeWrittenIsNoTrouble) {
   const TemporaryFolder folder;
   write_file_atomically(folder.path() / "file", "", {});

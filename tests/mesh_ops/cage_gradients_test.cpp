@@ -20,13 +20,17 @@ Mat3 jacobian_of(const std::vector<Vec3>& gradients, const std::vector<Vec3>& mo
   return jacobian;
 }
 
-void expect_gradients(const Cage& cage, const Coordinates& coordinates,
-                      std::vector<Gold> (*exact)(const Cage&, const Gold3&), double unit, bool corners) {
+std::vector<Vec3> any_motions(std::size_t rows) {
   std::vector<Vec3> motions;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-0.3, 0.3);
-  for (std::size_t row = 0; row < coordinates.rows(); ++row)
-    motions.emplace_back(any(random), any(random), any(random));
+  for (std::size_t row = 0; row < rows; ++row) motions.emplace_back(any(random), any(random), any(random));
+  return motions;
+}
+
+void expect_gradients(const Cage& cage, const Coordinates& coordinates,
+                      std::vector<Gold> (*exact)(const Cage&, const Gold3&), double unit, bool corners) {
+  const std::vector<Vec3> motions = any_motions(coordinates.rows());
   std::vector<Vec3> in_cage_units = motions;
   for (std::size_t row = cage.vertices.size(); row < motions.size(); ++row) in_cage_units[row] *= unit;
   for (const auto& [distance, bar] :
@@ -93,11 +97,7 @@ std::vector<Vec3> one_sided(std::vector<Gold> (*exact)(const Cage&, const Gold3&
 
 void expect_one_sided_limits(const Cage& cage, const Coordinates& coordinates,
                              std::vector<Gold> (*exact)(const Cage&, const Gold3&), bool faces_only) {
-  std::vector<Vec3> motions;
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> any(-0.3, 0.3);
-  for (std::size_t row = 0; row < coordinates.rows(); ++row)
-    motions.emplace_back(any(random), any(random), any(random));
+  const std::vector<Vec3> motions = any_motions(coordinates.rows());
   std::vector<Vec3> in_cage_units = motions;
   for (std::size_t row = cage.vertices.size(); row < motions.size(); ++row) in_cage_units[row] *= frame_of(cage).scale;
   const std::array<std::array<int, 3>, 5> faces{{{1, 1, 1}, {2, 1, 5}, {1, 7, 8}, {40, 1, 23}, {3, 60, 1}}};

@@ -1,6 +1,7 @@
 #include "editor/edits/select/select_unneeded.h"
 
 #include "editor/edits/describe.h"
+#include "editor/edits/stored_view.h"
 
 #include <fmt/format.h>
 
@@ -30,11 +31,7 @@ Scene apply(const Scene& scene, const SelectUnneeded& edit) {
   if (edit.unseen < 0 || edit.unseen > 100000) throw FieldError("unseen", "must lie between 0 and 100000");
   if (!(edit.distance > 1)) throw FieldError("distance", "must be above 1: the eyes are outside the box");
   std::vector<Camera> cameras;
-  for (const std::string& name : edit.unseen_from) {
-    const auto found = scene.views.find(name);
-    if (found == scene.views.end()) throw FieldError("unseen_from", fmt::format("there is no view \"{}\"", name));
-    cameras.push_back(found->second);
-  }
+  for (const std::string& name : edit.unseen_from) cameras.push_back(stored_view(scene, name, "unseen_from"));
   return with_selected(scene, selectable(scene, edit.node), edit.mode, [&](const PlacedNode& placed) {
     const BakedObject& object = *placed.node->object;
     TriangleSet flags(object.triangle_count(), 0);

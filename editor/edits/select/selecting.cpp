@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "editor/edits/stored_view.h"
 #include "mesh_ops/index/index.h"
 
 namespace rebake {
@@ -15,17 +16,7 @@ Picture picture_of(const Scene& scene, const PictureFields& fields) {
   if (fields.camera.has_value() == !fields.view.empty())
     throw FieldError("camera", "exactly one of view and camera must be given");
   Picture picture{fields.camera.value_or(Camera{}), fields.size.width, fields.size.height};
-  if (!fields.view.empty()) {
-    const auto found = scene.views.find(fields.view);
-    if (found == scene.views.end()) {
-      std::vector<std::string> names;
-      for (const auto& [name, camera] : scene.views) names.push_back(name);
-      throw FieldError("view", names.empty() ? "no view is stored; store one with the edit view, or give a camera"
-                                             : fmt::format("there is no view \"{}\"; there are {}", fields.view,
-                                                           fmt::join(names, ", ")));
-    }
-    picture.camera = found->second;
-  }
+  if (!fields.view.empty()) picture.camera = stored_view(scene, fields.view);
   // Hidden nodes may be named to be selected on.
   Box bounds;
   for (const PlacedNode& placed : placed_nodes(scene))

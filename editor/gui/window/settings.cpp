@@ -1,9 +1,9 @@
 #include "editor/gui/window/settings.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "editor/document/user_folder.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 
@@ -14,11 +14,9 @@ using nlohmann::json;
 
 namespace {
 
-// XDG's folders must be absolute, else they do not count.
-fs::path user_folder(const char* variable, const char* below_home) {
-  if (const char* given = std::getenv(variable); given != nullptr && fs::path(given).is_absolute()) return given;
-  const char* home = std::getenv("HOME");
-  return fs::path(home != nullptr ? home : "/tmp") / below_home;
+// Where there is no home, people still want to work.
+fs::path folder_of_user(const char* variable, const char* below_home) {
+  return user_folder(variable, below_home).value_or(fs::path("/tmp") / below_home);
 }
 
 // Calls visit(name, member) for all that is written.
@@ -45,8 +43,8 @@ void Settings::remember(const std::string& path) {
   if (recent.size() > most) recent.resize(most);
 }
 
-fs::path config_folder() { return user_folder("XDG_CONFIG_HOME", ".config") / "rebake"; }
-fs::path journal_folder() { return user_folder("XDG_STATE_HOME", ".local/state") / "rebake" / "journals"; }
+fs::path config_folder() { return folder_of_user("XDG_CONFIG_HOME", ".config") / "rebake"; }
+fs::path journal_folder() { return folder_of_user("XDG_STATE_HOME", ".local/state") / "rebake" / "journals"; }
 
 Settings read_settings(const fs::path& file, std::string& problem) {
   if (!fs::exists(file)) return {};
