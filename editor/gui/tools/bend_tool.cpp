@@ -53,7 +53,8 @@ Vec3 BendTool::place(const Spine& spine, Handle handle) const {
 
 BendTool::Handle BendTool::handle_at(const Spine& spine, const Lens& lens, const Vec2& at) const {
   for (const Handle handle : {Handle::tip, Handle::to, Handle::from})
-    if (const auto pixel = lens.pixel(place(spine, handle)); pixel && (*pixel - at).norm() < bend_grab_pixels) return handle;
+    if (const auto pixel = lens.pixel(place(spine, handle)); pixel && (*pixel - at).norm() < bend_grab_pixels)
+      return handle;
   return Handle::none;
 }
 
