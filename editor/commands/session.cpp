@@ -10,8 +10,8 @@ Session::~Session() = default;
 void Session::edit(const Edit& edit) { edits({edit}); }
 
 void Session::edits(const std::vector<Edit>& edits) {
-  for (const Report& report : document.edits(edits, progress))
-    for (const std::string& line : report.lines) say(line);
+  for (const Report& done : document.edits(edits, progress))
+    for (const std::string& line : done.lines) report(line);
 }
 
 Renderer& Session::renderer() {

@@ -28,6 +28,9 @@ class Session {
   Progress progress;
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< one line for people
 
+  /// What edits did, a line each; said too, unless somebody wants it apart.
+  std::function<void(const std::string&)> report = [this](const std::string& line) { say(line); };
+
   /// Throws DeviceError where there is no OpenGL.
   Renderer& renderer();
   /// Frees it, on the thread that used it.

@@ -91,6 +91,11 @@ std::size_t History::undo_step() const {
   return edits;
 }
 
+std::optional<Scene> History::before_last_step() const {
+  if (position_ == 0) return std::nullopt;
+  return steps_[position_ - undo_step()].scene;
+}
+
 std::size_t History::redo_step() const {
   if (redo_count() == 0) return 0;
   std::size_t edits = 1;

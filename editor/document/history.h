@@ -30,6 +30,8 @@ class History {
   /// How many edits were made together with the last one, and with the next one to redo; 0 where there is none.
   std::size_t undo_step() const;
   std::size_t redo_step() const;
+  /// The scene before what was made last, where it is kept.
+  std::optional<Scene> before_last_step() const;
 
   /// Adds the scene after an edit; what was undone is forgotten. With `joined` it was made together with the last one.
   void add(Edit edit, Scene scene, bool joined = false);

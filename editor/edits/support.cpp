@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "mesh_ops/base/polar.h"
+
 namespace rebake {
 
 PlacedNode present(const Scene& scene, NodeId id) {

@@ -21,6 +21,7 @@
   X(StoreView) \
   X(Background) \
   X(Transform) \
+  X(Place) \
   X(Select) \
   X(SelectPicture) \
   X(SelectConnected) \

@@ -188,6 +188,14 @@ class Document:
         scale_axes: turn of the axes along which scale acts, from the world's
         pivot: world point that scale and rotation keep; left out: the centre of the box of what is transformed
         """
+    def place(self, *, node: Node, position: Vector | None = None, rotation: Rotation | None = None, scale: float | Vector | None = None) -> None:
+        """Says where a node stands, how it is turned and how large it is, in its parent.
+
+        node: node to place
+        position: of its origin; left out: as it is (scene units)
+        rotation: from its parent's axes; left out: as it is
+        scale: factor along its own axes; negative mirrors, 0 is refused; left out: as it is
+        """
     def select(self, *, node: Node | None = None, all: bool = False, none: bool = False, invert: bool = False, box: Box | None = None, sphere: Sphere | None = None, half_space: HalfSpace | None = None, connected: Vector | None = None, texture_set: int | None = None, saved: str = "", mode: Literal["set", "add", "remove", "intersect"] = "set", frame: Literal["world", "node", "bounds"] = "world") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles by their centres.
 
@@ -226,7 +234,7 @@ class Document:
         gap: opaque texels at most this far apart hang together too (the object's units)
         mode: how the result joins the present selection
         """
-    def select_like(self, *, node: Node | None = None, point: Vector | None = None, color: float | None = None, features: float | None = None, opacity: float | None = None, size: float | None = None, orientation: float | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
+    def select_like(self, *, node: Node | None = None, point: Vector | None = None, color: float | None = None, features: float | None = None, opacity: float | None = None, size: float | None = None, orientation: float | None = None, contiguous: bool = False, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles that are like the picked ones: within every tolerance that is given, of the mean over the present selection or of the triangle nearest to a point.
 
         node: only of this node and those inside it; left out: of all that is visible
@@ -236,6 +244,7 @@ class Document:
         opacity: difference of the share of opaque texels (share)
         size: between areas in the world, at least 1 (factor)
         orientation: between planes in the world, 0 to 90 (degrees)
+        contiguous: only those that hang together with what they are compared with, through corners they share
         mode: how the result joins the present selection
         """
     def select_floaters(self, *, node: Node | None = None, at_most: int = 100, tolerance: float = 0.0, gap: float = 0.0, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:

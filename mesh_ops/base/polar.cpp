@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
+#include <stdexcept>
 
 namespace rebake {
 
@@ -50,6 +51,22 @@ LocalRotation local_rotation(const Mat3& jacobian) {
   const double norm = scaled.norm();
   if (scaled.determinant() > 1e-6 * norm * norm * norm) return {newton_polar_factor(scaled), true};
   return svd_rotation(jacobian);
+}
+
+Mat3 orthogonal_factor(const Mat3& linear) {
+  const double scale = linear.cwiseAbs().maxCoeff();
+  if (!linear.allFinite() || scale == 0) throw std::invalid_argument("the transform is singular or not finite");
+  // Matrices that are already orthogonal come back bit for bit, so exact quarter turns and identities stay exact.
+  if (linear.isUnitary(1e-15)) return linear;
+  const Mat3 scaled = linear / scale;
+  const Eigen::JacobiSVD<Mat3> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (svd.singularValues()[2] < 1e-14 * svd.singularValues()[0])
+    throw std::invalid_argument("the transform is singular: it flattens the object");
+  Mat3 factor = svd.matrixU() * svd.matrixV().transpose();
+  // A pure axis-aligned scale has an exact factor; rounding noise in it would needlessly turn every direction.
+  const Mat3 rounded = factor.array().round();
+  if ((factor - rounded).cwiseAbs().maxCoeff() < 1e-15) factor = rounded;
+  return factor;
 }
 
 }  // namespace rebake

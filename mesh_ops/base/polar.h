@@ -22,4 +22,8 @@ Mat3 newton_polar_factor(const Mat3& jacobian);
 /// By singular values, the smallest one's sign turned where det J < 0.
 LocalRotation svd_rotation(const Mat3& jacobian);
 
+/// The orthogonal polar factor of `linear`: its rotation, or rotation and reflection. Throws std::invalid_argument when
+/// `linear` is singular or not finite. Scale does not matter.
+Mat3 orthogonal_factor(const Mat3& linear);
+
 }  // namespace rebake

@@ -1,5 +1,6 @@
 #include "mesh_ops/deform/deform_object.h"
 
+#include "mesh_ops/base/polar.h"
 #include "mesh_ops/index/index.h"
 
 namespace rebake {

@@ -9,6 +9,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/polar.h"
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/camera_json.h"
 #include "mesh_ops/formats/scene_files.h"

@@ -1,12 +1,13 @@
 #include "mesh_ops/mesh/soup.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
+
+#include "mesh_ops/base/polar.h"
 
 namespace rebake {
 
@@ -180,22 +181,6 @@ Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::s
     position = motion * position;
     vertex_turn = orthogonal_factor(turn * vertex_turn);
   });
-}
-
-Mat3 orthogonal_factor(const Mat3& linear) {
-  const double scale = linear.cwiseAbs().maxCoeff();
-  if (!linear.allFinite() || scale == 0) throw std::invalid_argument("the transform is singular or not finite");
-  // Matrices that are already orthogonal come back bit for bit, so exact quarter turns and identities stay exact.
-  if (linear.isUnitary(1e-15)) return linear;
-  const Mat3 scaled = linear / scale;
-  const Eigen::JacobiSVD<Mat3> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (svd.singularValues()[2] < 1e-14 * svd.singularValues()[0])
-    throw std::invalid_argument("the transform is singular: it flattens the object");
-  Mat3 factor = svd.matrixU() * svd.matrixV().transpose();
-  // A pure axis-aligned scale has an exact factor; rounding noise in it would needlessly turn every direction.
-  const Mat3 rounded = factor.array().round();
-  if ((factor - rounded).cwiseAbs().maxCoeff() < 1e-15) factor = rounded;
-  return factor;
 }
 
 }  // namespace rebake

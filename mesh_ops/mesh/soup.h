@@ -88,8 +88,4 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
 Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,
                 const Mat3& turn);
 
-/// The orthogonal polar factor of `linear`: its rotation, or rotation and reflection. Throws std::invalid_argument when
-/// `linear` is singular or not finite. Scale does not matter.
-Mat3 orthogonal_factor(const Mat3& linear);
-
 }  // namespace rebake

@@ -59,6 +59,21 @@ TriangleSet filled(const EdgeTable& edges, const TriangleSet& selection, std::si
   return result;
 }
 
+TriangleSet joined_within(const WeldedCorners& corners, const TriangleSet& within, const TriangleSet& from) {
+  UnionFind parts(corners.place_count);
+  const std::vector<std::uint32_t>& places = corners.places;
+  for (std::size_t t = 0; t < within.size(); ++t)
+    if (within[t] != 0 || from[t] != 0)
+      for (std::size_t k = 1; k < 3; ++k) parts.join(places[t * 3], places[t * 3 + k]);
+  std::vector<std::uint8_t> wanted(corners.place_count, 0);
+  for (std::size_t t = 0; t < from.size(); ++t)
+    if (from[t] != 0) wanted[parts.root(places[t * 3])] = 1;
+  TriangleSet result(within.size(), 0);
+  for (std::size_t t = 0; t < within.size(); ++t)
+    if (within[t] != 0) result[t] = wanted[parts.root(places[t * 3])];
+  return result;
+}
+
 TriangleSet joined_to(const WeldedCorners& corners, std::size_t triangle) {
   UnionFind parts(corners.place_count);
   const std::vector<std::uint32_t>& places = corners.places;

@@ -14,5 +14,7 @@ TriangleSet filled(const EdgeTable& edges, const TriangleSet& selection, std::si
 
 /// Triangles that hang together with the given one through places they share, transparent ones too.
 TriangleSet joined_to(const WeldedCorners& corners, std::size_t triangle);
+/// Of the triangles `within`, those that hang together with one of `from` through places they share.
+TriangleSet joined_within(const WeldedCorners& corners, const TriangleSet& within, const TriangleSet& from);
 
 }  // namespace rebake

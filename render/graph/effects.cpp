@@ -19,6 +19,7 @@ constexpr const Effect* table[] = {
     &effects::hidden_objects,
     &effects::inspect,
     &effects::selection,
+    &effects::outline,
     &effects::guides,
 };
 

@@ -15,7 +15,7 @@ enum class Target {
   frames,    ///< R16UI, a sample's index into FramePlan::frames
   rays,      ///< RGBA32F, a sample's fed direction where its triangle was turned, else 0
   depth,     ///< a sample's depth
-  mask,      ///< R8, a pixel's selected triangles
+  mask,      ///< R8, a pixel's selected triangles, then those of outlined nodes
 };
 inline constexpr std::size_t target_count = 6;
 
@@ -57,7 +57,7 @@ struct Effect {
 
 namespace effects {
 extern const Effect geometry, supersampling, node_frames, turned_rays, decoder_compositing, ray_per_sample, resolve,
-    forward, culling, hidden_objects, inspect, selection, guides;
+    forward, culling, hidden_objects, inspect, selection, outline, guides;
 }
 
 /// All of them, in the order in which they are said and run.

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh_ops/base/types.h"
+#include "mesh_ops/scene/scene.h"
 
 namespace rebake {
 
@@ -16,7 +16,8 @@ struct Guides {
     bool operator==(const Line&) const = default;
   };
   std::vector<Line> lines;
-  bool selection = true;  ///< tints and outlines selected triangles
+  bool selection = true;         ///< tints and outlines selected triangles
+  std::vector<NodeId> outlined;  ///< nodes with a line around them
 
   /// Another look at the triangles, in place of their colours; at 1 sample a pixel.
   enum class Inspect {

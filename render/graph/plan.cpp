@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/polar.h"
 #include "render/graph/effects.h"
 
 namespace rebake {

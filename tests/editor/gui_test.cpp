@@ -2,14 +2,21 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <set>
 #include <sstream>
 #include <thread>
 
+#include "editor/edits/nodes/hide.h"
+#include "editor/edits/nodes/rename.h"
+#include "editor/edits/nodes/transform.h"
+#include "editor/edits/select/select.h"
+#include "editor/edits/support.h"
 #include "editor/gui/panels/euler.h"
 #include "editor/gui/tools/expression.h"
 #include "editor/gui/tools/typed_number.h"
+#include "editor/gui/ui/theme.h"
 #include "editor/gui/window/commands.h"
 #include "editor/gui/window/desk.h"
 #include "editor/gui/window/input_queue.h"
@@ -102,7 +109,7 @@ TEST(Desk, CostsAreMeasuredInTheView) {
   const auto wait = [&desk] {
     while (desk.jobs.worker.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     desk.update();
-    ASSERT_EQ(desk.messages.error, "");
+    for (const Messages::Line& line : desk.messages.log()) ASSERT_FALSE(line.failed) << line.text;
   };
   desk.project.open({REBAKE_SOURCE "/samples/scenes/ficus"});
   wait();
@@ -118,6 +125,129 @@ TEST(Desk, CostsAreMeasuredInTheView) {
   for (const StudyTable::Row& row : desk.jobs.costs->rows) EXPECT_GT(row.values[0], 0) << row.choice;
   desk.jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
   wait();
+}
+
+// A scene of two balls, and a desk that shows it.
+class DeskTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ::setenv("XDG_STATE_HOME", home.path().c_str(), 1);
+    desk = std::make_unique<Desk>(Settings{}, [] {});
+    for (const char* name : {"ball", "box"}) {
+      export_scene(scene_of(made_object({.columns = 8, .rows = 4})), home.path() / name, {});
+      desk->project.open({(home.path() / name).string()});
+    }
+    wait();
+  }
+  void TearDown() override {
+    desk->jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
+    wait();
+  }
+  void wait() {
+    do {
+      while (desk->jobs.worker.busy() || desk->previews.busy())
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      desk->update();
+    } while (desk->jobs.worker.busy());
+  }
+  NodeId id(const char* name) const { return find(desk->scene(), std::string(name))->id; }
+  std::size_t selected(const char* name) const {
+    const NodePtr node = find(desk->scene(), std::string(name));
+    return node->selection ? count(*node->selection) : 0;
+  }
+  TemporaryFolder home;
+  std::unique_ptr<Desk> desk;
+};
+
+TEST_F(DeskTest, ToolsWorkOnThePickedNodes) {
+  EXPECT_EQ(desk->active, std::set<NodeId>{id("box")}) << "import picks what it made";
+  EXPECT_EQ(desk->scope_words(), "in box");
+  Select all;
+  all.all = true;
+  desk->edit_scope(all);
+  wait();
+  EXPECT_EQ(selected("ball"), 0U);
+  EXPECT_GT(selected("box"), 0U);
+  EXPECT_EQ(desk->status, "Selected 64 triangles in box");
+  desk->active = {id("ball")};
+  EXPECT_TRUE(desk->scope(true).empty()) << "nothing is selected there";
+  EXPECT_EQ(desk->deform_targets().at(0).node->id, id("ball"));
+  EXPECT_FALSE(desk->deform_targets().at(0).selection);
+  desk->active.clear();
+  EXPECT_EQ(desk->scope_words(), "in all");
+  desk->edit_scope(all);
+  wait();
+  EXPECT_GT(selected("ball"), 0U);
+}
+
+TEST_F(DeskTest, AnAdjustedStepStaysOneStepAndAFailureLeavesIt) {
+  Transform move;
+  move.node = NodeRef{id("box")};
+  move.translate = Vec3(1, 0, 0);
+  desk->edit(move);
+  wait();
+  const std::size_t steps = desk->now->steps_done;
+  move.translate = Vec3(3, 0, 0);
+  desk->adjust({move});
+  wait();
+  EXPECT_EQ(desk->now->steps_done, steps);
+  EXPECT_EQ(find(desk->scene(), id("box"))->to_parent.translation().x(), 3);
+  move.scale.value = Vec3(0, 1, 1);
+  desk->adjust({move});
+  wait();
+  EXPECT_EQ(find(desk->scene(), id("box"))->to_parent.translation().x(), 3) << "refused: what was there stays";
+  EXPECT_EQ(desk->now->steps_done, steps);
+  EXPECT_FALSE(desk->messages.shown().empty());
+}
+
+TEST_F(DeskTest, TitlesSayWhatWasDoneAndNeverChange) {
+  Rename rename;
+  rename.node = NodeRef{id("box")};
+  rename.name = "crate";
+  Hide hide;
+  hide.node = rename.node;
+  desk->edit(hide);
+  desk->edit(rename);
+  wait();
+  ASSERT_EQ(desk->now->steps.size(), 4U);
+  EXPECT_EQ(desk->now->steps[2].title, "Hid box") << "it was called so then";
+  EXPECT_EQ(desk->now->steps[3].title, "Renamed to \"crate\"");
+  desk->undo();
+  wait();
+  EXPECT_EQ(desk->status, "Undid: Renamed to \"crate\"");
+  EXPECT_EQ(desk->now->steps[3].title, "Renamed to \"crate\"");
+  EXPECT_EQ(desk->now->steps_done, 3U);
+}
+
+TEST(Previews, OfManyTheLatestIsMade) {
+  Previews previews([] {});
+  std::atomic<int> made = 0;
+  for (int k = 0; k < 100; ++k)
+    previews.request({}, [&made, k](const Progress&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      ++made;
+      Scene scene;
+      scene.next_id = static_cast<std::uint64_t>(k + 1);
+      return scene;
+    });
+  while (previews.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const std::optional<Preview> last = previews.take();
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->scene.next_id, 100U);
+  EXPECT_LT(made, 100) << "what was asked for meanwhile is not made";
+  EXPECT_FALSE(previews.take()) << "once";
+  previews.request({}, [](const Progress&) -> Scene { throw EditError("no"); });
+  while (previews.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_FALSE(previews.take()) << "what cannot be done is no preview";
+}
+
+TEST(ThemeColors, TextCanBeReadEverywhere) {
+  EXPECT_NEAR(contrast({0, 0, 0}, {255, 255, 255}), 21, 1e-9);
+  EXPECT_NEAR(contrast({119, 119, 119}, {255, 255, 255}), 4.48, 0.01) << "a known value of WCAG's";
+  for (const Theme* theme : {&dark_theme(), &light_theme()})
+    for (const auto& [text, ground] : text_pairs(*theme))
+      EXPECT_GE(contrast(text, ground), 4.5) << int{text.r} << "," << int{text.g} << "," << int{text.b} << " on "
+                                             << int{ground.r} << "," << int{ground.g} << "," << int{ground.b};
 }
 
 TEST(Euler, AnglesComeBackAndQuarterTurnsAreExact) {
@@ -139,24 +269,24 @@ TEST(SettingsFile, ComesBackAndABadOneIsSaid) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "deeper" / "settings.json";
   std::string problem;
-  EXPECT_TRUE(read_settings(file, problem).dark);
+  EXPECT_EQ(read_settings(file, problem).looks, Looks::dark);
   EXPECT_EQ(problem, "") << "none is no problem";
   Settings settings;
-  settings.dark = false;
+  settings.looks = Looks::light;
   settings.brush_radius = 33;
   for (int k = 0; k < 20; ++k) settings.remember("folder " + std::to_string(k));
   settings.remember("folder 15");
   write_settings(settings, file);
   const Settings read = read_settings(file, problem);
-  EXPECT_FALSE(read.dark);
+  EXPECT_EQ(read.looks, Looks::light);
   EXPECT_EQ(read.brush_radius, 33);
   ASSERT_EQ(read.recent.size(), 12U);
   EXPECT_EQ(read.recent[0], "folder 15");
   EXPECT_EQ(read.recent[1], "folder 19");
-  for (const char* text : {"{", "[]", R"({"dark": 3})", R"({"brush_radius": "wide"})"}) {
+  for (const char* text : {"{", "[]", R"({"text_scale": []})", R"({"brush_radius": "wide"})"}) {
     write_file_atomically(file, text, {});
     problem.clear();
-    EXPECT_TRUE(read_settings(file, problem).dark) << text;
+    EXPECT_EQ(read_settings(file, problem), Settings{}) << text;
     EXPECT_NE(problem.find(file.string()), std::string::npos) << text;
   }
   write_file_atomically(file, R"({"side_width": -5, "window_width": 1000000, "something_newer": 1})", {});

@@ -79,9 +79,15 @@ TEST(Navigation, AxisViewsLookAlongThem) {
     for (const double sign : {-1.0, 1.0}) {
       const Camera moved = along_axis(camera(), sign * Vec3::Unit(axis));
       const Vec3 direction = (moved.eye - moved.target).normalized();
-      EXPECT_GT(direction[axis] * sign, 0.9999);
-      // Turning goes on from there.
-      EXPECT_TRUE(orbited(moved, 10, 10, height).eye.allFinite());
+      EXPECT_EQ(direction, sign * Vec3::Unit(axis)) << "exactly";
+      EXPECT_NO_THROW(check(moved));
+      // Turning goes on from there, with the world's up.
+      const Camera on = orbited(moved, 10, 10, height);
+      EXPECT_EQ(on.up, Vec3(0, 1, 0));
+      EXPECT_LT((on.eye - moved.eye).norm(), 0.1 * (moved.eye - moved.target).norm());
+      EXPECT_EQ(along_axis(moved, sign * Vec3::Unit(axis)).eye, moved.eye);
+      // And what was at the right stays at the right.
+      EXPECT_GT(world_to_camera(on).row(0).dot(world_to_camera(moved).row(0)), 0.9);
     }
 }
 

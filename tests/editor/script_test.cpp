@@ -8,7 +8,9 @@
 
 #include <limits>
 
+#include "editor/edits/nodes/place.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/polar.h"
 #include "mesh_ops/formats/export.h"
 #include "tests/support/made_scenes.h"
 
@@ -127,6 +129,32 @@ TEST_F(Script, AScaleActsAlongTurnedAxes) {
   const Vec3 along(-0.5, std::sqrt(3) / 2, 0), across(std::sqrt(3) / 2, 0.5, 0);
   EXPECT_LT((linear * along - 3 * along).norm(), 1e-14);
   EXPECT_LT((linear * across - across).norm(), 1e-14);
+}
+
+TEST_F(Script, ANodesPlaceIsSetByNumbersWithoutShear) {
+  run(import + R"({"op": "place", "node": "ball", "position": [1, 2, 3], "scale": [2, 1, 0.5]}
+{"op": "place", "node": "ball", "rotation": {"axis": [0, 0, 1], "degrees": 30}})");
+  const auto place = [&] { return placement_of(node("ball")->to_parent); };
+  EXPECT_EQ(place().position, Vec3(1, 2, 3));
+  EXPECT_LT((place().scale - Vec3(2, 1, 0.5)).norm(), 1e-15);
+  EXPECT_FALSE(place().sheared);
+  run(R"({"op": "place", "node": "ball", "scale": [5, 1, 0.5]})");
+  const Mat3 turn = Eigen::AngleAxisd(EIGEN_PI / 6, Vec3::UnitZ()).toRotationMatrix();
+  EXPECT_LT((node("ball")->to_parent.linear() - turn * Vec3(5, 1, 0.5).asDiagonal()).norm(), 1e-14)
+      << "along its own axes";
+  // What sheared it stays while it is moved and turned, and goes with a size of its own.
+  run(R"({"op": "transform", "node": "ball", "scale": [1, 3, 1]})");
+  EXPECT_TRUE(place().sheared);
+  const Mat3 sheared = node("ball")->to_parent.linear();
+  run(R"({"op": "place", "node": "ball", "position": [0, 0, 0]})");
+  EXPECT_EQ(node("ball")->to_parent.linear(), sheared);
+  run(R"({"op": "place", "node": "ball", "scale": [1, 1, 1]})");
+  EXPECT_TRUE(node("ball")->to_parent.linear().isUnitary(1e-14));
+  // A mirrored node has a place too.
+  run(R"({"op": "place", "node": "ball", "scale": [-2, 1, 1], "rotation": [1, 0, 0, 0]})");
+  EXPECT_EQ(Vec3(place().scale), Vec3(-2, 1, 1));
+  expect_error(R"({"op": "place", "node": "ball"})", "at least one of position, rotation and scale");
+  expect_error(R"({"op": "place", "node": "ball", "scale": 0})", "flatten");
 }
 
 TEST_F(Script, TurningAllTrianglesOfAStretchedNodeTurnsItsColoursLikeTheNode) {

@@ -1,5 +1,6 @@
 // Deforming objects: no cracks, no needless change, soft borders, folds that are counted, handles, wraps.
 #include "mesh_ops/deform/deform_object.h"
+#include "mesh_ops/base/polar.h"
 
 #include <gtest/gtest.h>
 

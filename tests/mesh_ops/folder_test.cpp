@@ -8,6 +8,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/polar.h"
 #include "mesh_ops/features/atlas.h"
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/export.h"

@@ -122,6 +122,16 @@ TEST(Select, GrowShrinkAndFill) {
   EXPECT_EQ(filled(*edges_of(object), gap, 2), gap) << "the island is not smaller than asked";
 }
 
+TEST(Select, AFloodStopsAtTrianglesThatAreNotAlike) {
+  const auto corners = corners_of(strip(5, 0, everywhere));
+  TriangleSet from(10, 0);
+  from[0] = 1;
+  EXPECT_EQ(joined_within(*corners, {1, 1, 1, 1, 0, 0, 1, 1, 1, 1}, from), (TriangleSet{1, 1, 1, 1, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(joined_within(*corners, TriangleSet(10, 1), from), TriangleSet(10, 1));
+  // What it starts from need not be alike itself.
+  EXPECT_EQ(joined_within(*corners, {0, 1, 0, 0, 1, 1, 1, 1, 1, 1}, from), (TriangleSet{0, 1, 0, 0, 0, 0, 0, 0, 0, 0}));
+}
+
 TEST(Select, TraitsAreThoseOfTheOpaqueTexels) {
   const auto object = made_object();
   const auto traits = traits_of(*object);

@@ -1,5 +1,6 @@
 // Moving a part keeps its UVs, records its turn, and splits what it shares with the rest.
 #include "mesh_ops/mesh/soup.h"
+#include "mesh_ops/base/polar.h"
 
 #include <gtest/gtest.h>
 

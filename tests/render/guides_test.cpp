@@ -73,6 +73,27 @@ TEST_P(GuidesTest, SelectedTrianglesInFrontAreTintedMoreThanThoseBehind) {
   EXPECT_EQ(shown(selected_scene(true), off).rgb, plain.rgb);
 }
 
+TEST_P(GuidesTest, PickedNodesHaveALineAroundThemFaintWhereHidden) {
+  Scene scene = scene_of(made_object({.columns = 32, .rows = 16}), "front");
+  Node behind = *scene.roots[0];
+  behind.id = NodeId::none;
+  behind.name = "behind";
+  behind.to_parent.translation() = Vec3(0.5, 0, -3);
+  NodeId back = NodeId::none;
+  scene = with_added(scene, behind, NodeId::none, 1, &back);
+  const Image plain = renderer.render(scene, view_of(GetParam()));
+  Guides guides;
+  guides.outlined = {scene.roots[0]->id};
+  const std::size_t front = changed(plain, shown(scene, guides), 60);
+  EXPECT_GT(front, 100U);
+  EXPECT_LT(front, 1500U) << "a line, not the whole";
+  guides.outlined = {back};
+  const Image line = shown(scene, guides);
+  EXPECT_GT(changed(plain, line, 15), 50U) << "what is hidden shows through";
+  for (const PlannedPass& pass : renderer.show(scene, view_of(GetParam()), {}, {}, false).passes)
+    EXPECT_FALSE(pass.runs && pass.name == "outline") << "with no node picked it costs nothing";
+}
+
 TEST_P(GuidesTest, LinesAreHiddenByWhatLiesInFront) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
   const Image plain = renderer.render(scene, view_of(GetParam()));

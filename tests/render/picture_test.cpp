@@ -1,5 +1,6 @@
 // The GPU's picture against the independent oracle: 45 dB and 99.5 % of pixels within 2/255, whatever the scene.
 #include "render/picture.h"
+#include "mesh_ops/base/polar.h"
 #include "render/graph/effects.h"
 
 #include <gtest/gtest.h>

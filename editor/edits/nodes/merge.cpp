@@ -1,6 +1,7 @@
 #include "editor/edits/nodes/merge.h"
 
 #include "editor/edits/describe.h"
+#include "mesh_ops/base/polar.h"
 #include "mesh_ops/features/atlas.h"
 
 #include <fmt/format.h>

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "editor/edits/describe.h"
+#include "mesh_ops/base/polar.h"
 
 namespace rebake {
 

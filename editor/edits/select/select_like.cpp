@@ -1,7 +1,9 @@
 #include "editor/edits/select/select_like.h"
 
 #include "editor/edits/describe.h"
+#include "mesh_ops/index/index.h"
 #include "mesh_ops/select/likeness.h"
+#include "mesh_ops/select/morphology.h"
 
 namespace rebake {
 
@@ -27,8 +29,12 @@ Scene apply(const Scene& scene, const SelectLike& edit) {
     for (const PlacedNode& placed : targets) picked.push_back(selection_of(placed));
   }
   const Likeness model = mean_likeness(targets, picked);
+  std::size_t k = 0;
   return with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
-    return triangles_like(placed, model, {edit.color, edit.features, edit.opacity, edit.size, edit.orientation});
+    const TriangleSet& from = picked[k++];
+    TriangleSet alike =
+        triangles_like(placed, model, {edit.color, edit.features, edit.opacity, edit.size, edit.orientation});
+    return edit.contiguous ? joined_within(*corners_of(*placed.node->object), alike, from) : alike;
   });
 }
 
@@ -46,6 +52,8 @@ REBAKE_DESCRIBE_EDIT(
       visit("opacity", edit.opacity, Need::optional, "difference of the share of opaque texels", Unit::share);
       visit("size", edit.size, Need::optional, "between areas in the world, at least 1", Unit::factor);
       visit("orientation", edit.orientation, Need::optional, "between planes in the world, 0 to 90", Unit::degrees);
+      visit("contiguous", edit.contiguous, Need::optional,
+            "only those that hang together with what they are compared with, through corners they share");
       visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
     })
 

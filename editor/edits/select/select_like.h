@@ -12,6 +12,7 @@ struct SelectLike {
   std::optional<NodeRef> node;
   std::optional<Vec3> point;
   std::optional<double> color, features, opacity, size, orientation;
+  bool contiguous = false;
   SelectMode mode = SelectMode::set;
 };
 template <>

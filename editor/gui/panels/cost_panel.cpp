@@ -1,31 +1,128 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
 #include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/widgets.h"
 
 namespace rebake {
 
 namespace {
 
-void draw_measured(const Jobs::Costs& costs, const ViewState& view, const Scene& scene) {
-  const bool same = costs.view.camera == view.camera && costs.view.width == view.width &&
-                    costs.view.height == view.height && costs.roots == scene.roots &&
-                    costs.background == scene.background;
-  ImGui::TextDisabled("%s",
-                      fmt::format("against 64 samples, {}x{}, {}{}", costs.view.width, costs.view.height, costs.device,
-                                  same ? "" : "; of the view or scene as it was: measure again for this one")
-                          .c_str());
-  if (!ImGui::BeginTable("measured", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) return;
-  for (const char* heading : {"choice", "ms", "PSNR dB", "largest of 255"}) ImGui::TableSetupColumn(heading);
-  ImGui::TableHeadersRow();
+/// A measured choice, and what choosing it means.
+struct Choice {
+  std::string name;
+  double ms, decibels, largest;
+  int samples = 0;   ///< a pixel; 0: this is a share of the resolution
+  double share = 1;  ///< of the resolution, each way
+};
+
+// The studies' rows say "4 samples" and "50 %".
+std::vector<Choice> choices_of(const Jobs::Costs& costs) {
+  std::vector<Choice> list;
   for (const StudyTable::Row& row : costs.rows) {
+    Choice choice{row.choice, row.values.at(0), row.values.at(1), row.values.at(2)};
+    const double number = std::atof(row.choice.c_str());
+    if (row.choice.find('%') != std::string::npos)
+      choice.share = number / 100;
+    else
+      choice.samples = static_cast<int>(number);
+    // The reference itself has no finite figure.
+    if (std::isfinite(choice.decibels) && choice.ms > 0) list.push_back(choice);
+  }
+  return list;
+}
+
+// Accuracy upright, time lying, by its logarithm; a click on a point takes it.
+void draw_chart(const std::vector<Choice>& choices, ViewState& view, const ImVec2& size) {
+  const announce::Part part("chart");
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton("chart", size);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, color32(theme().field), px(space::rounding));
+  double least_ms = 1e300, most_ms = 0, least_db = 1e300, most_db = -1e300;
+  for (const Choice& choice : choices) {
+    least_ms = std::min(least_ms, choice.ms / 1.3);
+    most_ms = std::max(most_ms, choice.ms * 1.5);
+    least_db = std::min(least_db, choice.decibels - 3);
+    most_db = std::max(most_db, choice.decibels + 3);
+  }
+  if (choices.empty()) return;
+  const float left = px(44), below = px(30), above = px(10), right = px(14);
+  const auto place = [&](double ms, double decibels) {
+    const double x = std::log(ms / least_ms) / std::log(most_ms / least_ms);
+    const double y = (decibels - least_db) / std::max(1e-9, most_db - least_db);
+    return ImVec2{at.x + left + static_cast<float>(x) * (size.x - left - right),
+                  at.y + size.y - below - static_cast<float>(y) * (size.y - below - above)};
+  };
+  const auto text = [&](const ImVec2& where, const std::string& said, float align) {
+    const ImVec2 extent = ImGui::CalcTextSize(said.c_str());
+    list.AddText({where.x - align * extent.x, where.y - extent.y / 2}, color32(theme().muted), said.c_str());
+  };
+  for (double db = std::ceil(least_db / 10) * 10; db <= most_db; db += 10) {
+    const ImVec2 p = place(least_ms, db), q = place(most_ms, db);
+    list.AddLine(p, q, color32(theme().text, 0.12F));
+    text({p.x - px(6), p.y}, fmt::format("{:.0f}", db), 1);
+  }
+  for (double decade = std::pow(10, std::floor(std::log10(least_ms))); decade <= most_ms; decade *= 10)
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      if (decade * factor < least_ms || decade * factor > most_ms) continue;
+      const ImVec2 p = place(decade * factor, least_db), q = place(decade * factor, most_db);
+      list.AddLine(p, q, color32(theme().text, 0.07F));
+      text({p.x, at.y + size.y - below + px(11)}, fmt::format("{:g} ms", decade * factor), 0.5F);
+    }
+  text({at.x + px(6), at.y + px(12)}, "dB", 0);
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const bool over = ImGui::IsItemHovered();
+  for (const bool samples : {true, false}) {
+    std::vector<ImVec2> line;
+    for (const Choice& choice : choices)
+      if ((choice.samples > 0) == samples) line.push_back(place(choice.ms, choice.decibels));
+    std::sort(line.begin(), line.end(), [](const ImVec2& a, const ImVec2& b) { return a.x < b.x; });
+    list.AddPolyline(line.data(), static_cast<int>(line.size()),
+                     color32(samples ? theme().accent_text : theme().muted, 0.6F), 0, px(2));
+  }
+  for (const Choice& choice : choices) {
+    const ImVec2 p = place(choice.ms, choice.decibels);
+    const bool now =
+        choice.samples > 0 ? choice.samples == view.samples : std::abs(choice.share - view.moving_share) < 0.01;
+    const bool hot = over && std::hypot(mouse.x - p.x, mouse.y - p.y) < px(10);
+    announce::point(choice.name, p);
+    list.AddCircleFilled(p, px(hot || now ? 7 : 5), color32(now ? theme().accent : theme().panel));
+    list.AddCircle(p, px(hot || now ? 7 : 5), color32(choice.samples > 0 ? theme().accent_text : theme().muted), 0,
+                   px(2));
+    list.AddText({p.x + px(9), p.y - px(8)}, color32(now || hot ? theme().text : theme().muted), choice.name.c_str());
+    if (!hot) continue;
+    ImGui::SetTooltip("%s: %.1f ms, %.1f dB, largest error %.0f of 255\n%s", choice.name.c_str(), choice.ms,
+                      choice.decibels, choice.largest,
+                      choice.samples > 0 ? "Click to use it at rest." : "Click to use it while the view moves.");
+    if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left)) continue;
+    if (choice.samples > 0)
+      view.samples = choice.samples;
+    else
+      view.moving_share = view.moving_share == choice.share ? 0 : choice.share;
+  }
+}
+
+void draw_effects(const FrameReport& report) {
+  if (!ImGui::BeginTable("effects", 3, ImGuiTableFlags_SizingFixedFit)) return;
+  for (const PlannedPass& pass : report.passes) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(row.choice.c_str());
-    for (const double value : row.values) {
-      ImGui::TableNextColumn();
-      ImGui::Text("%.1f", value);
-    }
+    ImGui::PushStyleColor(ImGuiCol_Text, color(pass.runs ? theme().text : theme().muted));
+    ImGui::TextUnformatted(fmt::format("{}  {}", pass.runs ? "●" : "○", pass.name).c_str());
+    ImGui::TableNextColumn();
+    if (const auto found = report.times.pass_ms.find(pass.name); found != report.times.pass_ms.end())
+      ImGui::Text("%.1f ms", found->second);
+    else
+      ImGui::TextUnformatted(pass.runs ? "runs" : "left out");
+    ImGui::PopStyleColor();
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", pass.why.c_str());
   }
   ImGui::EndTable();
 }
@@ -33,41 +130,49 @@ void draw_measured(const Jobs::Costs& costs, const ViewState& view, const Scene&
 }  // namespace
 
 void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameReport& report, bool& each_pass) {
-  ImGui::Text("%s",
-              fmt::format("{:.1f} ms a picture at {} samples a pixel, {:.0f} % of the resolution; at most {:.1f} MB on "
-                          "the GPU; {:.1f} MB of history; {:.0f} pictures a second while moving",
-                          report.times.frame_ms, report.samples, report.scale * 100,
-                          static_cast<double>(report.gpu_bytes) / 1e6, static_cast<double>(now.history_bytes) / 1e6,
-                          report.pictures_a_second)
-                  .c_str());
-  ImGui::TextDisabled("%s", report.device.c_str());
-  ImGui::Checkbox("time each pass (waits between them)", &each_pass);
-  ImGui::SameLine();
-  for (const int samples : {1, 4, 16}) {
-    if (ImGui::RadioButton(fmt::format("{} sample{}", samples, samples == 1 ? "" : "s").c_str(),
-                           view.samples == samples))
-      view.samples = samples;
-    ImGui::SameLine();
-  }
+  const announce::Part part("cost");
   ImGui::BeginDisabled(jobs.worker.busy() || now.scene.roots.empty());
-  if (ImGui::Button("Measure this view")) jobs.measure_costs(view, now.scene);
+  const bool measures = jobs.costs ? ui::button("Measure again") : ui::primary_button("Measure this view");
   ImGui::EndDisabled();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("times each choice and compares it with 64 samples a pixel");
-  if (jobs.costs) draw_measured(*jobs.costs, view, now.scene);
-  if (!ImGui::BeginTable("passes", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) return;
-  for (const PlannedPass& pass : report.passes) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(pass.runs ? "runs" : "left out");
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(pass.name.c_str());
-    ImGui::TableNextColumn();
-    if (const auto found = report.times.pass_ms.find(pass.name); found != report.times.pass_ms.end())
-      ImGui::Text("%.1f ms", found->second);
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(pass.why.c_str());
+  if (measures) jobs.measure_costs(view, now.scene);
+  ui::tip("Measure this view", "", "Times each choice, the median of three, and compares it with 64 samples a pixel.");
+  ImGui::SameLine(0, px(space::section));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("Samples a pixel");
+  ImGui::SameLine();
+  int index = view.samples == 1 ? 0 : view.samples == 4 ? 1 : view.samples == 16 ? 2 : -1;
+  if (ui::choice("samples", index, {"1", "4", "16"})) view.samples = index == 0 ? 1 : index == 1 ? 4 : 16;
+  ImGui::SameLine(0, px(space::section));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("Pictures a second while moving");
+  ImGui::SameLine();
+  int rate = view.target_rate == 10 ? 0 : view.target_rate == 17 ? 1 : view.target_rate == 30 ? 2 : 3;
+  if (ui::choice("rate", rate, {"10", "17", "30", "60"}))
+    view.target_rate = rate == 0 ? 10 : rate == 1 ? 17 : rate == 2 ? 30 : 60;
+  ui::flow(px(140));
+  ui::toggle("Time each effect", each_pass);
+  ui::tip("Time each effect", "", "Waits after each, so that a picture takes longer.");
+  ImGui::TextDisabled(
+      "%s", fmt::format("{:.1f} ms a picture, {:.0f} % of the resolution, {:.0f} a second while moving; "
+                        "{:.1f} MB on the GPU, {:.1f} MB of history. {}",
+                        report.times.frame_ms, report.scale * 100, report.pictures_a_second,
+                        static_cast<double>(report.gpu_bytes) / 1e6, static_cast<double>(now.history_bytes) / 1e6,
+                        report.device)
+                .c_str());
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const float chart = jobs.costs ? std::min(room.x * 0.5F, px(640)) : 0;
+  if (jobs.costs) {
+    const bool same = jobs.costs->view.camera == view.camera && jobs.costs->roots == now.scene.roots;
+    ImGui::BeginGroup();
+    draw_chart(choices_of(*jobs.costs), view,
+               {chart, std::max(px(120), room.y - (same ? 0 : ImGui::GetTextLineHeightWithSpacing()))});
+    if (!same) ImGui::TextDisabled("Of the view or scene as it was: measure again for this one.");
+    ImGui::EndGroup();
+    ImGui::SameLine(0, px(space::section));
   }
-  ImGui::EndTable();
+  ImGui::BeginChild("effects");
+  draw_effects(report);
+  ImGui::EndChild();
 }
 
 }  // namespace rebake

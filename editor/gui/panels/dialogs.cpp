@@ -4,10 +4,17 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <utility>
 
+#include "editor/document/sample_folder.h"
 #include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/fonts.h"
+#include "editor/gui/ui/icons.h"
+#include "editor/gui/ui/widgets.h"
 
 namespace rebake {
 
@@ -19,17 +26,18 @@ struct Question {
   PathQuestion kind;
   const char* title;
   const char* hint;
+  const char* action;  ///< of its primary button
   const char* ending;  ///< that a file's name gets where it has none
 };
 constexpr Question questions[] = {
-    {PathQuestion::open, "Open", "a MobileNeRF folder, a scene folder, or a project (.rebake)", ""},
-    {PathQuestion::save_project, "Save project", "a file; it remembers all edits", ".rebake"},
-    {PathQuestion::save_scene, "Save scene folder", "a folder; keeps every node, not the history", ""},
-    {PathQuestion::export_folder, "Export", "a folder in the MobileNeRF format", ""},
-    {PathQuestion::screenshot, "Screenshot", "a PNG file of the scene, without grid and handles", ".png"},
-    {PathQuestion::turntable, "Turntable", "a folder for pictures from around the target: 000.png, 001.png, ...", ""},
-    {PathQuestion::save_script, "Save as script", "a file with a line an edit", ".jsonl"},
-    {PathQuestion::run_script, "Run script", "a file with a line an edit", ".jsonl"},
+    {PathQuestion::open, "Open", "A baked scene, a scene folder, or a project (.rebake).", "Open", ""},
+    {PathQuestion::save_project, "Save project", "A file that keeps all steps.", "Save", ".rebake"},
+    {PathQuestion::save_scene, "Save scene folder", "A folder that keeps every node, not the steps.", "Save", ""},
+    {PathQuestion::export_folder, "Export", "A folder that MobileNeRF viewers open.", "Export", ""},
+    {PathQuestion::screenshot, "Screenshot", "A PNG file of the scene, without grid and handles.", "Write", ".png"},
+    {PathQuestion::turntable, "Turntable", "A folder for pictures from all around: 000.png, 001.png, …", "Write", ""},
+    {PathQuestion::save_script, "Save as script", "A file with a line an edit.", "Save", ".jsonl"},
+    {PathQuestion::run_script, "Run script", "A file with a line an edit.", "Run", ".jsonl"},
 };
 
 const Question& question_of(PathQuestion kind) {
@@ -38,13 +46,60 @@ const Question& question_of(PathQuestion kind) {
   return questions[0];
 }
 
-bool entered() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false); }
-
 // In the middle, wherever it stood before.
 bool begin_question(const char* title) {
+  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
-  return ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(18), px(16)});
+  const bool open = ImGui::BeginPopupModal(title, nullptr,
+                                           ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                                               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar();
+  if (!open) return false;
+  ImGui::PushFont(fonts().heading);
+  ImGui::TextUnformatted(title);
+  ImGui::PopFont();
+  ImGui::Dummy({px(360), px(2)});
+  return true;
+}
+
+void say(const std::string& text) {
+  ImGui::PushTextWrapPos(px(520));
+  ImGui::PushStyleColor(ImGuiCol_Text, color(theme().muted));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopTextWrapPos();
+  ImGui::Dummy({0, px(4)});
+}
+
+// What a folder holds, by the file that says so.
+enum class Content { folder, scene };
+Content content_of(const fs::path& folder) {
+  std::error_code error;
+  const bool baked = fs::exists(folder / "mlp.json", error) || fs::exists(folder / "scene.json", error);
+  return baked ? Content::scene : Content::folder;
+}
+
+struct Bookmark {
+  const char* icon;
+  std::string name;
+  fs::path path;
+};
+std::vector<Bookmark> bookmarks(const Settings& settings) {
+  std::vector<Bookmark> list;
+  std::error_code error;
+  if (const char* home = std::getenv("HOME")) list.push_back({icons::home, "Home", home});
+  list.push_back({icons::folder_outline, "Where it was started", fs::current_path(error)});
+  if (const fs::path samples = sample_folder(); !samples.empty())
+    list.push_back({icons::cube_outline, "Samples", samples});
+  std::set<fs::path> seen;
+  for (const std::string& recent : settings.recent) {
+    const fs::path folder = fs::path(recent).parent_path();
+    if (seen.size() < 5 && seen.insert(folder).second)
+      list.push_back({icons::history, folder.filename().string(), folder});
+  }
+  return list;
 }
 
 // What the format cannot keep of this scene.
@@ -73,65 +128,152 @@ std::vector<std::string> losses(const Scene& scene) {
 
 }  // namespace
 
+void Dialogs::begin_path(const Desk& desk) {
+  asked_ = desk.asking.path;
+  replacing_.clear();
+  entries_of_.clear();
+  width_ = desk.view.width;
+  height_ = desk.view.height;
+  std::error_code gone;
+  const bool kept = desk.asking.path == PathQuestion::save_project && !desk.project.path.empty();
+  const fs::path last = desk.settings.last_folder;
+  const fs::path start = fs::is_directory(last, gone) ? last : fs::current_path(gone);
+  path_ = kept ? desk.project.path.string() : start.string() + "/";
+  if (kept || desk.scene().roots.empty()) return;
+  // A name to begin with.
+  const std::string title = desk.scene().roots.front()->name;
+  const std::string ending = question_of(asked_).ending;
+  if (asked_ == PathQuestion::export_folder) path_ += title + "-edited";
+  if (!ending.empty() && asked_ != PathQuestion::run_script) path_ += title + ending;
+}
+
+// What lies in the folder that is typed; true when something of it is to be taken at once.
+bool Dialogs::draw_entries(const Desk& desk, const fs::path& folder, const std::string& ending) {
+  std::error_code error;
+  if (entries_of_ != folder) {
+    entries_of_ = folder;
+    entries_.clear();
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+      if (at->path().filename().string().starts_with('.')) continue;
+      std::error_code unknown;
+      const bool is_folder = at->is_directory(unknown);
+      entries_.push_back({at->path(), is_folder, is_folder && content_of(at->path()) == Content::scene});
+    }
+    std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+      return std::pair(!a.is_folder, a.path) < std::pair(!b.is_folder, b.path);
+    });
+  }
+  bool taken = false;
+  const bool opens = desk.asking.path == PathQuestion::open;
+  const announce::Part part("entries");
+  if (ImGui::Selectable((std::string(icons::arrow_up) + "  ..").c_str(), false))
+    path_ = (folder / "..").lexically_normal().string();
+  announce::item("..");
+  for (const Entry& entry : entries_) {
+    const std::string name = entry.path.filename().string();
+    if (!entry.is_folder && entry.path.extension() != (opens ? ".rebake" : ending)) continue;
+    const char* icon = entry.is_scene    ? icons::cube_outline
+                       : entry.is_folder ? icons::folder_outline
+                                         : icons::file_outline;
+    ImGui::PushStyleColor(ImGuiCol_Text, color(entry.is_folder && !entry.is_scene ? theme().muted : theme().text));
+    const bool chosen = fs::path(path_) == entry.path;
+    const bool clicked =
+        ImGui::Selectable(fmt::format("{}  {}", icon, name).c_str(), chosen, ImGuiSelectableFlags_AllowDoubleClick);
+    ImGui::PopStyleColor();
+    announce::item(name);
+    if (!clicked) continue;
+    const bool enters = entry.is_folder && !(entry.is_scene && opens);
+    path_ = entry.path.string() + (enters ? "/" : "");
+    taken = !enters && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+  }
+  return taken;
+}
+
+void Dialogs::carry_out(Desk& desk, const fs::path& path) {
+  desk.settings.last_folder = path.parent_path().string();
+  switch (desk.asking.path) {
+    case PathQuestion::open:
+      desk.project.open({path.string()});
+      break;
+    case PathQuestion::save_project:
+      desk.project.save(path);
+      break;
+    case PathQuestion::save_scene:
+      desk.project.save_scene(path);
+      break;
+    case PathQuestion::export_folder:
+      desk.project.export_to(path);
+      break;
+    case PathQuestion::screenshot:
+      desk.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
+      break;
+    case PathQuestion::turntable:
+      desk.jobs.turntable = Jobs::Turntable{path, width_, height_, pictures_};
+      break;
+    case PathQuestion::save_script:
+      desk.project.save_script(path);
+      break;
+    default:
+      desk.project.run_script(path);
+  }
+}
+
 void Dialogs::draw_path(Desk& desk) {
   if (desk.asking.path == PathQuestion::none) {
     asked_ = PathQuestion::none;
     return;
   }
   const Question& question = question_of(desk.asking.path);
-  const bool first = asked_ != desk.asking.path;
-  if (first) {
-    asked_ = desk.asking.path;
-    replacing_.clear();
-    width_ = desk.view.width;
-    height_ = desk.view.height;
-    std::error_code gone;
-    path_ = desk.asking.path == PathQuestion::save_project && !desk.project.path.empty()
-                ? desk.project.path.string()
-                : fs::current_path(gone).string() + "/";
-  }
+  if (asked_ != desk.asking.path) begin_path(desk);
   // Another question may have closed it meanwhile.
   if (!ImGui::IsPopupOpen("###path")) ImGui::OpenPopup("###path");
-  ImGui::SetNextWindowSize({620, 420}, ImGuiCond_Appearing);
-  bool open = true;
-  if (!ImGui::BeginPopupModal((std::string(question.title) + "###path").c_str(), &open)) {
-    if (!open) desk.asking.path = PathQuestion::none;
-    return;
-  }
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const ImVec2 size{std::min(px(760), screen.x - px(20)), std::min(px(520), screen.y - px(20))};
+  ImGui::SetNextWindowSize(size);
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(18), px(16)});
+  const bool begun = ImGui::BeginPopupModal((std::string(question.title) + "###path").c_str(), nullptr,
+                                            ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar();
+  if (!begun) return;
+  const announce::Part part("dialog");
+  ImGui::PushFont(fonts().heading);
+  ImGui::TextUnformatted(question.title);
+  ImGui::PopFont();
+  ImGui::SameLine(0, px(12));
   ImGui::TextDisabled("%s", question.hint);
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
   bool done = ImGui::InputText("##text", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
+  announce::item("path");
   const fs::path typed(path_);
   std::error_code error;
-  const fs::path folder = fs::is_directory(typed, error) ? typed : typed.parent_path();
+  const fs::path folder = typed.has_filename() ? typed.parent_path() : typed;
   const bool pictures = desk.asking.path == PathQuestion::screenshot || desk.asking.path == PathQuestion::turntable;
-  const bool roomy = desk.asking.path != PathQuestion::export_folder && !pictures;
-  ImGui::BeginChild("entries", {0, roomy ? 290.0F : 200.0F}, true);
-  if (ImGui::Selectable("..")) path_ = (folder / "..").lexically_normal().string();
-  std::vector<fs::path> entries;
-  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    entries.push_back(at->path());
-  std::sort(entries.begin(), entries.end());
-  for (const fs::path& entry : entries) {
-    const bool is_folder = fs::is_directory(entry, error);
-    if (entry.filename().string().starts_with('.')) continue;
-    const bool fits = is_folder || question.ending[0] == '\0' ? is_folder || entry.extension() == ".rebake"
-                                                              : entry.extension() == question.ending;
-    if (!fits) continue;
-    if (ImGui::Selectable((entry.filename().string() + (is_folder ? "/" : "")).c_str()))
-      path_ = entry.string() + (is_folder ? "/" : "");
+  const std::vector<std::string> lost =
+      desk.asking.path == PathQuestion::export_folder ? losses(desk.scene()) : std::vector<std::string>{};
+  const float below = ImGui::GetFrameHeightWithSpacing() * (pictures ? 2.0F : 1.0F) + px(10) +
+                      ImGui::GetTextLineHeightWithSpacing() * (static_cast<float>(lost.size()) * 1.6F + 1);
+  const float high = std::max(px(80), ImGui::GetContentRegionAvail().y - below);
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, color(theme().field));
+  ImGui::BeginChild("places", {px(180), high}, true);
+  for (const Bookmark& place : bookmarks(desk.settings)) {
+    if (ImGui::Selectable(fmt::format("{}  {}", place.icon, ui::shortened(place.name, px(130))).c_str()))
+      path_ = place.path.string() + "/";
+    announce::item(place.name);
+    ui::tip(place.path.string());
   }
-  if (desk.asking.path == PathQuestion::open)
-    for (const std::string& recent : desk.settings.recent) {
-      if (ImGui::Selectable(fmt::format("recent: {}", recent).c_str())) path_ = recent;
-    }
   ImGui::EndChild();
-  if (desk.asking.path == PathQuestion::export_folder)
-    for (const std::string& line : losses(desk.scene())) ImGui::TextWrapped("- %s", line.c_str());
+  ImGui::SameLine();
+  ImGui::BeginChild("entries", {0, high}, true);
+  done = draw_entries(desk, folder, question.ending) || done;
+  ImGui::EndChild();
+  ImGui::PopStyleColor();
+  for (const std::string& line : lost) ui::muted("•  " + line);
   if (pictures) {
     const auto pixels = [](const char* label, int& value, int least, int most) {
-      ImGui::SetNextItemWidth(110);
+      ImGui::SetNextItemWidth(px(90));
       ImGui::InputInt(label, &value, 0);
       value = std::clamp(value, least, most);
     };
@@ -143,49 +285,28 @@ void Dialogs::draw_path(Desk& desk) {
       pixels("pictures", pictures_, 2, 1000);
     }
   }
-  done = ImGui::Button(question.title) || done;
-  ImGui::SameLine();
-  const bool cancelled = ImGui::Button("Cancel") || !open;
   fs::path path(path_);
   if (!path.has_filename()) path = path.parent_path();
   if (question.ending[0] != '\0' && path.extension() != question.ending) path += question.ending;
   const bool writes = desk.asking.path != PathQuestion::open && desk.asking.path != PathQuestion::run_script;
   const bool filled = fs::is_directory(path, error) && !fs::is_empty(path, error);
   const bool replaces = writes && path != desk.project.path && (fs::is_regular_file(path, error) || filled);
-  if (done && replaces && replacing_ != path) {
+  const bool asks = replaces && replacing_ == path;
+  if (asks)
+    ui::wrapped(path.filename().string() + " is there already. Replace it?", theme().danger);
+  else
+    ImGui::TextUnformatted("");
+  const float width = px(120);
+  ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * width - ImGui::GetStyle().ItemSpacing.x);
+  const bool cancelled = ui::button("Cancel", {width, 0});
+  ImGui::SameLine();
+  done = ui::primary_button(asks ? "Replace" : question.action, {width, 0}) || done;
+  if (done && replaces && !asks) {
     replacing_ = path;
     done = false;
-    ImGui::SetKeyboardFocusHere(-1);
   }
-  if (replaces && replacing_ == path)
-    ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s is there already: once more to replace it", path.filename().c_str());
-  if (done && !path_.empty()) {
-    switch (desk.asking.path) {
-      case PathQuestion::open:
-        desk.project.open({path.string()});
-        break;
-      case PathQuestion::save_project:
-        desk.project.save(path);
-        break;
-      case PathQuestion::save_scene:
-        desk.project.save_scene(path);
-        break;
-      case PathQuestion::export_folder:
-        desk.project.export_to(path);
-        break;
-      case PathQuestion::screenshot:
-        desk.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
-        break;
-      case PathQuestion::turntable:
-        desk.jobs.turntable = Jobs::Turntable{path, width_, height_, pictures_};
-        break;
-      case PathQuestion::save_script:
-        desk.project.save_script(path);
-        break;
-      default:
-        desk.project.run_script(path);
-    }
-  }
+  if (done && !path_.empty()) carry_out(desk, path);
+  if (cancelled) desk.project.saved_then = nullptr;
   if (done || cancelled) {
     desk.asking.path = PathQuestion::none;
     ImGui::CloseCurrentPopup();
@@ -193,29 +314,16 @@ void Dialogs::draw_path(Desk& desk) {
   ImGui::EndPopup();
 }
 
-void Dialogs::draw_error(Messages& messages) {
-  const char* const title = "It could not be done";
-  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-  if (!begin_question(title)) return;
-  ImGui::PushTextWrapPos(520);
-  ImGui::TextUnformatted(messages.error.c_str());
-  ImGui::PopTextWrapPos();
-  if (ImGui::Button("OK") || entered()) {
-    messages.error.clear();
-    ImGui::CloseCurrentPopup();
-  }
-  ImGui::EndPopup();
-}
-
 void Dialogs::draw_recovery(Project& project) {
-  const char* const title = "Unsaved work";
-  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-  if (!begin_question(title)) return;
-  ImGui::TextUnformatted("The editor ended without saving. Its work can be got back:");
-  bool done = false;
+  if (!begin_question("Work was not saved")) return;
+  const announce::Part part("dialog");
+  say("The editor ended without saving. This work can be got back:");
+  bool done = false, first = true;
   for (const Project::LostWork& lost : project.recoverable) {
     ImGui::PushID(lost.journal.c_str());
-    if (ImGui::Button("Recover")) {
+    const bool pressed = first ? ui::primary_button("Recover") : ui::button("Recover");
+    first = false;
+    if (pressed) {
       project.recover(lost.journal);
       done = true;
     }
@@ -223,9 +331,11 @@ void Dialogs::draw_recovery(Project& project) {
     ImGui::TextUnformatted(lost.what.c_str());
     ImGui::PopID();
   }
-  if (ImGui::Button("Later")) done = true;
+  ImGui::Dummy({0, px(6)});
+  if (ui::button("Later")) done = true;
+  ui::tip("Later", "", "It is asked again when the editor starts.");
   ImGui::SameLine();
-  if (ImGui::Button("Drop all of it")) {
+  if (ui::button("Delete all of it")) {
     for (const Project::LostWork& lost : project.recoverable) {
       std::error_code ignored;
       fs::remove(lost.journal, ignored);
@@ -244,39 +354,57 @@ void Dialogs::draw_quitting(Desk& desk) {
     may_quit_ = true;
     return;
   }
-  const char* const title = "Unsaved changes";
-  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-  if (!begin_question(title)) return;
-  ImGui::TextUnformatted(desk.jobs.worker.busy() ? "Something is still being done."
-                                                 : "There are changes that no project holds yet.");
-  if (ImGui::Button(desk.project.path.empty() ? "Save..." : "Save and quit")) {
-    if (desk.project.path.empty()) {
-      desk.asking.quitting = false;
+  if (!begin_question("Save the changes before closing?")) return;
+  const announce::Part part("dialog");
+  const bool busy = desk.jobs.worker.busy();
+  say(busy ? "Something is still being done."
+           : "Changes that are not saved are lost" + (desk.project.path.empty()
+                                                          ? std::string(".")
+                                                          : " from " + desk.project.path.filename().string() + "."));
+  ImGui::BeginDisabled(busy);
+  const auto quit = [this] { may_quit_ = true; };
+  if (ui::primary_button(desk.project.path.empty() ? "Save..." : "Save")) {
+    desk.asking.quitting = false;
+    desk.project.saved_then = quit;
+    if (desk.project.path.empty())
       desk.asking.path = PathQuestion::save_project;
-      ImGui::CloseCurrentPopup();
-    } else {
+    else
       desk.project.save(desk.project.path);
-    }
+    ImGui::CloseCurrentPopup();
   }
+  ImGui::EndDisabled();
   ImGui::SameLine();
-  if (ImGui::Button("Quit without saving")) may_quit_ = true;
+  if (ui::button("Don't save")) may_quit_ = true;
   ImGui::SameLine();
-  if (ImGui::Button("Go on")) {
+  if (ui::button("Cancel")) {
     desk.asking.quitting = false;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
 }
 
-void Dialogs::draw_replacing(Project& project) {
-  const char* const title = "Open another project";
-  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-  if (!begin_question(title)) return;
-  ImGui::TextUnformatted("There are changes that no project holds yet; opening another project drops them.");
-  const bool drops = ImGui::Button("Drop them and open");
+void Dialogs::draw_replacing(Desk& desk) {
+  if (!begin_question("Save the changes before opening another project?")) return;
+  const announce::Part part("dialog");
+  Project& project = desk.project;
+  say("Another project takes the place of this one. Changes that are not saved are lost.");
+  bool done = false;
+  if (ui::primary_button(project.path.empty() ? "Save..." : "Save")) {
+    project.saved_then = [&project, paths = project.to_open] { project.open(paths, true); };
+    if (project.path.empty())
+      desk.asking.path = PathQuestion::save_project;
+    else
+      project.save(project.path);
+    done = true;
+  }
   ImGui::SameLine();
-  if (drops) project.open(project.to_open, true);
-  if (ImGui::Button("Go on") || drops) {
+  if (ui::button("Don't save")) {
+    project.open(project.to_open, true);
+    done = true;
+  }
+  ImGui::SameLine();
+  if (ui::button("Cancel")) done = true;
+  if (done) {
     project.to_open.clear();
     ImGui::CloseCurrentPopup();
   }
@@ -284,33 +412,31 @@ void Dialogs::draw_replacing(Project& project) {
 }
 
 void Dialogs::draw_relinking(Project& project) {
-  const char* const title = "Where are the sources now?";
-  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-  if (!begin_question(title)) return;
-  ImGui::PushTextWrapPos(560);
-  ImGui::Text("%s wants what is not as it was:", project.relinking->wanted_by.filename().c_str());
+  if (!begin_question("Where are the sources now?")) return;
+  const announce::Part part("dialog");
+  say(project.relinking->wanted_by.filename().string() + " needs what is not as it was:");
   for (Project::Relinking::Source& source : project.relinking->sources) {
     ImGui::PushID(source.path.c_str());
     ImGui::TextUnformatted((source.path.string() + " " + source.trouble).c_str());
-    ImGui::SetNextItemWidth(540);
-    ImGui::InputTextWithHint("##now", "the folder where it lies now", &source.now);
+    ImGui::SetNextItemWidth(px(540));
+    ImGui::InputTextWithHint("##now", "The folder where it lies now", &source.now);
+    announce::item(source.path.string());
     ImGui::PopID();
   }
-  ImGui::PopTextWrapPos();
   bool done = false;
-  if (ImGui::Button("Try again")) {
+  if (ui::primary_button("Try again")) {
     project.relink(false);
     done = true;
   }
   ImGui::SameLine();
   if (project.relinking && project.relinking->wanted_by.extension() == ".journal") {
-    if (ImGui::Button("Go on without them")) {
+    if (ui::button("Go on without them")) {
       project.relink(true);
       done = true;
     }
     ImGui::SameLine();
   }
-  if (ImGui::Button("Cancel")) {
+  if (ui::button("Cancel")) {
     project.relinking.reset();
     done = true;
   }
@@ -319,9 +445,7 @@ void Dialogs::draw_relinking(Project& project) {
 }
 
 bool Dialogs::escape(Desk& desk) {
-  if (!desk.messages.error.empty())
-    desk.messages.error.clear();
-  else if (desk.asking.quitting)
+  if (desk.asking.quitting)
     desk.asking.quitting = false;
   else if (!desk.project.to_open.empty())
     desk.project.to_open.clear();
@@ -333,6 +457,7 @@ bool Dialogs::escape(Desk& desk) {
     desk.asking.path = PathQuestion::none;
   else
     return false;
+  desk.project.saved_then = nullptr;
   closes_ = true;
   return true;
 }
@@ -340,12 +465,10 @@ bool Dialogs::escape(Desk& desk) {
 // One at a time, the most urgent first.
 void Dialogs::draw(Desk& desk) {
   if (std::exchange(closes_, false)) ImGui::ClosePopupsOverWindow(nullptr, false);
-  if (!desk.messages.error.empty())
-    draw_error(desk.messages);
-  else if (desk.asking.quitting)
+  if (desk.asking.quitting)
     draw_quitting(desk);
   else if (!desk.project.to_open.empty())
-    draw_replacing(desk.project);
+    draw_replacing(desk);
   else if (desk.project.relinking)
     draw_relinking(desk.project);
   else if (!desk.project.recoverable.empty())

@@ -1,6 +1,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +10,8 @@
 #include "editor/fields/field_line.h"
 #include "editor/gui/panels/panels.h"
 #include "editor/gui/tools/expression.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/widgets.h"
 
 namespace rebake {
 
@@ -47,26 +51,14 @@ void EditForm::show(Desk& desk) {
   json line = values_;
   line["op"] = op_;
   const bool same = line.dump() == previewed_ && previewed_on_ == desk.scene().roots;
-  if (same || desk.jobs.worker.busy() || ImGui::IsAnyMouseDown()) return;
+  if (same || desk.jobs.worker.busy()) return;
   previewed_ = line.dump();
   previewed_on_ = desk.scene().roots;
   try {
     const Edit edit = read_edit(line, desk.scene());
     // Only what changes the picture: an import would be read twice.
     if (edit.is<Import>()) return;
-    auto made = std::make_shared<std::optional<Desk::Preview>>();
-    desk.jobs.worker.start(
-        "preview",
-        [edit, made](Session& session) {
-          try {
-            *made = Desk::Preview{rebake::apply(session.scene(), edit, session.progress).scene, session.scene().roots};
-          } catch (const Error&) {
-            made->reset();  // said when it is applied; or stopped
-          }
-        },
-        [&desk, made, op = op_] {
-          if (desk.asking.form == op) desk.preview = std::move(*made);
-        });
+    desk.show_preview({edit});
     problem_.clear();
   } catch (const Error& error) {
     problem_ = error.what();
@@ -75,7 +67,7 @@ void EditForm::show(Desk& desk) {
 
 void EditForm::draw(Desk& desk) {
   if (desk.asking.form.empty()) {
-    if (!op_.empty()) desk.preview.reset();
+    if (!op_.empty()) desk.drop_preview();
     op_.clear();
     return;
   }
@@ -83,23 +75,30 @@ void EditForm::draw(Desk& desk) {
   bool open = true;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   // Beside the picture, so that what the edit does can be seen.
-  ImGui::SetNextWindowPos({screen.x - 10, 40}, ImGuiCond_Appearing, {1, 0});
+  ImGui::SetNextWindowPos({screen.x - px(10), px(40)}, ImGuiCond_Appearing, {1, 0});
   // As high as what it says, so that no button is cut off.
-  ImGui::SetNextWindowSizeConstraints({420, 0}, {420, screen.y - 60});
-  ImGui::Begin((op_ + "###form").c_str(), &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::SetNextWindowSizeConstraints({px(440), 0}, {px(440), screen.y - px(60)});
+  std::string title = op_;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  ImGui::Begin((title + "###form").c_str(), &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
+  const announce::Part part("form");
   const std::vector<FieldLine> fields = type_named(op_)->fields();
-  ImGui::TextWrapped("%s", type_named(op_)->help);
+  ui::muted(type_named(op_)->help);
   for (const FieldLine& field : fields) {
     ImGui::PushID(field.name.c_str());
     const char* name = field.name.c_str();
-    ImGui::SetNextItemWidth(230);
+    std::string words = field.name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+    ui::label(words.c_str());
     if (field.type.kind == FieldKind::flag) {
       bool value = values_.contains(name) ? values_[name].get<bool>() : field.initial == "true";
-      if (ImGui::Checkbox(name, &value)) values_[name] = value;
+      if (ImGui::Checkbox("##value", &value)) values_[name] = value;
     } else if (field.type.kind == FieldKind::node) {
       const std::uint64_t chosen = values_.value(name, std::uint64_t{0});
       const NodePtr node = find(desk.scene(), static_cast<NodeId>(chosen));
-      if (ImGui::BeginCombo(name, node ? node->name.c_str() : "")) {
+      if (ImGui::BeginCombo("##value", node ? node->name.c_str() : "")) {
         if (!field.required && ImGui::Selectable("(none)", chosen == 0)) values_.erase(name);
         for (const PlacedNode& placed : placed_nodes(desk.scene()))
           if (ImGui::Selectable(placed.node->name.c_str(), placed.node->id == static_cast<NodeId>(chosen)))
@@ -109,14 +108,14 @@ void EditForm::draw(Desk& desk) {
     } else if (field.type.kind == FieldKind::choice) {
       const std::string initial = field.initial.size() > 2 ? field.initial.substr(1, field.initial.size() - 2) : "";
       const std::string chosen = values_.value(name, initial);
-      if (ImGui::BeginCombo(name, chosen.c_str())) {
+      if (ImGui::BeginCombo("##value", chosen.c_str())) {
         for (const std::string& word : field.type.choices)
           if (ImGui::Selectable(word.c_str(), word == chosen)) values_[name] = word;
         ImGui::EndCombo();
       }
     } else {
       std::string& text = texts_[name];
-      if (ImGui::InputTextWithHint(name, field.initial.empty() ? field.type.words.c_str() : field.initial.c_str(),
+      if (ImGui::InputTextWithHint("##value", field.initial.empty() ? field.type.words.c_str() : field.initial.c_str(),
                                    &text)) {
         if (text.empty()) {
           values_.erase(name);
@@ -134,18 +133,17 @@ void EditForm::draw(Desk& desk) {
         }
       }
     }
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s%s\n%s", field.help.c_str(), field.required ? " (needed)" : "", words_of(field).c_str());
-    if (problem_.find("\"" + field.name + "\"") != std::string::npos)
-      ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
+    announce::item(field.name);
+    ui::tip(words, field.required ? "needed" : "", field.help + " (" + words_of(field) + ")");
+    if (problem_.find("\"" + field.name + "\"") != std::string::npos) ui::wrapped(problem_, theme().danger);
     ImGui::PopID();
   }
   const bool said = std::any_of(fields.begin(), fields.end(), [&](const FieldLine& field) {
     return problem_.find("\"" + field.name + "\"") != std::string::npos;
   });
-  if (!problem_.empty() && !said) ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
+  if (!problem_.empty() && !said) ui::wrapped(problem_, theme().danger);
   if (previews_) show(desk);
-  if (ImGui::Button("Apply")) {
+  if (ui::primary_button("Apply")) {
     try {
       json line = values_;
       line["op"] = op_;
@@ -157,9 +155,9 @@ void EditForm::draw(Desk& desk) {
     }
   }
   ImGui::SameLine();
-  if (ImGui::Button("Close")) open = false;
+  if (ui::button("Close")) open = false;
   ImGui::SameLine();
-  if (ImGui::Checkbox("preview", &previews_) && !previews_) desk.preview.reset();
+  if (ui::toggle("Preview", previews_) && !previews_) desk.drop_preview();
   ImGui::End();
   if (!open) desk.asking.form.clear();
 }

@@ -1,15 +1,13 @@
 #include <imgui.h>
 
 #include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/widgets.h"
 
 namespace rebake {
 
 void draw_log(const Messages& messages) {
-  for (const Messages::Line& line : messages.log)
-    if (line.failed)
-      ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", line.text.c_str());
-    else
-      ImGui::TextWrapped("%s", line.text.c_str());
+  if (messages.log().empty()) ui::muted("Nothing was said yet.");
+  for (const Messages::Line& line : messages.log()) ui::wrapped(line.text, line.failed ? theme().danger : theme().text);
 }
 
 }  // namespace rebake

@@ -10,39 +10,14 @@
 #include "editor/edits/nodes/unlock.h"
 #include "editor/edits/support.h"
 #include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/icons.h"
+#include "editor/gui/ui/widgets.h"
+#include "editor/gui/window/commands.h"
 
 namespace rebake {
 
 namespace {
-
-// A square button with a drawing: `draw(list, middle, radius, color)`.
-template <class Draw>
-bool icon_button(const char* id, bool on, Draw draw) {
-  const float side = ImGui::GetTextLineHeight();
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const bool pressed = ImGui::InvisibleButton(id, {side, side});
-  const ImU32 color = ImGui::GetColorU32(on || ImGui::IsItemHovered() ? ImGuiCol_Text : ImGuiCol_TextDisabled);
-  draw(*ImGui::GetWindowDrawList(), ImVec2{at.x + side / 2, at.y + side / 2}, side * 0.42F, color);
-  return pressed;
-}
-
-void draw_eye(ImDrawList& list, const ImVec2& middle, float radius, ImU32 color, bool open) {
-  const ImVec2 left{middle.x - radius, middle.y}, right{middle.x + radius, middle.y};
-  const float high = radius * 1.1F;
-  list.AddBezierQuadratic(left, {middle.x, middle.y + high}, right, color, 1.5F);
-  if (!open) return;
-  list.AddBezierQuadratic(left, {middle.x, middle.y - high}, right, color, 1.5F);
-  list.AddCircleFilled(middle, radius * 0.35F, color);
-}
-
-void draw_padlock(ImDrawList& list, const ImVec2& middle, float radius, ImU32 color, bool closed) {
-  const float top = middle.y - radius * 0.1F, half = radius * 0.7F, lift = closed ? 0 : radius * 0.35F;
-  list.AddRectFilled({middle.x - half, top}, {middle.x + half, middle.y + radius}, color, 1);
-  list.PathArcTo({middle.x, top - lift}, half * 0.65F, 3.14159F, 2 * 3.14159F, 10);
-  list.PathLineTo({middle.x + half * 0.65F, closed ? top : top - lift});
-  list.PathStroke(color, 0, 1.5F);
-  list.AddLine({middle.x - half * 0.65F, top - lift}, {middle.x - half * 0.65F, top}, color, 1.5F);
-}
 
 // 12345 as 12.3k, to be read at a glance.
 std::string rounded(double value) {
@@ -51,138 +26,198 @@ std::string rounded(double value) {
   return fmt::format("{:.{}f}M", value / 1e6, value < 1e8 ? 1 : 0);
 }
 
+Reorder dropped_on(const Scene& scene, NodeId dragged, const Node& on) {
+  Reorder reorder;
+  reorder.node = NodeRef{dragged};
+  if (!on.object) {  // into a group
+    reorder.parent = NodeRef{on.id};
+    reorder.index = static_cast<int>(on.children.size());
+    return reorder;
+  }
+  const auto [parent, index] = place_of(scene, on.id);
+  reorder.index = static_cast<int>(index);
+  if (parent == NodeId::none)
+    reorder.top = true;
+  else
+    reorder.parent = NodeRef{parent};
+  return reorder;
+}
+
+std::optional<NodeId> dropped_node() {
+  std::optional<NodeId> node;
+  if (!ImGui::BeginDragDropTarget()) return node;
+  if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload("node"))
+    node = *static_cast<const NodeId*>(payload->Data);
+  ImGui::EndDragDropTarget();
+  return node;
+}
+
 }  // namespace
+
+void OutlinePanel::pick(Desk& desk, NodeId id) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool active = desk.active.contains(id);
+  if (io.KeyShift && find(desk.scene(), shift_from_) != nullptr) {
+    bool inside = false;
+    for (const PlacedNode& other : placed_nodes(desk.scene())) {
+      const bool end = other.node->id == id || other.node->id == shift_from_;
+      if (inside || end) desk.active.insert(other.node->id);
+      if (end && id != shift_from_) inside = !inside;
+    }
+    return;
+  }
+  const bool alone = active && desk.active.size() == 1;
+  if (!io.KeyCtrl) desk.active.clear();
+  if ((io.KeyCtrl && active) || alone)
+    desk.active.erase(id);
+  else
+    desk.active.insert(id);
+  shift_from_ = id;
+}
+
+void OutlinePanel::draw_name(Desk& desk, const Node& node) {
+  if (focus_name_) ImGui::SetKeyboardFocusHere();
+  focus_name_ = false;
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::InputText("##name", &name_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll)) {
+    if (name_ != node.name) {
+      Rename rename;
+      rename.node = NodeRef{node.id};
+      rename.name = name_;
+      desk.edit(rename);
+    }
+    renaming_ = NodeId::none;
+  } else if (ImGui::IsItemDeactivated()) {
+    renaming_ = NodeId::none;
+  }
+}
 
 void OutlinePanel::draw_node(Desk& desk, const PlacedNode& placed, int depth) {
   const Node& node = *placed.node;
   const NodeRef ref{node.id};
+  const announce::Part part(node.name);
   ImGui::PushID(static_cast<int>(static_cast<std::uint64_t>(node.id)));
-  const bool shown = node.visible, locked = node.locked;
-  if (icon_button("visible", shown, [&](ImDrawList& list, const ImVec2& at, float radius, ImU32 color) {
-        draw_eye(list, at, radius, color, shown);
-      })) {
-    if (shown)
-      desk.edit(Hide{ref});
-    else
-      desk.edit(Show{ref});
-  }
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip(shown ? "hide" : "show");
-  ImGui::SameLine(0, 4);
-  if (icon_button("locked", locked, [&](ImDrawList& list, const ImVec2& at, float radius, ImU32 color) {
-        draw_padlock(list, at, radius, color, locked);
-      })) {
-    if (locked)
-      desk.edit(Unlock{ref});
-    else
-      desk.edit(Lock{ref});
-  }
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip(locked ? "locked: no edit changes it" : "lock");
-  ImGui::SameLine(0, 8 + 14 * static_cast<float>(depth));
-  if (renaming_ == node.id) {
-    if (focus_name_) ImGui::SetKeyboardFocusHere();
-    focus_name_ = false;
-    ImGui::SetNextItemWidth(-1);
-    if (ImGui::InputText("##name", &name_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll)) {
-      if (name_ != node.name) {
-        Rename rename;
-        rename.node = ref;
-        rename.name = name_;
-        desk.edit(rename);
-      }
-      renaming_ = NodeId::none;
-    } else if (ImGui::IsItemDeactivated()) {
-      renaming_ = NodeId::none;
-    }
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::Dummy({px(14) * static_cast<float>(depth), 1});
+  ImGui::SameLine(0, 0);
+  const bool group = !node.children.empty();
+  if (group) {
+    const bool folded = folded_.contains(node.id);
+    if (ui::quiet_icon(folded ? icons::chevron_right : icons::chevron_down, folded ? "Unfold" : "Fold"))
+      folded ? (void)folded_.erase(node.id) : (void)folded_.insert(node.id);
   } else {
+    ImGui::PushStyleColor(ImGuiCol_Text, color(theme().muted));
+    ImGui::TextUnformatted(node.object ? icons::cube_outline : icons::folder_outline);
+    ImGui::PopStyleColor();
+  }
+  ImGui::SameLine(0, px(6));
+  if (renaming_ == node.id) {
+    draw_name(desk, node);
+  } else {
+    ImGui::PushStyleColor(ImGuiCol_Text, color(placed.visible ? theme().text : theme().muted));
     const bool active = desk.active.contains(node.id);
-    if (ImGui::Selectable(node.name.c_str(), active, ImGuiSelectableFlags_AllowDoubleClick)) {
-      const ImGuiIO& io = ImGui::GetIO();
-      if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
-        renaming_ = node.id;
-        name_ = node.name;
-        focus_name_ = true;
-      } else if (io.KeyShift && find(desk.scene(), shift_from_) != nullptr) {
-        bool inside = false;
-        for (const PlacedNode& other : placed_nodes(desk.scene())) {
-          const bool end = other.node->id == node.id || other.node->id == shift_from_;
-          if (inside || end) desk.active.insert(other.node->id);
-          if (end && node.id != shift_from_) inside = !inside;
-        }
-      } else {
-        if (!io.KeyCtrl) desk.active.clear();
-        if (io.KeyCtrl && active)
-          desk.active.erase(node.id);
-        else
-          desk.active.insert(node.id);
-        shift_from_ = node.id;
-      }
+    if (active) {
+      ImGui::PushStyleColor(ImGuiCol_Text, color(theme().on_accent));
+      ImGui::PushStyleColor(ImGuiCol_Header, color(theme().accent));
+      ImGui::PushStyleColor(ImGuiCol_HeaderHovered, color(theme().accent));
+    }
+    const bool clicked = ImGui::Selectable(ui::shortened(node.name, ImGui::GetContentRegionAvail().x).c_str(), active,
+                                           ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_SpanAllColumns |
+                                               ImGuiSelectableFlags_AllowItemOverlap);
+    if (active) ImGui::PopStyleColor(3);
+    ImGui::PopStyleColor();
+    announce::item("name");
+    if (node.object)
+      ui::tip(node.name, "",
+              fmt::format("{} triangles, {} opaque texels, {:.1f} MB. Click picks, double click renames, right click "
+                          "for more.",
+                          node.object->triangle_count(), node.object->opaque_texel_count(),
+                          static_cast<double>(node.object->memory()) / 1e6));
+    if (clicked && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+      renaming_ = node.id;
+      name_ = node.name;
+      focus_name_ = true;
+      desk.active = {node.id};
+    } else if (clicked) {
+      pick(desk, node.id);
+    }
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) {
+      if (!desk.active.contains(node.id)) desk.active = {node.id};
+      desk.asking.context = true;
     }
     if (ImGui::BeginDragDropSource()) {
       ImGui::SetDragDropPayload("node", &node.id, sizeof node.id);
       ImGui::TextUnformatted(node.name.c_str());
       ImGui::EndDragDropSource();
     }
-    if (ImGui::BeginDragDropTarget()) {
-      if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload("node")) {
-        Reorder reorder;
-        reorder.node = NodeRef{*static_cast<const NodeId*>(payload->Data)};
-        const auto [parent, index] = place_of(desk.scene(), node.id);
-        if (!node.object) {  // into a group
-          reorder.parent = ref;
-          reorder.index = static_cast<int>(node.children.size());
-        } else {
-          reorder.index = static_cast<int>(index);
-          if (parent == NodeId::none)
-            reorder.top = true;
-          else
-            reorder.parent = NodeRef{parent};
-        }
-        desk.edit(reorder);
-      }
-      ImGui::EndDragDropTarget();
-    }
+    if (const auto dragged = dropped_node()) desk.edit(dropped_on(desk.scene(), *dragged, node));
   }
-  const auto cell = [](const std::string& text) {
-    ImGui::TableNextColumn();
+  ImGui::TableNextColumn();
+  if (node.object) {
+    const std::string text = rounded(static_cast<double>(node.object->triangle_count()));
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x -
                          ImGui::CalcTextSize(text.c_str()).x);
     ImGui::TextDisabled("%s", text.c_str());
-  };
-  if (node.object) {
-    cell(rounded(static_cast<double>(node.object->triangle_count())));
-    cell(rounded(static_cast<double>(node.object->opaque_texel_count())));
-    cell(fmt::format("{:.1f}", static_cast<double>(node.object->memory()) / 1e6));
   }
+  ImGui::TableNextColumn();
+  if (ui::quiet_icon(node.visible ? icons::eye : icons::eye_off, "Visible", node.visible)) {
+    if (node.visible)
+      desk.edit(Hide{ref});
+    else
+      desk.edit(Show{ref});
+  }
+  ui::tip(node.visible ? "Hide" : "Show", command_key("Hide", desk), "Nothing is exported of what is hidden.");
+  ImGui::TableNextColumn();
+  if (ui::quiet_icon(node.locked ? icons::lock : icons::lock_open_outline, "Locked", node.locked)) {
+    if (node.locked)
+      desk.edit(Unlock{ref});
+    else
+      desk.edit(Lock{ref});
+  }
+  ui::tip(node.locked ? "Unlock" : "Lock", "", "No edit changes what is locked.");
   ImGui::PopID();
 }
 
 void OutlinePanel::draw(Desk& desk) {
   const Scene& scene = desk.scene();
+  const announce::Part part("outline");
   if (scene.roots.empty()) {
-    ImGui::TextWrapped("The scene is empty. Drop a folder here, or File > Open.");
+    ui::muted("Nothing is open yet.");
     return;
   }
   const auto line = ImGui::GetTextLineHeightWithSpacing();
-  if (!ImGui::BeginTable("nodes", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_NoPadOuterX,
+  if (!ImGui::BeginTable("nodes", 4, ImGuiTableFlags_ScrollY | ImGuiTableFlags_NoPadOuterX,
                          {0, ImGui::GetContentRegionAvail().y - line}))
     return;
-  const float number = ImGui::CalcTextSize("000.0k").x;
-  ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableSetupColumn("node", ImGuiTableColumnFlags_WidthStretch);
-  for (const char* heading : {"tris", "texels", "MB"})
-    ImGui::TableSetupColumn(heading, ImGuiTableColumnFlags_WidthFixed, number);
-  ImGui::TableHeadersRow();
+  ImGui::TableSetupColumn("triangles", ImGuiTableColumnFlags_WidthFixed, ImGui::CalcTextSize("000.0k").x);
+  for (const char* icon : {"visible", "locked"})
+    ImGui::TableSetupColumn(icon, ImGuiTableColumnFlags_WidthFixed, px(22));
   std::map<NodeId, int> depths;
+  std::set<NodeId> inside_folded;
   std::size_t triangles = 0;
   for (const PlacedNode& placed : placed_nodes(scene)) {
-    const int depth = depths[placed.node->id];
-    for (const NodePtr& child : placed.node->children) depths[child->id] = depth + 1;
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    draw_node(desk, placed, depth);
+    const NodeId id = placed.node->id;
     if (placed.node->object) triangles += placed.node->object->triangle_count();
+    const int depth = depths[id];
+    const bool hides = folded_.contains(id) || inside_folded.contains(id);
+    for (const NodePtr& child : placed.node->children) {
+      depths[child->id] = depth + 1;
+      if (hides) inside_folded.insert(child->id);
+    }
+    if (!inside_folded.contains(id)) draw_node(desk, placed, depth);
   }
   ImGui::EndTable();
+  // Below the last node: out of every group.
+  if (const auto dragged = dropped_node()) {
+    Reorder reorder;
+    reorder.node = NodeRef{*dragged};
+    reorder.top = true;
+    reorder.index = static_cast<int>(scene.roots.size());
+    desk.edit(reorder);
+  }
+  if (ImGui::IsItemClicked() && !ImGui::IsAnyItemHovered()) desk.active.clear();
   ImGui::TextDisabled("%s", fmt::format("{} triangles, {} selected", triangles, desk.selected_triangles()).c_str());
 }
 

@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/widgets.h"
 #include "editor/gui/window/commands.h"
 
 namespace rebake {
@@ -27,7 +29,7 @@ struct Entry {
 std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
   std::vector<Entry> all;
   for (const Command& command : command_table())
-    all.push_back({std::string(command.menu) + ": " + command.title, command.keys_of(desk), "", &command});
+    all.push_back({std::string(command.menu) + ": " + command.title, command.keys_of(desk), command.help, &command});
   for (const EditType* type : edit_types()) all.push_back({type->op, "", type->help});
   for (const auto& [name, camera] : desk.scene().views)
     all.push_back({"Stored view: " + name, "", "", nullptr, &camera});
@@ -58,28 +60,39 @@ void PalettePanel::draw(Desk& desk) {
     return;
   }
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y * 0.15F}, ImGuiCond_Always, {0.5F, 0});
-  ImGui::SetNextWindowSize({std::min(720.0F, screen.x * 0.8F), screen.y * 0.6F});
-  ImGui::SetNextWindowBgAlpha(1);
-  ImGui::Begin("All commands", &desk.asking.palette, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y * 0.12F}, ImGuiCond_Always, {0.5F, 0});
+  ImGui::SetNextWindowSize({std::min(px(680), screen.x * 0.9F), std::min(px(460), screen.y * 0.7F)});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, color(theme().popup));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(8));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(12), px(12)});
+  ImGui::Begin("All commands", &desk.asking.palette,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar(2);
+  ImGui::PopStyleColor();
+  const announce::Part part("palette");
   if (!was_open_) {
     filter_.clear();
     ImGui::SetKeyboardFocusHere();
   }
   ImGui::SetNextItemWidth(-1);
-  const bool entered = ImGui::InputTextWithHint("##filter", "type to search; Enter takes the first", &filter_,
+  const bool entered = ImGui::InputTextWithHint("##filter", "Type to search; Enter takes the first", &filter_,
                                                 ImGuiInputTextFlags_EnterReturnsTrue);
+  announce::item("filter");
   was_open_ = true;
   ImGui::BeginChild("entries");
   bool first = true;
+  const float keys_at = ImGui::GetContentRegionAvail().x * 0.48F;
   for (const Entry& entry : entries(desk, filter_)) {
     const bool can = entry.command == nullptr || entry.command->enabled(desk);
     ImGui::BeginDisabled(!can);
     const bool taken = ImGui::Selectable(entry.title.c_str(), first) || (entered && first && can);
     ImGui::EndDisabled();
+    announce::item(entry.title);
     if (!entry.keys.empty() || !entry.help.empty()) {
-      ImGui::SameLine(240);
-      ImGui::TextDisabled("%s", entry.keys.empty() ? entry.help.c_str() : entry.keys.c_str());
+      ImGui::SameLine(keys_at);
+      const std::string said = entry.keys.empty() ? entry.help : entry.keys;
+      ImGui::TextDisabled("%s", ui::shortened(said, ImGui::GetContentRegionAvail().x).c_str());
     }
     first = false;
     if (!taken) continue;
@@ -93,6 +106,10 @@ void PalettePanel::draw(Desk& desk) {
     break;
   }
   ImGui::EndChild();
+  // A click beside it closes it.
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) &&
+      !ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows | ImGuiHoveredFlags_AllowWhenBlockedByActiveItem))
+    desk.asking.palette = false;
   ImGui::End();
 }
 

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <imgui.h>
+
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
+#include "editor/edits/nodes/place.h"
+#include "editor/gui/ui/number_field.h"
 #include "editor/gui/window/desk.h"
 #include "render/picture.h"
 
@@ -17,6 +22,9 @@ class OutlinePanel {
 
  private:
   void draw_node(Desk& desk, const PlacedNode& placed, int depth);
+  void draw_name(Desk& desk, const Node& node);
+  void pick(Desk& desk, NodeId id);
+  std::set<NodeId> folded_;
   NodeId renaming_ = NodeId::none, shift_from_ = NodeId::none;
   std::string name_;
   bool focus_name_ = false;
@@ -28,8 +36,13 @@ class PropertiesPanel {
   void draw(Desk& desk);
 
  private:
-  bool number(const char* label, double& value, const char* format);
-  std::string text_, editing_, problem_;
+  ui::Changed row(const char* name, Vec3& value, const char* format, double step);
+  void draw_one(Desk& desk, const PlacedNode& placed);
+  void draw_several(Desk& desk);
+  std::set<NodeId> of_;  ///< what the numbers say
+  Vec3 position_{0, 0, 0}, angles_{0, 0, 0}, scale_{1, 1, 1};
+  bool dragging_ = false;  ///< a number: they are not those of the document
+  std::string problem_;
 };
 
 /// All steps, done and undone; a click goes there.
@@ -38,9 +51,7 @@ class HistoryPanel {
   void draw(Desk& desk);
 
  private:
-  std::shared_ptr<const Snapshot> of_;  ///< what the lines say
-  std::vector<std::string> lines_;      ///< the start, then one a step
-  int done_ = 0;                        ///< steps that are not undone
+  std::shared_ptr<const Snapshot> of_;  ///< what was drawn last
 };
 
 /// The edits as script lines, to be copied or saved, and a line to type one.
@@ -65,6 +76,26 @@ struct FrameReport {
   double pictures_a_second = 0;  ///< while the view last moved
 };
 void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameReport& report, bool& each_pass);
+
+/// The fields of the last step, which change it until the next is done.
+class AdjustPanel {
+ public:
+  /// Above `corner`, to its right.
+  void draw(Desk& desk, const ImVec2& corner);
+
+ private:
+  std::vector<Edit> changed_edits(const Snapshot& now, std::size_t edits) const;
+  const void* of_ = nullptr;  ///< the edit that the fields were taken from
+  nlohmann::json object_;
+  bool changing_ = false;  ///< a field is being dragged: the document does not hold it yet
+};
+
+/// The latest messages, above `corner` and to its left.
+void draw_toasts(Messages& messages, const ImVec2& corner);
+/// All keys, where they are asked for.
+void draw_keys_sheet(Desk& desk);
+/// What to begin with, while nothing is open.
+void draw_start(Desk& desk, const ImVec2& middle);
 
 /// What was said, newest last.
 void draw_log(const Messages& messages);
@@ -95,7 +126,7 @@ class EditForm {
   std::map<std::string, std::string> texts_;  ///< of fields that are typed as JSON
 };
 
-/// Asks for a path; says what an export can and cannot keep; asks before work is lost; shows errors.
+/// Asks for a path; says what an export can and cannot keep; asks before work is lost.
 class Dialogs {
  public:
   void draw(Desk& desk);
@@ -107,14 +138,22 @@ class Dialogs {
   bool may_quit() const { return may_quit_; }
 
  private:
+  struct Entry {
+    std::filesystem::path path;
+    bool is_folder = false, is_scene = false;
+  };
+  void begin_path(const Desk& desk);
   void draw_path(Desk& desk);
-  void draw_error(Messages& messages);
+  bool draw_entries(const Desk& desk, const std::filesystem::path& folder, const std::string& ending);
+  void carry_out(Desk& desk, const std::filesystem::path& path);
   void draw_recovery(Project& project);
   void draw_quitting(Desk& desk);
-  void draw_replacing(Project& project);
+  void draw_replacing(Desk& desk);
   void draw_relinking(Project& project);
   std::string path_;
   PathQuestion asked_ = PathQuestion::none;
+  std::filesystem::path entries_of_;  ///< the folder that was read
+  std::vector<Entry> entries_;
   std::filesystem::path replacing_;  ///< is there already: asked for once
   int width_ = 0, height_ = 0;       ///< of pictures, in pixels
   int pictures_ = 36;                ///< of a turntable

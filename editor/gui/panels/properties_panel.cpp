@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_stdlib.h>
 
 #include <cmath>
 
@@ -8,97 +7,24 @@
 #include "editor/edits/support.h"
 #include "editor/gui/panels/euler.h"
 #include "editor/gui/panels/panels.h"
-#include "editor/gui/tools/expression.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/number_field.h"
+#include "editor/gui/ui/widgets.h"
+#include "mesh_ops/base/polar.h"
 
 namespace rebake {
 
-// A field that takes an expression; true when Enter, or leaving it, gave a new value.
-bool PropertiesPanel::number(const char* label, double& value, const char* format) {
-  const bool open = editing_ == label;
-  std::string text = open ? text_ : fmt::format(fmt::runtime(format), value);
-  ImGui::SetNextItemWidth(76);
-  ImGui::InputText(label, &text, ImGuiInputTextFlags_AutoSelectAll);
-  if (ImGui::IsItemActive()) {
-    editing_ = label;
-    text_ = text;
-    return false;
-  }
-  if (!open) return false;
-  editing_.clear();
-  const std::optional<double> read = evaluated(text);
-  const bool typed = ImGui::IsItemDeactivatedAfterEdit();
-  if (typed && !read) problem_ = "\"" + text + "\" is no number";
-  if (!typed || !read || *read == value) return false;
-  problem_.clear();
-  value = *read;
-  return true;
+namespace {
+
+// What rounding left of nothing is shown as nothing.
+Vec3 shown(const Vec3& value, double size) {
+  Vec3 result = value;
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(result[k]) < 1e-12 * size) result[k] = 0;
+  return result;
 }
 
-void PropertiesPanel::draw(Desk& desk) {
-  if (desk.active.empty()) {
-    ImGui::TextWrapped("Pick a node in the outline or the picture.");
-    return;
-  }
-  const auto placed = find_placed(desk.scene(), *desk.active.begin());
-  if (!placed) return;
-  const Node& node = *placed->node;
-  ImGui::TextUnformatted(desk.active.size() == 1 ? node.name.c_str()
-                                                 : fmt::format("{} nodes", desk.active.size()).c_str());
-  if (placed->locked) ImGui::TextDisabled("locked");
-  Box box;
-  for (const NodeId id : desk.active) box.extend(subtree_bounds(desk.scene(), id));
-  const Vec3 center = box.isEmpty() ? Vec3(placed->to_world.translation()) : Vec3(box.center());
-  std::vector<Edit> list;
-  const auto transform_all = [&](const auto& change) {
-    for (const NodeId id : desk.active_tops()) {
-      Transform transform;
-      transform.node = NodeRef{id};
-      transform.pivot = center;
-      change(transform);
-      list.emplace_back(transform);
-    }
-  };
-  const char* const axes[] = {"X", "Y", "Z"};
-  ImGui::TextDisabled("centre, world");
-  for (int axis = 0; axis < 3; ++axis) {
-    // What is nothing beside the object is shown as nothing.
-    double value = !box.isEmpty() && std::abs(center[axis]) < 1e-12 * box.diagonal().norm() ? 0 : center[axis];
-    const double shown = value;
-    if (number(fmt::format("{}##centre", axes[axis]).c_str(), value, "{:.5g}"))
-      transform_all([&](Transform& transform) { transform.translate[axis] = value - shown; });
-    if (axis < 2) ImGui::SameLine();
-  }
-  // One node shows how it stands; several are turned from where they are. A mirrored one has no angles.
-  const Mat3 linear = placed->to_world.linear();
-  const bool stands = desk.active.size() == 1 && linear.determinant() > 0;
-  const Vec3 angles = stands ? euler_degrees(orthogonal_factor(linear)) : Vec3(0, 0, 0);
-  ImGui::TextDisabled(stands ? "turned, degrees" : "turn by, degrees");
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3 wanted = angles;
-    // Rounding is no angle.
-    wanted[axis] = std::abs(angles[axis]) < 1e-10 ? 0 : angles[axis];
-    if (number(fmt::format("{}##turn", axes[axis]).c_str(), wanted[axis], "{:.5g}"))
-      transform_all([&](Transform& transform) {
-        transform.rotate = Rotation(Eigen::Quaterniond(Mat3(rotation_of(wanted) * rotation_of(angles).transpose())));
-      });
-    if (axis < 2) ImGui::SameLine();
-  }
-  ImGui::TextDisabled("size of the box, world");
-  for (int axis = 0; axis < 3; ++axis) {
-    const double size = box.isEmpty() ? 0 : box.sizes()[axis];
-    double value = size;
-    const bool changed = number(fmt::format("{}##size", axes[axis]).c_str(), value, "{:.5g}");
-    if (changed && !(value > 0)) problem_ = "a size must be above 0";
-    if (changed && value > 0 && size > 0)
-      transform_all([&](Transform& transform) { transform.scale.value[axis] = value / size; });
-    if (axis < 2) ImGui::SameLine();
-  }
-  double factor = 1;
-  const bool sized = number("all sizes", factor, "x {:.5g}");
-  if (sized && !(factor > 0)) problem_ = "a factor must be above 0";
-  if (sized && factor > 0) transform_all([&](Transform& transform) { transform.scale.value = Vec3::Constant(factor); });
-  if (!list.empty()) desk.edits(list);
-  if (!problem_.empty()) ImGui::TextColored({1, 0.5F, 0.4F, 1}, "%s", problem_.c_str());
+std::string rows_of(const Desk& desk) {
   std::size_t triangles = 0, sets = 0;
   std::uint64_t bytes = 0;
   bool bent = false;
@@ -110,11 +36,131 @@ void PropertiesPanel::draw(Desk& desk) {
     bytes += one->object->memory();
     bent = bent || one->object->any_rotations();
   }
-  if (sets == 0) return;
-  ImGui::Separator();
-  ImGui::Text("%zu triangles in %zu texture sets", triangles, sets);
-  ImGui::Text("%.1f MB", static_cast<double>(bytes) / 1e6);
-  if (bent) ImGui::TextWrapped("bent: view directions turn with its triangles");
+  if (sets == 0) return "";
+  return fmt::format("{} triangles in {} texture set{}, {:.1f} MB{}", triangles, sets, sets == 1 ? "" : "s",
+                     static_cast<double>(bytes) / 1e6, bent ? ". Bent: its colours turn with its triangles." : "");
+}
+
+}  // namespace
+
+// Three numbers of a row; what the last frame did to them.
+ui::Changed PropertiesPanel::row(const char* name, Vec3& value, const char* format, double step) {
+  ImGui::PushID(name);
+  ui::label(name);
+  const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
+  const char* const axes[] = {"X", "Y", "Z"};
+  ui::Changed result = ui::Changed::nothing;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis > 0) ImGui::SameLine();
+    const announce::Part part(name);
+    const Vec3 before = value;
+    const ui::Changed changed = ui::number_field(axes[axis], value[axis], format, step, width);
+    ui::tip(fmt::format("{} {}", name, axes[axis]), "", "Drag to the side, or click and type; 90/4 is a number too.");
+    if (changed == ui::Changed::nothing) {
+      value[axis] = before[axis];
+      continue;
+    }
+    result = changed;
+    if (changed == ui::Changed::failed) problem_ = "That is no number.";
+  }
+  ImGui::PopID();
+  return result;
+}
+
+void PropertiesPanel::draw_one(Desk& desk, const PlacedNode& placed) {
+  const Placement now = placement_of(placed.node->to_parent);
+  const double size = std::max(1e-300, subtree_bounds(desk.scene(), placed.node->id).isEmpty()
+                                           ? 1.0
+                                           : subtree_bounds(desk.scene(), placed.node->id).diagonal().norm());
+  if (!dragging_) {
+    position_ = shown(now.position, size);
+    angles_ = shown(euler_degrees(now.rotation), 100);
+    scale_ = now.scale;
+  }
+  Place place;
+  place.node = NodeRef{placed.node->id};
+  const double unit = std::pow(10, std::floor(std::log10(size)) - 2);
+  ui::Changed changed = ui::Changed::nothing;
+  const auto take = [&](ui::Changed one, const auto& set) {
+    if (one == ui::Changed::nothing || one == ui::Changed::failed) return;
+    changed = one;
+    set();
+  };
+  take(row("Position", position_, "{:.5g}", unit), [&] { place.position = position_; });
+  take(row("Rotation", angles_, "{:.5g}°", 1),
+       [&] { place.rotation = Rotation(Eigen::Quaterniond(rotation_of(angles_))); });
+  take(row("Scale", scale_, "{:.5g}", 0.01), [&] { place.scale = Scale{scale_}; });
+  if (changed == ui::Changed::nothing) return;
+  problem_.clear();
+  if (place.scale && (scale_.array() == 0).any()) {
+    problem_ = "A scale cannot be 0.";
+    dragging_ = false;
+    return;
+  }
+  dragging_ = changed == ui::Changed::dragged;
+  if (dragging_)
+    desk.show_preview({place});
+  else
+    desk.edit(place);
+}
+
+void PropertiesPanel::draw_several(Desk& desk) {
+  Box box;
+  for (const NodeId id : desk.active) box.extend(subtree_bounds(desk.scene(), id));
+  if (box.isEmpty()) return;
+  if (!dragging_) {
+    position_ = Vec3(0, 0, 0);
+    angles_ = Vec3(0, 0, 0);
+    scale_ = Vec3(1, 1, 1);
+  }
+  const double unit = std::pow(10, std::floor(std::log10(std::max(1e-300, box.diagonal().norm()))) - 2);
+  ui::Changed changed = ui::Changed::nothing;
+  for (const ui::Changed one : {row("Move by", position_, "{:.5g}", unit), row("Turn by", angles_, "{:.5g}°", 1),
+                                row("Scale by", scale_, "{:.5g}", 0.01)})
+    if (one != ui::Changed::nothing) changed = one;
+  if (changed == ui::Changed::nothing || changed == ui::Changed::failed) return;
+  std::vector<Edit> list;
+  for (const NodeId id : desk.active_tops()) {
+    Transform transform;
+    transform.node = NodeRef{id};
+    transform.pivot = box.center();
+    transform.translate = position_;
+    transform.rotate = Rotation(Eigen::Quaterniond(rotation_of(angles_)));
+    transform.scale.value = scale_;
+    list.emplace_back(transform);
+  }
+  problem_.clear();
+  dragging_ = changed == ui::Changed::dragged;
+  if (dragging_)
+    desk.show_preview(list);
+  else
+    desk.edits(list);
+}
+
+void PropertiesPanel::draw(Desk& desk) {
+  const announce::Part part("properties");
+  if (desk.active.empty()) {
+    ui::muted("Pick a node in the outline, or click it in the picture.");
+    return;
+  }
+  const auto placed = find_placed(desk.scene(), *desk.active.begin());
+  if (!placed) return;
+  if (of_ != desk.active) dragging_ = false;
+  of_ = desk.active;
+  ImGui::TextUnformatted(desk.active.size() == 1 ? placed->node->name.c_str()
+                                                 : fmt::format("{} nodes", desk.active.size()).c_str());
+  if (placed->locked) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("locked");
+  }
+  ImGui::BeginDisabled(placed->locked);
+  if (desk.active.size() == 1)
+    draw_one(desk, *placed);
+  else
+    draw_several(desk);
+  ImGui::EndDisabled();
+  if (!problem_.empty()) ui::wrapped(problem_, theme().danger);
+  if (const std::string rows = rows_of(desk); !rows.empty()) ui::muted(rows);
 }
 
 }  // namespace rebake

@@ -4,24 +4,27 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/widgets.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/error.h"
 
 namespace rebake {
 
 void ScriptPanel::draw(Desk& desk) {
-  if (ImGui::Button("Copy")) {
+  const announce::Part part("script");
+  if (ui::button("Copy")) {
     std::string text;
     for (const Edit& edit : desk.now->done) text += to_json(edit).dump() + "\n";
     ImGui::SetClipboardText(text.c_str());
   }
   ImGui::SameLine();
-  if (ImGui::Button("Save...")) desk.asking.path = PathQuestion::save_script;
+  if (ui::button("Save...")) desk.asking.path = PathQuestion::save_script;
   ImGui::SameLine();
-  if (ImGui::Button("Run...")) desk.asking.path = PathQuestion::run_script;
+  if (ui::button("Run...")) desk.asking.path = PathQuestion::run_script;
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::InputTextWithHint("##line", "a line, e.g. {\"op\": \"select\", \"all\": true}", &line_,
+  if (ImGui::InputTextWithHint("##line", "A line, e.g. {\"op\": \"select\", \"all\": true}", &line_,
                                ImGuiInputTextFlags_EnterReturnsTrue) &&
       !line_.empty()) {
     try {
@@ -39,9 +42,7 @@ void ScriptPanel::draw(Desk& desk) {
     }
   }
   if (!problem_.empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.5F, 0.4F, 1));
-    ImGui::TextWrapped("%s", problem_.c_str());
-    ImGui::PopStyleColor();
+    ui::wrapped(problem_, theme().danger);
   }
   ImGui::BeginChild("lines");
   const bool fresh = of_ != desk.now;

@@ -10,96 +10,165 @@
 #include "editor/edits/deform/stretch.h"
 #include "editor/edits/deform/taper.h"
 #include "editor/edits/deform/twist.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/number_field.h"
+#include "editor/gui/ui/widgets.h"
 
 namespace rebake {
 
 namespace {
 
-constexpr double bend_grab_pixels = 11;
+constexpr float bend_grab_pixels = 11;
+constexpr double interleaved = 0.4;  // share of the length from which the rest lies among what is bent
+
+// Of the triangles that show something, a point each; the selected ones, and the rest of their objects.
+Spine spine_of_targets(const Scene& scene, const std::vector<DeformTarget>& targets) {
+  std::vector<WeightedPoint> part, rest;
+  for (const DeformTarget& target : targets) {
+    DeformSet set = deform_set(scene, target);
+    for (const bool selected : {true, false}) {
+      const TriangleList list = set.opaque_triangles();
+      for (const Face& face : list.faces) {
+        const Vec3 &a = list.points[face[0]], &b = list.points[face[1]], &c = list.points[face[2]];
+        const WeightedPoint point{(a + b + c) / 3, (b - a).cross(c - a).norm()};
+        if (point.at.allFinite() && point.weight > 0) (selected ? part : rest).push_back(point);
+      }
+      for (TriangleSet& flags : set.flags)
+        for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
+    }
+  }
+  return spine_of(part, rest).value_or(Spine{});
+}
 
 }  // namespace
 
-std::optional<BendTool::Spine> BendTool::spine(const Desk& desk) const {
-  const std::optional<DeformTarget> target = desk.deform_target();
-  if (!target) return std::nullopt;
-  const Box box = desk.deform_bounds(*target);
-  if (box.isEmpty()) return std::nullopt;
-  int axis = axis_ - 1;
-  if (axis < 0) {
-    axis = 1;  // objects stand
-    if (target->selection) box.sizes().maxCoeff(&axis);
-  }
-  const double length = box.sizes()[axis];
-  if (!(length > 0)) return std::nullopt;
-  Spine spine{*target, box.center(), Vec3::Unit(axis), length};
-  spine.foot[axis] = box.min()[axis];
-  // A selected part is held at the end where the rest is: a branch at the stem.
-  if (axis_ == 0 && target->selection) {
-    Box whole;
+BendTool::Found BendTool::present(const Desk& desk) const {
+  Found found = {{nullptr, reinterpret_cast<const void*>(static_cast<std::uintptr_t>(axis_))}};
+  for (const DeformTarget& target : desk.deform_targets())
     for (const PlacedNode& placed : placed_nodes(desk.scene()))
-      if (placed.visible && !placed.locked && placed.node->selection && count(*placed.node->selection) > 0)
-        whole.extend(subtree_bounds(desk.scene(), placed.node->id));
-    if (whole.center()[axis] > box.center()[axis]) {
-      spine.along = -spine.along;
-      spine.foot[axis] = box.max()[axis];
-    }
+      if (placed.node->object && (!target.node || target.node->id == placed.node->id) &&
+          (!target.selection || placed.node->selection))
+        found.push_back({placed.node.get(), target.selection ? placed.node->selection.get() : nullptr});
+  return found;
+}
+
+// Whether the document's last step was made along the spine that is held.
+bool BendTool::made_last(const Desk& desk) const {
+  const std::optional<Bent> here = bent(desk);
+  if (!here || desk.now->done.empty()) return false;
+  const Edit& last = desk.now->done.back();
+  const DeformAxis* axis = nullptr;
+  if (const auto* bend = last.as<Bend>()) axis = &bend->axis;
+  if (const auto* twist = last.as<Twist>()) axis = &twist->axis;
+  if (const auto* taper = last.as<Taper>()) axis = &taper->axis;
+  if (const auto* stretch = last.as<Stretch>()) axis = &stretch->axis;
+  return axis != nullptr && axis->axis == here->spine.along && axis->origin == here->spine.foot;
+}
+
+void BendTool::find_spine(Desk& desk) {
+  const Found now = present(desk);
+  if (now == found_for_) return;
+  found_for_ = now;
+  // A second bend goes on from the first's axis and limits.
+  if (made_last(desk)) return;
+  found_.reset();
+  from_ = 0;
+  to_ = 1;
+  flipped_ = false;
+  const std::vector<DeformTarget> targets = desk.deform_targets();
+  if (targets.empty()) return;
+  if (axis_ > 0 || !targets.front().selection) {
+    // Objects stand.
+    const int axis = axis_ > 0 ? axis_ - 1 : 1;
+    const Box box = desk.deform_bounds(targets);
+    if (box.isEmpty() || !(box.sizes()[axis] > 0)) return;
+    Spine spine{box.center(), Vec3::Unit(axis), box.sizes()[axis], 0};
+    spine.foot[axis] = box.min()[axis];
+    found_ = std::make_shared<Spine>(spine);
+    return;
   }
-  return spine;
+  auto found = std::make_shared<Spine>();
+  desk.jobs.worker.start(
+      "looking for the spine",
+      [targets, found](Session& session) { *found = spine_of_targets(session.scene(), targets); },
+      [this, found, now] {
+        if (now != found_for_ || !(found->length > 0)) return;
+        found_ = found;
+        // As wide as the stem: no rip at the border. Among triangles that were not taken it would hold all of it.
+        falloff_ = found->touched < interleaved ? found->width : 0;
+      });
 }
 
-Vec3 BendTool::place(const Spine& spine, Handle handle) const {
-  return handle == Handle::from ? spine.at(from_) : handle == Handle::to ? spine.at(to_) : spine.tip();
+std::optional<BendTool::Bent> BendTool::bent(const Desk& desk) const {
+  if (!found_) return std::nullopt;
+  Bent bent{desk.deform_targets(), *found_};
+  if (bent.targets.empty()) return std::nullopt;
+  if (flipped_) {
+    bent.spine.foot += bent.spine.length * bent.spine.along;
+    bent.spine.along = -bent.spine.along;
+  }
+  return bent;
 }
 
-BendTool::Handle BendTool::handle_at(const Spine& spine, const Lens& lens, const Vec2& at) const {
+Vec3 BendTool::place(const Bent& bent, Handle handle) const {
+  return handle == Handle::from ? bent.at(from_) : handle == Handle::to ? bent.at(to_) : bent.tip();
+}
+
+BendTool::Handle BendTool::handle_at(const Bent& bent, const Lens& lens, const Vec2& at) const {
   for (const Handle handle : {Handle::tip, Handle::to, Handle::from})
-    if (const auto pixel = lens.pixel(place(spine, handle)); pixel && (*pixel - at).norm() < bend_grab_pixels)
+    if (const auto pixel = lens.pixel(place(bent, handle));
+        pixel && (*pixel - at).norm() < static_cast<double>(px(bend_grab_pixels)))
       return handle;
   return Handle::none;
 }
 
-std::optional<Edit> BendTool::edit(const Lens& lens) const {
-  const auto foot = lens.pixel(bent_->at(from_)), tip = lens.pixel(bent_->tip());
-  if (!foot || !tip || !(to_ > from_)) return std::nullopt;
+std::vector<Edit> BendTool::edits(const Lens& lens) const {
+  const Bent& bent = *held_bent_;
+  const auto foot = lens.pixel(bent.at(from_)), tip = lens.pixel(bent.tip());
+  if (!foot || !tip || !(to_ > from_)) return {};
   const Vec2 before = *tip - *foot, after = before + (now_ - began_);
-  const auto fill = [&](auto made) -> Edit {
-    made.target = bent_->target;
-    made.target.falloff = falloff_;
-    made.axis.axis = bent_->along;
-    made.axis.origin = bent_->foot;
-    made.axis.from = from_ * bent_->length;
-    made.axis.to = to_ * bent_->length;
-    return made;
+  const auto fill = [&](auto made) {
+    std::vector<Edit> list;
+    for (const DeformTarget& target : bent.targets) {
+      made.target = target;
+      made.target.falloff = falloff_;
+      made.axis.axis = bent.spine.along;
+      made.axis.origin = bent.spine.foot;
+      made.axis.from = from_ * bent.spine.length;
+      made.axis.to = to_ * bent.spine.length;
+      list.emplace_back(made);
+    }
+    return list;
   };
   switch (kind_) {
     case Kind::bend: {
       Bend bend;
       // The tip lies half the bend's angle off, as seen from its foot; it goes where the pointer goes on the screen.
       const double angle = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
-      const Vec3 away = -lens.towards_eye(bent_->at(0.5));
-      const Vec3 side = away.cross(bent_->along);
-      if (!(side.norm() > 0.05)) return std::nullopt;  // the axis points at the eye
+      const Vec3 away = -lens.towards_eye(bent.at(0.5));
+      const Vec3 side = away.cross(bent.spine.along);
+      if (!(side.norm() > 0.05)) return {};  // the axis points at the eye
       bend.degrees = typed_.value() ? *typed_.value() : std::abs(angle) * 2 * 180 / std::numbers::pi;
       bend.direction = (angle > 0 ? 1.0 : -1.0) * side.normalized();
-      if (std::abs(bend.degrees) < 0.1) return std::nullopt;
+      if (std::abs(bend.degrees) < 0.1) return {};
       return fill(bend);
     }
     case Kind::twist: {
       Twist twist;
       twist.degrees = typed_.value().value_or(now_.x() - began_.x());
-      if (twist.degrees == 0) return std::nullopt;
+      if (twist.degrees == 0) return {};
       return fill(twist);
     }
     case Kind::taper: {
       Taper taper;
       taper.factor = typed_.value().value_or(std::max(0.01, 1 + (now_.x() - began_.x()) / 150));
-      if (taper.factor == 1) return std::nullopt;
+      if (taper.factor == 1) return {};
       return fill(taper);
     }
     default: {
       Stretch stretch;
       stretch.factor = typed_.value().value_or(std::max(0.01, after.dot(before) / before.squaredNorm()));
-      if (!std::isfinite(stretch.factor) || stretch.factor == 1) return std::nullopt;
+      if (!std::isfinite(stretch.factor) || stretch.factor == 1) return {};
       return fill(stretch);
     }
   }
@@ -107,10 +176,11 @@ std::optional<Edit> BendTool::edit(const Lens& lens) const {
 
 void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   if (held_ == Handle::none) {
+    find_spine(desk);
     if (!pointer.pressed || !pointer.inside) return;
-    bent_ = spine(desk);
-    if (!bent_) return;
-    held_ = handle_at(*bent_, lens, pointer.at);
+    held_bent_ = bent(desk);
+    if (!held_bent_) return;
+    held_ = handle_at(*held_bent_, lens, pointer.at);
     began_ = now_ = pointer.at;
     typed_.clear();
     typed_text_.clear();
@@ -120,26 +190,24 @@ void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   typed_text_ = typed_.text();
   now_ = pointer.at;
   if (held_ == Handle::tip) {
-    const std::optional<Edit> made = edit(lens);
-    readout_ = made ? readout(*made) : "";
+    const std::vector<Edit> made = edits(lens);
+    readout_ = made.empty() ? "" : readout(made.front());
     if (pointer.released) {
       held_ = Handle::none;
-      if (made)
-        desk.edit(*made);
-      else
-        desk.preview.reset();
-    } else if (moved) {
-      desk.preview.reset();
-      try {
-        if (made) desk.show_preview(rebake::apply(desk.scene(), *made).scene);
-      } catch (const Error&) {
-        desk.preview.reset();  // said on release
+      if (made.empty()) {
+        desk.drop_preview();
+      } else {
+        desk.edits(made);
       }
+    } else if (moved && !made.empty()) {
+      desk.show_preview(made);
+    } else if (moved) {
+      desk.drop_preview();
     }
     return;
   }
   // A limit goes to where the pointer is nearest to the spine on the screen.
-  const auto foot = lens.pixel(bent_->at(0)), top = lens.pixel(bent_->at(1));
+  const auto foot = lens.pixel(held_bent_->at(0)), top = lens.pixel(held_bent_->at(1));
   if (foot && top && (*top - *foot).squaredNorm() > 1) {
     const double share = std::clamp((now_ - *foot).dot(*top - *foot) / (*top - *foot).squaredNorm(), 0.0, 1.0);
     constexpr double least = 0.02;
@@ -154,25 +222,28 @@ void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
 bool BendTool::key(Desk& /*desk*/, const KeyPress& press) { return held_ == Handle::tip && typed_.key(press); }
 
 std::string BendTool::readout(const Edit& edit) {
-  if (const auto* bend = edit.as<Bend>()) return fmt::format("bend {:.1f} deg", bend->degrees);
-  if (const auto* twist = edit.as<Twist>()) return fmt::format("twist {:.1f} deg", twist->degrees);
-  if (const auto* taper = edit.as<Taper>()) return fmt::format("taper x {:.3f}", taper->factor);
-  if (const auto* stretch = edit.as<Stretch>()) return fmt::format("stretch x {:.3f}", stretch->factor);
+  if (const auto* bend = edit.as<Bend>()) return fmt::format("Bend {:.1f}°", bend->degrees);
+  if (const auto* twist = edit.as<Twist>()) return fmt::format("Twist {:.1f}°", twist->degrees);
+  if (const auto* taper = edit.as<Taper>()) return fmt::format("Taper × {:.3f}", taper->factor);
+  if (const auto* stretch = edit.as<Stretch>()) return fmt::format("Stretch × {:.3f}", stretch->factor);
   return "";
 }
 
 void BendTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
                     const ImVec2& origin) const {
-  const std::optional<Spine> here = held_ != Handle::none ? bent_ : spine(desk);
+  const std::optional<Bent> here = held_ != Handle::none ? held_bent_ : bent(desk);
   if (!here) return;
+  const announce::Part part("bend");
   const Handle hot = held_ != Handle::none ? held_ : pointer.inside ? handle_at(*here, lens, pointer.at) : Handle::none;
-  for (const Handle handle : {Handle::from, Handle::to, Handle::tip}) {
+  for (const auto& [handle, name] :
+       {std::pair(Handle::from, "from"), std::pair(Handle::to, "to"), std::pair(Handle::tip, "tip")}) {
     const auto pixel = lens.pixel(place(*here, handle));
     if (!pixel) continue;
     const bool drags = held_ == Handle::tip && handle == Handle::tip;
     const ImVec2 at = on_screen(drags ? Vec2(*pixel + now_ - began_) : *pixel, origin);
-    list.AddCircleFilled(at, handle == Handle::tip ? 8.0F : 6.0F, IM_COL32(0, 0, 0, 170));
-    list.AddCircleFilled(at, handle == Handle::tip ? 7.0F : 5.0F,
+    announce::point(name, at);
+    list.AddCircleFilled(at, px(handle == Handle::tip ? 8 : 6), IM_COL32(0, 0, 0, 170));
+    list.AddCircleFilled(at, px(handle == Handle::tip ? 7 : 5),
                          handle == hot           ? IM_COL32(255, 230, 60, 255)
                          : handle == Handle::tip ? IM_COL32(255, 120, 200, 255)
                                                  : IM_COL32(120, 190, 255, 255));
@@ -183,32 +254,54 @@ void BendTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, 
 }
 
 void BendTool::add_guides(const Desk& desk, std::vector<Guides::Line>& lines) const {
-  const std::optional<Spine> here = held_ != Handle::none ? bent_ : spine(desk);
+  const std::optional<Bent> here = held_ != Handle::none ? held_bent_ : bent(desk);
   if (!here) return;
   lines.push_back({here->at(from_), here->at(to_), Color(0.35, 0.65, 1), 1, 0.6});
   lines.push_back({here->at(to_), here->tip(), Color(1, 0.5, 0.8), 1, 0.6});
+  // The soft border's width, as a ring where it begins.
+  if (!(falloff_ > 0)) return;
+  const Vec3 middle = here->at(from_), u = here->spine.along.unitOrthogonal(), v = here->spine.along.cross(u);
+  constexpr int corners = 32;
+  for (int k = 0; k < corners; ++k) {
+    const auto at = [&](int corner) {
+      const double angle = 2 * std::numbers::pi * corner / corners;
+      return Vec3(middle + falloff_ * (std::cos(angle) * u + std::sin(angle) * v));
+    };
+    lines.push_back({at(k), at(k + 1), Color(1, 0.7, 0.2), 0.9, 0.4});
+  }
 }
 
 void BendTool::options(Desk& desk) {
   int kind = static_cast<int>(kind_);
-  ImGui::SetNextItemWidth(90);
-  if (ImGui::Combo("##kind", &kind, "bend\0twist\0taper\0stretch\0")) kind_ = static_cast<Kind>(kind);
-  flow(150);
-  ImGui::SetNextItemWidth(95);
-  ImGui::Combo("axis", &axis_, "automatic\0X\0Y\0Z\0");
-  flow(150);
-  ImGui::SetNextItemWidth(80);
-  auto falloff = static_cast<float>(falloff_);
-  if (ImGui::InputFloat("falloff", &falloff)) falloff_ = std::max(0.0, static_cast<double>(falloff));
-  if (spine(desk))
-    flow_text("drag the pink end, or type a number meanwhile; the blue ends are its limits");
+  if (ui::choice("kind", kind, {"Bend", "Twist", "Taper", "Stretch"})) kind_ = static_cast<Kind>(kind);
+  ImGui::SameLine(0, px(space::section));
+  ImGui::SetNextItemWidth(px(130));
+  ImGui::Combo("##axis", &axis_, "along its shape\0along X\0along Y\0along Z\0");
+  announce::item("Axis");
+  ui::tip("Axis", "", "Along the shape: from where the selection hangs on the rest to its far end.");
+  ImGui::SameLine();
+  if (ui::button("Flip")) flipped_ = !flipped_;
+  ui::tip("Flip", "", "Hold it at the other end.");
+  ImGui::SameLine(0, px(space::section));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("Soft border");
+  ImGui::SameLine();
+  double falloff = falloff_;
+  const double step = found_ ? found_->length / 200 : 0.01;
+  const ui::Changed changed = ui::number_field("Soft border", falloff, "{:.3g}", step, px(70));
+  if (changed == ui::Changed::dragged || changed == ui::Changed::finished) falloff_ = std::max(0.0, falloff);
+  ui::tip("Soft border", "", "How far what is not selected follows, in scene units; 0 is a hard cut.");
+  if (found_ && found_->touched >= interleaved)
+    ui::hint("Parts among it are not selected and stay: select without \"Visible only\" to bend all of it.");
+  else if (bent(desk))
+    ui::hint("Drag the pink end, or type a number meanwhile; the blue ends are limits.");
   else
-    flow_text("there is nothing to bend");
+    ui::hint(desk.jobs.worker.busy() ? "Looking for the spine…" : "There is nothing to bend.");
 }
 
 void BendTool::cancel(Desk& desk) {
   held_ = Handle::none;
-  desk.preview.reset();
+  desk.drop_preview();
 }
 
 }  // namespace rebake

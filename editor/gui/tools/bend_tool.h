@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+
 #include "editor/gui/tools/tool.h"
 #include "editor/gui/tools/typed_number.h"
+#include "mesh_ops/deform/spine.h"
 
 namespace rebake {
 
@@ -19,27 +22,34 @@ class BendTool final : public ViewTool {
 
  private:
   enum class Handle { none, from, to, tip };
-  /// The axis through what is deformed: from `foot` along `along`, `length` long.
-  struct Spine {
-    DeformTarget target;
-    Vec3 foot, along;
-    double length;
-    Vec3 at(double share) const { return foot + share * length * along; }
+  /// What is bent, and the line along which.
+  struct Bent {
+    std::vector<DeformTarget> targets;
+    Spine spine;
+    Vec3 at(double share) const { return spine.foot + share * spine.length * spine.along; }
     Vec3 tip() const { return at(1.15); }  ///< beyond the upper limit, so that both can be taken
   };
-  std::optional<Spine> spine(const Desk& desk) const;
-  Vec3 place(const Spine& spine, Handle handle) const;
-  Handle handle_at(const Spine& spine, const Lens& lens, const Vec2& at) const;
-  std::optional<Edit> edit(const Lens& lens) const;
+  /// What a spine was found for: objects and selections, by their arrays.
+  using Found = std::vector<std::array<const void*, 2>>;
+  std::optional<Bent> bent(const Desk& desk) const;
+  void find_spine(Desk& desk);
+  bool made_last(const Desk& desk) const;
+  Found present(const Desk& desk) const;
+  Vec3 place(const Bent& bent, Handle handle) const;
+  Handle handle_at(const Bent& bent, const Lens& lens, const Vec2& at) const;
+  std::vector<Edit> edits(const Lens& lens) const;
   static std::string readout(const Edit& edit);
 
   enum class Kind { bend, twist, taper, stretch };
   Kind kind_ = Kind::bend;
-  int axis_ = 0;              ///< up, of selected triangles the longest; or 1 to 3 for X, Y, Z
-  double from_ = 0, to_ = 1;  ///< limits, as shares of the spine
-  double falloff_ = 0;        ///< scene units
+  int axis_ = 0;                        ///< along the shape; or 1 to 3 for X, Y, Z
+  bool flipped_ = false;                ///< held at the other end
+  double from_ = 0, to_ = 1;            ///< limits, as shares of the spine
+  double falloff_ = 0;                  ///< scene units
+  std::shared_ptr<const Spine> found_;  ///< of what is to be bent; null while it is looked for, or where there is none
+  Found found_for_;
   Handle held_ = Handle::none;
-  std::optional<Spine> bent_;  ///< as it was when the drag began
+  std::optional<Bent> held_bent_;  ///< as it was when the drag began
   Vec2 began_{0, 0}, now_{0, 0};
   TypedNumber typed_;
   std::string typed_text_, readout_;  ///< as they were with the last preview

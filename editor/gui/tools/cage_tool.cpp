@@ -1,28 +1,35 @@
 #include "editor/gui/tools/cage_tool.h"
 
-#include <GLFW/glfw3.h>
+#include <fmt/format.h>
 
+#include <array>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "editor/edits/deform/cage.h"
 #include "editor/edits/deform/deforming.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/widgets.h"
 #include "mesh_ops/deform/cage_deformation.h"
 
 namespace rebake {
 
 namespace {
 
-constexpr double cage_grab_pixels = 10;
+constexpr float cage_grab_pixels = 10;
+constexpr std::size_t most_exact = 10000;  // points that a preview moves with their gradients: about 0.1 s
 
 }  // namespace
 
 /// A cage with everything bound to it, for previews.
 struct CageTool::Bound {
   CageDeform edit;  ///< without moves
+  Scene scene;      ///< that the cage was made in
   Cage cage;
   DeformSet set;
   std::unique_ptr<Coordinates> coordinates;
+  std::vector<std::vector<Vec3>> places;               ///< that move, of each node of the set
   std::vector<std::unique_ptr<CageBinding>> bindings;  ///< one a node of the set
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
 };
@@ -31,26 +38,28 @@ CageTool::CageTool() = default;
 CageTool::~CageTool() = default;
 
 void CageTool::make(Desk& desk) {
-  const std::optional<DeformTarget> target = desk.deform_target();
-  if (!target) {
-    desk.messages.error = "there is nothing to put a cage around: open a folder first";
+  const std::vector<DeformTarget> targets = desk.deform_targets();
+  if (targets.empty()) {
+    desk.messages.fail("There is nothing to put a cage around: open a scene first.");
     return;
   }
   CageDeform edit = edit_;
-  const double falloff = edit.target.falloff;
-  edit.target = *target;
-  edit.target.falloff = falloff;
+  edit.target = targets.front();
+  edit.target.falloff = edit_.target.falloff;
+  if (targets.size() > 1) edit.target.node.reset();  // one cage around all that is selected
   edit.cage = {};
   if (wraps_)
     edit.cage.wrap = static_cast<double>(coarseness_);
   else
     edit.cage.lattice = {cells_[0], cells_[1], cells_[2]};
+  unbind(desk);
   auto made = std::make_shared<std::shared_ptr<const Bound>>();
   desk.jobs.worker.start(
-      "cage",
+      "making a cage",
       [edit, made](Session& session) {
         auto bound = std::make_shared<Bound>();
         bound->edit = edit;
+        bound->scene = session.scene();
         bound->set = deform_set(session.scene(), edit.target);
         bound->cage = cage_of(edit.cage, bound->set, session.progress);
         bound->coordinates = coordinates_of(bound->cage, edit.coordinates, edit.resolution, session.progress);
@@ -63,25 +72,28 @@ void CageTool::make(Desk& desk) {
                    });
           bound->bindings.push_back(
               std::make_unique<CageBinding>(*bound->coordinates, bound->cage, places, session.progress));
+          bound->places.push_back(std::move(places));
         }
         for (const Face& face : bound->cage.faces)
           for (std::size_t k = 0; k < 3; ++k)
             if (face[k] < face[(k + 1) % 3]) bound->edges.emplace_back(face[k], face[(k + 1) % 3]);
         *made = std::move(bound);
       },
-      [this, made] {
+      [this, &desk, made] {
         bound_ = *made;
         moved_ = bound_->cage.vertices;
+        steps_ = {moved_};
+        at_ = 0;
         picked_.assign(moved_.size(), 0);
+        desk.tools.own_step = [this, &desk](int direction) { return step(desk, direction); };
       });
 }
 
-void CageTool::apply(Desk& desk) {
-  if (!bound_) return;
+CageDeform CageTool::edit_for(const Points& points) const {
   // Points that moved alike are one move.
   std::map<std::array<double, 3>, NumberRanges> groups;
-  for (std::size_t v = 0; v < moved_.size(); ++v) {
-    const Vec3 motion = moved_[v] - bound_->cage.vertices[v];
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const Vec3 motion = points[v] - bound_->cage.vertices[v];
     if (motion.isZero(0)) continue;
     auto& ranges = groups[{motion.x(), motion.y(), motion.z()}].ranges;
     if (!ranges.empty() && ranges.back().second + 1 == v)
@@ -89,55 +101,89 @@ void CageTool::apply(Desk& desk) {
     else
       ranges.emplace_back(v, v);
   }
-  if (groups.empty()) return;
   CageDeform edit = bound_->edit;
   edit.target.falloff = edit_.target.falloff;
-  for (const auto& [motion, points] : groups) {
+  for (const auto& [motion, numbers] : groups) {
     CageMove move;
-    move.points = points;
+    move.points = numbers;
     move.translate = Vec3(motion[0], motion[1], motion[2]);
     edit.moves.push_back(move);
   }
-  desk.edit(edit);
+  return edit;
 }
 
-// False once an edit has changed what the cage was made around: its points would mean other places.
-bool CageTool::fits(const Desk& desk) const {
-  for (const PlacedNode& placed : bound_->set.nodes) {
-    const auto now = find_placed(desk.scene(), placed.node->id);
-    if (!now || now->node->object != placed.node->object || now->node->selection != placed.node->selection ||
-        now->to_world.matrix() != placed.to_world.matrix())
-      return false;
+// Makes the document hold the cage with these points, which are the tool's step of that number.
+void CageTool::commit(Desk& desk, const Points& points, std::size_t step) {
+  const CageDeform edit = edit_for(points);
+  const auto done = [this, step] { at_ = step; };
+  if (edit.moves.empty()) {
+    if (at_ > 0) desk.undo();
+    at_ = step;
+  } else if (at_ == 0) {
+    desk.edits({edit}, done);
+  } else {
+    desk.adjust({edit}, done);
   }
+}
+
+bool CageTool::step(Desk& desk, int direction) {
+  if (!bound_ || busy() || desk.jobs.worker.busy()) return bound_ != nullptr;
+  if (direction < 0 && at_ == 0) return false;
+  if (direction > 0 && at_ + 1 >= steps_.size()) return false;
+  const std::size_t next = direction < 0 ? at_ - 1 : at_ + 1;
+  moved_ = steps_[next];
+  preview(desk);
+  commit(desk, moved_, next);
   return true;
 }
 
-void CageTool::preview(Desk& desk) {
-  Scene scene = desk.scene();
-  try {
-    for (std::size_t k = 0; k < bound_->set.nodes.size(); ++k) {
-      const PlacedNode& placed = bound_->set.nodes[k];
-      if (find(scene, placed.node->id) == nullptr) return;
-      DeformedObject made = deformed(*placed.node->object, placed.to_world, bound_->set.flags[k], edit_.target.falloff,
-                                     [&](const std::vector<Vec3>& world) {
-                                       // Rotations follow on release: colours are those of the unbent surface
-                                       // meanwhile.
-                                       DeformedPoints points{{}, std::vector<Mat3>(world.size(), Mat3::Identity()), {}};
-                                       bound_->bindings[k]->positions(moved_, points.points);
-                                       return points;
-                                     });
-      scene = with_changed(scene, placed.node->id, [&](Node& node) { node.object = std::move(made.object); });
-    }
-    desk.show_preview(std::move(scene));
-  } catch (const Error& error) {
-    desk.messages.error = error.what();
-    desk.preview.reset();
+// What others did to the document: the cage is there as long as the document holds its scene, or its edit last.
+void CageTool::follow(Desk& desk) {
+  if (!bound_ || desk.jobs.worker.busy()) return;
+  if (desk.scene().roots == bound_->scene.roots) {
+    if (at_ > 0) moved_ = steps_[at_ = 0];
+    return;
   }
+  const CageDeform* last = desk.now->done.empty() ? nullptr : desk.now->done.back().as<CageDeform>();
+  if (last != nullptr)
+    for (std::size_t k = 1; k < steps_.size(); ++k)
+      if (to_json(edit_for(steps_[k])) == to_json(*last)) {
+        if (at_ != k) moved_ = steps_[at_ = k];
+        return;
+      }
+  unbind(desk);
+}
+
+void CageTool::unbind(Desk& desk) {
+  bound_.reset();
+  dragging_ = boxing_ = false;
+  desk.tools.own_step = nullptr;
+}
+
+void CageTool::preview(Desk& desk) {
+  desk.previews.request(
+      desk.scene().roots, [bound = bound_, points = moved_, falloff = edit_.target.falloff](const Progress& progress) {
+        Scene scene = bound->scene;
+        for (std::size_t k = 0; k < bound->set.nodes.size(); ++k) {
+          const PlacedNode& placed = bound->set.nodes[k];
+          const auto move = [&](const std::vector<Vec3>& places) {
+            // As the edit does it, colours turned too, where that is quick.
+            if (places.size() <= most_exact)
+              return deform_points(*bound->coordinates, bound->cage, points, places, true, progress);
+            DeformedPoints made{{}, std::vector<Mat3>(places.size(), Mat3::Identity()), {}};
+            bound->bindings[k]->positions(points, made.points);
+            return made;
+          };
+          DeformedObject made = deformed(*placed.node->object, placed.to_world, bound->set.flags[k], falloff, move);
+          scene = with_changed(scene, placed.node->id, [&](Node& node) { node.object = std::move(made.object); });
+        }
+        return scene;
+      });
 }
 
 int CageTool::point_at(const Lens& lens, const Vec2& at) const {
   int found = -1;
-  double least = cage_grab_pixels;
+  double least = static_cast<double>(px(cage_grab_pixels));
   for (std::size_t v = 0; v < moved_.size(); ++v)
     if (const auto pixel = lens.pixel(moved_[v]); pixel && (*pixel - at).norm() < least) {
       least = (*pixel - at).norm();
@@ -147,23 +193,19 @@ int CageTool::point_at(const Lens& lens, const Vec2& at) const {
 }
 
 void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
-  if (bound_ && !fits(desk)) {
-    bound_.reset();
-    dragging_ = boxing_ = false;
-  }
+  if (!dragging_) follow(desk);
   if (!bound_) return;
   if (pointer.pressed && pointer.inside) {
     held_ = point_at(lens, pointer.at);
+    from_ = to_ = pointer.at;
     if (held_ < 0) {
       if (!pointer.shift) std::fill(picked_.begin(), picked_.end(), std::uint8_t{0});
       boxing_ = true;
-      from_ = to_ = pointer.at;
       return;
     }
     const auto v = static_cast<std::size_t>(held_);
     if (!pointer.shift && picked_[v] == 0) std::fill(picked_.begin(), picked_.end(), std::uint8_t{0});
     picked_[v] = 1;
-    from_ = pointer.at;
     before_ = moved_;
     dragging_ = true;
     return;
@@ -178,7 +220,10 @@ void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
           pixel && (pixel->array() >= low.array()).all() && (pixel->array() <= high.array()).all())
         picked_[v] = 1;
   }
-  if (!dragging_) return;
+  if (dragging_) drag(desk, lens, pointer);
+}
+
+void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
   const Vec3 motion = lens.motion(before_[static_cast<std::size_t>(held_)], pointer.at - from_);
   Box box;
   for (const Vec3& p : bound_->cage.vertices) box.extend(p);
@@ -197,7 +242,12 @@ void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     moved_[v] = next;
   }
   if (changed) preview(desk);
-  if (pointer.released) dragging_ = false;
+  if (!pointer.released) return;
+  dragging_ = false;
+  if (moved_ == before_) return;
+  steps_.resize(at_ + 1);
+  steps_.push_back(moved_);
+  commit(desk, moved_, at_ + 1);
 }
 
 void CageTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& pointer, ImDrawList& list,
@@ -205,12 +255,14 @@ void CageTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& point
   if (!bound_) return;
   if (boxing_) list.AddRect(on_screen(from_, origin), on_screen(to_, origin), IM_COL32(255, 140, 20, 255));
   const int hot = dragging_ ? held_ : pointer.inside ? point_at(lens, pointer.at) : -1;
+  const announce::Part part("cage");
   for (std::size_t v = 0; v < moved_.size(); ++v) {
     const auto pixel = lens.pixel(moved_[v]);
     if (!pixel) continue;
     const ImVec2 at = on_screen(*pixel, origin);
-    list.AddCircleFilled(at, 5, IM_COL32(0, 0, 0, 160));
-    list.AddCircleFilled(at, 4,
+    announce::point(fmt::format("{}", v), at);
+    list.AddCircleFilled(at, px(5), IM_COL32(0, 0, 0, 160));
+    list.AddCircleFilled(at, px(4),
                          static_cast<int>(v) == hot ? IM_COL32(255, 230, 60, 255)
                          : picked_[v] != 0          ? IM_COL32(255, 140, 20, 255)
                                                     : IM_COL32(120, 190, 255, 255));
@@ -222,58 +274,54 @@ void CageTool::add_guides(const Desk& /*desk*/, std::vector<Guides::Line>& lines
   for (const auto& [a, b] : bound_->edges) lines.push_back({moved_[a], moved_[b], Color(0.35, 0.65, 1), 0.9, 0.3});
 }
 
-bool CageTool::key(Desk& desk, const KeyPress& press) {
-  if (press.key != GLFW_KEY_ENTER || !bound_ || busy()) return false;
-  apply(desk);
-  return true;
-}
-
 void CageTool::options(Desk& desk) {
-  ImGui::SetNextItemWidth(90);
   int kind = wraps_ ? 1 : 0;
-  if (ImGui::Combo("##kind", &kind, "lattice\0wrap\0")) wraps_ = kind == 1;
-  flow(130);
-  ImGui::SetNextItemWidth(110);
+  if (ui::choice("kind", kind, {"Lattice", "Wrap"})) wraps_ = kind == 1;
+  ImGui::SameLine(0, px(space::section));
+  ImGui::SetNextItemWidth(px(120));
   if (wraps_)
-    ImGui::SliderFloat("coarseness", &coarseness_, 0.02F, 0.5F, "%.2f");
+    ImGui::SliderFloat("##coarseness", &coarseness_, 0.02F, 0.5F, "coarseness %.2f");
   else
-    ImGui::InputInt3("cells", cells_);
-  flow(130);
-  ImGui::SetNextItemWidth(110);
+    ImGui::InputInt3("##cells", cells_);
+  ui::tip(wraps_ ? "Coarseness" : "Cells", "",
+          wraps_ ? "The smallest hollow that the cage enters, of its size." : "Along X, Y and Z.");
+  for (int& cells : cells_) cells = std::clamp(cells, 1, 32);
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(px(120));
   int coordinates = static_cast<int>(edit_.coordinates);
   if (ImGui::Combo("##coordinates", &coordinates, "mean value\0Green\0harmonic\0"))
     edit_.coordinates = static_cast<CageCoordinates>(coordinates);
-  flow(75);
-  if (ImGui::Button("Make cage")) make(desk);
+  ui::tip("Coordinates", "",
+          "Mean value: follows the points. Green: keeps shapes, bulges beyond the cage. Harmonic: stays inside the "
+          "cage, slower.");
+  ImGui::SameLine();
   if (!bound_) {
-    flow_text("around the selected triangles, else the picked node");
+    if (ui::primary_button("Make cage")) make(desk);
+    ui::hint(fmt::format("Around the selected triangles, else a picked node ({}).", desk.scope_words()));
     return;
   }
-  flow(130);
-  ImGui::SetNextItemWidth(90);
-  ImGui::SliderFloat("soft", &softness_, 0, 1, "%.2f");
-  flow(130);
-  ImGui::SetNextItemWidth(80);
-  auto falloff = static_cast<float>(edit_.target.falloff);
-  if (ImGui::InputFloat("falloff", &falloff)) edit_.target.falloff = std::max(0.0, static_cast<double>(falloff));
-  flow(50);
-  if (ImGui::Button("Reset")) {
-    moved_ = bound_->cage.vertices;
-    desk.preview.reset();
-  }
-  flow(50);
-  if (ImGui::Button("Apply")) apply(desk);
+  if (ui::button("Make cage")) make(desk);
+  ui::tip("Make cage", "", "Another one; what this one did stays.");
+  ui::flow(px(130));
+  ImGui::SetNextItemWidth(px(110));
+  ImGui::SliderFloat("##soft", &softness_, 0, 1, "soft %.2f");
+  ui::tip("Soft", "", "How far unpicked points follow, of the cage's size.");
+  ui::hint("Drag points; a box picks several. Undo takes releases back one by one.");
 }
 
 void CageTool::cancel(Desk& desk) {
   if (std::exchange(boxing_, false)) return;
-  desk.preview.reset();
   if (std::exchange(dragging_, false)) {
     moved_ = before_;
-    if (moved_ != bound_->cage.vertices) preview(desk);
+    desk.drop_preview();
     return;
   }
-  bound_.reset();
+  unbind(desk);
+}
+
+void CageTool::leave(Desk& desk) {
+  cancel(desk);
+  unbind(desk);
 }
 
 }  // namespace rebake

@@ -7,7 +7,9 @@
 
 namespace rebake {
 
-/// Makes a cage around the selected triangles (or a node), drags its points, and applies what that does as one edit.
+/// Makes a cage around the selected triangles (or a node) and drags its points. Every release changes the one edit that
+/// is the document's last step, so that nothing is lost however the tool is left; undo and redo go through the releases
+/// one by one.
 class CageTool final : public ViewTool {
  public:
   CageTool();
@@ -16,17 +18,22 @@ class CageTool final : public ViewTool {
   void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
   void add_guides(const Desk& desk, std::vector<Guides::Line>& lines) const override;
-  bool key(Desk& desk, const KeyPress& press) override;
   void options(Desk& desk) override;
   bool busy() const override { return dragging_ || boxing_; }
   void cancel(Desk& desk) override;
+  void leave(Desk& desk) override;
 
  private:
   struct Bound;
+  using Points = std::vector<Vec3>;
   void make(Desk& desk);
-  void apply(Desk& desk);
-  bool fits(const Desk& desk) const;
+  CageDeform edit_for(const Points& points) const;
+  void commit(Desk& desk, const Points& points, std::size_t step);
+  bool step(Desk& desk, int direction);
+  void follow(Desk& desk);
   void preview(Desk& desk);
+  void drag(Desk& desk, const Lens& lens, const Pointer& pointer);
+  void unbind(Desk& desk);
   int point_at(const Lens& lens, const Vec2& at) const;
 
   CageDeform edit_;  ///< what the options say
@@ -34,7 +41,9 @@ class CageTool final : public ViewTool {
   int cells_[3] = {2, 2, 2};
   float coarseness_ = 0.1F, softness_ = 0;
   std::shared_ptr<const Bound> bound_;  ///< null before a cage was made
-  std::vector<Vec3> moved_, before_;    ///< cage points now, and when the drag began
+  std::vector<Points> steps_;           ///< the cage's points at rest, and after each release
+  std::size_t at_ = 0;                  ///< which of them the document holds
+  Points moved_, before_;               ///< cage points now, and when the drag began
   std::vector<std::uint8_t> picked_;
   bool dragging_ = false, boxing_ = false;  ///< points are dragged; a box is drawn to pick some
   int held_ = -1;

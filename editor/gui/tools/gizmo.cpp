@@ -5,15 +5,20 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "editor/edits/nodes/transform.h"
 #include "editor/edits/support.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/widgets.h"
+#include "editor/gui/window/commands.h"
+#include "mesh_ops/base/polar.h"
 
 namespace rebake {
 
 namespace {
 
-constexpr double handle_pixels = 90, gizmo_grab_pixels = 9;
+constexpr float handle_pixels = 90, gizmo_grab_pixels = 9;
 constexpr ImU32 axis_colors[] = {IM_COL32(235, 70, 70, 255), IM_COL32(100, 200, 60, 255), IM_COL32(70, 130, 245, 255),
                                  IM_COL32(235, 235, 235, 255)};
 
@@ -50,8 +55,12 @@ std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, do
 std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) const {
   Target target;
   Box box;
+  std::set<NodeId> picked;
+  for (const std::optional<NodeRef>& node : desk.scope())
+    if (node) picked.insert(node->id);
   for (const PlacedNode& placed : placed_nodes(desk.scene())) {
     if (!placed.visible || placed.locked || !placed.node->selection || count(*placed.node->selection) == 0) continue;
+    if (!picked.empty() && !picked.contains(placed.node->id)) continue;
     target.nodes.push_back(placed.node->id);
     box.extend(selection_bounds(placed));
   }
@@ -73,14 +82,16 @@ std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) c
   return target;
 }
 
-double Gizmo::reach(const Lens& lens, const Vec3& pivot) { return handle_pixels * lens.unit(pivot); }
+double Gizmo::reach(const Lens& lens, const Vec3& pivot) {
+  return static_cast<double>(px(handle_pixels)) * lens.unit(pivot);
+}
 
 int Gizmo::handle_at(const Target& target, const Lens& lens, const Vec2& at) const {
   const auto middle = lens.pixel(target.pivot);
   if (!middle) return none;
-  if (kind_ != ToolKind::turn && (*middle - at).norm() < gizmo_grab_pixels) return all;
+  if (kind_ != ToolKind::turn && (*middle - at).norm() < static_cast<double>(px(gizmo_grab_pixels))) return all;
   int found = none;
-  double least = gizmo_grab_pixels;
+  double least = static_cast<double>(px(gizmo_grab_pixels));
   for (int axis = 0; axis < (kind_ == ToolKind::turn ? 4 : 3); ++axis) {
     const std::vector<Vec2> line =
         outline(kind_, target.pivot, target.axis(axis), reach(lens, target.pivot), lens, axis);
@@ -111,7 +122,7 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
     // How much farther from the middle the pointer is than it was.
     result = (now_ - *middle).norm() / std::max((from_ - *middle).norm(), 1.0) - 1;
   } else if (held_ == all) {
-    result = kind_ == ToolKind::scale ? (now_.x() - from_.x()) / handle_pixels : 1;
+    result = kind_ == ToolKind::scale ? (now_.x() - from_.x()) / static_cast<double>(px(handle_pixels)) : 1;
   } else {
     const auto end = lens.pixel(at_.pivot + reach(lens, at_.pivot) * at_.axes.col(held_));
     if (!end) return 0;
@@ -120,7 +131,8 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
     // An axis towards the eye has no direction on the screen.
     if (length < 1) return 0;
     const double pixels = (now_ - from_).dot(along) / length;
-    result = kind_ == ToolKind::scale ? pixels / handle_pixels : pixels / length * reach(lens, at_.pivot);
+    result = kind_ == ToolKind::scale ? pixels / static_cast<double>(px(handle_pixels))
+                                      : pixels / length * reach(lens, at_.pivot);
   }
   result *= fine;
   if (!pointer.control) return result;
@@ -156,13 +168,10 @@ std::vector<Edit> Gizmo::edits(const Lens& lens) const {
 }
 
 void Gizmo::preview(Desk& desk, const std::vector<Edit>& made) {
-  try {
-    Scene scene = desk.scene();
-    for (const Edit& edit : made) scene = rebake::apply(scene, edit).scene;
-    desk.show_preview(std::move(scene));
-  } catch (const Error&) {
-    desk.preview.reset();  // what cannot be done is said on release
-  }
+  if (made.empty())
+    desk.drop_preview();
+  else
+    desk.show_preview(made);
 }
 
 void Gizmo::begin(const Target& target, int handle, const Vec2& at) {
@@ -210,7 +219,7 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   if (by_key_ ? !pointer.pressed && !std::exchange(entered_, false) : !pointer.released) return;
   end(desk);
   if (nothing)
-    desk.preview.reset();
+    desk.drop_preview();
   else
     desk.edits(made);
 }
@@ -245,24 +254,27 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
   const auto middle = lens.pixel(here->pivot);
   if (!middle) return;
   const int hot = held_ != none ? held_ : pointer.inside ? handle_at(*here, lens, pointer.at) : none;
+  const announce::Part part("gizmo");
   for (int axis = 0; axis < (kind_ == ToolKind::turn ? 4 : 3); ++axis) {
     std::vector<ImVec2> line;
     for (const Vec2& p : outline(kind_, here->pivot, here->axis(axis), reach(lens, here->pivot), lens, axis))
       line.push_back(on_screen(p, origin));
     if (line.size() < 2) continue;
+    announce::point(std::string(1, "xyzv"[axis]), line[kind_ == ToolKind::turn ? line.size() / 8 : line.size() - 1]);
     const ImU32 color = axis == hot ? IM_COL32(255, 230, 60, 255) : axis_colors[axis];
-    list.AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(0, 0, 0, 120), 0, 5);
-    list.AddPolyline(line.data(), static_cast<int>(line.size()), color, 0, 3);
-    if (kind_ == ToolKind::move) list.AddCircleFilled(line.back(), 6, color);
+    list.AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(0, 0, 0, 120), 0, px(5));
+    list.AddPolyline(line.data(), static_cast<int>(line.size()), color, 0, px(3));
+    if (kind_ == ToolKind::move) list.AddCircleFilled(line.back(), px(6), color);
     if (kind_ == ToolKind::scale)
-      list.AddRectFilled({line.back().x - 6, line.back().y - 6}, {line.back().x + 6, line.back().y + 6}, color);
+      list.AddRectFilled({line.back().x - px(6), line.back().y - px(6)}, {line.back().x + px(6), line.back().y + px(6)},
+                         color);
   }
   if (kind_ != ToolKind::turn)
-    list.AddCircleFilled(on_screen(*middle, origin), 6, hot == all ? IM_COL32(255, 230, 60, 255) : axis_colors[3]);
+    list.AddCircleFilled(on_screen(*middle, origin), px(6), hot == all ? IM_COL32(255, 230, 60, 255) : axis_colors[3]);
   if (held_ == none) return;
   const char* const names[] = {"X", "Y", "Z", kind_ == ToolKind::scale ? "all" : "view"};
-  std::string text = kind_ == ToolKind::turn    ? fmt::format("{} {:.2f} deg", names[held_], amount_)
-                     : kind_ == ToolKind::scale ? fmt::format("{} x {:.3f}", names[held_], 1 + amount_)
+  std::string text = kind_ == ToolKind::turn    ? fmt::format("{} {:.2f}°", names[held_], amount_)
+                     : kind_ == ToolKind::scale ? fmt::format("{} × {:.3f}", names[held_], 1 + amount_)
                      : held_ == all             ? std::string(names[held_])
                                                 : fmt::format("{} {:.4g}", names[held_], amount_);
   if (held_ != all && at_.axes != Mat3::Identity()) text = "local " + text;
@@ -271,21 +283,21 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
 }
 
 void Gizmo::options(Desk& desk) {
-  ImGui::Checkbox("local axes", &desk.tools.local_axes);
+  ui::toggle("Local axes", desk.tools.local_axes);
+  ui::tip("Local axes", command_key("Local axes", desk), "Handles along the object's own axes.");
   const Lens lens(desk.view.camera, desk.view.width, desk.view.height);
   const std::optional<Target> here = target(desk, lens);
   if (!here)
-    flow_text("pick a node in the outline, or select triangles");
+    ui::hint("Pick a node, or select triangles.");
   else
-    flow_text(fmt::format("{}: {}; X Y Z take an axis, digits a number, Ctrl snaps, Shift is fine, Esc lets go",
-                          here->triangles ? "the selected triangles" : "the picked nodes",
-                          by_key_ ? "move the pointer, click or Enter ends" : "drag a handle")
-                  .c_str());
+    ui::hint(fmt::format("{}: {}. X Y Z take an axis, digits a number, Ctrl snaps, Shift is fine, Esc lets go.",
+                         here->triangles ? "The selected triangles" : "The picked nodes",
+                         by_key_ ? "move the pointer, click or Enter ends" : "drag a handle"));
 }
 
 void Gizmo::cancel(Desk& desk) {
   end(desk);
-  desk.preview.reset();
+  desk.drop_preview();
 }
 
 }  // namespace rebake

@@ -10,6 +10,7 @@ class PickTool final : public ViewTool {
   explicit PickTool(bool floods) : floods_(floods) {}
   void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
   void draw(const Desk&, const Lens&, const Pointer&, ImDrawList&, const ImVec2&) const override {}
+  bool wants_scene() const override { return false; }
   void options(Desk& desk) override;
   void cancel(Desk&) override {}
 

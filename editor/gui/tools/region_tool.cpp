@@ -6,6 +6,9 @@
 
 #include "editor/edits/select/select_picture.h"
 #include "editor/edits/shape/erase.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/widgets.h"
+#include "editor/gui/window/commands.h"
 
 namespace rebake {
 
@@ -37,8 +40,10 @@ void RegionTool::pointer(Desk& desk, const Lens& /*lens*/, const Pointer& pointe
   if (kind_ == ToolKind::rectangle) {
     points_.resize(1);
     points_.push_back(pointer.at);
-  } else if ((points_.back() - pointer.at).norm() >= least_step) {
-    points_.push_back(pointer.at);
+  } else {
+    // A slow frame cuts no corners.
+    for (const Vec2& at : pointer.way)
+      if (!pointer.pressed && (points_.back() - at).norm() >= least_step) points_.push_back(at);
   }
   if (pointer.released) finish(desk);
 }
@@ -59,15 +64,15 @@ void RegionTool::finish(Desk& desk) {
   if (kind_ == ToolKind::erase) {
     Erase erase;
     erase.picture = picture;
-    erase.through = !desk.tools.visible_only;
-    desk.edit(erase);
+    erase.through = !desk.tools.visible_only();
+    desk.edit_scope(erase);
     return;
   }
   SelectPicture select;
   select.picture = picture;
-  select.through = !desk.tools.visible_only;
+  select.through = !desk.tools.visible_only();
   select.mode = mode_;
-  desk.edit(select);
+  desk.edit_scope(select);
 }
 
 void RegionTool::draw(const Desk& desk, const Lens& /*lens*/, const Pointer& pointer, ImDrawList& list,
@@ -103,17 +108,22 @@ bool RegionTool::key(Desk& desk, const KeyPress& press) {
 }
 
 void RegionTool::options(Desk& desk) {
-  ImGui::Checkbox("visible only", &desk.tools.visible_only);
+  ui::toggle("Visible only", desk.tools.visible_only());
+  ui::tip("Visible only", command_key("Visible only", desk), "Takes what is seen; off, what lies behind it too.");
   if (paints()) {
     auto radius = static_cast<float>(desk.settings.brush_radius);
-    flow(150);
-    ImGui::SetNextItemWidth(120);
-    if (ImGui::SliderFloat("size", &radius, 1, 200, "%.0f px"))
+    ImGui::SameLine(0, px(space::section));
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("Size");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(px(140));
+    if (ImGui::SliderFloat("##size", &radius, 1, 200, "%.0f px"))
       desk.settings.brush_radius = static_cast<double>(radius);
+    announce::item("Size");
   }
-  flow_text(kind_ == ToolKind::erase     ? "clears opacity under the stroke"
-            : kind_ == ToolKind::polygon ? "click corners; Enter or the first corner closes"
-                                         : "Shift adds, Ctrl removes, both intersect");
+  ui::hint(kind_ == ToolKind::erase     ? "Paint over what is to become transparent."
+           : kind_ == ToolKind::polygon ? "Click corners; Enter or the first corner closes."
+                                        : "Shift adds, Ctrl removes, both keep what is in both.");
 }
 
 void RegionTool::cancel(Desk& /*desk*/) { points_.clear(); }

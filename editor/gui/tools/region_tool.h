@@ -13,6 +13,7 @@ class RegionTool final : public ViewTool {
             const ImVec2& origin) const override;
   bool key(Desk& desk, const KeyPress& press) override;
   void options(Desk& desk) override;
+  bool wants_scene() const override { return false; }
   bool busy() const override { return !points_.empty(); }
   void cancel(Desk& desk) override;
 

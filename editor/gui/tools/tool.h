@@ -4,8 +4,10 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 
+#include "editor/gui/ui/style.h"
 #include "editor/gui/view/lens.h"
 #include "editor/gui/window/desk.h"
 #include "editor/gui/window/window.h"
@@ -15,6 +17,7 @@ namespace rebake {
 /// The pointer over the viewport, in its pixels.
 struct Pointer {
   Vec2 at{0, 0};
+  std::vector<Vec2> way;                                 ///< where it was since the last frame, up to `at`
   bool inside = false;                                   ///< over the viewport, nothing above it
   bool pressed = false, down = false, released = false;  ///< left button: just now, held, just now
   bool double_clicked = false;
@@ -36,14 +39,27 @@ class ViewTool {
   virtual bool key(Desk& /*desk*/, const KeyPress& /*press*/) { return false; }
   /// Options and help, in the tool bar's panel.
   virtual void options(Desk& desk) = 0;
+  /// Whether it wants the scene as it is now: it waits for what is being done.
+  virtual bool wants_scene() const { return true; }
   /// True while something is held that Escape would let go of.
   virtual bool busy() const { return false; }
   virtual void cancel(Desk& desk) = 0;
+  /// Another tool is taken: what was done stays.
+  virtual void leave(Desk& desk) { cancel(desk); }
 };
 
 /// All of them, as tools.cpp lists them. They hold nothing of the GPU.
 using Tools = std::map<ToolKind, std::unique_ptr<ViewTool>>;
 Tools make_tools();
+
+/// How a tool is shown in the tool bar. Its name, key and help are those of the command that takes it.
+struct ToolButton {
+  ToolKind kind;
+  const char* icon;
+  const char* command;
+  bool begins_group = false;
+};
+std::span<const ToolButton> tool_buttons();
 
 inline ImVec2 on_screen(const Vec2& pixel, const ImVec2& origin) {
   return {origin.x + static_cast<float>(pixel.x()), origin.y + static_cast<float>(pixel.y())};
@@ -52,23 +68,10 @@ inline ImVec2 on_screen(const Vec2& pixel, const ImVec2& origin) {
 /// A line of text that can be read over any picture.
 inline void draw_label(ImDrawList& list, const ImVec2& at, const std::string& text) {
   if (text.empty()) return;
-  list.AddRectFilled({at.x - 4, at.y - 3},
-                     {at.x + ImGui::CalcTextSize(text.c_str()).x + 4, at.y + ImGui::GetFontSize() + 3},
-                     IM_COL32(0, 0, 0, 200));
+  list.AddRectFilled({at.x - px(7), at.y - px(4)},
+                     {at.x + ImGui::CalcTextSize(text.c_str()).x + px(7), at.y + ImGui::GetFontSize() + px(4)},
+                     IM_COL32(0, 0, 0, 190), px(4));
   list.AddText(at, IM_COL32(255, 255, 255, 255), text.c_str());
-}
-
-/// Puts the next item, about so wide, beside the last one where there is room, else on a line of its own.
-inline void flow(float width) {
-  const float right = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
-  if (right < ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
-}
-/// The same for a text, in a muted colour.
-inline void flow_text(const char* text) {
-  flow(ImGui::CalcTextSize(text).x);
-  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-  ImGui::TextWrapped("%s", text);
-  ImGui::PopStyleColor();
 }
 
 /// How modifiers join a new selection to the present one.

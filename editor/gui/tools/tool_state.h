@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
 
 namespace rebake {
@@ -11,7 +13,13 @@ struct ToolState {
   ToolKind kind = ToolKind::pick;
   std::optional<ToolKind> drag_begins;  ///< takes hold of its target at once, without a button
   std::optional<ToolKind> before;       ///< to come back to after such a drag
-  bool visible_only = true;             ///< select what is seen, not what lies behind it
+  /// Whether the tool in hand takes what is seen only, not what lies behind it.
+  bool& visible_only() { return takes_seen.try_emplace(kind, true).first->second; }
+  bool visible_only() const { return !takes_seen.contains(kind) || takes_seen.at(kind); }
+  std::map<ToolKind, bool> takes_seen;  ///< of tools where it was changed
+  /// Takes back (-1) or does again (1) a step that is the tool's own; false when there is none. Null without such
+  /// steps.
+  std::function<bool(int)> own_step;
   bool local_axes = false;
 };
 

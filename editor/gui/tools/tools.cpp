@@ -3,6 +3,7 @@
 #include "editor/gui/tools/gizmo.h"
 #include "editor/gui/tools/pick_tool.h"
 #include "editor/gui/tools/region_tool.h"
+#include "editor/gui/ui/icons.h"
 
 namespace rebake {
 
@@ -18,6 +19,24 @@ Tools make_tools() {
   tools[ToolKind::bend] = std::make_unique<BendTool>();
   tools[ToolKind::cage] = std::make_unique<CageTool>();
   return tools;
+}
+
+std::span<const ToolButton> tool_buttons() {
+  static constexpr ToolButton buttons[] = {
+      {ToolKind::pick, icons::cursor_default, "Pick nodes"},
+      {ToolKind::rectangle, icons::selection, "Rectangle", true},
+      {ToolKind::lasso, "", "Lasso"},
+      {ToolKind::polygon, icons::vector_polygon, "Polygon"},
+      {ToolKind::brush, icons::brush, "Brush"},
+      {ToolKind::flood, icons::format_color_fill, "Flood"},
+      {ToolKind::erase, icons::eraser, "Eraser", true},
+      {ToolKind::move, icons::cursor_move, "Move", true},
+      {ToolKind::turn, icons::rotate_3d, "Turn"},
+      {ToolKind::scale, icons::arrow_expand_all, "Scale"},
+      {ToolKind::cage, icons::cube_unfolded, "Cage", true},
+      {ToolKind::bend, icons::vector_curve, "Bend, twist, taper"},
+  };
+  return buttons;
 }
 
 }  // namespace rebake

@@ -18,6 +18,21 @@ Camera flown_to(const Camera& camera, const Vec3& target) {
   return result;
 }
 
+// A camera that looks exactly from above or below, as one that turns on from there: a hair aside, with the world's up.
+Camera upright(const Camera& camera) {
+  const Vec3 world_up(0, 1, 0);
+  const Vec3 back = camera.eye - camera.target;
+  const double distance = back.norm(), along = back.dot(world_up) / distance;
+  if (std::abs(camera.up.dot(world_up)) > 1e-9 || std::abs(along) < 1 - 1e-9) return camera;
+  Camera result = camera;
+  const double side = along > 0 ? 1 : -1;
+  const Vec3 aside = -side * camera.up.normalized();
+  result.up = world_up;
+  result.eye =
+      camera.target + distance * (side * std::cos(closest_to_pole) * world_up + std::sin(closest_to_pole) * aside);
+  return result;
+}
+
 // `direction` turned about the camera's up and then towards or away from it.
 Vec3 turned(const Camera& camera, const Vec3& direction, double about_up, double towards_up) {
   const Vec3 up = camera.up.normalized();
@@ -31,15 +46,17 @@ Vec3 turned(const Camera& camera, const Vec3& direction, double about_up, double
 
 }  // namespace
 
-Camera orbited(const Camera& camera, double right_pixels, double down_pixels, int height) {
+Camera orbited(const Camera& seen, double right_pixels, double down_pixels, int height) {
   const double turn = std::numbers::pi / height;
+  const Camera camera = upright(seen);
   Camera result = camera;
   result.eye = camera.target + turned(camera, camera.eye - camera.target, -right_pixels * turn, down_pixels * turn);
   return result;
 }
 
-Camera looked(const Camera& camera, double right_pixels, double down_pixels, int height) {
+Camera looked(const Camera& seen, double right_pixels, double down_pixels, int height) {
   const double turn = std::numbers::pi / 2 / height;
+  const Camera camera = upright(seen);
   Camera result = camera;
   result.target = camera.eye + turned(camera, camera.target - camera.eye, -right_pixels * turn, -down_pixels * turn);
   return result;
@@ -87,18 +104,20 @@ Camera flown(const Camera& camera, double right, double up, double forward) {
 Camera along_axis(const Camera& camera, const Vec3& axis) {
   Camera result = camera;
   const double distance = (camera.eye - camera.target).norm();
-  Vec3 direction = axis.normalized();
-  const Vec3 up = camera.up.normalized();
-  // From the poles, a hair aside, so that turning goes on from there.
+  const Vec3 direction = axis.normalized();
+  if (std::abs(axis.normalized().y()) < 1 - 1e-6) result.up = upright(camera).up;
+  const Vec3 up = upright(camera).up.normalized();
+  // Exactly along the up direction, another one points up in the picture (upright() takes it back).
   if (std::abs(direction.dot(up)) > 1 - 1e-6) {
-    Vec3 level = camera.eye - camera.target;
+    Vec3 level = upright(camera).eye - camera.target;
     level -= level.dot(up) * up;
     // The nearest level axis keeps pictures upright.
     int largest = 0;
     level.cwiseAbs().maxCoeff(&largest);
     Vec3 snapped(0, 0, 0);
     snapped[largest] = level[largest] < 0 ? -1 : 1;
-    direction = (direction * std::cos(closest_to_pole) + snapped * std::sin(closest_to_pole)).normalized();
+    if (!(level.norm() > 0)) return camera;  // it looks along it already
+    result.up = direction.dot(up) > 0 ? Vec3(-snapped) : snapped;
   }
   result.eye = camera.target + direction * distance;
   return result;

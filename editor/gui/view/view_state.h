@@ -10,8 +10,11 @@ struct ViewState {
   Camera camera;
   int width = 1, height = 1;  ///< the viewport's pixels
   bool flying = false;
+  bool alone = false;  ///< without panels around it
   bool show_selection = true;
-  int samples = 4;  ///< a pixel, at rest
+  int samples = 4;          ///< a pixel, at rest
+  double moving_share = 0;  ///< of the resolution each way while the view moves; 0: what keeps the rate below
+  int target_rate = 17;     ///< pictures a second while the view moves
   Guides::Inspect inspect = Guides::Inspect::none;
   int channel = 1;       ///< of the features, when they are inspected
   bool wipe = false;     ///< the scene as imported is shown left of `wipe_at`

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/style.h"
 #include "editor/gui/view/navigation.h"
 #include "render/image.h"
 
@@ -14,7 +16,14 @@ namespace rebake {
 namespace {
 
 constexpr auto settle_time = std::chrono::milliseconds(200);  // after the last move the picture is drawn in full
-constexpr double wanted_ms = 58;                              // a frame while moving
+
+// The scene before the quiet background that people look at it on, unless they want its own.
+Scene on_ground(const Scene& scene, const Desk& desk) {
+  Scene result = scene;
+  const Rgb ground = theme().viewport;
+  if (!desk.settings.scene_background) result.background = Color(ground.r, ground.g, ground.b) / 255;
+  return result;
+}
 
 bool same_scene(const Scene& a, const Scene& b) { return a.roots == b.roots && a.background == b.background; }
 bool same_view(const View& a, const View& b) {
@@ -119,9 +128,11 @@ void Viewport::add_grid(const Desk& desk, std::vector<Guides::Line>& lines) {
   constexpr int half = 10;
   for (int k = -half; k <= half; ++k) {
     const double at = k * step, end = half * step;
-    const Color grey(0.5, 0.5, 0.5);
-    lines.push_back({{at, floor, -end}, {at, floor, end}, k == 0 ? Color(0.25, 0.45, 0.95) : grey, 0.45, 0});
-    lines.push_back({{-end, floor, at}, {end, floor, at}, k == 0 ? Color(0.9, 0.3, 0.3) : grey, 0.45, 0});
+    const Color grey(0.55, 0.56, 0.58);
+    lines.push_back(
+        {{at, floor, -end}, {at, floor, end}, k == 0 ? Color(0.3, 0.5, 0.95) : grey, k == 0 ? 0.7 : 0.28, 0});
+    lines.push_back(
+        {{-end, floor, at}, {end, floor, at}, k == 0 ? Color(0.9, 0.35, 0.35) : grey, k == 0 ? 0.7 : 0.28, 0});
   }
 }
 
@@ -131,31 +142,28 @@ Guides Viewport::guides(const Desk& desk) const {
   result.inspect = desk.view.inspect;
   result.channel = desk.view.channel;
   if (desk.settings.grid) add_grid(desk, result.lines);
-  for (const NodeId id : desk.active) {
-    const Box box = subtree_bounds(desk.shown(), id);
-    if (box.isEmpty()) continue;
-    for (int corner = 0; corner < 8; ++corner)
-      for (int axis = 0; axis < 3; ++axis)
-        if ((corner >> axis & 1) == 0)
-          result.lines.push_back({box.corner(static_cast<Box::CornerType>(corner)),
-                                  box.corner(static_cast<Box::CornerType>(corner | 1 << axis)), Color(1, 0.7, 0.2), 0.9,
-                                  0.25});
-  }
+  // Of nodes, while tools work on those.
+  const bool nodes =
+      desk.tools.kind == ToolKind::pick ||
+      ((desk.tools.kind == ToolKind::move || desk.tools.kind == ToolKind::turn || desk.tools.kind == ToolKind::scale) &&
+       desk.selected_triangles() == 0);
+  if (nodes && !desk.active.empty())
+    for (const std::optional<NodeRef>& node : desk.scope()) result.outlined.push_back(node->id);
   tools_.at(desk.tools.kind)->add_guides(desk, result.lines);
   return result;
 }
 
 void Viewport::picture(Desk& desk) {
   const bool still = !moving() && !desk.view.flying;
-  const double wanted_picture_ms = std::max(10.0, wanted_ms - rest_ms_);
+  const double wanted_picture_ms = std::max(10.0, 1000.0 / desk.view.target_rate - rest_ms_);
   View view;
-  const Scene& scene = desk.shown();
+  const Scene scene = on_ground(desk.shown(), desk);
   view.camera = desk.view.camera;
   view.samples = desk.view.samples;
   double scale = 1;
   if (!still && full_ms_ > wanted_picture_ms) {
     view.samples = 1;
-    scale = moving_scale_;
+    scale = desk.view.moving_share > 0 ? desk.view.moving_share : moving_scale_;
   }
   view.width = std::max(16, static_cast<int>(std::lround(desk.view.width * scale)));
   view.height = std::max(16, static_cast<int>(std::lround(desk.view.height * scale)));
@@ -188,7 +196,7 @@ void Viewport::picture(Desk& desk) {
     before.inspect = desk.view.inspect;
     before.channel = desk.view.channel;
     if (desk.settings.grid) add_grid(desk, before.lines);
-    before_texture_ = before_->show(desk.project.imported, view, {}, before, false).texture;
+    before_texture_ = before_->show(on_ground(desk.project.imported, desk), view, {}, before, false).texture;
   }
   texture_ = shown.texture;
   drew_ = true;
@@ -202,7 +210,7 @@ void Viewport::frame_took(double ms) {
 
 // The line between before and after, which the pointer moves. True while it does, or is about to.
 bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer) {
-  constexpr double grab = 8;  // pixels
+  const double grab = static_cast<double>(px(8));
   const double at = desk.view.wipe_at * desk.view.width;
   const bool hot = pointer.inside && std::abs(pointer.at.x() - at) < grab;
   if (hot && pointer.pressed) wiping_ = true;
@@ -213,8 +221,8 @@ bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, con
   list.AddLine({x, origin.y}, {x, bottom}, IM_COL32(0, 0, 0, 200), 4);
   list.AddLine({x, origin.y}, {x, bottom}, hot || wiping_ ? IM_COL32(255, 230, 60, 255) : IM_COL32(255, 255, 255, 255),
                2);
-  list.AddText({x - 60, origin.y + 8}, IM_COL32(0, 0, 0, 255), "before");
-  list.AddText({x + 12, origin.y + 8}, IM_COL32(0, 0, 0, 255), "after");
+  draw_label(list, {x - px(16) - ImGui::CalcTextSize("Before").x, origin.y + px(10)}, "Before");
+  draw_label(list, {x + px(16), origin.y + px(10)}, "After");
   return hot || wiping_;
 }
 
@@ -241,12 +249,13 @@ void Viewport::draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& ori
       text = "Overdraw: the brighter, the more triangles behind each other";
       break;
   }
-  draw_label(list, {origin.x + 10, origin.y + static_cast<float>(desk.view.height) - ImGui::GetFontSize() - 12}, text);
+  draw_label(list, {origin.x + px(12), origin.y + px(12)}, text);
 }
 
 bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, bool over) {
-  constexpr float arm = 34, knob = 9;
-  const ImVec2 middle{corner.x - arm - 16, corner.y + arm + 16};
+  const float arm = px(32), knob = px(9);
+  const ImVec2 middle{corner.x - arm - px(18), corner.y + arm + px(18)};
+  const announce::Part part("axes");
   const Mat3 rows = world_to_camera(desk.view.camera);
   struct Knob {
     double depth;
@@ -274,13 +283,14 @@ bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, boo
     const ImU32 color = axis == 0   ? IM_COL32(235, 70, 70, positive ? 255 : 110)
                         : axis == 1 ? IM_COL32(100, 200, 60, positive ? 255 : 110)
                                     : IM_COL32(70, 130, 245, positive ? 255 : 110);
-    if (positive) list.AddLine(middle, one.at, color, 2);
-    list.AddCircleFilled(one.at, positive ? knob : knob - 3, color);
+    if (positive) list.AddLine(middle, one.at, color, px(2));
+    list.AddCircleFilled(one.at, positive ? knob : knob - px(3), color);
     if (positive) {
       const char letter[] = {static_cast<char>('X' + axis), 0};
       const ImVec2 size = ImGui::CalcTextSize(letter);
       list.AddText({one.at.x - size.x / 2, one.at.y - size.y / 2}, IM_COL32(0, 0, 0, 255), letter);
     }
+    announce::point(std::string(positive ? "+" : "-") + static_cast<char>('X' + axis), one.at);
     const float dx = mouse.x - one.at.x, dy = mouse.y - one.at.y;
     if (dx * dx + dy * dy > knob * knob || !over) continue;
     hovered = true;
@@ -298,7 +308,7 @@ void Viewport::write_pictures(Desk& desk) {
   try {
     if (const auto shot = std::exchange(desk.jobs.screenshot, std::nullopt)) {
       written(desk.view.camera, shot->width, shot->height, shot->path);
-      desk.messages.log.push_back({"screenshot " + shot->path.string()});
+      desk.messages.say("Wrote " + shot->path.string());
     }
     if (desk.jobs.turntable) {
       Jobs::Turntable& turntable = *desk.jobs.turntable;
@@ -307,18 +317,17 @@ void Viewport::write_pictures(Desk& desk) {
       written(orbited(desk.view.camera, turn, 0, desk.view.height), turntable.width, turntable.height,
               turntable.folder / fmt::format("{:03}.png", turntable.next));
       if (++turntable.next == turntable.count) {
-        desk.messages.log.push_back(
-            {fmt::format("turntable of {} pictures in {}", turntable.count, turntable.folder.string())});
+        desk.messages.say(fmt::format("Wrote {} pictures to {}", turntable.count, turntable.folder.string()));
         desk.jobs.turntable.reset();
       }
     }
   } catch (const std::exception& error) {
     desk.jobs.turntable.reset();
-    desk.messages.error = error.what();
+    desk.messages.fail(error.what());
   }
 }
 
-void Viewport::draw(Desk& desk) {
+void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves) {
   const ImVec2 size = ImGui::GetContentRegionAvail(), origin = ImGui::GetCursorScreenPos();
   desk.view.width = std::max(16, static_cast<int>(size.x));
   desk.view.height = std::max(16, static_cast<int>(size.y));
@@ -328,16 +337,19 @@ void Viewport::draw(Desk& desk) {
     desk.tools.before.reset();
   }
   if (desk.tools.kind != last_tool_) {
-    tools_.at(last_tool_)->cancel(desk);
+    tools_.at(last_tool_)->leave(desk);
     last_tool_ = desk.tools.kind;
   }
   ImGui::InvisibleButton(
       "viewport", size,
       ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
+  announce::item("viewport");
   const ImGuiIO& io = ImGui::GetIO();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   Pointer pointer;
   pointer.at = Vec2(static_cast<double>(io.MousePos.x - origin.x), static_cast<double>(io.MousePos.y - origin.y));
+  for (const auto& [x, y] : moves)
+    pointer.way.emplace_back(x - static_cast<double>(origin.x), y - static_cast<double>(origin.y));
   pointer.inside = ImGui::IsItemHovered();
   pointer.pressed = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !io.KeyAlt;
   pointer.down = io.MouseDown[0];
@@ -361,17 +373,18 @@ void Viewport::draw(Desk& desk) {
   try {
     navigate(desk, Lens(desk.view.camera, desk.view.width, desk.view.height), pointer);
   } catch (const std::exception& error) {
-    desk.messages.error = error.what();
+    desk.messages.fail(error.what());
   }
   if (desk.view.flying) fly(desk);
   // What edits select through this camera is what is drawn through it.
   desk.view.camera = with_depth_for(desk.view.camera, drawn_bounds(desk));
   const Lens lens(desk.view.camera, desk.view.width, desk.view.height);
   try {
-    if (!desk.jobs.worker.busy() || tool(desk).busy()) tool(desk).pointer(desk, lens, pointer);
+    if (!desk.jobs.worker.busy() || !tool(desk).wants_scene() || tool(desk).busy())
+      tool(desk).pointer(desk, lens, pointer);
     last_tool_ = desk.tools.kind;  // a drag that a key began ends with the tool before it, and what it did stays
   } catch (const std::exception& error) {
-    desk.messages.error = error.what();
+    desk.messages.fail(error.what());
     tool(desk).cancel(desk);
   }
   if (!(desk.view.camera == last_camera_)) {
@@ -383,7 +396,7 @@ void Viewport::draw(Desk& desk) {
     picture(desk);
     tool(desk).draw(desk, lens, pointer, list, origin);
   } catch (const std::exception& error) {
-    desk.messages.error = error.what();
+    desk.messages.fail(error.what());
   }
   list.ChannelsSetCurrent(0);
   if (texture_ != 0)

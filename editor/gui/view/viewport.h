@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <memory>
 
@@ -15,8 +16,9 @@ class Viewport {
   Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_ptr<gl::Context>()> window_context);
   ~Viewport();
 
-  /// Draws into the present Dear ImGui window, over all of its content.
-  void draw(Desk& desk);
+  /// Draws into the present Dear ImGui window, over all of its content. `moves`: where the pointer went since the last
+  /// frame, in the window's pixels.
+  void draw(Desk& desk, const std::vector<std::array<double, 2>>& moves);
   /// Takes a key before commands do; true when it was for the tool in hand.
   bool key(Desk& desk, const KeyPress& press);
   /// Lets go of what the tool holds; false when it holds nothing.

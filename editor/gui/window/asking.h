@@ -21,7 +21,7 @@ enum class PathQuestion {
 struct Asking {
   PathQuestion path = PathQuestion::none;
   std::string form;  ///< the edit whose form is open, empty for none
-  bool palette = false, quitting = false;
+  bool palette = false, quitting = false, keys = false, context = false;
 };
 
 }  // namespace rebake

@@ -2,8 +2,10 @@
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 
 #include "editor/edits/deform/bend.h"
 #include "editor/edits/deform/taper.h"
@@ -56,7 +58,7 @@ void select(Desk& desk, bool all, bool none, bool invert) {
   edit.all = all;
   edit.none = none;
   edit.invert = invert;
-  desk.edit(edit);
+  desk.edit_scope(edit);
 }
 
 template <class T>
@@ -70,20 +72,15 @@ void each_active(Desk& desk) {
   desk.edits(list);
 }
 
-// The copies are picked then: they are what is moved next, in Blender's keymap at once.
+// In Blender's keymap the copies, which are picked then, are moved at once.
 void duplicate(Desk& desk) {
-  std::set<NodeId> before;
-  for (const PlacedNode& placed : placed_nodes(desk.scene())) before.insert(placed.node->id);
   std::vector<Edit> list;
   for (const NodeId id : desk.active_tops()) {
     Duplicate edit;
     edit.node = NodeRef{id};
     list.emplace_back(edit);
   }
-  desk.edits(list, [&desk, before] {
-    desk.active.clear();
-    for (const PlacedNode& placed : placed_nodes(desk.scene()))
-      if (!before.contains(placed.node->id)) desk.active.insert(placed.node->id);
+  desk.edits(list, [&desk] {
     if (desk.settings.blender_keys) grab<ToolKind::move>(desk);
   });
 }
@@ -94,10 +91,11 @@ bool selects_triangles(ToolKind tool) {
 }
 
 void remove(Desk& desk) {
-  if (has_selection(desk))
-    desk.edit(DeleteSelected{});
-  else if (selects_triangles(desk.tools.kind))
-    desk.messages.log.push_back({"delete: nothing is selected (with Pick or Move in hand, picked nodes are removed)"});
+  if (has_selection(desk) && !desk.scope(true).empty())
+    desk.edit_scope(DeleteSelected{});
+  else if (selects_triangles(desk.tools.kind) || desk.active.empty())
+    desk.messages.say("Nothing is selected " + desk.scope_words() +
+                      ". With Pick or Move in hand, Delete removes the picked nodes.");
   else
     each_active<Remove>(desk);
 }
@@ -116,7 +114,8 @@ void show_all(Desk& desk) {
 void separate(Desk& desk) {
   std::vector<Edit> list;
   for (const PlacedNode& placed : placed_nodes(desk.scene()))
-    if (placed.visible && !placed.locked && placed.node->selection && count(*placed.node->selection) > 0) {
+    if (placed.visible && !placed.locked && placed.node->selection && count(*placed.node->selection) > 0 &&
+        (desk.active.empty() || desk.active.contains(placed.node->id))) {
       Separate edit;
       edit.node = NodeRef{placed.node->id};
       list.emplace_back(edit);
@@ -154,12 +153,44 @@ template <Guides::Inspect inspect>
 void look_at(Desk& desk) {
   desk.view.inspect = inspect;
 }
+template <Guides::Inspect inspect>
+bool looks_at(const Desk& desk) {
+  return desk.view.inspect == inspect;
+}
+
+// A tool with steps of its own takes them back first.
+void undo(Desk& desk) {
+  if (!desk.tools.own_step || !desk.tools.own_step(-1)) desk.undo();
+}
+void redo(Desk& desk) {
+  if (!desk.tools.own_step || !desk.tools.own_step(1)) desk.redo();
+}
+
+template <BottomTab tab>
+void toggle_tab(Desk& desk) {
+  desk.settings.bottom_open = !(desk.settings.bottom_open && desk.settings.bottom_tab == tab);
+  desk.settings.bottom_tab = tab;
+}
+template <BottomTab tab>
+bool shows_tab(const Desk& desk) {
+  return desk.settings.bottom_open && desk.settings.bottom_tab == tab;
+}
+
+template <Looks looks>
+void use_looks(Desk& desk) {
+  desk.settings.looks = looks;
+}
+template <Looks looks>
+bool has_looks(const Desk& desk) {
+  return desk.settings.looks == looks;
+}
+void text_by(Desk& desk, double factor) {
+  desk.settings.text_scale = std::clamp(desk.settings.text_scale * factor, 0.6, 3.0);
+}
 
 void next_channel(Desk& desk) {
   desk.view.channel = desk.view.inspect == Guides::Inspect::channel ? (desk.view.channel + 1) % 8 : 0;
   desk.view.inspect = Guides::Inspect::channel;
-  desk.messages.log.push_back(
-      {"feature channel " + std::to_string(desk.view.channel) + (desk.view.channel == 0 ? ": opacity" : "")});
 }
 
 void store_view(Desk& desk) {
@@ -177,78 +208,149 @@ void store_view(Desk& desk) {
 
 const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
-      {"File", "Open...", "Ctrl+O", "Ctrl+O", always, ask<PathQuestion::open>},
-      {"File", "Save project", "Ctrl+S", "Ctrl+S", has_scene, save},
-      {"File", "Save project as...", "Ctrl+Shift+S", "Ctrl+Shift+S", has_scene, ask<PathQuestion::save_project>},
-      {"File", "Save scene folder...", "", "", has_scene, ask<PathQuestion::save_scene>},
-      {"File", "Export...", "Ctrl+E", "Ctrl+E", has_scene, ask<PathQuestion::export_folder>},
-      {"File", "Screenshot...", "F12", "F12", has_scene, ask<PathQuestion::screenshot>},
-      {"File", "Turntable...", "", "", has_scene, ask<PathQuestion::turntable>},
-      {"File", "Save as script...", "", "", has_scene, ask<PathQuestion::save_script>},
-      {"File", "Run script...", "", "", always, ask<PathQuestion::run_script>},
-      {"File", "Quit", "Ctrl+Q", "Ctrl+Q", always, [](Desk& desk) { desk.asking.quitting = true; }},
-      {"Edit", "Undo", "Ctrl+Z", "Ctrl+Z", [](const Desk& desk) { return !desk.now->done.empty(); },
-       [](Desk& desk) { desk.undo(); }, true},
-      {"Edit", "Redo", "Ctrl+Shift+Z Ctrl+Y", "Ctrl+Shift+Z",
-       [](const Desk& desk) { return !desk.now->undone.empty(); }, [](Desk& desk) { desk.redo(); }, true},
-      {"Edit", "All commands...", "Ctrl+P", "F3 Ctrl+P", always, [](Desk& desk) { desk.asking.palette = true; }},
-      {"Edit", "Delete", "Delete", "X Delete", has_either, remove},
-      {"Edit", "Duplicate", "Ctrl+D", "Shift+D", has_active, duplicate},
-      {"Edit", "Group", "Ctrl+G", "Ctrl+G", has_active, group},
-      {"Edit", "Separate", "Ctrl+J", "P", has_selection, separate},
-      {"Edit", "Hide", "H", "H", has_active, each_active<Hide>},
-      {"Edit", "Show all", "Shift+H", "Alt+H", has_scene, show_all},
-      {"Select", "All", "Ctrl+A", "A", has_scene, [](Desk& desk) { select(desk, true, false, false); }},
-      {"Select", "None", "Ctrl+Shift+A", "Alt+A", has_scene, [](Desk& desk) { select(desk, false, true, false); }},
-      {"Select", "Invert", "Ctrl+I", "Ctrl+I", has_scene, [](Desk& desk) { select(desk, false, false, true); }},
-      {"Select", "Grow", "Ctrl+]", "Ctrl+KP_ADD", has_selection, [](Desk& desk) { desk.edit(Grow{}); }},
-      {"Select", "Shrink", "Ctrl+[", "Ctrl+KP_SUBTRACT", has_selection, [](Desk& desk) { desk.edit(Shrink{}); }},
-      {"Select", "Connected", "Ctrl+L", "L", has_selection, [](Desk& desk) { desk.edit(SelectConnected{}); }},
-      {"Select", "Visible only", "T", "Alt+Z", always,
-       [](Desk& desk) { desk.tools.visible_only = !desk.tools.visible_only; }},
-      {"Tool", "Pick nodes", "V", "W", always, take<ToolKind::pick>},
-      {"Tool", "Rectangle", "R", "B", always, take<ToolKind::rectangle>},
-      {"Tool", "Lasso", "L", "Ctrl+Shift+L", always, take<ToolKind::lasso>},
-      {"Tool", "Polygon", "P", "Ctrl+Shift+P", always, take<ToolKind::polygon>},
-      {"Tool", "Brush", "B", "C", always, take<ToolKind::brush>},
-      {"Tool", "Flood", "O", "O", always, take<ToolKind::flood>},
-      {"Tool", "Eraser", "E", "E", always, take<ToolKind::erase>},
-      {"Tool", "Move", "1", "G", always, grab<ToolKind::move>},
-      {"Tool", "Turn", "2", "R", always, grab<ToolKind::turn>},
-      {"Tool", "Scale", "3", "S", always, grab<ToolKind::scale>},
-      {"Tool", "Cage", "C", "Shift+C", always, take<ToolKind::cage>},
-      {"Tool", "Bend, twist, taper", "N", "Shift+N", always, take<ToolKind::bend>},
-      {"Tool", "Bend by numbers...", "", "", has_scene, [](Desk& desk) { desk.asking.form = Bend::op; }},
-      {"Tool", "Twist by numbers...", "", "", has_scene, [](Desk& desk) { desk.asking.form = Twist::op; }},
-      {"Tool", "Taper by numbers...", "", "", has_scene, [](Desk& desk) { desk.asking.form = Taper::op; }},
-      {"Tool", "Local axes", "X", "Comma", always, [](Desk& desk) { desk.tools.local_axes = !desk.tools.local_axes; }},
-      {"Tool", "Smaller brush", "[", "[", always, [](Desk& desk) { brush_by(desk, 1 / 1.25); }, true},
-      {"Tool", "Larger brush", "]", "]", always, [](Desk& desk) { brush_by(desk, 1.25); }, true},
-      {"View", "Frame selection", "F", "KP_DECIMAL Home", has_scene, [](Desk& desk) { desk.frame_view(); }},
-      {"View", "Front", "KP_1", "KP_1", always, look_along<2, 1>},
-      {"View", "Back", "Ctrl+KP_1", "Ctrl+KP_1", always, look_along<2, -1>},
-      {"View", "Right", "KP_3", "KP_3", always, look_along<0, 1>},
-      {"View", "Left", "Ctrl+KP_3", "Ctrl+KP_3", always, look_along<0, -1>},
-      {"View", "Top", "KP_7", "KP_7", always, look_along<1, 1>},
-      {"View", "Bottom", "Ctrl+KP_7", "Ctrl+KP_7", always, look_along<1, -1>},
-      {"View", "Orthographic or perspective", "5 KP_5", "KP_5", always, project_otherwise},
-      {"View", "Fly (W A S D Q E)", "Shift+F", "Shift+F", always,
-       [](Desk& desk) { desk.view.flying = !desk.view.flying; }},
-      {"View", "Grid", "G", "Shift+G", always, [](Desk& desk) { desk.settings.grid = !desk.settings.grid; }},
-      {"View", "Show selection", "Shift+T", "Shift+T", always,
-       [](Desk& desk) { desk.view.show_selection = !desk.view.show_selection; }},
-      {"View", "Before and after", "Y", "Y", has_scene, [](Desk& desk) { desk.view.wipe = !desk.view.wipe; }},
-      {"View", "Show colours", "Alt+1", "Alt+1", always, look_at<Guides::Inspect::none>},
-      {"View", "Show wireframe", "Alt+2", "Alt+2", always, look_at<Guides::Inspect::wireframe>},
-      {"View", "Show opacity", "Alt+3", "Alt+3", always, look_at<Guides::Inspect::opacity>},
-      {"View", "Show texture sets", "Alt+4", "Alt+4", always, look_at<Guides::Inspect::texture_sets>},
-      {"View", "Show next feature channel", "Alt+5", "Alt+5", always, next_channel},
-      {"View", "Show overdraw", "Alt+6", "Alt+6", always, look_at<Guides::Inspect::overdraw>},
-      {"View", "Restart graphics", "", "", always, [](Desk& desk) { desk.jobs.restarts_graphics = true; }},
-      {"View", "Store view", "", "", has_scene, store_view},
-      {"View", "Dark or light", "", "", always, [](Desk& desk) { desk.settings.dark = !desk.settings.dark; }},
-      {"View", "Keys of Blender", "", "", always,
-       [](Desk& desk) { desk.settings.blender_keys = !desk.settings.blender_keys; }},
+      {"File", "Open...", "Ctrl+O", "Ctrl+O", "Opens a baked scene, a scene folder or a project.", always,
+       ask<PathQuestion::open>},
+      {"File", "Save project", "Ctrl+S", "Ctrl+S", "Keeps every step in a .rebake file.", has_scene, save},
+      {"File", "Save project as...", "Ctrl+Shift+S", "Ctrl+Shift+S", "Keeps every step in another file.", has_scene,
+       ask<PathQuestion::save_project>},
+      {"File", "Save scene folder...", "", "", "Writes all nodes as they are now, without the steps.", has_scene,
+       ask<PathQuestion::save_scene>},
+      {"File", "Export...", "Ctrl+E", "Ctrl+E", "Writes a folder that MobileNeRF viewers open.", has_scene,
+       ask<PathQuestion::export_folder>},
+      {"File", "Screenshot...", "F12", "F12", "Writes this view as a picture.", has_scene,
+       ask<PathQuestion::screenshot>},
+      {"File", "Turntable...", "", "", "Writes pictures from all around.", has_scene, ask<PathQuestion::turntable>},
+      {"File", "Save as script...", "", "", "Writes the steps as lines that other scenes can replay.", has_scene,
+       ask<PathQuestion::save_script>},
+      {"File", "Run script...", "", "", "Carries out the lines of a script.", always, ask<PathQuestion::run_script>},
+      {"File", "Quit", "Ctrl+Q", "Ctrl+Q", "Closes the window; unsaved work is asked about.", always,
+       [](Desk& desk) { desk.asking.quitting = true; }},
+      {"Edit", "Undo", "Ctrl+Z", "Ctrl+Z", "Takes the last step back.",
+       [](const Desk& desk) { return !desk.now->done.empty(); }, undo, nullptr, true},
+      {"Edit", "Redo", "Ctrl+Shift+Z Ctrl+Y", "Ctrl+Shift+Z", "Does the last undone step again.",
+       [](const Desk& desk) { return !desk.now->undone.empty() || desk.tools.own_step; }, redo, nullptr, true},
+      {"Edit", "All commands...", "Ctrl+P", "F3 Ctrl+P", "Finds any command or edit by its name.", always,
+       [](Desk& desk) { desk.asking.palette = true; }},
+      {"Edit", "Delete", "Delete", "X Delete", "Deletes the selected triangles, else removes the picked nodes.",
+       has_either, remove},
+      {"Edit", "Remove picked nodes", "Shift+Delete", "Shift+Delete", "Removes whole nodes, whatever is selected.",
+       has_active, each_active<Remove>},
+      {"Edit", "Duplicate", "Ctrl+D", "Shift+D", "Copies the picked nodes; the copies are picked then.", has_active,
+       duplicate},
+      {"Edit", "Group", "Ctrl+G", "Ctrl+G", "Puts the picked nodes into a group.", has_active, group},
+      {"Edit", "Separate", "Ctrl+J", "P", "Makes a node of its own of the selected triangles.", has_selection,
+       separate},
+      {"Edit", "Hide", "H", "H", "Hides the picked nodes; nothing is exported of them.", has_active, each_active<Hide>},
+      {"Edit", "Show all", "Shift+H", "Alt+H", "Shows every hidden node.", has_scene, show_all},
+      {"Edit", "Adjust last step", "F9", "F9", "Opens the fields of what was done last.",
+       [](const Desk& desk) { return !desk.now->done.empty(); },
+       [](Desk& desk) { desk.settings.adjust_open = !desk.settings.adjust_open; },
+       [](const Desk& desk) { return desk.settings.adjust_open; }},
+      {"Select", "All", "Ctrl+A", "A", "Selects every triangle, of the picked nodes where there are some.", has_scene,
+       [](Desk& desk) { select(desk, true, false, false); }},
+      {"Select", "None", "Ctrl+Shift+A", "Alt+A", "Selects nothing.", has_scene,
+       [](Desk& desk) { select(desk, false, true, false); }},
+      {"Select", "Invert", "Ctrl+I", "Ctrl+I", "Selects what is not selected.", has_scene,
+       [](Desk& desk) { select(desk, false, false, true); }},
+      {"Select", "Grow", "Ctrl+]", "Ctrl+KP_ADD", "Selects the neighbours too.", has_selection,
+       [](Desk& desk) { desk.edit_scope(Grow{}); }},
+      {"Select", "Shrink", "Ctrl+[", "Ctrl+KP_SUBTRACT", "Leaves the border out.", has_selection,
+       [](Desk& desk) { desk.edit_scope(Shrink{}); }},
+      {"Select", "Connected", "Ctrl+L", "L", "Selects all that hangs together with the selection.", has_selection,
+       [](Desk& desk) { desk.edit_scope(SelectConnected{}); }},
+      {"Select", "Visible only", "T", "Alt+Z", "Takes what is seen; off, what lies behind it too.", always,
+       [](Desk& desk) { desk.tools.visible_only() = !desk.tools.visible_only(); },
+       [](const Desk& desk) { return desk.tools.visible_only(); }},
+      {"Tool", "Pick nodes", "V", "W", "Click a node to pick it; tools work on what is picked.", always,
+       take<ToolKind::pick>},
+      {"Tool", "Rectangle", "R", "B", "Selects triangles in a rectangle of the picture.", always,
+       take<ToolKind::rectangle>},
+      {"Tool", "Lasso", "L", "Ctrl+Shift+L", "Selects triangles inside a line drawn by hand.", always,
+       take<ToolKind::lasso>},
+      {"Tool", "Polygon", "P", "Ctrl+Shift+P", "Selects triangles between clicked corners.", always,
+       take<ToolKind::polygon>},
+      {"Tool", "Brush", "B", "C", "Selects triangles by painting over them.", always, take<ToolKind::brush>},
+      {"Tool", "Flood", "O", "O", "Click to select what touches and has the same colour.", always,
+       take<ToolKind::flood>},
+      {"Tool", "Eraser", "E", "E", "Makes what is painted over transparent.", always, take<ToolKind::erase>},
+      {"Tool", "Move", "1", "G", "Moves the selected triangles, else the picked nodes.", always, grab<ToolKind::move>},
+      {"Tool", "Turn", "2", "R", "Turns the selected triangles, else the picked nodes.", always, grab<ToolKind::turn>},
+      {"Tool", "Scale", "3", "S", "Scales the selected triangles, else the picked nodes.", always,
+       grab<ToolKind::scale>},
+      {"Tool", "Cage", "C", "Shift+C", "Bends what lies in a cage by dragging its points.", always,
+       take<ToolKind::cage>},
+      {"Tool", "Bend, twist, taper", "N", "Shift+N", "Bends along a spine by dragging its end.", always,
+       take<ToolKind::bend>},
+      {"Tool", "Bend by numbers...", "", "", "All fields of a bend, with a preview.", has_scene,
+       [](Desk& desk) { desk.asking.form = Bend::op; }},
+      {"Tool", "Twist by numbers...", "", "", "All fields of a twist, with a preview.", has_scene,
+       [](Desk& desk) { desk.asking.form = Twist::op; }},
+      {"Tool", "Taper by numbers...", "", "", "All fields of a taper, with a preview.", has_scene,
+       [](Desk& desk) { desk.asking.form = Taper::op; }},
+      {"Tool", "Local axes", "X", "Comma", "Handles along the object's own axes.", always,
+       [](Desk& desk) { desk.tools.local_axes = !desk.tools.local_axes; },
+       [](const Desk& desk) { return desk.tools.local_axes; }},
+      {"Tool", "Smaller brush", "[", "[", "", always, [](Desk& desk) { brush_by(desk, 1 / 1.25); }, nullptr, true},
+      {"Tool", "Larger brush", "]", "]", "", always, [](Desk& desk) { brush_by(desk, 1.25); }, nullptr, true},
+      {"View", "Frame selection", "F", "KP_DECIMAL Home", "Looks at the selection, the picked nodes, or all.",
+       has_scene, [](Desk& desk) { desk.frame_view(); }},
+      {"View", "Front", "KP_1", "KP_1", "", always, look_along<2, 1>},
+      {"View", "Back", "Ctrl+KP_1", "Ctrl+KP_1", "", always, look_along<2, -1>},
+      {"View", "Right", "KP_3", "KP_3", "", always, look_along<0, 1>},
+      {"View", "Left", "Ctrl+KP_3", "Ctrl+KP_3", "", always, look_along<0, -1>},
+      {"View", "Top", "KP_7", "KP_7", "", always, look_along<1, 1>},
+      {"View", "Bottom", "Ctrl+KP_7", "Ctrl+KP_7", "", always, look_along<1, -1>},
+      {"View", "Orthographic", "5 KP_5", "KP_5", "Far things as large as near ones.", always, project_otherwise,
+       [](const Desk& desk) { return desk.view.camera.orthographic(); }},
+      {"View", "Fly (W A S D Q E)", "Shift+F", "Shift+F", "Keys move, the pointer looks around; Esc ends it.", always,
+       [](Desk& desk) { desk.view.flying = !desk.view.flying; }, [](const Desk& desk) { return desk.view.flying; }},
+      {"View", "Grid", "G", "Shift+G", "Lines on the ground.", always,
+       [](Desk& desk) { desk.settings.grid = !desk.settings.grid; },
+       [](const Desk& desk) { return desk.settings.grid; }},
+      {"View", "Scene's background", "", "", "The colour that is exported; off, a quiet dark one.", always,
+       [](Desk& desk) { desk.settings.scene_background = !desk.settings.scene_background; },
+       [](const Desk& desk) { return desk.settings.scene_background; }},
+      {"View", "Show selection", "Shift+T", "Shift+T", "Tints the selected triangles.", always,
+       [](Desk& desk) { desk.view.show_selection = !desk.view.show_selection; },
+       [](const Desk& desk) { return desk.view.show_selection; }},
+      {"View", "Before and after", "Y", "Y", "Compares with what was imported, on both sides of a line.", has_scene,
+       [](Desk& desk) { desk.view.wipe = !desk.view.wipe; }, [](const Desk& desk) { return desk.view.wipe; }},
+      {"View", "Show colours", "Alt+1", "Alt+1", "What people see.", always, look_at<Guides::Inspect::none>,
+       looks_at<Guides::Inspect::none>},
+      {"View", "Show wireframe", "Alt+2", "Alt+2", "Every triangle's edges.", always,
+       look_at<Guides::Inspect::wireframe>, looks_at<Guides::Inspect::wireframe>},
+      {"View", "Show opacity", "Alt+3", "Alt+3", "Opaque texels light, transparent ones dark.", always,
+       look_at<Guides::Inspect::opacity>, looks_at<Guides::Inspect::opacity>},
+      {"View", "Show texture sets", "Alt+4", "Alt+4", "A colour for each texture set.", always,
+       look_at<Guides::Inspect::texture_sets>, looks_at<Guides::Inspect::texture_sets>},
+      {"View", "Show next feature channel", "Alt+5", "Alt+5", "One of the eight features as grey.", always,
+       next_channel, looks_at<Guides::Inspect::channel>},
+      {"View", "Show overdraw", "Alt+6", "Alt+6", "Brighter where more triangles lie behind each other.", always,
+       look_at<Guides::Inspect::overdraw>, looks_at<Guides::Inspect::overdraw>},
+      {"View", "Only the picture", "Ctrl+Space", "Ctrl+Space", "The picture takes the whole window.", always,
+       [](Desk& desk) { desk.view.alone = !desk.view.alone; }, [](const Desk& desk) { return desk.view.alone; }},
+      {"View", "Restart graphics", "", "", "Makes all that lives on the graphics card anew.", always,
+       [](Desk& desk) { desk.jobs.restarts_graphics = true; }},
+      {"View", "Store view", "", "", "Keeps this view with the scene.", has_scene, store_view},
+      {"Window", "History", "", "", "All steps; a click goes there.", always, toggle_tab<BottomTab::history>,
+       shows_tab<BottomTab::history>},
+      {"Window", "Script", "", "", "The steps as lines of a script.", always, toggle_tab<BottomTab::script>,
+       shows_tab<BottomTab::script>},
+      {"Window", "Cost", "", "", "What accuracy costs in time, and which effects run.", always,
+       toggle_tab<BottomTab::cost>, shows_tab<BottomTab::cost>},
+      {"Window", "Messages", "", "", "All that was said.", always, toggle_tab<BottomTab::log>,
+       shows_tab<BottomTab::log>},
+      {"Window", "Light colours", "", "", "A light window.", always, use_looks<Looks::light>, has_looks<Looks::light>},
+      {"Window", "Dark colours", "", "", "A dark window.", always, use_looks<Looks::dark>, has_looks<Looks::dark>},
+      {"Window", "Colours of the desktop", "", "", "Light or dark, as the desktop is.", always,
+       use_looks<Looks::system>, has_looks<Looks::system>},
+      {"Window", "Larger text", "Ctrl+KP_ADD", "", "", always, [](Desk& desk) { text_by(desk, 1.1); }},
+      {"Window", "Smaller text", "Ctrl+KP_SUBTRACT", "", "", always, [](Desk& desk) { text_by(desk, 1 / 1.1); }},
+      {"Window", "Keys of Blender", "", "", "Blender's keys in place of Rebake's.", always,
+       [](Desk& desk) { desk.settings.blender_keys = !desk.settings.blender_keys; },
+       [](const Desk& desk) { return desk.settings.blender_keys; }},
+      {"Help", "Keys and pointer", "F1", "F1", "A sheet of all keys.", always,
+       [](Desk& desk) { desk.asking.keys = !desk.asking.keys; }},
   };
   return table;
 }
@@ -258,7 +360,7 @@ std::optional<KeyPress> parse_key(const std::string& text) {
                                                    {"Enter", GLFW_KEY_ENTER},   {"Home", GLFW_KEY_HOME},
                                                    {"Comma", GLFW_KEY_COMMA},   {"KP_DECIMAL", GLFW_KEY_KP_DECIMAL},
                                                    {"KP_ADD", GLFW_KEY_KP_ADD}, {"KP_SUBTRACT", GLFW_KEY_KP_SUBTRACT},
-                                                   {"Tab", GLFW_KEY_TAB}};
+                                                   {"Tab", GLFW_KEY_TAB},       {"Space", GLFW_KEY_SPACE}};
   KeyPress press;
   std::string rest = text;
   for (bool more = true; more;) {
@@ -288,6 +390,14 @@ std::optional<KeyPress> parse_key(const std::string& text) {
   }
   return press;
 }
+
+const Command& command_named(const std::string& title) {
+  for (const Command& command : command_table())
+    if (command.title == title) return command;
+  throw std::invalid_argument("no command \"" + title + "\"");
+}
+
+std::string command_key(const std::string& title, const Desk& desk) { return command_named(title).key_of(desk); }
 
 const Command* command_for(const KeyPress& press, const Desk& desk) {
   for (const Command& command : command_table()) {

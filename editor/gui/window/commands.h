@@ -14,11 +14,18 @@ struct Command {
   const char* title;
   const char* keys;          ///< alternatives, separated by spaces, e.g. "Ctrl+Shift+Z"; empty for none
   const char* blender_keys;  ///< in the keymap that follows Blender
+  const char* help;          ///< a sentence; empty where the title says it all
   bool (*enabled)(const Desk& desk);
   void (*run)(Desk& desk);
-  bool repeats = false;  ///< while its key is held
+  bool (*checked)(const Desk& desk) = nullptr;  ///< whether what it turns on and off is on; null for others
+  bool repeats = false;                         ///< while its key is held
 
   const char* keys_of(const Desk& desk) const { return desk.settings.blender_keys ? blender_keys : keys; }
+  /// The first of them.
+  std::string key_of(const Desk& desk) const {
+    const std::string all = keys_of(desk);
+    return all.substr(0, all.find(' '));
+  }
 };
 
 /// All of them, in the order of the menus.
@@ -26,6 +33,11 @@ const std::vector<Command>& command_table();
 
 /// A key with its modifiers as people write it, e.g. "Ctrl+Shift+A", "[", "KP_1". Nothing when it is no such text.
 std::optional<KeyPress> parse_key(const std::string& text);
+
+/// The command of that title. It must be there.
+const Command& command_named(const std::string& title);
+/// Its first key, for tooltips; empty for none.
+std::string command_key(const std::string& title, const Desk& desk);
 
 /// The command that a key starts now, null for none.
 const Command* command_for(const KeyPress& press, const Desk& desk);

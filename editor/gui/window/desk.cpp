@@ -8,16 +8,28 @@
 #include <utility>
 
 #include "editor/commands/views.h"
+#include "editor/edits/nodes/duplicate.h"
+#include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/import.h"
-#include "editor/edits/nodes/transform.h"
+#include "editor/edits/nodes/merge.h"
+#include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
 #include "editor/gui/view/navigation.h"
 #include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
+namespace {
+
+bool makes_nodes(const Edit& edit) {
+  return edit.is<Import>() || edit.is<Duplicate>() || edit.is<Separate>() || edit.is<Merge>() || edit.is<Group>();
+}
+
+}  // namespace
+
 Desk::Desk(Settings with, std::function<void()> wake)
     : settings(std::move(with)),
+      previews(wake),
       jobs(std::move(wake)),
       now(jobs.worker.snapshot()),
       project(jobs.worker, settings, messages, now, [this] { view.camera = framing_of(scene(), view.aspect()); }) {
@@ -26,23 +38,33 @@ Desk::Desk(Settings with, std::function<void()> wake)
 
 void Desk::update() {
   std::vector<Worker::Message> news = jobs.worker.take_messages();
-  const bool said = !news.empty();
   for (Worker::Message& message : news) {
-    // Of several none is lost.
-    if (message.failed) messages.error += (messages.error.empty() ? "" : "\n\n") + message.text;
-    messages.log.push_back({std::move(message.text), message.failed});
+    switch (message.kind) {
+      case Worker::Message::Kind::failed:
+        messages.fail(std::move(message.text));
+        break;
+      case Worker::Message::Kind::reported:
+        messages.note(std::move(message.text));
+        break;
+      default:
+        messages.say(std::move(message.text));
+    }
   }
   // Before the snapshot, which is then at least as new.
   const std::vector<std::function<void()>> finished = jobs.worker.take_finished();
   const std::shared_ptr<const Snapshot> next = jobs.worker.snapshot();
   if (next != now) {
     const bool other = next->scene.roots != scene().roots;
-    // The last line tells of the last thing that was done.
-    if (!said && next->done.size() > now->done.size())
-      messages.log.push_back({title_of(next->done.back(), next->scene)});
+    const bool made_more = next->done.size() > now->done.size() && makes_nodes(next->done.back()) && next->before_last;
+    // The status line tells of the last thing that was done.
+    const bool further = next->steps_done > now->steps_done;
+    if (next->steps_done > 0 &&
+        (further || (next->steps_done == now->steps_done && next->done.back().value() != now->done.back().value())))
+      status = next->steps[next->steps_done - 1].title;
     now = next;
-    if (other && preview && preview->of != next->scene.roots) preview.reset();
+    if (other && preview && preview->of != next->scene.roots) drop_preview();
     std::erase_if(active, [&](NodeId id) { return find(scene(), id) == nullptr; });
+    if (made_more) pick_new(placed_nodes(*now->before_last));
     if (std::all_of(now->done.begin(), now->done.end(), [](const Edit& one) { return one.is<Import>(); }))
       project.imported = scene();
     selected_ = 0;
@@ -57,38 +79,96 @@ void Desk::update() {
     try {
       then();
     } catch (const std::exception& problem) {
-      messages.error = problem.what();
+      messages.fail(problem.what());
     }
   }
+  if (std::optional<Preview> made = previews.take(); made && made->of == scene().roots) preview = std::move(made);
+}
+
+// What was just made is what people go on with.
+void Desk::pick_new(const std::vector<PlacedNode>& before) {
+  std::set<NodeId> old;
+  for (const PlacedNode& placed : before) old.insert(placed.node->id);
+  active.clear();
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (!old.contains(placed.node->id)) active.insert(placed.node->id);
+  const std::vector<NodeId> tops = active_tops();
+  active = {tops.begin(), tops.end()};
+}
+
+void Desk::show_preview(std::vector<Edit> list) {
+  previews.request(scene().roots, [from = scene(), list = std::move(list)](const Progress& progress) {
+    Scene made = from;
+    for (const Edit& one : list) made = rebake::apply(made, one, progress).scene;
+    return made;
+  });
+}
+
+void Desk::drop_preview() {
+  previews.drop();
+  preview.reset();
 }
 
 void Desk::edit(const Edit& one) { edits({one}); }
 
-void Desk::edits(const std::vector<Edit>& list, std::function<void()> then) {
+void Desk::edits(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
   if (list.empty()) return;
   jobs.worker.start(
       list.front().type().op, [list](Session& session) { session.edits(list); },
       [this, then = std::move(then)] {
-        preview.reset();
+        drop_preview();
         if (then) then();
       },
       // What was not done is not shown.
-      [this] { preview.reset(); });
+      [this, otherwise = std::move(otherwise)] {
+        drop_preview();
+        if (otherwise) otherwise();
+      });
+}
+
+void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then) {
+  jobs.worker.start(
+      "adjust",
+      [list](Session& session) {
+        session.document.undo_step(session.progress);
+        try {
+          session.edits(list);
+        } catch (...) {
+          session.document.redo_step();
+          throw;
+        }
+      },
+      [this, then = std::move(then)] {
+        drop_preview();
+        if (then) then();
+      },
+      [this] { drop_preview(); });
 }
 
 void Desk::undo(int steps) {
-  jobs.worker.start("undo", [steps](Session& session) {
-    int done = 0;
-    while (done < steps && session.document.undo_step(session.progress)) ++done;
-    session.say(fmt::format("undone: {}", done));
-  });
+  jobs.worker.start(
+      "undo",
+      [steps](Session& session) {
+        int done = 0;
+        while (done < steps && session.document.undo_step(session.progress)) ++done;
+      },
+      [this, said = title_of_steps(-steps)] { status = "Undid: " + said; });
 }
 void Desk::redo(int steps) {
-  jobs.worker.start("redo", [steps](Session& session) {
-    int done = 0;
-    while (done < steps && session.document.redo_step(session.progress)) ++done;
-    session.say(fmt::format("done again: {}", done));
-  });
+  jobs.worker.start(
+      "redo",
+      [steps](Session& session) {
+        int done = 0;
+        while (done < steps && session.document.redo_step(session.progress)) ++done;
+      },
+      [this, said = title_of_steps(steps)] { status = "Did again: " + said; });
+}
+
+std::string Desk::title_of_steps(int steps) const {
+  const auto done = static_cast<int>(now->steps_done), first = std::min(done, done + steps);
+  if (std::abs(steps) > 1) return fmt::format("{} steps", std::abs(steps));
+  return first >= 0 && first < static_cast<int>(now->steps.size()) ? now->steps[static_cast<std::size_t>(first)].title
+                                                                   : "nothing";
 }
 
 std::vector<NodeId> Desk::active_tops() const {
@@ -108,26 +188,58 @@ Box Desk::focus() const {
   return box.isEmpty() ? world_bounds(scene()) : box;
 }
 
-std::optional<DeformTarget> Desk::deform_target() const {
-  DeformTarget target;
-  if (selected_triangles() > 0) {
-    target.selection = true;
-    return target;
+std::vector<std::optional<NodeRef>> Desk::scope(bool selected) const {
+  if (active.empty()) return {std::nullopt};
+  std::vector<std::optional<NodeRef>> nodes;
+  for (const PlacedNode& placed : placed_nodes(scene())) {
+    if (!placed.visible || placed.locked || !placed.node->object) continue;
+    if (selected && (!placed.node->selection || count(*placed.node->selection) == 0)) continue;
+    bool inside = active.contains(placed.node->id);
+    for (NodeId up = parent_of(scene(), placed.node->id); up != NodeId::none && !inside; up = parent_of(scene(), up))
+      inside = active.contains(up);
+    if (inside) nodes.emplace_back(NodeRef{placed.node->id});
   }
+  return nodes;
+}
+
+std::string Desk::scope_words() const {
+  if (active.empty()) return "in all";
+  const NodePtr only = active.size() == 1 ? find(scene(), *active.begin()) : nullptr;
+  return only ? "in " + only->name : fmt::format("in {} picked", active.size());
+}
+
+std::vector<DeformTarget> Desk::deform_targets() const {
+  std::vector<DeformTarget> targets;
+  const auto nodes = scope(true);
+  if (selected_triangles() > 0)
+    for (const std::optional<NodeRef>& node : nodes) {
+      targets.emplace_back();
+      targets.back().node = node;
+      targets.back().selection = true;
+    }
+  if (!targets.empty()) return targets;
   for (const PlacedNode& placed : placed_nodes(scene()))
     if (placed.visible && !placed.locked && placed.node->object &&
         (active.empty() || active.contains(placed.node->id))) {
-      target.node = NodeRef{placed.node->id};
-      return target;
+      targets.emplace_back();
+      targets.back().node = NodeRef{placed.node->id};
+      break;
     }
-  return std::nullopt;
+  return targets;
 }
 
-Box Desk::deform_bounds(const DeformTarget& target) const {
-  if (target.node) return subtree_bounds(scene(), target.node->id);
+Box Desk::deform_bounds(const std::vector<DeformTarget>& targets) const {
   Box box;
-  for (const PlacedNode& placed : placed_nodes(scene()))
-    if (placed.visible && !placed.locked && placed.node->selection) box.extend(selection_bounds(placed));
+  for (const DeformTarget& target : targets) {
+    if (!target.selection) {
+      box.extend(subtree_bounds(scene(), target.node->id));
+      continue;
+    }
+    for (const PlacedNode& placed : placed_nodes(scene()))
+      if (placed.visible && !placed.locked && placed.node->selection &&
+          (!target.node || target.node->id == placed.node->id))
+        box.extend(selection_bounds(placed));
+  }
   return box;
 }
 
@@ -136,32 +248,6 @@ void Desk::frame_view() {
   for (const PlacedNode& placed : placed_nodes(scene()))
     if (placed.visible && placed.node->selection) box.extend(selection_bounds(placed));
   view.camera = framed(view.camera, box.isEmpty() ? focus() : box, view.aspect());
-}
-
-std::string title_of(const Edit& edit, const Scene& scene) {
-  const nlohmann::json object = to_json(edit);
-  std::string title = object.at("op").get<std::string>();
-  std::replace(title.begin(), title.end(), '_', ' ');
-  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  if (const auto* transform = edit.as<Transform>()) {
-    // What people call it.
-    const bool turns = !transform->rotate.matrix().isIdentity(0), scales = transform->scale.value != Vec3::Ones();
-    if (!turns && !scales) title = "Move";
-    if (turns && !scales) title = "Turn";
-    if (!turns && scales) title = "Scale";
-    if (transform->selection) title += " triangles of";
-  }
-  if (object.contains("path")) return title + " " + folder_title(object.at("path").get<std::string>());
-  if (object.contains("name") && object.at("name").is_string())
-    title += " \"" + object.at("name").get<std::string>() + "\"";
-  const auto name = [&](const nlohmann::json& id) {
-    if (!id.is_number_unsigned()) return;
-    if (const NodePtr node = find(scene, static_cast<NodeId>(id.get<std::uint64_t>()))) title += " " + node->name;
-  };
-  if (object.contains("node")) name(object.at("node"));
-  if (object.contains("nodes") && object.at("nodes").is_array())
-    for (const nlohmann::json& id : object.at("nodes")) name(id);
-  return title;
 }
 
 }  // namespace rebake

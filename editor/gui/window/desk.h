@@ -8,11 +8,16 @@
 #include <vector>
 
 #include "editor/edits/deform/deforming.h"
+#include "editor/edits/select/grow.h"
+#include "editor/edits/select/select_connected.h"
+#include "editor/edits/select/shrink.h"
+#include "editor/edits/shape/delete_selected.h"
 #include "editor/gui/tools/tool_state.h"
 #include "editor/gui/view/view_state.h"
 #include "editor/gui/window/asking.h"
 #include "editor/gui/window/jobs.h"
 #include "editor/gui/window/messages.h"
+#include "editor/gui/window/previews.h"
 #include "editor/gui/window/project.h"
 #include "editor/gui/window/settings.h"
 
@@ -30,28 +35,47 @@ struct Desk {
   ToolState tools;
   Messages messages;
   Asking asking;
+  Previews previews;
   Jobs jobs;
   std::shared_ptr<const Snapshot> now;
   Project project;
+  std::string status;  ///< what was done last, in a sentence
 
-  std::set<NodeId> active;  ///< nodes that panels and gizmos work on
+  std::set<NodeId> active;  ///< picked nodes: what panels, gizmos and tools work on
   /// Drawn in place of the scene that it was made of, while something is dragged or typed, and until the job that
   /// carries it out has ended.
-  struct Preview {
-    Scene scene;
-    std::vector<NodePtr> of;  ///< the roots of the scene that it was made of
-  };
   std::optional<Preview> preview;
-  void show_preview(Scene made) { preview = Preview{std::move(made), scene().roots}; }
+  /// Has what edits would make of the scene shown, as soon as it is made.
+  void show_preview(std::vector<Edit> list);
+  void drop_preview();
   /// What the viewport draws.
   const Scene& shown() const { return preview && preview->of == scene().roots ? preview->scene : scene(); }
 
   /// Takes in what the worker did.
   void update();
 
+  /// An edit of triangles, of the picked nodes only where there are some; for edits with a field `node`.
+  template <class T>
+  void edit_scope(T wanted) {
+    std::vector<Edit> list;
+    for (const std::optional<NodeRef>& node : scope(needs_selection<T>)) {
+      wanted.node = node;
+      list.emplace_back(wanted);
+    }
+    edits(list);
+  }
+  /// The picked nodes that hold something to select or deform, or one empty entry for all that is visible and not
+  /// locked, when none is picked. With `selected` those that hold selected triangles only.
+  std::vector<std::optional<NodeRef>> scope(bool selected = false) const;
+  /// "in kettle", "in 3 objects", "in all".
+  std::string scope_words() const;
+
   void edit(const Edit& edit);
-  /// All of them as one step of history, or none where one fails; `then` once they are done.
-  void edits(const std::vector<Edit>& list, std::function<void()> then = {});
+  /// All of them as one step of history, or none where one fails; `then` once they are done, `otherwise` when they
+  /// failed or were stopped.
+  void edits(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
+  /// In place of the last step, which is taken back; where they fail it stays.
+  void adjust(const std::vector<Edit>& list, std::function<void()> then = {});
   void undo(int steps = 1);
   void redo(int steps = 1);
   const Scene& scene() const { return now->scene; }
@@ -59,20 +83,32 @@ struct Desk {
   std::vector<NodeId> active_tops() const;
   /// Of the active nodes, or of everything visible when none is.
   Box focus() const;
-  /// What deforming tools take: the selected triangles, else the first active node, else the first that shows; nothing
-  /// in an empty scene.
-  std::optional<DeformTarget> deform_target() const;
-  /// World box of that.
-  Box deform_bounds(const DeformTarget& target) const;
+  /// What deforming tools take, an edit each: selected triangles (of the picked nodes, where there are some), else the
+  /// first picked node, else the first that shows; empty in an empty scene.
+  std::vector<DeformTarget> deform_targets() const;
+  /// World box of those.
+  Box deform_bounds(const std::vector<DeformTarget>& targets) const;
   std::size_t selected_triangles() const { return selected_; }
   void frame_view();
 
  private:
+  /// Whether an edit wants selected triangles to be there.
+  template <class T>
+  static constexpr bool needs_selection = false;
+  void pick_new(const std::vector<PlacedNode>& before);
+  /// Titles of the steps that undoing (negative) or redoing so many passes.
+  std::string title_of_steps(int steps) const;
   std::size_t selected_ = 0;
   bool fresh_ = true;  ///< nothing was shown yet: the first scene is framed
 };
 
-/// An edit in words: what it does and what it names.
-std::string title_of(const Edit& edit, const Scene& scene);
+template <>
+inline constexpr bool Desk::needs_selection<Grow> = true;
+template <>
+inline constexpr bool Desk::needs_selection<Shrink> = true;
+template <>
+inline constexpr bool Desk::needs_selection<SelectConnected> = true;
+template <>
+inline constexpr bool Desk::needs_selection<DeleteSelected> = true;
 
 }  // namespace rebake

@@ -13,8 +13,14 @@
 #include <utility>
 
 #include "editor/document/journal.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/fonts.h"
+#include "editor/gui/ui/icons.h"
+#include "editor/gui/ui/number_field.h"
+#include "editor/gui/ui/widgets.h"
 #include "editor/gui/view/viewport.h"
 #include "editor/gui/window/commands.h"
+#include "editor/gui/window/desktop.h"
 
 namespace rebake {
 
@@ -23,32 +29,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // Frames that Dear ImGui needs after an event until hovering, popups and focus have settled.
-constexpr int frames_after_event = 3;
-
-void set_looks(bool dark) {
-  if (dark)
-    ImGui::StyleColorsDark();
-  else
-    ImGui::StyleColorsLight();
-  ImGuiStyle& style = ImGui::GetStyle();
-  style.WindowRounding = 0;
-  style.FrameRounding = 3;
-  style.WindowBorderSize = 1;
-}
-
-void load_font(double scale) {
-  ImGuiIO& io = ImGui::GetIO();
-  constexpr const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-  const auto size = static_cast<float>(14 * scale);
-  // The font that comes with Dear ImGui is a picture of 13 pixels.
-  // Latin, punctuation and mathematical signs.
-  static constexpr ImWchar ranges[] = {0x20, 0xFF, 0x2010, 0x2026, 0x2190, 0x2193, 0x2200, 0x22FF, 0};
-  if (!fs::exists(font) || io.Fonts->AddFontFromFileTTF(font, size, nullptr, ranges) == nullptr) {
-    io.Fonts->AddFontDefault();
-    io.FontGlobalScale = static_cast<float>(scale);
-  }
-  ImGui::GetStyle().ScaleAllSizes(static_cast<float>(scale));
-}
+constexpr int frames_after_event = 4;
 
 /// Everything in the window, laid out.
 class EditorWindow {
@@ -61,31 +42,34 @@ class EditorWindow {
         lost_(lost_work()),
         desk_(kept_settings_, WindowSystem::wake) {
     begin_graphics();
-    if (!settings_problem_.empty()) desk_.messages.log.push_back({settings_problem_, true});
+    if (!settings_problem_.empty()) desk_.messages.fail(settings_problem_);
     desk_.project.recoverable = std::move(lost_);
     if (!paths.empty()) desk_.project.open(paths);
   }
 
   void run() {
-    int frames = frames_after_event;
+    frames_ = frames_after_event;
     while (!dialogs_.may_quit()) {
-      const double pause = frames > 0 ? 0 : desk_.jobs.worker.busy() ? 0.1 : viewport().next_frame_in(desk_);
-      if (window().wait(pause) || desk_.jobs.worker.busy()) frames = frames_after_event;
-      if (desk_.now != desk_.jobs.worker.snapshot()) frames = frames_after_event;
-      frames = std::max(0, frames - 1);
+      const double pause = frames_ > 0 ? 0 : desk_.jobs.worker.busy() ? 0.1 : next_frame_in();
+      const auto waits = std::chrono::steady_clock::now();
+      if (window().wait(pause) || desk_.jobs.worker.busy()) frames_ = frames_after_event;
+      if (pause == 0) paused(waits);
+      if (desk_.now != desk_.jobs.worker.snapshot()) frames_ = frames_after_event;
+      frames_ = std::max(0, frames_ - 1);
       if (window().wants_to_close()) {
         window().stay_open();
         desk_.asking.quitting = true;
-        frames = frames_after_event;
+        frames_ = frames_after_event;
       }
-      desk_.update();
       const auto begun = std::chrono::steady_clock::now();
+      desk_.update();
       draw();
       viewport().frame_took(
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count());
+      paused(begun);
       if (desk_.jobs.restarts_graphics || window().lost()) {
         restart_graphics();
-        frames = frames_after_event;
+        frames_ = frames_after_event;
       }
       keep_settings();
     }
@@ -96,6 +80,15 @@ class EditorWindow {
   }
 
  private:
+  double next_frame_in() {
+    const double view = viewport().next_frame_in(desk_), messages = desk_.messages.changes_in();
+    return view < 0 ? messages : messages < 0 ? view : std::min(view, messages);
+  }
+  void paused(std::chrono::steady_clock::time_point since) {
+    longest_pause_ms_ = std::max(
+        longest_pause_ms_, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count());
+  }
+
   /// What lives on the GPU, and ends with its context.
   struct Graphics {
     Window window;
@@ -110,24 +103,22 @@ class EditorWindow {
   Viewport& viewport() { return graphics_->viewport; }
 
   void begin_graphics() {
-    scale_ = window().scale();
-    dark_ = desk_.settings.dark;
-    set_looks(dark_);
-    load_font(scale_);
+    looks_of_.reset();
+    set_looks();
     title_.clear();
     // Nothing may be thrown through the window system.
     window().on_key = [this](const KeyPress& press) {
       try {
         key(press);
       } catch (const std::exception& error) {
-        desk_.messages.error = error.what();
+        desk_.messages.fail(error.what());
       }
     };
     window().on_drop = [this](const std::vector<std::string>& dropped) {
       try {
         desk_.project.open(dropped);
       } catch (const std::exception& error) {
-        desk_.messages.error = error.what();
+        desk_.messages.fail(error.what());
       }
     };
   }
@@ -150,7 +141,7 @@ class EditorWindow {
     }
     begin_graphics();
     desk_.jobs.worker.drop_renderer();
-    desk_.messages.log.push_back({"the graphics were made anew; the work is as it was"});
+    desk_.messages.say("The graphics were made anew; the work is as it was.");
   }
 
   // What other editors left behind when they ended without saving, the latest first.
@@ -193,7 +184,7 @@ class EditorWindow {
     try {
       write_settings(kept_settings_, settings_file_);
     } catch (const Error& error) {
-      desk_.messages.log.push_back({error.what(), true});
+      desk_.messages.fail(error.what());
     }
   }
 
@@ -204,7 +195,8 @@ class EditorWindow {
       return;
     }
     // Text fields take what is typed; commands with Ctrl other than those of editing text go on working.
-    if (ImGui::GetIO().WantTextInput && (plain || (press.key != GLFW_KEY_S && press.key != GLFW_KEY_P))) return;
+    if ((ui::takes_text() || desk_.asking.palette) && (plain || (press.key != GLFW_KEY_S && press.key != GLFW_KEY_P)))
+      return;
     if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) return;
     if (viewport().key(desk_, press)) return;
     if (viewport().tool(desk_).busy()) return;  // nothing else happens during a drag
@@ -217,7 +209,7 @@ class EditorWindow {
     if (command->enabled(desk_))
       command->run(desk_);
     else
-      desk_.messages.log.push_back({std::string(command->title) + ": there is nothing to do it with"});
+      desk_.messages.say(std::string(command->title) + ": there is nothing to do it with.");
   }
 
   void escape() {
@@ -226,12 +218,13 @@ class EditorWindow {
       dialogs_.close_popups();  // a menu or a list of choices
       return;
     }
-    if (desk_.asking.palette) {
-      desk_.asking.palette = false;
+    if (desk_.asking.palette || desk_.asking.keys) {
+      desk_.asking.palette = desk_.asking.keys = false;
+    } else if (desk_.messages.close_failures()) {
+      return;
     } else if (desk_.jobs.turntable) {
-      desk_.messages.log.push_back(
-          {fmt::format("turntable stopped: {} of {} pictures are in {}", desk_.jobs.turntable->next,
-                       desk_.jobs.turntable->count, desk_.jobs.turntable->folder.string())});
+      desk_.messages.say(fmt::format("Stopped: {} of {} pictures are in {}", desk_.jobs.turntable->next,
+                                     desk_.jobs.turntable->count, desk_.jobs.turntable->folder.string()));
       desk_.jobs.turntable.reset();
     } else if (!desk_.asking.form.empty()) {
       desk_.asking.form.clear();
@@ -239,72 +232,205 @@ class EditorWindow {
       return;
     } else if (desk_.jobs.worker.busy()) {
       desk_.jobs.worker.cancel();
-    } else {
+    } else if (desk_.tools.kind != ToolKind::pick) {
       desk_.tools.kind = ToolKind::pick;
+    } else {
+      desk_.active.clear();
     }
+  }
+
+  // Colours, distances and fonts of the window, where they are not as they are wanted.
+  void set_looks() {
+    const Settings& settings = desk_.settings;
+    const bool dark = settings.looks == Looks::dark || (settings.looks == Looks::system && system_dark_);
+    const WantedLooks wanted{dark, window().scale() * settings.text_scale};
+    if (looks_of_ == wanted) return;
+    if (!looks_of_ || looks_of_->scale != wanted.scale) {
+      load_fonts(static_cast<float>(wanted.scale));
+      window().renew_fonts();
+    }
+    looks_of_ = wanted;
+    scale_ = wanted.scale;
+    set_style(dark ? dark_theme() : light_theme(), static_cast<float>(scale_));
   }
 
   void draw() {
     set_title();
-    if (dark_ != desk_.settings.dark) {
-      dark_ = desk_.settings.dark;
-      set_looks(dark_);
-    }
+    set_looks();
     window().begin_frame();
-    menu();
+    ImGui::PushFont(fonts().text);
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const float top = ImGui::GetFrameHeight(), line = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y;
-    const auto s = static_cast<float>(scale_);
-    const float height = screen.y - top - line;  // above the status line
+    if (desk_.view.alone) {
+      picture({0, 0}, screen);
+    } else {
+      lay_out(screen);
+    }
+    palette_.draw(desk_);
+    form_.draw(desk_);
+    draw_keys_sheet(desk_);
+    dialogs_.draw(desk_);
+    ImGui::PopFont();
+    window().end_frame();
+    tell();
+  }
+
+  void lay_out(const ImVec2& screen) {
+    menu();
+    const float top = menu_height_, status_line = ImGui::GetFrameHeight() + px(6);
+    const float height = screen.y - top - status_line;
     // In a small window the picture comes first.
-    const float side = std::min(static_cast<float>(desk_.settings.side_width) * s, 0.4F * screen.x), tools = 66 * s,
-                bottom = std::min(static_cast<float>(desk_.settings.bottom_height) * s, 0.3F * height);
-    const float options = std::max(line, options_height_);
-    panel("tool bar", {0, top}, {tools, height - bottom}, [&] { tool_bar(); });
-    panel("options", {tools, top}, {screen.x - tools - side, options}, [&] {
-      viewport().tool(desk_).options(desk_);
-      options_height_ = ImGui::GetItemRectMax().y - ImGui::GetWindowPos().y + ImGui::GetStyle().WindowPadding.y;
-    });
+    const auto s = static_cast<float>(scale_);
+    const float side = std::min(static_cast<float>(desk_.settings.side_width) * s, 0.4F * screen.x), tools = px(50);
+    const float bottom = !desk_.settings.bottom_open
+                             ? 0
+                             : std::min(static_cast<float>(desk_.settings.bottom_height) * s, 0.45F * height);
+    const float line = ImGui::GetFrameHeight() + px(14), options = std::max(line, options_height_);
+    panel("tool bar", {0, top}, {tools, height}, [&] { tool_bar(); }, {px(8), px(8)});
     panel(
-        "picture", {tools, top + options}, {screen.x - tools - side, height - bottom - options},
-        [&] { viewport().draw(desk_); }, true);
-    panel("outline", {screen.x - side, top}, {side, (height - bottom) * 0.55F}, [&] {
-      ImGui::TextDisabled("Outline");
-      outline_.draw(desk_);
-    });
-    panel("properties", {screen.x - side, top + (height - bottom) * 0.55F}, {side, (height - bottom) * 0.45F}, [&] {
-      ImGui::TextDisabled("Properties");
-      properties_.draw(desk_);
-    });
-    panel("bottom", {0, top + height - bottom}, {screen.x, bottom}, [&] { tabs(); });
-    panel("status", {0, screen.y - line}, {screen.x, line}, [&] { status(); });
-    splitter("side", {screen.x - side - 3, top}, {6, height - bottom}, ImGuiMouseCursor_ResizeEW,
+        "options", {tools, top}, {screen.x - tools - side, options},
+        [&] {
+          scope();
+          const announce::Part part("options");
+          viewport().tool(desk_).options(desk_);
+          options_height_ = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + px(7);
+        },
+        {px(10), px(7)}, ImGuiWindowFlags_NoScrollbar);
+    picture({tools, top + options}, {screen.x - tools - side, height - bottom - options});
+    sides({screen.x - side, top}, {side, height - bottom});
+    if (bottom > 0) panel("bottom", {tools, top + height - bottom}, {screen.x - tools, bottom}, [&] { tabs(); });
+    panel("status", {0, screen.y - status_line}, {screen.x, status_line}, [&] { status(); }, {px(10), px(3)});
+    splitter("side", {screen.x - side - px(3), top}, {px(6), height - bottom}, ImGuiMouseCursor_ResizeEW,
              [&](const ImVec2& moved) {
                desk_.settings.side_width =
                    std::clamp(desk_.settings.side_width - static_cast<double>(moved.x / s), 200.0, 700.0);
              });
-    splitter("height", {0, top + height - bottom - 3}, {screen.x, 6}, ImGuiMouseCursor_ResizeNS,
-             [&](const ImVec2& moved) {
-               desk_.settings.bottom_height =
-                   std::clamp(desk_.settings.bottom_height - static_cast<double>(moved.y / s), 80.0, 500.0);
-             });
-    palette_.draw(desk_);
-    form_.draw(desk_);
-    dialogs_.draw(desk_);
-    window().end_frame();
+    if (bottom > 0)
+      splitter("height", {tools, top + height - bottom - px(3)}, {screen.x - tools, px(6)}, ImGuiMouseCursor_ResizeNS,
+               [&](const ImVec2& moved) {
+                 desk_.settings.bottom_height =
+                     std::clamp(desk_.settings.bottom_height - static_cast<double>(moved.y / s), 80.0, 800.0);
+               });
+  }
+
+  // The picture and what floats over it.
+  void picture(const ImVec2& at, const ImVec2& size) {
+    panel(
+        "picture", at, size, [&] { viewport().draw(desk_, window().moves()); }, {0, 0}, ImGuiWindowFlags_NoScrollbar);
+    draw_start(desk_, {at.x + size.x / 2, at.y + size.y / 2});
+    if (!desk_.view.alone) adjust_.draw(desk_, {at.x, at.y + size.y});
+    draw_toasts(desk_.messages, {at.x + size.x, at.y + size.y});
+    context_menu();
+  }
+
+  void sides(const ImVec2& at, const ImVec2& size) {
+    Settings& settings = desk_.settings;
+    const float closed = px(space::heading + 26);
+    const bool both = settings.outline_open && settings.properties_open;
+    const float upper = !settings.outline_open      ? closed
+                        : !settings.properties_open ? size.y - closed
+                                                    : size.y * static_cast<float>(settings.outline_share);
+    panel("outline", at, {size.x, upper - 1}, [&] {
+      if (ui::section("Outline", settings.outline_open)) outline_.draw(desk_);
+    });
+    panel("properties", {at.x, at.y + upper}, {size.x, size.y - upper}, [&] {
+      if (ui::section("Properties", settings.properties_open)) properties_.draw(desk_);
+    });
+    if (both)
+      splitter("sides", {at.x, at.y + upper - px(3)}, {size.x, px(6)}, ImGuiMouseCursor_ResizeNS,
+               [&](const ImVec2& moved) {
+                 settings.outline_share =
+                     std::clamp(settings.outline_share + static_cast<double>(moved.y / size.y), 0.15, 0.85);
+               });
+  }
+
+  // What the tool in hand works on.
+  void scope() {
+    const ToolKind kind = desk_.tools.kind;
+    if (kind == ToolKind::pick || desk_.scene().roots.empty()) return;
+    ImGui::AlignTextToFramePadding();
+    ImGui::PushStyleColor(ImGuiCol_Text, color(theme().accent_text));
+    ImGui::TextUnformatted(ui::shortened(desk_.scope_words(), px(160)).c_str());
+    ImGui::PopStyleColor();
+    ui::tip("Works " + desk_.scope_words(), "",
+            "Tools work on the picked nodes; with none picked, on all that is visible and not locked.");
+    ImGui::SameLine(0, px(space::section));
+  }
+
+  void context_menu() {
+    if (std::exchange(desk_.asking.context, false)) ImGui::OpenPopup("context");
+    if (!ImGui::BeginPopup("context")) return;
+    const announce::Part part("context");
+    for (const char* title : {"Frame selection", "", "Duplicate", "Group", "Hide", "Show all", "Separate", "", "Grow",
+                              "Shrink", "Connected", "Invert", "", "Delete", "Remove picked nodes"}) {
+      if (*title == '\0') {
+        ImGui::Separator();
+        continue;
+      }
+      menu_item(command_named(title));
+    }
+    ImGui::EndPopup();
+  }
+
+  void menu_item(const Command& command) {
+    const bool checked = command.checked != nullptr && command.checked(desk_);
+    if (ImGui::MenuItem(command.title, command.key_of(desk_).c_str(), checked, command.enabled(desk_)))
+      command.run(desk_);
+    announce::item(command.title);
+    if (*command.help != '\0') ui::tip(command.title, "", command.help);
+  }
+
+  // For other programs: what is true of the frame that was just drawn.
+  void tell() {
+    if (!announce::on()) return;
+    nlohmann::json state;
+    const bool working = desk_.jobs.worker.busy() || desk_.previews.busy();
+    state["settled"] = !working && !window().input_waits() && viewport().next_frame_in(desk_) < 0 && frames_ == 0;
+    state["input"] = {{"keys", window().seen().keys},
+                      {"buttons", window().seen().buttons},
+                      {"text", window().seen().text},
+                      {"wheel", window().seen().wheel},
+                      {"pointer", {window().seen().x, window().seen().y}}};
+    state["tool"] = command_of_tool(desk_.tools.kind);
+    state["selected"] = desk_.selected_triangles();
+    state["steps"] = desk_.now->steps_done;
+    state["status"] = desk_.status;
+    state["preview"] = desk_.preview.has_value();
+    state["scope"] = desk_.scope_words();
+    state["picked"] = nlohmann::json::array();
+    for (const NodeId id : desk_.active)
+      if (const NodePtr node = find(desk_.scene(), id)) state["picked"].push_back(node->name);
+    state["messages"] = nlohmann::json::array();
+    for (const std::size_t k : desk_.messages.shown()) state["messages"].push_back(desk_.messages.log()[k].text);
+    state["asks"] = desk_.asking.path != PathQuestion::none || desk_.asking.quitting ||
+                    !desk_.project.recoverable.empty() || desk_.project.relinking.has_value() ||
+                    !desk_.project.to_open.empty();
+    state["scale"] = scale_;
+    state["window"] = {window().width(), window().height()};
+    state["longest_pause_ms"] = std::lround(longest_pause_ms_);
+    announce::frame(state);
+  }
+
+  static std::string command_of_tool(ToolKind kind) {
+    for (const ToolButton& button : tool_buttons())
+      if (button.kind == kind) return button.command;
+    return "";
   }
 
   template <class Content>
-  void panel(const char* name, const ImVec2& at, const ImVec2& size, Content content, bool bare = false) {
+  void panel(const char* name, const ImVec2& at, const ImVec2& size, Content content, const ImVec2& padding = {-1, -1},
+             ImGuiWindowFlags flags = 0) {
     ImGui::SetNextWindowPos(at);
     ImGui::SetNextWindowSize(size);
-    if (bare) ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    if (padding.x >= 0) ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
     ImGui::Begin(name, nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus | (bare ? ImGuiWindowFlags_NoScrollbar : 0));
-    if (bare) ImGui::PopStyleVar();
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
+    if (padding.x >= 0) ImGui::PopStyleVar();
     content();
+    // Panels are told apart by a line, not by a frame around each.
+    ImGui::GetWindowDrawList()->AddLine({at.x, at.y}, {at.x + size.x, at.y}, color32(theme().border));
+    ImGui::GetWindowDrawList()->AddLine({at.x, at.y}, {at.x, at.y + size.y}, color32(theme().border));
     ImGui::End();
   }
 
@@ -325,15 +451,19 @@ class EditorWindow {
   }
 
   void menu() {
-    if (!ImGui::BeginMainMenuBar()) return;
-    for (const char* name : {"File", "Edit", "Select", "Tool", "View"}) {
-      if (!ImGui::BeginMenu(name)) continue;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(8), px(7)});
+    if (!ImGui::BeginMainMenuBar()) {
+      ImGui::PopStyleVar();
+      return;
+    }
+    menu_height_ = ImGui::GetWindowHeight();
+    const announce::Part part("menu");
+    for (const char* name : {"File", "Edit", "Select", "Tool", "View", "Window", "Help"}) {
+      const bool open = ImGui::BeginMenu(name);
+      announce::item(name);
+      if (!open) continue;
       for (const Command& command : command_table())
-        if (command.menu == std::string_view(name)) {
-          const std::string keys = command.keys_of(desk_);
-          if (ImGui::MenuItem(command.title, keys.substr(0, keys.find(' ')).c_str(), false, command.enabled(desk_)))
-            command.run(desk_);
-        }
+        if (command.menu == std::string_view(name)) menu_item(command);
       if (name == std::string_view("File") && ImGui::BeginMenu("Recent", !desk_.settings.recent.empty())) {
         const std::vector<std::string> recent = desk_.settings.recent;
         for (const std::string& path : recent)
@@ -347,63 +477,112 @@ class EditorWindow {
       }
       ImGui::EndMenu();
     }
+    ImGui::PopStyleVar();
     ImGui::EndMainMenuBar();
   }
 
   void tool_bar() {
-    struct Button {
-      ToolKind kind;
-      const char* label;
-    };
-    for (const Button& button :
-         {Button{ToolKind::pick, "Pick"}, Button{ToolKind::rectangle, "Rect"}, Button{ToolKind::lasso, "Lasso"},
-          Button{ToolKind::polygon, "Poly"}, Button{ToolKind::brush, "Brush"}, Button{ToolKind::flood, "Flood"},
-          Button{ToolKind::erase, "Erase"}, Button{ToolKind::move, "Move"}, Button{ToolKind::turn, "Turn"},
-          Button{ToolKind::scale, "Scale"}, Button{ToolKind::cage, "Cage"}, Button{ToolKind::bend, "Bend"}}) {
+    const announce::Part part("tool");
+    for (const ToolButton& button : tool_buttons()) {
+      if (button.begins_group) {
+        ImGui::Dummy({0, px(1)});
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        ImGui::GetWindowDrawList()->AddLine({at.x + px(5), at.y}, {at.x + px(29), at.y}, color32(theme().text, 0.15F));
+        ImGui::Dummy({0, px(1)});
+      }
+      const Command& command = command_named(button.command);
       const bool taken = desk_.tools.kind == button.kind;
-      if (taken) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-      if (ImGui::Button(button.label, {-1, 0})) desk_.tools.kind = button.kind;
-      if (taken) ImGui::PopStyleColor();
+      if (ui::icon_button(button.icon, command.title, taken)) desk_.tools.kind = button.kind;
+      if (button.kind == ToolKind::lasso) draw_lasso(color32(taken ? theme().on_accent : theme().text));
+      ui::tip(command.title, command.key_of(desk_), command.help);
     }
+  }
+
+  // No font here has a lasso: a loop of dashes with an end that hangs.
+  static void draw_lasso(ImU32 color) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const ImVec2 middle{(low.x + high.x) / 2, (low.y + high.y) / 2 - px(2)};
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    constexpr int dashes = 9;
+    for (int k = 0; k < dashes; ++k) {
+      ImVec2 arc[4];
+      for (int i = 0; i < 4; ++i) {
+        const float angle = 6.2832F * (static_cast<float>(k) + 0.2F * static_cast<float>(i)) / dashes + 0.5F;
+        arc[i] = {middle.x + px(8.5F) * std::cos(angle), middle.y + px(6) * std::sin(angle)};
+      }
+      list.AddPolyline(arc, 4, color, 0, px(1.8F));
+    }
+    list.AddBezierQuadratic({middle.x - px(5), middle.y + px(5)}, {middle.x - px(7), middle.y + px(9)},
+                            {middle.x - px(1), middle.y + px(11)}, color, px(1.8F));
   }
 
   void tabs() {
-    if (!ImGui::BeginTabBar("tabs")) return;
-    const auto tab = [](const char* name, const auto& content) {
-      if (!ImGui::BeginTabItem(name)) return;
-      ImGui::BeginChild(name);
-      content();
-      ImGui::EndChild();
-      ImGui::EndTabItem();
-    };
-    tab("History", [&] { history_.draw(desk_); });
-    tab("Script", [&] { script_.draw(desk_); });
-    tab("Cost", [&] { draw_costs(desk_.jobs, desk_.view, *desk_.now, viewport().report(), viewport().each_pass()); });
-    tab("Log", [&] { draw_log(desk_.messages); });
-    ImGui::EndTabBar();
+    const announce::Part part("tabs");
+    int tab = static_cast<int>(desk_.settings.bottom_tab);
+    if (ui::choice("tabs", tab, {"History", "Script", "Cost", "Messages"}))
+      desk_.settings.bottom_tab = static_cast<BottomTab>(tab);
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - px(24));
+    if (ui::quiet_icon(icons::close, "Close")) desk_.settings.bottom_open = false;
+    ImGui::BeginChild("content");
+    switch (desk_.settings.bottom_tab) {
+      case BottomTab::history:
+        history_.draw(desk_);
+        break;
+      case BottomTab::script:
+        script_.draw(desk_);
+        break;
+      case BottomTab::cost:
+        draw_costs(desk_.jobs, desk_.view, *desk_.now, viewport().report(), viewport().each_pass());
+        break;
+      default:
+        draw_log(desk_.messages);
+    }
+    ImGui::EndChild();
   }
 
   void status() {
+    const announce::Part part("status");
+    ImGui::AlignTextToFramePadding();
     if (desk_.jobs.turntable) {
-      ImGui::Text("turntable: picture %d of %d (Esc ends it)", desk_.jobs.turntable->next + 1,
+      ImGui::Text("Turntable: picture %d of %d (Esc ends it)", desk_.jobs.turntable->next + 1,
                   desk_.jobs.turntable->count);
-      return;
-    }
-    if (desk_.jobs.worker.busy()) {
-      const Worker::Status status = desk_.jobs.worker.status();
-      if (ImGui::SmallButton("Cancel")) desk_.jobs.worker.cancel();
+    } else if (desk_.jobs.worker.busy()) {
+      const Worker::Status now = desk_.jobs.worker.status();
+      if (ui::quiet_icon(icons::close, "Stop")) desk_.jobs.worker.cancel();
+      ui::tip("Stop", "Esc");
       ImGui::SameLine();
-      ImGui::ProgressBar(static_cast<float>(status.share), {160, 0});
+      ImGui::ProgressBar(static_cast<float>(now.share), {px(160), px(6)}, "");
       ImGui::SameLine();
-      ImGui::TextUnformatted((status.what.empty() ? status.title : status.title + ": " + status.what).c_str());
-      return;
-    }
-    if (!desk_.messages.log.empty()) {
-      const Messages::Line& last = desk_.messages.log.back();
-      ImGui::TextUnformatted(last.text.substr(0, 160).c_str());
+      std::string what = now.what.empty() ? now.title : now.title + ": " + now.what;
+      std::replace(what.begin(), what.end(), '_', ' ');
+      ImGui::TextUnformatted(what.c_str());
+    } else if (!desk_.status.empty()) {
+      ImGui::TextUnformatted(ui::shortened(desk_.status, 0.5F * ImGui::GetWindowWidth()).c_str());
     } else {
-      ImGui::TextDisabled(
-          "middle button turns, Shift + middle or right button moves, wheel zooms; Ctrl+P: all commands");
+      ImGui::TextDisabled("Middle button turns, wheel zooms. F1 shows all keys, Ctrl+P finds any command.");
+    }
+    // What is selected, and how; and what can be opened below.
+    std::string selected;
+    if (desk_.selected_triangles() > 0)
+      selected = fmt::format("{} selected{}", desk_.selected_triangles(),
+                             desk_.tools.visible_only() ? ", back sides not" : "");
+    const float buttons = px(4 * 30);
+    ImGui::SameLine(ImGui::GetWindowWidth() - buttons - px(20) - ImGui::CalcTextSize(selected.c_str()).x);
+    ImGui::TextDisabled("%s", selected.c_str());
+    ImGui::SameLine(ImGui::GetWindowWidth() - buttons);
+    struct Tab {
+      BottomTab tab;
+      const char* icon;
+      const char* command;
+    };
+    for (const Tab& one :
+         {Tab{BottomTab::history, icons::history, "History"}, Tab{BottomTab::script, icons::script, "Script"},
+          Tab{BottomTab::cost, icons::chart_line, "Cost"}, Tab{BottomTab::log, icons::message_text, "Messages"}}) {
+      const Command& command = command_named(one.command);
+      const bool open = desk_.settings.bottom_open && desk_.settings.bottom_tab == one.tab;
+      if (ui::quiet_icon(one.icon, one.command, open)) command.run(desk_);
+      ui::tip(command.title, command.key_of(desk_), command.help);
+      ImGui::SameLine(0, px(6));
     }
   }
 
@@ -424,14 +603,24 @@ class EditorWindow {
   Desk desk_;
   OutlinePanel outline_;
   PropertiesPanel properties_;
+  AdjustPanel adjust_;
   HistoryPanel history_;
   ScriptPanel script_;
   PalettePanel palette_;
   EditForm form_;
   Dialogs dialogs_;
-  double scale_ = 1;
+  double scale_ = 1;          ///< pixels of the screen a pixel of a plain one
   float options_height_ = 0;  ///< that the tool's options took in the last frame
-  bool dark_ = true;
+  float menu_height_ = 0;
+  struct WantedLooks {
+    bool dark;
+    double scale;
+    bool operator==(const WantedLooks&) const = default;
+  };
+  std::optional<WantedLooks> looks_of_;   ///< what is set
+  bool system_dark_ = desktop_is_dark();  ///< as the desktop was when the editor began
+  int frames_ = 0;                        ///< still to be drawn after the last event
+  double longest_pause_ms_ = 0;           ///< between two frames while there was something to draw
   std::string title_;
 };
 

@@ -114,8 +114,7 @@ void Project::recover(const fs::path& journal, const Relinked& links, bool go_on
         saved_.reset();
         imported = {};
         if (problem->empty()) return;
-        messages_.error = *problem;
-        messages_.log.push_back({*problem, true});
+        messages_.fail(*problem);
       });
 }
 
@@ -143,7 +142,7 @@ void Project::relink(bool go_on_without) {
 void Project::save(const fs::path& file) {
   auto saved = std::make_shared<Scene>();
   worker_.start(
-      "save",
+      "saving",
       [file, saved](Session& session) {
         session.document.save(file, session.progress);
         *saved = session.scene();
@@ -152,7 +151,8 @@ void Project::save(const fs::path& file) {
         path = file;
         saved_ = *saved;
         settings_.remember(file.string());
-        messages_.log.push_back({"saved " + file.string()});
+        messages_.say("Saved " + file.string());
+        if (saved_then) std::exchange(saved_then, nullptr)();
       });
 }
 
@@ -177,7 +177,7 @@ void Project::save_script(const fs::path& file) {
   for (const Edit& one : now_->done) text += to_json(one).dump() + "\n";
   worker_.start("save script", [file, text](Session& session) {
     write_file_atomically(file, text, session.document.sources());
-    session.say("saved " + file.string());
+    session.say("Wrote " + file.string());
   });
 }
 

@@ -23,6 +23,7 @@ class Project {
 
   std::filesystem::path path;        ///< empty until it has been saved
   std::vector<std::string> to_open;  ///< a project that waits for people's word
+  std::function<void()> saved_then;  ///< once the project is saved
   Scene imported;                    ///< as it was before anything but imports was done, or as a project was opened
   struct LostWork {
     std::filesystem::path journal;

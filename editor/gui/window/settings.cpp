@@ -12,6 +12,12 @@ namespace rebake {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+NLOHMANN_JSON_SERIALIZE_ENUM(Looks, {{Looks::dark, "dark"}, {Looks::light, "light"}, {Looks::system, "system"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(BottomTab, {{BottomTab::history, "history"},
+                                         {BottomTab::script, "script"},
+                                         {BottomTab::cost, "cost"},
+                                         {BottomTab::log, "messages"}})
+
 namespace {
 
 // Where there is no home, people still want to work.
@@ -22,15 +28,25 @@ fs::path folder_of_user(const char* variable, const char* below_home) {
 // Calls visit(name, member) for all that is written.
 template <class Self, class Visit>
 void for_fields(Self& self, Visit visit) {
-  visit("dark", self.dark);
+  visit("looks", self.looks);
+  visit("text_scale", self.text_scale);
+  visit("scene_background", self.scene_background);
+  visit("adjust_open", self.adjust_open);
+  visit("bottom_open", self.bottom_open);
+  visit("bottom_tab", self.bottom_tab);
+  visit("outline_open", self.outline_open);
+  visit("properties_open", self.properties_open);
+  visit("outline_share", self.outline_share);
   visit("blender_keys", self.blender_keys);
   visit("grid", self.grid);
   visit("brush_radius", self.brush_radius);
   visit("likeness", self.likeness);
+  visit("flood_everywhere", self.flood_everywhere);
   visit("side_width", self.side_width);
   visit("bottom_height", self.bottom_height);
   visit("window_width", self.window_width);
   visit("window_height", self.window_height);
+  visit("last_folder", self.last_folder);
   visit("recent", self.recent);
 }
 
@@ -57,6 +73,8 @@ Settings read_settings(const fs::path& file, std::string& problem) {
     });
     settings.brush_radius = std::clamp(settings.brush_radius, 1.0, 500.0);
     settings.likeness = std::clamp(settings.likeness, 0.0, 1.0);
+    settings.text_scale = std::clamp(settings.text_scale, 0.6, 3.0);
+    settings.outline_share = std::clamp(settings.outline_share, 0.15, 0.85);
     settings.side_width = std::clamp(settings.side_width, 200.0, 1000.0);
     settings.bottom_height = std::clamp(settings.bottom_height, 80.0, 800.0);
     settings.window_width = std::clamp(settings.window_width, 640, 16384);

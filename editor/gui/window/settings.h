@@ -6,16 +6,28 @@
 
 namespace rebake {
 
+enum class Looks { dark, light, system };
+enum class BottomTab { history, script, cost, log };
+
 /// What the editor remembers of a person, as JSON in the user's configuration folder.
 struct Settings {
-  bool dark = true;
+  Looks looks = Looks::dark;
+  double text_scale = 1;  ///< beside what the monitor asks for
+  bool scene_background = false;
+  bool adjust_open = true;  ///< the fields of the last step, over the picture
+  bool bottom_open = false;
+  BottomTab bottom_tab = BottomTab::history;
+  bool outline_open = true, properties_open = true;
+  double outline_share = 0.5;  ///< of the side's height
   bool blender_keys = false;
   bool grid = true;
   double brush_radius = 20;  ///< pixels
   double likeness = 0.1;     ///< distance of colours that still count as alike, 0 … 1
-  double side_width = 320;   ///< pixels on a plain screen
+  bool flood_everywhere = false;
+  double side_width = 320;  ///< pixels on a plain screen
   double bottom_height = 190;
   int window_width = 1280, window_height = 800;
+  std::string last_folder;          ///< of a file dialog
   std::vector<std::string> recent;  ///< newest first
 
   /// Puts a path first among the recent ones.

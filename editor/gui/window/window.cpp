@@ -93,7 +93,7 @@ Window::Window(const WindowSystem& /*system*/, const std::string& title, int wid
   if (window_ == nullptr)
     throw DeviceError(
         fmt::format("no window with OpenGL 3.3 core can be opened here ({}); {}", last_error, without_window));
-  glfwSetWindowSizeLimits(window_, 640, 480, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwSetWindowUserPointer(window_, this);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
@@ -149,8 +149,14 @@ bool Window::wait(double seconds) {
 }
 bool Window::lost() const { return loss_->lost(); }
 
+void Window::renew_fonts() {
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
 void Window::begin_frame() {
   using Kind = InputEvent::Kind;
+  moves_.clear();
   for (std::size_t count = events_of_frame(waiting_); count > 0; --count) {
     const InputEvent event = waiting_.front();
     waiting_.pop_front();
@@ -158,19 +164,24 @@ void Window::begin_frame() {
       case Kind::move:
         pointer_x_ = event.x;
         pointer_y_ = event.y;
+        moves_.push_back({event.x, event.y});
         break;
       case Kind::button:
         if (static_cast<std::size_t>(event.code) < buttons_.size())
           buttons_[static_cast<std::size_t>(event.code)] = event.down;
+        ++seen_.buttons;
         break;
       case Kind::wheel:
         ImGui_ImplGlfw_ScrollCallback(window_, event.x, event.y);
+        ++seen_.wheel;
         break;
       case Kind::text:
         ImGui_ImplGlfw_CharCallback(window_, static_cast<unsigned>(event.code));
+        ++seen_.text;
         break;
       case Kind::key:
       case Kind::repeat:
+        if (event.kind == Kind::key) ++seen_.keys;
         // Before Dear ImGui knows of it.
         if (event.down && on_key)
           on_key({event.code, (event.modifiers & GLFW_MOD_SHIFT) != 0, (event.modifiers & GLFW_MOD_CONTROL) != 0,

@@ -64,6 +64,23 @@ class Window {
   /// Whether the driver has lost what was on the GPU (it was reset): the window must be made anew.
   bool lost() const;
 
+  /// After the fonts were changed.
+  void renew_fonts();
+  /// What was seen of people so far: presses and releases, characters, turns of the wheel, where the pointer is.
+  struct Seen {
+    std::size_t keys = 0, buttons = 0, text = 0, wheel = 0;
+    double x = 0, y = 0;
+  };
+  Seen seen() const {
+    Seen now = seen_;
+    now.x = pointer_x_;
+    now.y = pointer_y_;
+    return now;
+  }
+  /// Where the pointer went within this frame, in its order.
+  const std::vector<std::array<double, 2>>& moves() const { return moves_; }
+  bool input_waits() const { return !waiting_.empty(); }
+
   void begin_frame();
   void end_frame();
 
@@ -76,6 +93,8 @@ class Window {
   GLFWwindow* window_ = nullptr;
   int events_ = 0;  ///< since the last wait()
   std::deque<InputEvent> waiting_;
+  Seen seen_;
+  std::vector<std::array<double, 2>> moves_;
   std::array<bool, 5> buttons_{};
   double pointer_x_ = 0, pointer_y_ = 0;  ///< where it was last, as seen by the frame
 };

@@ -2,13 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <filesystem>
 #include <new>
 #include <utility>
 
+#include "editor/gui/window/titles.h"
 #include "mesh_ops/index/index.h"
 
 namespace rebake {
+
+namespace {
+
+std::string sentence(std::string title) {
+  if (!title.empty()) title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return title;
+}
+
+}  // namespace
 
 Worker::Worker(std::function<void()> wake) : wake_(std::move(wake)) {
   session_.progress = Progress(
@@ -23,7 +34,11 @@ Worker::Worker(std::function<void()> wake) : wake_(std::move(wake)) {
       &cancel_);
   session_.say = [this](const std::string& line) {
     const std::lock_guard lock(mutex_);
-    messages_.push_back({line, false});
+    messages_.push_back({line, Message::Kind::said});
+  };
+  session_.report = [this](const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    messages_.push_back({line, Message::Kind::reported});
   };
   thread_ = std::thread([this] { loop(); });
 }
@@ -83,15 +98,44 @@ std::vector<std::function<void()>> Worker::take_finished() {
   return std::exchange(finished_, {});
 }
 
-void Worker::publish() {
+void Worker::name_steps(Snapshot& next, const Scene& before) {
+  const std::vector<bool> joined = session_.document.history().joined();
+  std::vector<std::vector<Edit>> groups;
+  std::map<const void*, std::string> titles;
+  std::size_t number = 0;
+  for (const std::vector<Edit>* list : {&next.done, &next.undone}) {
+    std::size_t first = groups.size();
+    for (const Edit& edit : *list) {
+      // What was made together can have been undone in parts, by a script.
+      if (groups.size() == first || !joined[number]) groups.emplace_back();
+      groups.back().push_back(edit);
+      ++number;
+    }
+    if (list == &next.done) next.steps_done = groups.size();
+  }
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    const void* key = groups[k].front().value();
+    const auto known = titles_.find(key);
+    const bool newest = k + 1 == next.steps_done;
+    const std::string title = known != titles_.end() ? known->second
+                              : newest               ? title_of(groups[k], before, next.scene)
+                                                     : title_of(groups[k], next.scene);
+    titles[key] = title;
+    next.steps.push_back({title, groups[k].size()});
+  }
+  titles_ = std::move(titles);
+}
+
+void Worker::publish(const Scene& before) {
   auto next = std::make_shared<Snapshot>();
   const History& history = session_.document.history();
   next->scene = history.now();
   next->done = history.edits();
   next->undone = history.undone();
-  next->joined = history.joined();
   next->sources = session_.document.sources();
   next->history_bytes = history.memory();
+  name_steps(*next, before);
+  next->before_last = history.before_last_step();
   const std::lock_guard lock(mutex_);
   snapshot_ = std::move(next);
 }
@@ -112,25 +156,28 @@ void Worker::loop() {
       status_.title = next.title;
     }
     std::string failed;
+    bool stopped = false;
     const std::size_t before = session_.document.history().undo_count();
+    const Scene scene_before = session_.scene();
     if (drops_renderer_.exchange(false)) session_.drop_renderer();
     try {
       next.job(session_);
     } catch (const Cancelled&) {
-      failed = next.title + ": stopped";
+      failed = sentence(next.title) + " was stopped";
+      stopped = true;
     } catch (const std::filesystem::filesystem_error& error) {
-      failed = next.title + ": " + error.path1().string() + ": " + error.code().message();
+      failed = sentence(next.title) + " failed: " + error.path1().string() + ": " + error.code().message();
     } catch (const std::bad_alloc&) {
-      failed = next.title + ": memory is out";
+      failed = sentence(next.title) + " failed: memory is out";
     } catch (const std::exception& error) {
-      failed = next.title + ": " + error.what();
+      failed = sentence(next.title) + " failed: " + error.what();
     }
     if (!failed.empty() && session_.document.history().undo_count() != before)
       failed += " (what was done before stays, and can be undone)";
-    publish();
+    publish(scene_before);
     {
       const std::lock_guard lock(mutex_);
-      if (!failed.empty()) messages_.push_back({failed, true});
+      if (!failed.empty()) messages_.push_back({failed, stopped ? Message::Kind::said : Message::Kind::failed});
       if (std::function<void()>& after = failed.empty() ? next.then : next.otherwise)
         finished_.push_back(std::move(after));
       if (waiting_.empty()) {

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -17,10 +18,17 @@ namespace rebake {
 /// What the window knows of the document: a copy as it was after the last job.
 struct Snapshot {
   Scene scene;
-  std::vector<Edit> done, undone;   ///< oldest first; the first of `undone` is what redo does
-  std::vector<bool> joined;         ///< of `done`, then of `undone`: made together with the one before
-  SourceGuard sources;              ///< where nothing may be written
-  std::uint64_t history_bytes = 0;  ///< that the kept scenes hold
+  std::vector<Edit> done, undone;  ///< oldest first; the first of `undone` is what redo does
+  /// What was made together, in a sentence that never changes again; those that are done, then the undone.
+  struct Step {
+    std::string title;
+    std::size_t edits = 0;
+  };
+  std::vector<Step> steps;
+  std::size_t steps_done = 0;
+  std::optional<Scene> before_last;  ///< the scene before the last step; nothing where it is not kept
+  SourceGuard sources;               ///< where nothing may be written
+  std::uint64_t history_bytes = 0;   ///< that the kept scenes hold
 };
 
 /// Carries jobs out on the document, one after the other, off the window's thread.
@@ -52,14 +60,16 @@ class Worker {
   /// What jobs had to say since the last call, in order.
   struct Message {
     std::string text;
-    bool failed = false;
+    enum class Kind { said, reported, failed } kind = Kind::said;
   };
   std::vector<Message> take_messages();
   std::vector<std::function<void()>> take_finished();
 
  private:
   void loop();
-  void publish();
+  /// `before`: the scene as it was before the job.
+  void publish(const Scene& before);
+  void name_steps(Snapshot& next, const Scene& before);
 
   std::function<void()> wake_;
   Session session_;
@@ -76,6 +86,7 @@ class Worker {
   Status status_;
   std::shared_ptr<const Snapshot> snapshot_ = std::make_shared<const Snapshot>();
   std::vector<Message> messages_;
+  std::map<const void*, std::string> titles_;  ///< of steps, by the value of their first edit
   std::vector<std::function<void()>> finished_;
   std::thread thread_;  // last: it uses the others
 };

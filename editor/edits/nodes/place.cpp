@@ -1,0 +1,55 @@
+#include "editor/edits/nodes/place.h"
+
+#include "editor/edits/describe.h"
+#include "mesh_ops/base/polar.h"
+
+namespace rebake {
+
+Placement placement_of(const Affine& to_parent) {
+  Placement result;
+  result.position = to_parent.translation();
+  Mat3 turn = orthogonal_factor(to_parent.linear());
+  // A mirrored node is turned and then mirrored along x.
+  if (turn.determinant() < 0) turn.col(0) = -turn.col(0);
+  const Mat3 stretch = turn.transpose() * to_parent.linear();
+  result.rotation = turn;
+  result.scale = stretch.diagonal();
+  const double size = stretch.cwiseAbs().maxCoeff();
+  constexpr double rounding = 1e-12;  // of products of matrices, over their size
+  const Mat3 rest = stretch - Mat3(stretch.diagonal().asDiagonal());
+  result.sheared = rest.cwiseAbs().maxCoeff() > rounding * size;
+  if (result.sheared) result.shear = stretch * result.scale.cwiseInverse().asDiagonal();
+  return result;
+}
+
+Scene apply(const Scene& scene, const Place& edit) {
+  if (!edit.position && !edit.rotation && !edit.scale)
+    throw FieldError("position", "at least one of position, rotation and scale must be given");
+  const PlacedNode placed = editable_with_children(scene, edit.node.id);
+  Affine to_parent = placed.node->to_parent;
+  if (edit.rotation || edit.scale) {
+    checked_turn(to_parent);
+    const Placement now = placement_of(to_parent);
+    const Mat3 rotation = edit.rotation ? edit.rotation->matrix() : now.rotation;
+    const Vec3 scale = edit.scale ? edit.scale->value : now.scale;
+    // A size along the node's own axes takes what shear there was with it.
+    const Mat3 shear = edit.scale ? Mat3(Mat3::Identity()) : now.shear;
+    to_parent.linear() = rotation * shear * scale.asDiagonal();
+  }
+  if (edit.position) to_parent.translation() = *edit.position;
+  if (!to_parent.matrix().allFinite()) throw EditError("the place is not finite");
+  const Scene result = with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
+  check_subtree(result, edit.node.id);
+  return result;
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Place, "Says where a node stands, how it is turned and how large it is, in its parent.", (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::required, "node to place");
+      visit("position", edit.position, Need::optional, "of its origin; left out: as it is", Unit::length);
+      visit("rotation", edit.rotation, Need::optional, "from its parent's axes; left out: as it is");
+      visit("scale", edit.scale, Need::optional,
+            "factor along its own axes; negative mirrors, 0 is refused; left out: as it is");
+    })
+
+}  // namespace rebake

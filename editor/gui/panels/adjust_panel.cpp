@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <Eigen/Geometry>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "editor/gui/panels/euler.h"
+#include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/fonts.h"
+#include "editor/gui/ui/icons.h"
+#include "editor/gui/ui/widgets.h"
+
+namespace rebake {
+
+using nlohmann::json;
+
+namespace {
+
+/// A field of an edit that can be changed after it was done.
+struct Adjustable {
+  enum class Kind { number, length, degrees, factor, point, factors, turn };
+  const char* field;
+  const char* label;
+  Kind kind;
+};
+using Kind = Adjustable::Kind;
+
+// By the edit's op; what is not here cannot be adjusted.
+const std::map<std::string, std::vector<Adjustable>>& adjustable_edits() {
+  static const std::vector<Adjustable> limits = {
+      {"from", "Begins", Kind::length}, {"to", "Ends", Kind::length}, {"falloff", "Soft border", Kind::length}};
+  const auto with_limits = [](std::vector<Adjustable> list) {
+    list.insert(list.end(), limits.begin(), limits.end());
+    return list;
+  };
+  static const std::map<std::string, std::vector<Adjustable>> table = {
+      {"bend", with_limits({{"degrees", "Angle", Kind::degrees}})},
+      {"twist", with_limits({{"degrees", "Angle", Kind::degrees}})},
+      {"taper", with_limits({{"factor", "Factor", Kind::factor}})},
+      {"stretch", with_limits({{"factor", "Factor", Kind::factor}})},
+      {"cage", {{"falloff", "Soft border", Kind::length}}},
+      {"transform",
+       {{"translate", "Move", Kind::point}, {"rotate", "Turn", Kind::turn}, {"scale", "Scale", Kind::factors}}},
+      {"select_like", {{"color", "Difference", Kind::factor}}},
+      {"grow", {{"steps", "Steps", Kind::number}}},
+      {"shrink", {{"steps", "Steps", Kind::number}}},
+  };
+  return table;
+}
+
+Vec3 point_of(const json& value, double otherwise) {
+  if (value.is_number()) return Vec3::Constant(value.get<double>());
+  if (!value.is_array() || value.size() != 3) return Vec3::Constant(otherwise);
+  return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+}
+
+// The numbers of a field, which are changed in `object`.
+ui::Changed draw_values(const Adjustable& field, json& object, double unit) {
+  const json held = object.contains(field.field) ? object.at(field.field) : json();
+  if (field.kind == Kind::point || field.kind == Kind::factors || field.kind == Kind::turn) {
+    Vec3 value = point_of(held, field.kind == Kind::factors ? 1 : 0);
+    if (field.kind == Kind::turn) {
+      const auto q = held.is_array() && held.size() == 4
+                         ? Eigen::Quaterniond(held[0].get<double>(), held[1].get<double>(), held[2].get<double>(),
+                                              held[3].get<double>())
+                         : Eigen::Quaterniond::Identity();
+      value = euler_degrees(q.toRotationMatrix());
+      for (double& angle : value)
+        if (std::abs(angle) < 1e-10) angle = 0;
+    }
+    const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
+    const double step = field.kind == Kind::point ? unit : field.kind == Kind::turn ? 1 : 0.01;
+    ui::Changed result = ui::Changed::nothing;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis > 0) ImGui::SameLine();
+      const char name[] = {static_cast<char>('X' + axis), 0};
+      const ui::Changed changed = ui::number_field(name, value[axis], "{:.4g}", step, width);
+      if (changed != ui::Changed::nothing) result = changed;
+    }
+    if (result == ui::Changed::nothing) return result;
+    if (field.kind == Kind::turn) {
+      const Eigen::Quaterniond q(rotation_of(value));
+      object[field.field] = {q.w(), q.x(), q.y(), q.z()};
+    } else {
+      object[field.field] = {value.x(), value.y(), value.z()};
+    }
+    return result;
+  }
+  double value = held.is_number() ? held.get<double>() : 0;
+  const double step = field.kind == Kind::degrees  ? 1
+                      : field.kind == Kind::length ? unit
+                      : field.kind == Kind::factor ? 0.01
+                                                   : 1;
+  const ui::Changed changed = ui::number_field("value", value, field.kind == Kind::degrees ? "{:.4g}°" : "{:.4g}", step,
+                                               ImGui::GetContentRegionAvail().x);
+  if (changed == ui::Changed::nothing || changed == ui::Changed::failed) return changed;
+  if (field.kind == Kind::number)
+    object[field.field] = std::max(1, static_cast<int>(std::lround(value)));
+  else
+    object[field.field] =
+        field.kind == Kind::length && std::string_view(field.field) == "falloff" ? std::max(0.0, value) : value;
+  return changed;
+}
+
+// A field drawn, and changed in `object`.
+ui::Changed draw_field(const Adjustable& field, json& object, double unit) {
+  ui::label(field.label);
+  const announce::Part part(field.label);
+  ImGui::PushID(field.label);
+  const ui::Changed changed = draw_values(field, object, unit);
+  ImGui::PopID();
+  return changed;
+}
+
+}  // namespace
+
+void AdjustPanel::draw(Desk& desk, const ImVec2& corner) {
+  const Snapshot& now = *desk.now;
+  if (now.steps_done == 0 || !now.before_last) return;
+  const std::size_t edits = now.steps[now.steps_done - 1].edits;
+  const Edit& last = now.done.back();
+  const auto fields = adjustable_edits().find(last.type().op);
+  if (fields == adjustable_edits().end()) return;
+  for (std::size_t k = 0; k < edits; ++k)
+    if (&now.done[now.done.size() - 1 - k].type() != &last.type()) return;
+  if (of_ != last.value() && !changing_) {
+    of_ = last.value();
+    object_ = to_json(last);
+  }
+  ImGui::SetNextWindowPos({corner.x + px(12), corner.y - px(12)}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowSizeConstraints({px(290), 0}, {px(290), px(600)});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, color(theme().panel, 0.96F));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(6));
+  ImGui::Begin("adjust", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  const announce::Part part("adjust");
+  const std::string& title = now.steps[now.steps_done - 1].title;
+  ui::section(ui::shortened(title, px(230)).c_str(), desk.settings.adjust_open);
+  ui::tip(title, "F9", "The fields of the last step: change them, and it is done again with these.");
+  ui::Changed changed = ui::Changed::nothing;
+  if (desk.settings.adjust_open) {
+    const double size =
+        std::max(1e-300, world_bounds(now.scene).isEmpty() ? 1 : world_bounds(now.scene).diagonal().norm());
+    const double unit = std::pow(10, std::floor(std::log10(size)) - 2);
+    for (const Adjustable& field : fields->second)
+      if (const ui::Changed one = draw_field(field, object_, unit); one != ui::Changed::nothing) changed = one;
+  }
+  ImGui::End();
+  if (changed == ui::Changed::nothing || changed == ui::Changed::failed) return;
+  try {
+    const std::vector<Edit> list = changed_edits(now, edits);
+    changing_ = changed == ui::Changed::dragged;
+    if (changing_) {
+      desk.previews.request(now.scene.roots, [list, from = *now.before_last](const Progress& progress) {
+        Scene made = from;
+        for (const Edit& one : list) made = rebake::apply(made, one, progress).scene;
+        return made;
+      });
+    } else {
+      desk.adjust(list);
+    }
+  } catch (const std::exception& error) {
+    desk.messages.fail(error.what());
+    object_ = to_json(last);
+    changing_ = false;
+  }
+}
+
+// All edits of the last step with the fields as they are now.
+std::vector<Edit> AdjustPanel::changed_edits(const Snapshot& now, std::size_t edits) const {
+  std::vector<Edit> list;
+  for (std::size_t k = now.done.size() - edits; k < now.done.size(); ++k) {
+    json object = to_json(now.done[k]);
+    for (const Adjustable& field : adjustable_edits().at(now.done[k].type().op))
+      if (object_.contains(field.field)) object[field.field] = object_.at(field.field);
+    list.push_back(read_edit(object, *now.before_last));
+  }
+  return list;
+}
+
+}  // namespace rebake

@@ -1,0 +1,87 @@
+#include <imgui.h>
+
+#include <string_view>
+#include <utility>
+
+#include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/fonts.h"
+#include "editor/gui/ui/widgets.h"
+#include "editor/gui/window/commands.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr std::pair<const char*, const char*> pointer_lines[] = {
+    {"Middle button", "turns the view"},
+    {"Shift + middle, or right button", "moves the view"},
+    {"Wheel", "comes nearer to what is under the pointer"},
+    {"Alt + left button", "turns the view with any tool"},
+    {"Double click", "sets what the view turns about"},
+    {"Right click", "menu of what is under the pointer"},
+    {"Shift, Ctrl, both", "add, remove, keep what is in both"},
+    {"Digits during a drag", "a number in place of the pointer's way"},
+    {"Esc", "takes back the present drag; else picks nothing"},
+};
+
+void line(const std::string& key, const std::string& what) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(what.c_str());
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, color(theme().accent_text));
+  ImGui::TextWrapped("%s", key.c_str());
+  ImGui::PopStyleColor();
+}
+
+}  // namespace
+
+void draw_keys_sheet(Desk& desk) {
+  if (!desk.asking.keys) return;
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::SetNextWindowSize({std::min(px(900), screen.x - px(40)), std::min(px(620), screen.y - px(60))});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, color(theme().popup));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(8));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(18), px(16)});
+  ImGui::Begin("Keys and pointer", &desk.asking.keys,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar(2);
+  ImGui::PopStyleColor();
+  const announce::Part part("keys");
+  ImGui::PushFont(fonts().heading);
+  ImGui::TextUnformatted("Keys and pointer");
+  ImGui::PopFont();
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - px(90));
+  if (ui::button("Close", {px(90), 0})) desk.asking.keys = false;
+  ImGui::BeginChild("columns", {0, 0}, false);
+  const int columns = ImGui::GetContentRegionAvail().x > px(640) ? 2 : 1;
+  if (ImGui::BeginTable("sheet", columns, ImGuiTableFlags_SizingStretchSame)) {
+    int group = 0;
+    const auto begin = [&](const char* name) {
+      if (group++ % columns == 0) ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::Dummy({0, px(4)});
+      ImGui::TextDisabled("%s", name);
+      return ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingStretchProp);
+    };
+    if (begin("Pointer")) {
+      for (const auto& [key, what] : pointer_lines) line(key, what);
+      ImGui::EndTable();
+    }
+    for (const char* menu : {"File", "Edit", "Select", "Tool", "View", "Window"}) {
+      if (!begin(menu)) continue;
+      for (const Command& command : command_table())
+        if (command.menu == std::string_view(menu) && *command.keys_of(desk) != '\0')
+          line(command.keys_of(desk), command.title);
+      ImGui::EndTable();
+    }
+    ImGui::EndTable();
+  }
+  ImGui::EndChild();
+  ImGui::End();
+}
+
+}  // namespace rebake

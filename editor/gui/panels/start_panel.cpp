@@ -1,0 +1,68 @@
+#include <imgui.h>
+
+#include <filesystem>
+
+#include "editor/document/sample_folder.h"
+#include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/fonts.h"
+#include "editor/gui/ui/icons.h"
+#include "editor/gui/ui/widgets.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void entry(Desk& desk, const char* icon, const std::string& path) {
+  const fs::path file(path);
+  const std::string name = file.filename().string();
+  ImGui::PushID(path.c_str());
+  if (ImGui::Selectable((std::string(icon) + "   " + name).c_str(), false, 0, {0, px(26)})) desk.project.open({path});
+  ImGui::PopID();
+  announce::item(name);
+  ui::tip(name, "", path);
+}
+
+}  // namespace
+
+void draw_start(Desk& desk, const ImVec2& middle) {
+  if (!desk.scene().roots.empty() || desk.jobs.worker.busy() || !desk.now->done.empty()) return;
+  const float width = px(420);
+  ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, px(520)});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, color(theme().panel));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(10));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(24), px(22)});
+  ImGui::Begin("start", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::PopStyleVar(2);
+  ImGui::PopStyleColor();
+  const announce::Part part("start");
+  ImGui::PushFont(fonts().heading);
+  ImGui::TextUnformatted("Open a baked scene");
+  ImGui::PopFont();
+  ui::muted("Drop a folder here, or choose one. Several can be composed.");
+  ImGui::Dummy({0, px(6)});
+  if (ui::primary_button("Open...", {px(140), px(34)})) desk.asking.path = PathQuestion::open;
+  std::error_code error;
+  std::vector<std::string> recent;
+  for (const std::string& path : desk.settings.recent)
+    if (recent.size() < 5 && fs::exists(path, error)) recent.push_back(path);
+  if (!recent.empty()) {
+    ImGui::Dummy({0, px(8)});
+    ImGui::TextDisabled("Recent");
+    const announce::Part inside("recent");
+    for (const std::string& path : recent) entry(desk, icons::history, path);
+  }
+  ImGui::Dummy({0, px(8)});
+  ImGui::TextDisabled("Samples");
+  const announce::Part inside("samples");
+  for (fs::directory_iterator at(sample_folder(), error), end; !error && at != end; at.increment(error))
+    if (at->is_directory(error)) entry(desk, icons::cube_outline, at->path().string());
+  ImGui::End();
+}
+
+}  // namespace rebake

@@ -1,0 +1,127 @@
+#include "editor/gui/ui/number_field.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "editor/gui/tools/expression.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/style.h"
+
+namespace rebake::ui {
+
+namespace {
+
+// One field at a time is typed in or dragged; the window's thread only.
+struct Editing {
+  ImGuiID typed = 0;         ///< the field that is typed in
+  bool begins = false;       ///< its text takes the keyboard with this frame
+  bool next = false;         ///< Tab was pressed: the next field drawn is typed in
+  std::string text, before;  ///< now, and as it was
+  ImGuiID dragged = 0;
+  double from = 0;  ///< the dragged value when its drag began
+  bool moved = false;
+};
+Editing editing;
+
+// Up to the first byte that is not ASCII: "30°" is typed as "30".
+std::string without_unit(const std::string& text) {
+  return text.substr(0,
+                     std::size_t(std::find_if(text.begin(), text.end(), [](char c) { return c < 0; }) - text.begin()));
+}
+
+Changed typed_field(double& value, float width) {
+  if (editing.begins) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(width);
+  // Tab would stay among fields of text, of which there is one.
+  const auto tabbed = [](ImGuiInputTextCallbackData*) {
+    editing.next = true;
+    return 0;
+  };
+  ImGui::InputText("##typed", &editing.text, ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CallbackCompletion,
+                   tabbed);
+  if (std::exchange(editing.begins, false)) return Changed::nothing;
+  if (editing.next)
+    ImGui::ClearActiveID();
+  else if (!ImGui::IsItemDeactivated())
+    return Changed::nothing;
+  editing.typed = 0;
+  if (editing.text == editing.before) return Changed::nothing;
+  const std::optional<double> read = evaluated(editing.text);
+  if (!read) return Changed::failed;
+  if (*read == value) return Changed::nothing;
+  value = *read;
+  return Changed::finished;
+}
+
+}  // namespace
+
+bool takes_text() {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  const bool in_text = context.ActiveId != 0 && context.ActiveId == context.InputTextState.ID;
+  return editing.typed != 0 || in_text || context.IO.WantTextInput;
+}
+
+Changed number_field(const char* id, double& value, const char* format, double step, float width) {
+  ImGui::PushID(id);
+  const ImGuiID self = ImGui::GetID("field");
+  const std::string text = fmt::format(fmt::runtime(format), value);
+  if (std::exchange(editing.next, false) || editing.typed == self) {
+    if (editing.typed != self) {
+      editing.typed = self;
+      editing.begins = true;
+      editing.text = editing.before = without_unit(text);
+    }
+    const Changed changed = typed_field(value, width);
+    announce::item(id);
+    ImGui::PopID();
+    return changed;
+  }
+  ImGui::PushStyleColor(ImGuiCol_Button, color(theme().field));
+  ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0, 0.5F});
+  const bool clicked = ImGui::Button((text + "##field").c_str(), {width, 0});
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  announce::item(id);
+  Changed changed = Changed::nothing;
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  if (ImGui::IsItemActivated()) {
+    editing.dragged = self;
+    editing.from = value;
+    editing.moved = false;
+  }
+  const float way = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0).x;
+  if (ImGui::IsItemActive() && editing.dragged == self) {
+    editing.moved = editing.moved || std::abs(way) > px(3);
+    if (editing.moved) {
+      const double fine = ImGui::GetIO().KeyShift ? 0.1 : 1;
+      const double wanted = editing.from + fine * step * static_cast<double>(way);
+      // To whole steps, so that what is dragged can be read.
+      const double rounded = ImGui::GetIO().KeyShift ? wanted : std::round(wanted / step) * step;
+      if (rounded != value) {
+        value = rounded;
+        changed = Changed::dragged;
+      }
+    }
+  } else if (editing.dragged == self) {
+    editing.dragged = 0;
+    if (editing.moved) {
+      changed = Changed::finished;
+    } else if (clicked) {
+      editing.typed = self;
+      editing.begins = true;
+      editing.text = editing.before = without_unit(text);
+    }
+  }
+  ImGui::PopID();
+  return changed;
+}
+
+}  // namespace rebake::ui

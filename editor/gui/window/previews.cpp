@@ -1,0 +1,70 @@
+#include "editor/gui/window/previews.h"
+
+#include <new>
+#include <utility>
+
+#include "mesh_ops/base/error.h"
+
+namespace rebake {
+
+Previews::Previews(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { loop(); }) {}
+
+Previews::~Previews() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+    cancel_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Previews::request(std::vector<NodePtr> of, Make make) {
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_ = Wanted{std::move(of), std::move(make)};
+  }
+  changed_.notify_all();
+}
+
+void Previews::drop() {
+  const std::lock_guard lock(mutex_);
+  wanted_.reset();
+  made_.reset();
+  if (running_) cancel_ = true;
+}
+
+bool Previews::busy() const {
+  const std::lock_guard lock(mutex_);
+  return running_ || wanted_.has_value();
+}
+
+std::optional<Preview> Previews::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(made_, std::nullopt);
+}
+
+void Previews::loop() {
+  const Progress progress([](std::string_view, double) {}, &cancel_);
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return ending_ || wanted_; });
+    if (ending_) return;
+    const Wanted next = *std::exchange(wanted_, std::nullopt);
+    running_ = true;
+    cancel_ = false;
+    lock.unlock();
+    std::optional<Preview> made;
+    try {
+      made = Preview{next.make(progress), next.of};
+    } catch (const std::exception&) {
+      // What cannot be done is said when it is to be done.
+    }
+    lock.lock();
+    running_ = false;
+    if (made && !cancel_) made_ = std::move(made);
+    wake_();
+  }
+}
+
+}  // namespace rebake
