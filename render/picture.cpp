@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstring>
+#include <optional>
 
 #include "mesh_ops/base/error.h"
 #include "render/gl/context.h"
@@ -35,7 +36,7 @@ class Renderer::Impl {
     try {
       const gl::Current current(*context_);
       state_ = {};
-      gpu_ = {};
+      gpu_.reset();
     } catch (const Error&) {
       // Lost, and its names with it.
     }
@@ -52,7 +53,7 @@ class Renderer::Impl {
     shown_ = view;
     if (frame_plan.frames.size() > 65535)
       throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
-    gpu_.update(scene);
+    gpu_->update(scene);
     state_.targets.fit(frame_plan);
     if (!frame_plan.runs(effects::selection)) state_.selected.clear();
     glBindFramebuffer(GL_FRAMEBUFFER, picture_buffer());
@@ -65,7 +66,7 @@ class Renderer::Impl {
       if (pass->execute == nullptr || !frame_plan.runs(*pass)) continue;
       if (each_pass) glFinish();
       const Clock::time_point pass_start = Clock::now();
-      pass->execute({frame_plan, gpu_, state_, *pass});
+      pass->execute({frame_plan, *gpu_, state_, *pass});
       if (!each_pass) continue;
       glFinish();
       times.pass_ms[pass->name] = milliseconds_since(pass_start);
@@ -78,6 +79,7 @@ class Renderer::Impl {
     return times;
   }
 
+  void prepare(const Scene& scene) { gpu_->prepare(scene); }
   const std::string& device() const { return device_; }
   unsigned texture() const { return state_.targets.texture(Target::picture).name(); }
 
@@ -102,7 +104,7 @@ class Renderer::Impl {
   unsigned picture_buffer() { return state_.targets.framebuffer({Target::picture}, false).name(); }
 
   std::unique_ptr<gl::Context> context_;  // outlives the rest, which are names in it
-  GpuScene gpu_;
+  std::optional<GpuScene> gpu_{std::in_place};
   PassState state_;
   View shown_;
   std::string device_;
@@ -111,6 +113,8 @@ class Renderer::Impl {
 Renderer::Renderer() : Renderer(gl::make_headless_context()) {}
 Renderer::Renderer(std::unique_ptr<gl::Context> context) : impl_(std::make_unique<Impl>(std::move(context))) {}
 Renderer::~Renderer() = default;
+
+void Renderer::prepare(const Scene& scene) { impl_->prepare(scene); }
 
 Image Renderer::render(const Scene& scene, const View& view, const RenderOptions& options) {
   impl_->draw(scene, view, options, false);

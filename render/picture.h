@@ -34,6 +34,9 @@ class Renderer {
 
   Image render(const Scene& scene, const View& view, const RenderOptions& options = {});
 
+  /// Works out what the next picture of a scene will upload, so that it takes less time. From any thread.
+  void prepare(const Scene& scene);
+
   /// Draws a frame and leaves it on the GPU. With `each_pass`, waits for each pass and fills pass_ms; else the frame as
   /// a whole.
   FrameTimes time_frame(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass);

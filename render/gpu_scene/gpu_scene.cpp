@@ -26,15 +26,16 @@ std::vector<GpuVertex> vertices_of(const TextureSet& set, const Vec3& center) {
   return vertices;
 }
 
-void make_clusters(GpuMesh& mesh) {
-  mesh.clusters.resize((mesh.faces.size() + faces_a_cluster - 1) / faces_a_cluster);
-  tbb::parallel_for(std::size_t{0}, mesh.clusters.size(), [&](std::size_t k) {
+std::vector<GpuCluster> clusters_of(const Soup& soup, const std::vector<Face>& faces) {
+  std::vector<GpuCluster> clusters((faces.size() + faces_a_cluster - 1) / faces_a_cluster);
+  tbb::parallel_for(std::size_t{0}, clusters.size(), [&](std::size_t k) {
     const std::size_t first = k * faces_a_cluster;
-    GpuMesh::Cluster cluster{first, std::min(faces_a_cluster, mesh.faces.size() - first), {}};
+    GpuCluster cluster{first, std::min(faces_a_cluster, faces.size() - first), {}};
     for (std::size_t f = first; f < first + cluster.face_count; ++f)
-      for (const std::uint32_t vertex : mesh.faces[f]) cluster.bounds.extend(mesh.source.positions()[vertex]);
-    mesh.clusters[k] = cluster;
+      for (const std::uint32_t vertex : faces[f]) cluster.bounds.extend(soup.positions()[vertex]);
+    clusters[k] = cluster;
   });
+  return clusters;
 }
 
 // Whether the same triangles of both show something.
@@ -48,53 +49,39 @@ bool differs_in_place(const MeshKey& held, const MeshKey& wanted) {
 }
 
 // New positions into a mesh that is there.
-void move_vertices(GpuMesh& mesh, const TextureSet& set) {
-  mesh.source = set.soup;
-  if (!set.soup.bounds().isEmpty()) mesh.center = set.soup.bounds().center();
-  const std::vector<GpuVertex> vertices = vertices_of(set, mesh.center);
+void move_vertices(GpuMesh& mesh, PreparedMesh made) {
+  mesh.source = std::move(made.source);
+  mesh.center = made.center;
+  mesh.clusters = std::move(made.clusters);
   glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices.name());
-  glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(vertices.size() * sizeof(GpuVertex)), vertices.data());
-  make_clusters(mesh);
+  glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(made.vertices.size() * sizeof(GpuVertex)),
+                  made.vertices.data());
 }
 
-// `shown` are the faces that show something where they are known, else it is empty.
-GpuMesh upload(const TextureSet& set, std::vector<Face> shown) {
-  const Soup& soup = set.soup;
+GpuMesh upload(PreparedMesh made) {
   GpuMesh mesh;
-  mesh.source = soup;
-  if (!soup.bounds().isEmpty()) mesh.center = soup.bounds().center();
-  const std::vector<GpuVertex> vertices = vertices_of(set, mesh.center);
-
   mesh.array = gl::make_vertex_array();
   glBindVertexArray(mesh.array.name());
-  mesh.vertices = gl::make_buffer(GL_ARRAY_BUFFER, vertices.data(), vertices.size() * sizeof(GpuVertex));
+  mesh.vertices = gl::make_buffer(GL_ARRAY_BUFFER, made.vertices.data(), made.vertices.size() * sizeof(GpuVertex));
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(GpuVertex), nullptr);
   glEnableVertexAttribArray(1);
   glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(GpuVertex),
                         reinterpret_cast<const void*>(offsetof(GpuVertex, texel)));
-  if (soup.rotations() != nullptr) {
-    std::vector<float> turns;
-    turns.reserve(soup.rotations()->size() * 9);
-    for (const Mat3& turn : *soup.rotations())
-      for (Eigen::Index k = 0; k < 9; ++k) turns.push_back(static_cast<float>(turn.data()[k]));
-    mesh.turns = gl::make_buffer(GL_ARRAY_BUFFER, turns.data(), turns.size() * sizeof(float));
+  if (!made.turns.empty()) {
+    mesh.turns = gl::make_buffer(GL_ARRAY_BUFFER, made.turns.data(), made.turns.size() * sizeof(float));
     for (GLuint column = 0; column < 3; ++column) {
       glEnableVertexAttribArray(2 + column);
       glVertexAttribPointer(2 + column, 3, GL_FLOAT, GL_FALSE, 9 * sizeof(float),
                             reinterpret_cast<const void*>(column * 3 * sizeof(float)));
     }
   }
-  // Faces that show nothing are not worth a draw.
-  mesh.faces = std::move(shown);
-  if (mesh.faces.empty()) {
-    const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
-    for (std::size_t f = 0; f < shows.size(); ++f)
-      if (shows[f] != 0) mesh.faces.push_back(soup.faces()[f]);
-  }
-  mesh.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, mesh.faces.data(), mesh.faces.size() * sizeof(Face));
+  mesh.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, made.faces->data(), made.faces->size() * sizeof(Face));
   glBindVertexArray(0);
-  make_clusters(mesh);
+  mesh.source = std::move(made.source);
+  mesh.center = made.center;
+  mesh.faces = std::move(made.faces);
+  mesh.clusters = std::move(made.clusters);
   return mesh;
 }
 
@@ -115,36 +102,104 @@ GpuTexture upload(const std::shared_ptr<const FeatureTexture>& source) {
 
 }  // namespace
 
+PreparedMesh prepared(const TextureSet& set, ShownFaces shown) {
+  const Soup& soup = set.soup;
+  PreparedMesh made;
+  made.source = soup;
+  if (!soup.bounds().isEmpty()) made.center = soup.bounds().center();
+  made.vertices = vertices_of(set, made.center);
+  if (soup.rotations() != nullptr) {
+    const auto& rotations = *soup.rotations();
+    made.turns.resize(rotations.size() * 9);
+    tbb::parallel_for(std::size_t{0}, rotations.size(), [&](std::size_t v) {
+      for (std::size_t k = 0; k < 9; ++k) made.turns[v * 9 + k] = static_cast<float>(rotations[v].data()[k]);
+    });
+  }
+  // Faces that show nothing are not worth a draw.
+  made.faces = std::move(shown);
+  if (!made.faces) {
+    const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
+    auto faces = std::make_shared<std::vector<Face>>();
+    for (std::size_t f = 0; f < shows.size(); ++f)
+      if (shows[f] != 0) faces->push_back(soup.faces()[f]);
+    made.faces = std::move(faces);
+  }
+  made.clusters = clusters_of(soup, *made.faces);
+  return made;
+}
+
+// What was prepared of a set, or is now.
+PreparedMesh GpuScene::take_prepared(const TextureSet& set) {
+  const MeshKey key = mesh_key(set);
+  ShownFaces shown;
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto node = prepared_.extract(key)) return std::move(node.mapped().mesh);
+    // Bent triangles show what they showed: that is not worked out again.
+    for (const auto& [held, faces] : held_)
+      if (same_faces(held, key)) shown = faces;
+  }
+  return prepared(set, std::move(shown));
+}
+
+void GpuScene::prepare(const Scene& scene) {
+  std::set<MeshKey> there;
+  std::map<MeshKey, ShownFaces> held;
+  {
+    const std::lock_guard lock(mutex_);
+    held = held_;
+    for (const auto& [key, faces] : held_) there.insert(key);
+    ++turn_;
+    for (const TextureSet& set : diff({}, {}, scene).meshes)
+      if (const auto found = prepared_.find(mesh_key(set)); found != prepared_.end()) found->second.turn = turn_;
+    // What two calls did not want is of a preview that was never shown.
+    std::erase_if(prepared_, [&](const auto& entry) { return entry.second.turn + 2 < turn_; });
+    for (const auto& [key, made] : prepared_) there.insert(key);
+  }
+  for (const TextureSet& set : diff(there, {}, scene).meshes) {
+    const MeshKey key = mesh_key(set);
+    ShownFaces shown;
+    for (const auto& [other, faces] : held)
+      if (same_faces(other, key)) shown = faces;
+    PreparedMesh made = prepared(set, std::move(shown));
+    const std::lock_guard lock(mutex_);
+    prepared_.insert_or_assign(key, Waiting{std::move(made), turn_});
+  }
+}
+
 void GpuScene::update(const Scene& scene) {
   std::set<MeshKey> held_meshes;
   for (const auto& [key, mesh] : meshes_) held_meshes.insert(key);
   std::set<TextureKey> held_textures;
   for (const auto& [key, texture] : textures_) held_textures.insert(key);
   ResourceDiff change = diff(held_meshes, held_textures, scene);
-  // What has only moved keeps its buffers.
-  std::erase_if(change.meshes, [&](const TextureSet& set) {
+  if (change.meshes.empty() && change.textures.empty() && change.released_meshes.empty() &&
+      change.released_textures.empty())
+    return;
+  std::vector<PreparedMesh> made;
+  for (const TextureSet& set : change.meshes) made.push_back(take_prepared(set));
+  for (std::size_t k = 0; k < change.meshes.size(); ++k) {
+    const MeshKey key = mesh_key(change.meshes[k]);
+    // What has only moved keeps its buffers.
     const auto held = std::find_if(change.released_meshes.begin(), change.released_meshes.end(),
-                                   [&](const MeshKey& key) { return differs_in_place(key, mesh_key(set)); });
-    if (held == change.released_meshes.end()) return false;
+                                   [&](const MeshKey& other) { return differs_in_place(other, key); });
+    if (held == change.released_meshes.end()) {
+      meshes_.emplace(key, upload(std::move(made[k])));
+      continue;
+    }
     auto node = meshes_.extract(*held);
     change.released_meshes.erase(held);
-    node.key() = mesh_key(set);
-    move_vertices(node.mapped(), set);
+    node.key() = key;
+    move_vertices(node.mapped(), std::move(made[k]));
     meshes_.insert(std::move(node));
-    return true;
-  });
-  // Bent triangles show what they showed: that is not worked out again.
-  std::vector<std::vector<Face>> shown;
-  for (const TextureSet& set : change.meshes) {
-    const auto same = std::find_if(meshes_.begin(), meshes_.end(),
-                                   [&](const auto& held) { return same_faces(held.first, mesh_key(set)); });
-    shown.push_back(same != meshes_.end() ? same->second.faces : std::vector<Face>{});
   }
   for (const MeshKey& key : change.released_meshes) meshes_.erase(key);
   for (const TextureKey key : change.released_textures) textures_.erase(key);
-  for (std::size_t k = 0; k < change.meshes.size(); ++k)
-    meshes_.emplace(mesh_key(change.meshes[k]), upload(change.meshes[k], std::move(shown[k])));
   for (const auto& texture : change.textures) textures_.emplace(texture.get(), upload(texture));
+  const std::lock_guard lock(mutex_);
+  held_.clear();
+  for (const auto& [key, mesh] : meshes_) held_.emplace(key, mesh.faces);
+  std::erase_if(prepared_, [&](const auto& entry) { return held_.contains(entry.first); });
 }
 
 }  // namespace rebake

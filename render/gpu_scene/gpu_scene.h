@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "render/gl/objects.h"
@@ -15,22 +16,38 @@ struct GpuVertex {
   float texel[2];
 };
 
-/// A texture set's triangles on the GPU: positions as floats relative to `center`, UVs in texels.
-struct GpuMesh {
-  /// Faces [first, first + count) and their box, so that what is out of view is not drawn.
-  struct Cluster {
-    std::size_t first_face = 0;
-    std::size_t face_count = 0;
-    Box bounds;
-  };
+/// Faces [first, first + count) and their box, so that what is out of view is not drawn.
+struct GpuCluster {
+  std::size_t first_face = 0;
+  std::size_t face_count = 0;
+  Box bounds;
+};
+
+/// A set's faces that may show something, shared by all that differ in places only.
+using ShownFaces = std::shared_ptr<const std::vector<Face>>;
+
+/// What is uploaded of a texture set, worked out beforehand: positions as floats relative to `center`, UVs in texels.
+struct PreparedMesh {
   Soup source;  ///< keeps the arrays alive, so that their addresses stay identities
+  Vec3 center{0, 0, 0};
+  std::vector<GpuVertex> vertices;
+  std::vector<float> turns;  ///< 9 a vertex; empty where none is turned
+  ShownFaces faces;
+  std::vector<GpuCluster> clusters;
+};
+/// `shown` is null where it is not known yet.
+PreparedMesh prepared(const TextureSet& set, ShownFaces shown = nullptr);
+
+/// A texture set's triangles on the GPU.
+struct GpuMesh {
+  Soup source;
   Vec3 center{0, 0, 0};
   gl::VertexArray array;
   gl::Buffer vertices;
   gl::Buffer turns;
   gl::Buffer indices;
-  std::vector<Face> faces;  ///< those that may show something, as in `indices`
-  std::vector<Cluster> clusters;
+  ShownFaces faces;  ///< as in `indices`
+  std::vector<GpuCluster> clusters;
 };
 
 struct GpuTexture {
@@ -43,13 +60,26 @@ class GpuScene {
  public:
   /// Uploads what is missing and releases what `scene` no longer holds.
   void update(const Scene& scene);
+  /// Works out what update() will upload, from any thread; it takes what there is of it.
+  void prepare(const Scene& scene);
 
   const GpuMesh& mesh(const TextureSet& set) const { return meshes_.at(mesh_key(set)); }
   const GpuTexture& texture(const TextureSet& set) const { return textures_.at(set.texels.get()); }
 
  private:
+  PreparedMesh take_prepared(const TextureSet& set);
+
   std::map<MeshKey, GpuMesh> meshes_;
   std::map<TextureKey, GpuTexture> textures_;
+  // Shared with prepare():
+  std::mutex mutex_;
+  std::map<MeshKey, ShownFaces> held_;  ///< of what is on the GPU
+  struct Waiting {
+    PreparedMesh mesh;
+    unsigned turn = 0;  ///< the call of prepare() that wanted it last
+  };
+  std::map<MeshKey, Waiting> prepared_;
+  unsigned turn_ = 0;
 };
 
 }  // namespace rebake

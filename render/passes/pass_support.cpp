@@ -187,7 +187,7 @@ void draw_set(const PassInput& input, const Draw& draw, const gl::Program& progr
   const Eigen::Matrix4d cull = projection(input.plan.view) * draw.to_camera.matrix();
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
-  for (const GpuMesh::Cluster& cluster : mesh.clusters) {
+  for (const GpuCluster& cluster : mesh.clusters) {
     if (outside(cull, cluster.bounds)) continue;
     const auto begin = reinterpret_cast<const void*>(cluster.first_face * sizeof(Face));
     const auto count = static_cast<GLsizei>(cluster.face_count * 3);

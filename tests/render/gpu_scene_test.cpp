@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "render/picture.h"
 #include "tests/support/made_scenes.h"
 
@@ -25,6 +27,30 @@ Scene bent(const Scene& scene, double amount, bool turns = false) {
     }
     node.object = object;
   });
+}
+
+// As the window does it: what the next picture uploads is worked out on another thread meanwhile.
+TEST(GpuScene, WhatWasPreparedIsDrawnAlike) {
+  const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
+  View view;
+  view.width = view.height = 100;
+  view.camera.eye = {0.5, 1, 4};
+  view.camera.near_plane = 0.1;
+  Renderer kept;
+  kept.render(scene, view);
+  for (const bool turns : {false, true})
+    for (int k = 1; k <= 6; ++k) {
+      const Scene next = bent(scene, 0.1 * k, turns);
+      std::thread ahead([&] {
+        kept.prepare(next);
+        // Of what is never shown nothing stays.
+        for (int other = 0; other < 5; ++other) kept.prepare(bent(scene, 0.01 * other + k, turns));
+      });
+      kept.render(scene, view);
+      ahead.join();
+      Renderer fresh;
+      EXPECT_EQ(kept.render(next, view).rgb, fresh.render(next, view).rgb) << k;
+    }
 }
 
 TEST(GpuScene, WhatOnlyMovedIsDrawnAsIfItWereNew) {

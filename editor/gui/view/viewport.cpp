@@ -387,7 +387,8 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
     desk.messages.fail(error.what());
     tool(desk).cancel(desk);
   }
-  if (!(desk.view.camera == last_camera_)) {
+  // What changes is shown soon, and in full when it rests.
+  if (!(desk.view.camera == last_camera_) || (made_ && made_->scene.roots != desk.shown().roots)) {
     last_camera_ = desk.view.camera;
     moved_at_ = Clock::now();
   }

@@ -77,6 +77,8 @@ class EditorWindow {
     desk_.jobs.worker.cancel();
     desk_.jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
     while (desk_.jobs.worker.busy()) window().wait(0.02);
+    desk_.jobs.worker.set_prepare(nullptr);
+    desk_.previews.set_prepare(nullptr);
   }
 
  private:
@@ -106,6 +108,9 @@ class EditorWindow {
     looks_of_.reset();
     set_looks();
     title_.clear();
+    const auto prepare = [&renderer = graphics_->renderer](const Scene& scene) { renderer.prepare(scene); };
+    desk_.jobs.worker.set_prepare(prepare);
+    desk_.previews.set_prepare(prepare);
     // Nothing may be thrown through the window system.
     window().on_key = [this](const KeyPress& press) {
       try {
@@ -126,6 +131,8 @@ class EditorWindow {
   // The document is not touched: it lives in the worker. Nor are the tools.
   void restart_graphics() {
     desk_.jobs.restarts_graphics = false;
+    desk_.jobs.worker.set_prepare(nullptr);
+    desk_.previews.set_prepare(nullptr);
     graphics_.reset();
     // A driver that was reset may need a while.
     constexpr int tries = 20;

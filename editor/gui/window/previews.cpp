@@ -27,6 +27,11 @@ void Previews::request(std::vector<NodePtr> of, Make make) {
   changed_.notify_all();
 }
 
+void Previews::set_prepare(std::function<void(const Scene&)> prepare) {
+  const std::lock_guard lock(prepare_mutex_);
+  prepare_ = std::move(prepare);
+}
+
 void Previews::drop() {
   const std::lock_guard lock(mutex_);
   wanted_.reset();
@@ -57,6 +62,8 @@ void Previews::loop() {
     std::optional<Preview> made;
     try {
       made = Preview{next.make(progress), next.of};
+      const std::lock_guard ready(prepare_mutex_);
+      if (prepare_) prepare_(made->scene);
     } catch (const std::exception&) {
       // What cannot be done is said when it is to be done.
     }

@@ -30,6 +30,8 @@ class Previews {
 
   /// `make` may throw Error: there is no preview then, and what is shown stays.
   void request(std::vector<NodePtr> of, Make make);
+  /// Called with every preview before it can be taken, on their thread; null for none.
+  void set_prepare(std::function<void(const Scene&)> prepare);
   /// Nothing is wanted any more; what is being made is stopped where it can be.
   void drop();
   /// Whether one is being made or waits to be.
@@ -45,6 +47,8 @@ class Previews {
     Make make;
   };
   std::function<void()> wake_;
+  std::mutex prepare_mutex_;
+  std::function<void(const Scene&)> prepare_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<Wanted> wanted_;

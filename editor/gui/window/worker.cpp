@@ -78,6 +78,11 @@ void Worker::cancel() {
   wake_();
 }
 
+void Worker::set_prepare(std::function<void(const Scene&)> prepare) {
+  const std::lock_guard lock(prepare_mutex_);
+  prepare_ = std::move(prepare);
+}
+
 Worker::Status Worker::status() const {
   const std::lock_guard lock(mutex_);
   return status_;
@@ -135,6 +140,10 @@ void Worker::publish(const Scene& before) {
   next->sources = session_.document.sources();
   next->history_bytes = history.memory();
   name_steps(*next, before);
+  {
+    const std::lock_guard lock(prepare_mutex_);
+    if (prepare_) prepare_(next->scene);
+  }
   next->before_last = history.before_last_step();
   const std::lock_guard lock(mutex_);
   snapshot_ = std::move(next);

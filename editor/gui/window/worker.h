@@ -48,6 +48,8 @@ class Worker {
   bool busy() const;
   /// Asks the present job to stop and forgets those that wait.
   void cancel();
+  /// Called with every scene before the window sees it, on the worker's thread; null for none.
+  void set_prepare(std::function<void(const Scene&)> prepare);
   /// Before the next job: what its renderer holds may be lost.
   void drop_renderer() { drops_renderer_ = true; }
 
@@ -72,6 +74,8 @@ class Worker {
   void name_steps(Snapshot& next, const Scene& before);
 
   std::function<void()> wake_;
+  std::mutex prepare_mutex_;
+  std::function<void(const Scene&)> prepare_;
   Session session_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

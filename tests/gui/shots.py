@@ -1,0 +1,99 @@
+"""Screens of the window to be looked at: shots.py PROGRAM FOLDER writes one picture for each state, light and dark, at
+one and two pixels a plain pixel, and all of them beside each other (overview-LOOKS-SCALE.png)."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from screen import Editor, Screen
+
+PROGRAM, OUT = sys.argv[1], pathlib.Path(sys.argv[2])
+SAMPLES = pathlib.Path(__file__).resolve().parents[2] / "samples" / "scenes"
+BRANCH = [(0.57, 0.22), (0.78, 0.22), (0.78, 0.46), (0.62, 0.46), (0.57, 0.38)]
+
+
+def shots(looks, scale):
+    screen = Screen(1280 * scale, 800 * scale)
+    screen.settings(looks=looks, text_scale=scale, window_width=1280, window_height=800)
+    taken = []
+
+    def shot(name):
+        editor.move(*editor.where("viewport")) if name != "tooltip" else None
+        editor.settle()
+        file = OUT / f"{looks}-{scale}x-{len(taken):02}-{name}.png"
+        editor.save_picture(file)
+        taken.append(file)
+
+    editor = Editor(PROGRAM, screen)
+    shot("empty")
+    editor.key("ctrl+o")
+    editor.click("dialog/Samples")
+    shot("open")
+    editor.double_click(*editor.where("dialog/entries/ficus"))
+    editor.until_ops("import")
+    shot("opened")
+    editor.move(*editor.where("tool/Lasso"))
+    shot("tooltip")
+    for menu in ("File", "Edit", "View", "Window"):
+        editor.click("menu/" + menu)
+        shot("menu-" + menu.lower())
+        editor.key("Escape")
+    editor.key("l", "t")
+    corners = [editor.in_viewport(*corner) for corner in BRANCH]
+    editor.drag(corners + corners[:1])
+    shot("selected")
+    editor.key("n")
+    shot("bend")
+    x, y = editor.where("bend/tip")
+    editor.drag([(x, y), (x, y - 60 * scale)])
+    shot("bent")
+    editor.key("c")
+    editor.click("options/Make cage")
+    shot("cage")
+    editor.key("Escape", "Escape", "2")
+    editor.key("ctrl+shift+a")
+    shot("turn")
+    editor.click("status/History")
+    shot("history")
+    editor.click("tabs/Script")
+    shot("script")
+    editor.click("tabs/Cost")
+    editor.click("tabs/cost/Measure this view")
+    shot("cost")
+    editor.click("tabs/Messages")
+    shot("messages")
+    editor.click("tabs/Close")
+    editor.key("ctrl+p")
+    editor.type("select")
+    shot("palette")
+    editor.key("Escape")
+    editor.command("bend by")
+    shot("form")
+    editor.key("Escape", "F1")
+    shot("keys")
+    editor.key("Escape", "ctrl+e")
+    shot("export")
+    editor.key("Escape")
+    editor.click(*editor.where("outline/ficus/name"), button=3)
+    shot("context")
+    editor.key("Escape", "ctrl+q")
+    shot("quit")
+    editor.key("Escape")
+    editor.command("run script")
+    editor.answer("/nowhere/script.jsonl")
+    shot("failure")
+    editor.key("Escape", "y")
+    shot("wipe")
+    editor.key("y", "ctrl+space")
+    shot("alone")
+    editor.kill()
+    screen.close()
+    subprocess.run(["montage", *taken, "-geometry", "640x400+6+6", "-tile", "4x", "-background", "#808080",
+                    str(OUT / f"overview-{looks}-{scale}x.png")], check=True)
+
+
+OUT.mkdir(parents=True, exist_ok=True)
+for looks in sys.argv[3:4] or ("dark", "light"):
+    for scale in map(int, sys.argv[4:5] or ("1", "2")):
+        shots(looks, scale)
