@@ -22,6 +22,8 @@
   X(Background) \
   X(Transform) \
   X(Place) \
+  X(Drop) \
+  X(Align) \
   X(Select) \
   X(SelectPicture) \
   X(SelectConnected) \

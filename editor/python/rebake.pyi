@@ -196,6 +196,19 @@ class Document:
         rotation: from its parent's axes; left out: as it is
         scale: factor along its own axes; negative mirrors, 0 is refused; left out: as it is
         """
+    def drop(self, *, node: Node, ground: float = 0.0) -> None:
+        """Lets a node fall along the world's -y until it stands on what is visible below it, or on the ground.
+
+        node: node that falls, with those inside it
+        ground: height of the ground (scene units)
+        """
+    def align(self, *, nodes: Sequence[Node], axis: Literal["x", "y", "z"] = "x", to: Literal["least", "middle", "greatest", "spread"] = "middle") -> None:
+        """Moves nodes along an axis so that their boxes' ends or middles are at the first one's, or with the same gap between neighbours.
+
+        nodes: two or more; the first stays, or in a spread the outermost
+        axis: of the world
+        to: the boxes' least ends, middles or greatest ends; spread: equal gaps
+        """
     def select(self, *, node: Node | None = None, all: bool = False, none: bool = False, invert: bool = False, box: Box | None = None, sphere: Sphere | None = None, half_space: HalfSpace | None = None, connected: Vector | None = None, texture_set: int | None = None, saved: str = "", mode: Literal["set", "add", "remove", "intersect"] = "set", frame: Literal["world", "node", "bounds"] = "world") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles by their centres.
 

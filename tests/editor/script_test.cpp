@@ -157,6 +157,47 @@ TEST_F(Script, ANodesPlaceIsSetByNumbersWithoutShear) {
   expect_error(R"({"op": "place", "node": "ball", "scale": 0})", "flatten");
 }
 
+TEST_F(Script, ANodeFallsOntoWhatIsBelowAndOntoTheGround) {
+  // Spheres of radius 1 with holes are in the way of each other where they are opaque.
+  run(import + R"({"op": "duplicate", "node": "ball", "as": "upper"}
+{"op": "place", "node": "ball", "position": [0, 3, 0]}
+{"op": "place", "node": "upper", "position": [0.1, 9, 0]}
+{"op": "drop", "node": "ball"})");
+  const auto low = [&](const char* name) { return subtree_bounds(session.scene(), node(name)->id).min().y(); };
+  EXPECT_NEAR(low("ball"), 0, 1e-12) << "on the ground";
+  const double before = low("upper");
+  run(R"({"op": "drop", "node": "upper"})");
+  const double gap = low("upper") - 2;
+  EXPECT_LT(low("upper"), before - 4);
+  // Middles are 2 apart along a line that leans by 0.1, but for the balls' flat faces.
+  EXPECT_LT(std::abs(gap), 0.15);
+  const Scene once = session.scene();
+  run(R"({"op": "drop", "node": "upper"})");
+  EXPECT_NEAR(low("upper") - 2, gap, 1e-6) << "it stands already";
+  run(R"({"op": "place", "node": "upper", "position": [50, 9, 0]}
+{"op": "drop", "node": "upper", "ground": -2})");
+  EXPECT_NEAR(low("upper"), -2, 1e-12);
+  expect_error(R"({"op": "drop", "node": "upper", "ground": 7})", "below the ground");
+}
+
+TEST_F(Script, NodesAreAlignedAndSpread) {
+  run(import + R"({"op": "duplicate", "node": "ball", "as": "b"}
+{"op": "duplicate", "node": "ball", "as": "c"}
+{"op": "place", "node": "b", "position": [5, 1, 0], "scale": 2}
+{"op": "place", "node": "c", "position": [20, 2, 0]}
+{"op": "align", "nodes": ["ball", "b", "c"], "axis": "y", "to": "least"})");
+  const auto box = [&](const char* name) { return subtree_bounds(session.scene(), node(name)->id); };
+  EXPECT_NEAR(box("b").min().y(), box("ball").min().y(), 1e-12);
+  EXPECT_NEAR(box("c").min().y(), box("ball").min().y(), 1e-12);
+  const Box first = box("ball"), last = box("c");
+  run(R"({"op": "align", "nodes": ["c", "ball", "b"], "to": "spread"})");
+  EXPECT_EQ(box("ball").min().x(), first.min().x()) << "the outermost stay";
+  EXPECT_EQ(box("c").max().x(), last.max().x());
+  EXPECT_NEAR(box("b").min().x() - box("ball").max().x(), box("c").min().x() - box("b").max().x(), 1e-12);
+  expect_error(R"({"op": "align", "nodes": ["ball"]})", "at least two");
+  expect_error(R"({"op": "align", "nodes": ["ball", "b"], "axis": "w"})", "must be x, y or z");
+}
+
 TEST_F(Script, TurningAllTrianglesOfAStretchedNodeTurnsItsColoursLikeTheNode) {
   run(import + R"({"op": "transform", "node": "ball", "scale": [4, 1, 1]})");
   const Mat3 before = find_placed(session.scene(), node("ball")->id)->to_world.linear();

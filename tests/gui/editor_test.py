@@ -322,6 +322,45 @@ class EditorTest(unittest.TestCase):
         self.assertEqual(editor.state()["steps"], 2)
         self.assertEqual(editor.last_edit()["op"], "cage")
 
+    def test_handles_hold_and_pull(self):
+        editor = self.open_ficus()
+        editor.key("k")
+        editor.click(*editor.in_viewport(0.45, 0.72))  # the pot
+        editor.click("options/Pull")
+        editor.click(*editor.in_viewport(0.70, 0.33))  # the branch's end
+        self.assertEqual(len(editor.items("handle")), 2)
+        before = self.leaves()
+        x, y = editor.where("handle/1")
+        editor.drag([(x, y), (x, y - 60)])
+        editor.until_ops("import", "handles")
+        edit = editor.last_edit()
+        self.assertEqual([len(edit["moves"]), len(edit["fixed"])], [1, 1])
+        self.assertGreater(edit["moves"][0]["translate"][1], 0.1)
+        # Again: the same step.
+        x, y = editor.where("handle/1")
+        editor.drag([(x, y), (x, y - 20)])
+        self.assertEqual(editor.state()["steps"], 2)
+        self.assertGreater(editor.last_edit()["moves"][0]["translate"][1], edit["moves"][0]["translate"][1])
+        # Escape takes back the present drag only.
+        x, y = editor.where("handle/1")
+        editor.drag([(x, y), (x + 50, y)], meanwhile=lambda: editor.key("Escape"))
+        self.assertEqual(editor.where("handle/1"), (x, y))
+        editor.key("ctrl+z")
+        self.assertEqual(editor.state()["steps"], 1)
+        self.assertAlmostEqual(self.leaves(), before, delta=0.02 * before)
+
+    def test_a_kettle_is_put_onto_the_pot(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        editor.key("1", "m")
+        x, y = editor.where("gizmo/middle")
+        editor.drag([(x, y), editor.in_viewport(0.8, 0.8)])
+        moved = editor.last_edit()
+        self.assertEqual(moved["op"], "transform")
+        editor.key("End")
+        self.assertEqual(editor.last_edit()["op"], "drop")
+        self.assertEqual(editor.state()["status"], "Dropped kettle")
+
     def test_bend_a_branch_from_its_stem(self):
         editor = self.open_ficus()
         editor.key("l", "t")

@@ -15,7 +15,7 @@ BRANCH = [(0.57, 0.22), (0.78, 0.22), (0.78, 0.46), (0.62, 0.46), (0.57, 0.38)]
 
 def shots(looks, scale):
     screen = Screen(1280 * scale, 800 * scale)
-    screen.settings(looks=looks, text_scale=scale, window_width=1280, window_height=800)
+    screen.settings(looks=looks, text_scale=scale, window_width=1280 * scale, window_height=800 * scale)
     taken = []
 
     def shot(name):

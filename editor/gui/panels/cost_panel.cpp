@@ -7,6 +7,7 @@
 
 #include "editor/gui/panels/panels.h"
 #include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/widgets.h"
 
 namespace rebake {
@@ -25,7 +26,8 @@ struct Choice {
 std::vector<Choice> choices_of(const Jobs::Costs& costs) {
   std::vector<Choice> list;
   for (const StudyTable::Row& row : costs.rows) {
-    Choice choice{row.choice, row.values.at(0), row.values.at(1), row.values.at(2)};
+    // "50 %, 1 sample": what all have in common is not said at each point.
+    Choice choice{row.choice.substr(0, row.choice.find(',')), row.values.at(0), row.values.at(1), row.values.at(2)};
     const double number = std::atof(row.choice.c_str());
     if (row.choice.find('%') != std::string::npos)
       choice.share = number / 100;
@@ -114,7 +116,7 @@ void draw_effects(const FrameReport& report) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::PushStyleColor(ImGuiCol_Text, color(pass.runs ? theme().text : theme().muted));
-    ImGui::TextUnformatted(fmt::format("{}  {}", pass.runs ? "●" : "○", pass.name).c_str());
+    ImGui::TextUnformatted(fmt::format("{}  {}", pass.runs ? icons::check : icons::minus, pass.name).c_str());
     ImGui::TableNextColumn();
     if (const auto found = report.times.pass_ms.find(pass.name); found != report.times.pass_ms.end())
       ImGui::Text("%.1f ms", found->second);

@@ -136,15 +136,16 @@ void Dialogs::begin_path(const Desk& desk) {
   height_ = desk.view.height;
   std::error_code gone;
   const bool kept = desk.asking.path == PathQuestion::save_project && !desk.project.path.empty();
-  const fs::path last = desk.settings.last_folder;
+  const bool reads = asked_ == PathQuestion::open || asked_ == PathQuestion::run_script;
+  const fs::path last = reads ? desk.settings.opened_from : desk.settings.written_to;
   const fs::path start = fs::is_directory(last, gone) ? last : fs::current_path(gone);
   path_ = kept ? desk.project.path.string() : start.string() + "/";
-  if (kept || desk.scene().roots.empty()) return;
+  if (kept || reads || desk.scene().roots.empty()) return;
   // A name to begin with.
   const std::string title = desk.scene().roots.front()->name;
   const std::string ending = question_of(asked_).ending;
   if (asked_ == PathQuestion::export_folder) path_ += title + "-edited";
-  if (!ending.empty() && asked_ != PathQuestion::run_script) path_ += title + ending;
+  if (!ending.empty()) path_ += title + ending;
 }
 
 // What lies in the folder that is typed; true when something of it is to be taken at once.
@@ -190,7 +191,8 @@ bool Dialogs::draw_entries(const Desk& desk, const fs::path& folder, const std::
 }
 
 void Dialogs::carry_out(Desk& desk, const fs::path& path) {
-  desk.settings.last_folder = path.parent_path().string();
+  const bool reads = desk.asking.path == PathQuestion::open || desk.asking.path == PathQuestion::run_script;
+  (reads ? desk.settings.opened_from : desk.settings.written_to) = path.parent_path().string();
   switch (desk.asking.path) {
     case PathQuestion::open:
       desk.project.open({path.string()});

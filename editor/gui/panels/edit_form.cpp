@@ -41,6 +41,12 @@ void EditForm::begin(const Desk& desk) {
           values_["node"] = static_cast<std::uint64_t>(placed.node->id);
           break;
         }
+    if (field.type.kind == FieldKind::nodes && field.required) {
+      json list = json::array();
+      for (const NodeId id : desk.active_tops()) list.push_back(static_cast<std::uint64_t>(id));
+      values_[field.name] = list;
+      texts_[field.name] = list.dump();
+    }
     if (field.name == "selection" && desk.selected_triangles() > 0) values_["selection"] = true;
     if (field.required && field.type.kind == FieldKind::number) values_[field.name] = 0;
   }

@@ -65,7 +65,10 @@ void draw_keys_sheet(Desk& desk) {
       ImGui::TableNextColumn();
       ImGui::Dummy({0, px(4)});
       ImGui::TextDisabled("%s", name);
-      return ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingStretchProp);
+      if (!ImGui::BeginTable(name, 2)) return false;
+      ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch, 1.1F);
+      ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthStretch, 1);
+      return true;
     };
     if (begin("Pointer")) {
       for (const auto& [key, what] : pointer_lines) line(key, what);

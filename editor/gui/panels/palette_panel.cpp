@@ -20,17 +20,27 @@ std::string plain(std::string text) {
   return text;
 }
 
+// "Select picture…": its form asks for more.
+std::string words_of(const std::string& op) {
+  std::string words = op;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words + "…";
+}
+
 struct Entry {
   std::string title, keys, help;
-  const Command* command = nullptr;  ///< null: the form of the edit `title`, or
+  const Command* command = nullptr;  ///< null: the form of the edit `op`, or
   const Camera* view = nullptr;      ///< a stored view
+  std::string op = {};               ///< of the edit
 };
 
 std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
   std::vector<Entry> all;
   for (const Command& command : command_table())
     all.push_back({std::string(command.menu) + ": " + command.title, command.keys_of(desk), command.help, &command});
-  for (const EditType* type : edit_types()) all.push_back({type->op, "", type->help});
+  for (const EditType* type : edit_types())
+    all.push_back({words_of(type->op), "", type->help, nullptr, nullptr, type->op});
   for (const auto& [name, camera] : desk.scene().views)
     all.push_back({"Stored view: " + name, "", "", nullptr, &camera});
   // All words, in any order; edits are written with underscores.
@@ -102,7 +112,7 @@ void PalettePanel::draw(Desk& desk) {
     else if (entry.view != nullptr)
       desk.view.camera = *entry.view;
     else
-      desk.asking.form = entry.title;
+      desk.asking.form = entry.op;
     break;
   }
   ImGui::EndChild();

@@ -274,15 +274,15 @@ void BendTool::add_guides(const Desk& desk, std::vector<Guides::Line>& lines) co
 void BendTool::options(Desk& desk) {
   int kind = static_cast<int>(kind_);
   if (ui::choice("kind", kind, {"Bend", "Twist", "Taper", "Stretch"})) kind_ = static_cast<Kind>(kind);
-  ImGui::SameLine(0, px(space::section));
+  ui::flow(px(130));
   ImGui::SetNextItemWidth(px(130));
   ImGui::Combo("##axis", &axis_, "along its shape\0along X\0along Y\0along Z\0");
   announce::item("Axis");
   ui::tip("Axis", "", "Along the shape: from where the selection hangs on the rest to its far end.");
-  ImGui::SameLine();
+  ui::flow(px(40));
   if (ui::button("Flip")) flipped_ = !flipped_;
   ui::tip("Flip", "", "Hold it at the other end.");
-  ImGui::SameLine(0, px(space::section));
+  ui::flow(px(160));
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("Soft border");
   ImGui::SameLine();

@@ -277,7 +277,7 @@ void CageTool::add_guides(const Desk& /*desk*/, std::vector<Guides::Line>& lines
 void CageTool::options(Desk& desk) {
   int kind = wraps_ ? 1 : 0;
   if (ui::choice("kind", kind, {"Lattice", "Wrap"})) wraps_ = kind == 1;
-  ImGui::SameLine(0, px(space::section));
+  ui::flow(px(120));
   ImGui::SetNextItemWidth(px(120));
   if (wraps_)
     ImGui::SliderFloat("##coarseness", &coarseness_, 0.02F, 0.5F, "coarseness %.2f");
@@ -286,7 +286,7 @@ void CageTool::options(Desk& desk) {
   ui::tip(wraps_ ? "Coarseness" : "Cells", "",
           wraps_ ? "The smallest hollow that the cage enters, of its size." : "Along X, Y and Z.");
   for (int& cells : cells_) cells = std::clamp(cells, 1, 32);
-  ImGui::SameLine();
+  ui::flow(px(120));
   ImGui::SetNextItemWidth(px(120));
   int coordinates = static_cast<int>(edit_.coordinates);
   if (ImGui::Combo("##coordinates", &coordinates, "mean value\0Green\0harmonic\0"))
@@ -294,7 +294,7 @@ void CageTool::options(Desk& desk) {
   ui::tip("Coordinates", "",
           "Mean value: follows the points. Green: keeps shapes, bulges beyond the cage. Harmonic: stays inside the "
           "cage, slower.");
-  ImGui::SameLine();
+  ui::flow(px(90));
   if (!bound_) {
     if (ui::primary_button("Make cage")) make(desk);
     ui::hint(fmt::format("Around the selected triangles, else a picked node ({}).", desk.scope_words()));

@@ -75,6 +75,8 @@ std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) c
   }
   if (target.nodes.empty()) return std::nullopt;
   const auto first = find_placed(desk.scene(), target.nodes.front());
+  target.foot =
+      box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center().x(), box.min().y(), box.center().z());
   target.pivot = box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center());
   target.local = orthogonal_factor(first->to_world.linear());
   if (desk.tools.local_axes) target.axes = target.local;
@@ -155,7 +157,7 @@ std::vector<Edit> Gizmo::edits(const Lens& lens) const {
     // Axes serve a scale as well turned round; a mirrored node's would be no turn.
     transform.scale_axes = Rotation(Eigen::Quaterniond(at_.axes.determinant() < 0 ? Mat3(-at_.axes) : at_.axes));
   } else if (held_ == all) {
-    transform.translate = amount_ * lens.motion(at_.pivot, now_ - from_);
+    transform.translate = onto_ ? Vec3(*onto_ - foot_) : Vec3(amount_ * lens.motion(at_.pivot, now_ - from_));
   } else {
     transform.translate = amount_ * at_.axes.col(held_);
   }
@@ -174,8 +176,21 @@ void Gizmo::preview(Desk& desk, const std::vector<Edit>& made) {
     desk.show_preview(made);
 }
 
+std::optional<Vec3> Gizmo::surface(const Desk& desk, const Lens& lens, const Vec2& at) const {
+  Scene others = desk.scene();
+  for (const NodeId id : at_.nodes) others = with_changed(others, id, [](Node& node) { node.visible = false; });
+  if (const std::optional<Picked> picked = pick(others, lens, at, false)) return picked->world;
+  // Else the ground.
+  const ViewRay ray = lens.ray(at);
+  const double t = -ray.origin.y() / ray.direction.y();
+  if (!std::isfinite(t) || t <= 0) return std::nullopt;
+  return Vec3(ray.origin + t * ray.direction);
+}
+
 void Gizmo::begin(const Target& target, int handle, const Vec2& at) {
   at_ = target;
+  foot_ = target.foot;
+  onto_.reset();
   held_ = handle;
   from_ = now_ = at;
   amount_ = 0;
@@ -212,6 +227,11 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   now_ = pointer.at;
   const double before = amount_;
   amount_ = amount(lens, pointer);
+  const bool free = held_ == all && kind_ == ToolKind::move;
+  if (free && desk.tools.snaps && !at_.triangles)
+    onto_ = surface(desk, lens, now_);
+  else
+    onto_.reset();
   if (typed_.value()) amount_ = *typed_.value() - (kind_ == ToolKind::scale ? 1 : 0);
   const bool nothing = amount_ == 0 || (held_ == all && kind_ == ToolKind::move && now_ == from_);
   const std::vector<Edit> made = nothing ? std::vector<Edit>{} : edits(lens);
@@ -269,6 +289,7 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
       list.AddRectFilled({line.back().x - px(6), line.back().y - px(6)}, {line.back().x + px(6), line.back().y + px(6)},
                          color);
   }
+  announce::point("middle", on_screen(*middle, origin));
   if (kind_ != ToolKind::turn)
     list.AddCircleFilled(on_screen(*middle, origin), px(6), hot == all ? IM_COL32(255, 230, 60, 255) : axis_colors[3]);
   if (held_ == none) return;
@@ -286,6 +307,12 @@ void Gizmo::options(Desk& desk) {
   ui::toggle("Local axes", desk.tools.local_axes);
   ui::tip("Local axes", command_key("Local axes", desk), "Handles along the object's own axes.");
   const Lens lens(desk.view.camera, desk.view.width, desk.view.height);
+  if (kind_ == ToolKind::move) {
+    ui::flow(px(140));
+    ui::toggle("Snap to surface", desk.tools.snaps);
+    ui::tip("Snap to surface", command_key("Snap to surface", desk),
+            "Dragged by its middle, a node stands on what is under the pointer, else on the ground.");
+  }
   const std::optional<Target> here = target(desk, lens);
   if (!here)
     ui::hint("Pick a node, or select triangles.");

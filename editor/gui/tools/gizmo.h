@@ -23,6 +23,7 @@ class Gizmo final : public ViewTool {
     std::vector<NodeId> nodes;
     bool triangles = false;  ///< selected ones, not the nodes
     Vec3 pivot{0, 0, 0};
+    Vec3 foot{0, 0, 0};             ///< middle of its underside
     Mat3 axes = Mat3::Identity();   ///< columns
     Mat3 local = Mat3::Identity();  ///< those of the first node
     Vec3 towards_eye{0, 0, 1};      ///< the axis of the outer ring
@@ -40,6 +41,8 @@ class Gizmo final : public ViewTool {
   /// What the drag comes to: units, degrees, or a factor less 1.
   double amount(const Lens& lens, const Pointer& pointer) const;
   std::vector<Edit> edits(const Lens& lens) const;
+  /// Where the surface under the pointer is, of nodes that are not moved.
+  std::optional<Vec3> surface(const Desk& desk, const Lens& lens, const Vec2& at) const;
   static void preview(Desk& desk, const std::vector<Edit>& made);
 
   ToolKind kind_;
@@ -48,7 +51,9 @@ class Gizmo final : public ViewTool {
   Target at_;            ///< as it was when the drag began
   Vec2 from_{0, 0}, now_{0, 0};
   double amount_ = 0;
-  Camera camera_;  ///< that amount_ was worked out with
+  Camera camera_;             ///< that amount_ was worked out with
+  Vec3 foot_{0, 0, 0};        ///< middle of the underside of what is moved
+  std::optional<Vec3> onto_;  ///< the surface that it is put onto
   TypedNumber typed_;
   int axis_presses_ = 0;      ///< of the key of the axis that is held
   bool constrained_ = false;  ///< another axis was taken since the last preview

@@ -64,7 +64,7 @@ void PickTool::options(Desk& desk) {
   ImGui::SetNextItemWidth(px(140));
   if (ImGui::SliderFloat("##difference", &likeness, 0, 1)) desk.settings.likeness = static_cast<double>(likeness);
   announce::item("Difference");
-  ImGui::SameLine(0, px(space::section));
+  ui::flow(px(110));
   ui::toggle("Everywhere", desk.settings.flood_everywhere);
   ui::tip("Everywhere", "", "All triangles of that colour; off, only those that hang together with the clicked one.");
   ui::hint("Click what it shall be like. Shift adds, Ctrl removes, both keep what is in both.");

@@ -112,7 +112,7 @@ void RegionTool::options(Desk& desk) {
   ui::tip("Visible only", command_key("Visible only", desk), "Takes what is seen; off, what lies behind it too.");
   if (paints()) {
     auto radius = static_cast<float>(desk.settings.brush_radius);
-    ImGui::SameLine(0, px(space::section));
+    ui::flow(px(185));
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("Size");
     ImGui::SameLine();

@@ -6,7 +6,7 @@
 
 namespace rebake {
 
-enum class ToolKind { pick, rectangle, lasso, polygon, brush, flood, erase, move, turn, scale, cage, bend };
+enum class ToolKind { pick, rectangle, lasso, polygon, brush, flood, erase, move, turn, scale, cage, bend, handles };
 
 /// Which tool is in hand, and how tools behave.
 struct ToolState {
@@ -21,6 +21,7 @@ struct ToolState {
   /// steps.
   std::function<bool(int)> own_step;
   bool local_axes = false;
+  bool snaps = false;  ///< what is moved freely is put onto the surface under the pointer
 };
 
 }  // namespace rebake

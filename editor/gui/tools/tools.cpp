@@ -1,6 +1,7 @@
 #include "editor/gui/tools/bend_tool.h"
 #include "editor/gui/tools/cage_tool.h"
 #include "editor/gui/tools/gizmo.h"
+#include "editor/gui/tools/handles_tool.h"
 #include "editor/gui/tools/pick_tool.h"
 #include "editor/gui/tools/region_tool.h"
 #include "editor/gui/ui/icons.h"
@@ -17,6 +18,7 @@ Tools make_tools() {
   for (const ToolKind kind : {ToolKind::move, ToolKind::turn, ToolKind::scale})
     tools[kind] = std::make_unique<Gizmo>(kind);
   tools[ToolKind::bend] = std::make_unique<BendTool>();
+  tools[ToolKind::handles] = std::make_unique<HandlesTool>();
   tools[ToolKind::cage] = std::make_unique<CageTool>();
   return tools;
 }
@@ -35,6 +37,7 @@ std::span<const ToolButton> tool_buttons() {
       {ToolKind::scale, icons::arrow_expand_all, "Scale"},
       {ToolKind::cage, icons::cube_unfolded, "Cage", true},
       {ToolKind::bend, icons::vector_curve, "Bend, twist, taper"},
+      {ToolKind::handles, icons::pin, "Handles"},
   };
   return buttons;
 }

@@ -29,6 +29,7 @@ constexpr const char* magnify = "\xEF\x8D\x89";
 constexpr const char* content_copy = "\xEF\x86\x8F";
 constexpr const char* trash = "\xEF\x87\x80";
 constexpr const char* group = "\xEF\x8B\x83";
+constexpr const char* minus = "\xEF\x8D\xB4";
 constexpr const char* plus = "\xEF\x90\x95";
 constexpr const char* close = "\xEF\x85\x96";
 constexpr const char* check = "\xEF\x84\xAC";

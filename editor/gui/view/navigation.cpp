@@ -101,6 +101,17 @@ Camera flown(const Camera& camera, double right, double up, double forward) {
   return result;
 }
 
+Camera centred(const Camera& camera, const Vec3& point) {
+  // The eye goes sideways only, so that nothing grows.
+  const Vec3 back = (camera.eye - camera.target).normalized();
+  const double depth = (camera.eye - point).dot(back);
+  if (!(depth > 0)) return camera;
+  Camera result = camera;
+  result.target = point;
+  result.eye = point + depth * back;
+  return result;
+}
+
 Camera along_axis(const Camera& camera, const Vec3& axis) {
   Camera result = camera;
   const double distance = (camera.eye - camera.target).norm();

@@ -15,6 +15,8 @@ Camera panned(const Camera& camera, double right_pixels, double down_pixels, int
 Camera zoomed(const Camera& camera, const Vec3& towards, double factor);
 /// Looks at all of a box, from where it looks now.
 Camera framed(const Camera& camera, const Box& box, double aspect);
+/// Turns about a point from now on; what is seen stays where it is but for a shift that brings the point to the middle.
+Camera centred(const Camera& camera, const Vec3& point);
 /// Moves eye and target together, along the camera's own axes, in scene units.
 Camera flown(const Camera& camera, double right, double up, double forward);
 /// Turns the line of sight about the eye.

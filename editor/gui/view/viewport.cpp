@@ -88,9 +88,15 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
   const bool picks = desk.tools.kind == ToolKind::pick;
   if (pointer.inside) {
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) (io.KeyShift ? panning_ : orbiting_) = true;
-    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && !pointer.let_go) panning_ = true;
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && !pointer.let_go) {
+      panning_ = true;
+      right_pressed_at_ = pointer.at;
+    }
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) && (io.KeyAlt || (picks && !io.KeyShift && !io.KeyCtrl)))
       orbiting_ = true;
+    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && picks && !io.KeyShift && !io.KeyCtrl)
+      if (const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false))
+        desk.view.camera = centred(desk.view.camera, picked->world);
     if (io.MouseWheel != 0) {
       // Towards what lies under the pointer; beside everything, towards the target's depth there.
       const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false);
@@ -99,6 +105,10 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
       desk.view.camera = zoomed(desk.view.camera, at, std::pow(0.85, static_cast<double>(io.MouseWheel)));
     }
   }
+  // Without a way it is a click.
+  if (panning_ && ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
+      (right_pressed_at_ - pointer.at).norm() < static_cast<double>(px(4)))
+    desk.asking.context = true;
   if (!io.MouseDown[0] && !io.MouseDown[2]) orbiting_ = false;
   if (!io.MouseDown[1] && !io.MouseDown[2]) panning_ = false;
   const double dx = static_cast<double>(io.MouseDelta.x), dy = static_cast<double>(io.MouseDelta.y);
@@ -218,6 +228,7 @@ bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, con
   if (wiping_) desk.view.wipe_at = std::clamp(pointer.at.x() / desk.view.width, 0.02, 0.98);
   const float x = origin.x + static_cast<float>(desk.view.wipe_at * desk.view.width);
   const float bottom = origin.y + static_cast<float>(desk.view.height);
+  announce::point("wipe", {x, (origin.y + bottom) / 2});
   list.AddLine({x, origin.y}, {x, bottom}, IM_COL32(0, 0, 0, 200), 4);
   list.AddLine({x, origin.y}, {x, bottom}, hot || wiping_ ? IM_COL32(255, 230, 60, 255) : IM_COL32(255, 255, 255, 255),
                2);

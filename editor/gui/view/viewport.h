@@ -72,7 +72,7 @@ class Viewport {
   bool drew_ = false;        ///< a picture in this frame
   double moving_scale_ = 1;  ///< of the resolution while the camera moves
   bool orbiting_ = false, panning_ = false, wiping_ = false;
-  Vec3 zoom_at_{0, 0, 0};
+  Vec2 right_pressed_at_{0, 0};
 };
 
 }  // namespace rebake

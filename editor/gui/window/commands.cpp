@@ -10,6 +10,8 @@
 #include "editor/edits/deform/bend.h"
 #include "editor/edits/deform/taper.h"
 #include "editor/edits/deform/twist.h"
+#include "editor/edits/nodes/align.h"
+#include "editor/edits/nodes/drop.h"
 #include "editor/edits/nodes/duplicate.h"
 #include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/hide.h"
@@ -122,6 +124,9 @@ void separate(Desk& desk) {
     }
   desk.edits(list);
 }
+
+bool has_several(const Desk& desk) { return desk.active.size() > 1; }
+void align(Desk& desk) { desk.asking.form = Align::op; }
 
 void group(Desk& desk) {
   Group edit;
@@ -240,6 +245,10 @@ const std::vector<Command>& command_table() {
       {"Edit", "Group", "Ctrl+G", "Ctrl+G", "Puts the picked nodes into a group.", has_active, group},
       {"Edit", "Separate", "Ctrl+J", "P", "Makes a node of its own of the selected triangles.", has_selection,
        separate},
+      {"Edit", "Drop to what is below", "End", "End", "Lets the picked nodes fall until they stand on something.",
+       has_active, each_active<Drop>},
+      {"Edit", "Align and spread...", "", "", "Puts the picked nodes beside each other along an axis.", has_several,
+       align},
       {"Edit", "Hide", "H", "H", "Hides the picked nodes; nothing is exported of them.", has_active, each_active<Hide>},
       {"Edit", "Show all", "Shift+H", "Alt+H", "Shows every hidden node.", has_scene, show_all},
       {"Edit", "Adjust last step", "F9", "F9", "Opens the fields of what was done last.",
@@ -281,6 +290,8 @@ const std::vector<Command>& command_table() {
        take<ToolKind::cage>},
       {"Tool", "Bend, twist, taper", "N", "Shift+N", "Bends along a spine by dragging its end.", always,
        take<ToolKind::bend>},
+      {"Tool", "Handles", "K", "K", "Holds and pulls points; what lies between stays as rigid as it can.", always,
+       take<ToolKind::handles>},
       {"Tool", "Bend by numbers...", "", "", "All fields of a bend, with a preview.", has_scene,
        [](Desk& desk) { desk.asking.form = Bend::op; }},
       {"Tool", "Twist by numbers...", "", "", "All fields of a twist, with a preview.", has_scene,
@@ -290,6 +301,9 @@ const std::vector<Command>& command_table() {
       {"Tool", "Local axes", "X", "Comma", "Handles along the object's own axes.", always,
        [](Desk& desk) { desk.tools.local_axes = !desk.tools.local_axes; },
        [](const Desk& desk) { return desk.tools.local_axes; }},
+      {"Tool", "Snap to surface", "M", "Shift+Tab", "What is moved by its middle stands on what is under the pointer.",
+       always, [](Desk& desk) { desk.tools.snaps = !desk.tools.snaps; },
+       [](const Desk& desk) { return desk.tools.snaps; }},
       {"Tool", "Smaller brush", "[", "[", "", always, [](Desk& desk) { brush_by(desk, 1 / 1.25); }, nullptr, true},
       {"Tool", "Larger brush", "]", "]", "", always, [](Desk& desk) { brush_by(desk, 1.25); }, nullptr, true},
       {"View", "Frame selection", "F", "KP_DECIMAL Home", "Looks at the selection, the picked nodes, or all.",
@@ -360,7 +374,8 @@ std::optional<KeyPress> parse_key(const std::string& text) {
                                                    {"Enter", GLFW_KEY_ENTER},   {"Home", GLFW_KEY_HOME},
                                                    {"Comma", GLFW_KEY_COMMA},   {"KP_DECIMAL", GLFW_KEY_KP_DECIMAL},
                                                    {"KP_ADD", GLFW_KEY_KP_ADD}, {"KP_SUBTRACT", GLFW_KEY_KP_SUBTRACT},
-                                                   {"Tab", GLFW_KEY_TAB},       {"Space", GLFW_KEY_SPACE}};
+                                                   {"Tab", GLFW_KEY_TAB},       {"End", GLFW_KEY_END},
+                                                   {"Space", GLFW_KEY_SPACE}};
   KeyPress press;
   std::string rest = text;
   for (bool more = true; more;) {

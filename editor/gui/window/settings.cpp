@@ -46,7 +46,8 @@ void for_fields(Self& self, Visit visit) {
   visit("bottom_height", self.bottom_height);
   visit("window_width", self.window_width);
   visit("window_height", self.window_height);
-  visit("last_folder", self.last_folder);
+  visit("opened_from", self.opened_from);
+  visit("written_to", self.written_to);
   visit("recent", self.recent);
 }
 

@@ -25,10 +25,10 @@ struct Settings {
   double likeness = 0.1;     ///< distance of colours that still count as alike, 0 … 1
   bool flood_everywhere = false;
   double side_width = 320;  ///< pixels on a plain screen
-  double bottom_height = 190;
+  double bottom_height = 240;
   int window_width = 1280, window_height = 800;
-  std::string last_folder;          ///< of a file dialog
-  std::vector<std::string> recent;  ///< newest first
+  std::string opened_from, written_to;  ///< folders of the last file dialogs
+  std::vector<std::string> recent;      ///< newest first
 
   /// Puts a path first among the recent ones.
   void remember(const std::string& path);

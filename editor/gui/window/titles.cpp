@@ -97,6 +97,9 @@ std::string verb_of(const Edit& edit) {
                                                            {"merge", "Joined"},
                                                            {"group", "Grouped"},
                                                            {"reorder", "Moved in the outline:"},
+                                                           {"place", "Placed"},
+                                                           {"drop", "Dropped"},
+                                                           {"align", "Aligned"},
                                                            {"fill", "Filled holes of"}};
   if (const auto* transform = edit.as<Transform>()) {
     const bool turns = !transform->rotate.matrix().isIdentity(0), scales = transform->scale.value != Vec3::Ones();
