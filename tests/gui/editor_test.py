@@ -470,7 +470,7 @@ class EditorTest(unittest.TestCase):
         editor.tool("key", "Return")
         until(lambda: editor.tool("search", "--onlyvisible", "--name", "Rebake").split() not in ([], [old]), "another window")
         editor.settle()
-        self.assertLess((abs(editor.viewport() - before).max(axis=2) > 30)[:, :600].sum(), 500)
+        self.assertLess((abs(editor.viewport() - before).max(axis=2) > 30)[:, :480].sum(), 500)
         editor.window = editor.tool("search", "--onlyvisible", "--name", "Rebake").split()[0]
         editor.tool("windowfocus", "--sync", editor.window)
         editor.key("ctrl+i")
