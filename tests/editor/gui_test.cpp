@@ -2,7 +2,6 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <chrono>
 #include <set>
 #include <sstream>
@@ -217,28 +216,6 @@ TEST_F(DeskTest, TitlesSayWhatWasDoneAndNeverChange) {
   EXPECT_EQ(desk->status, "Undid: Renamed to \"crate\"");
   EXPECT_EQ(desk->now->steps[3].title, "Renamed to \"crate\"");
   EXPECT_EQ(desk->now->steps_done, 3U);
-}
-
-TEST(Previews, OfManyTheLatestIsMade) {
-  Previews previews([] {});
-  std::atomic<int> made = 0;
-  for (int k = 0; k < 100; ++k)
-    previews.request({}, [&made, k](const Progress&) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-      ++made;
-      Scene scene;
-      scene.next_id = static_cast<std::uint64_t>(k + 1);
-      return scene;
-    });
-  while (previews.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  const std::optional<Preview> last = previews.take();
-  ASSERT_TRUE(last);
-  EXPECT_EQ(last->scene.next_id, 100U);
-  EXPECT_LT(made, 100) << "what was asked for meanwhile is not made";
-  EXPECT_FALSE(previews.take()) << "once";
-  previews.request({}, [](const Progress&) -> Scene { throw EditError("no"); });
-  while (previews.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_FALSE(previews.take()) << "what cannot be done is no preview";
 }
 
 TEST(ThemeColors, TextCanBeReadEverywhere) {

@@ -1,13 +1,18 @@
-// The window's worker: jobs in order, copies out, cancelling, and what is told of jobs that were not done.
+// The window's worker: jobs in order, copies out, cancelling, and what is told of jobs that were not done; its
+// previews.
 #include "editor/gui/window/worker.h"
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <thread>
 
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/select/select.h"
 #include "editor/edits/shape/delete_selected.h"
+#include "editor/gui/window/previews.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/export.h"
 #include "tests/support/made_scenes.h"
 
@@ -88,6 +93,28 @@ TEST_F(WorkerTest, WhoeverAskedHearsOfJobsThatFailedOrWereForgotten) {
   for (const auto& then : worker.take_finished()) then();
   EXPECT_EQ(done, 1);
   EXPECT_EQ(otherwise, 3);
+}
+
+TEST(Previews, OfManyTheLatestIsMade) {
+  Previews previews([] {});
+  std::atomic<int> made = 0;
+  for (int k = 0; k < 100; ++k)
+    previews.request({}, [&made, k](const Progress&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      ++made;
+      Scene scene;
+      scene.next_id = static_cast<std::uint64_t>(k + 1);
+      return scene;
+    });
+  while (previews.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const std::optional<Preview> last = previews.take();
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->scene.next_id, 100U);
+  EXPECT_LT(made, 100) << "what was asked for meanwhile is not made";
+  EXPECT_FALSE(previews.take()) << "once";
+  previews.request({}, [](const Progress&) -> Scene { throw EditError("no"); });
+  while (previews.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_FALSE(previews.take()) << "what cannot be done is no preview";
 }
 
 }  // namespace

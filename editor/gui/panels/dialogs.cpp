@@ -172,7 +172,8 @@ bool Dialogs::draw_entries(const Desk& desk, const fs::path& folder, const std::
   announce::item("..");
   for (const Entry& entry : entries_) {
     const std::string name = entry.path.filename().string();
-    if (!entry.is_folder && entry.path.extension() != (opens ? ".rebake" : ending)) continue;
+    const std::string wanted = opens ? ".rebake" : ending;
+    if (!entry.is_folder && (wanted.empty() || entry.path.extension() != wanted)) continue;
     const char* icon = entry.is_scene    ? icons::cube_outline
                        : entry.is_folder ? icons::folder_outline
                                          : icons::file_outline;

@@ -100,7 +100,7 @@ void EditForm::draw(Desk& desk) {
     ui::label(words.c_str());
     if (field.type.kind == FieldKind::flag) {
       bool value = values_.contains(name) ? values_[name].get<bool>() : field.initial == "true";
-      if (ImGui::Checkbox("##value", &value)) values_[name] = value;
+      if (ui::toggle("##value", value)) values_[name] = value;
     } else if (field.type.kind == FieldKind::node) {
       const std::uint64_t chosen = values_.value(name, std::uint64_t{0});
       const NodePtr node = find(desk.scene(), static_cast<NodeId>(chosen));

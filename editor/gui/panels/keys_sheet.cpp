@@ -28,7 +28,7 @@ constexpr std::pair<const char*, const char*> pointer_lines[] = {
 void line(const std::string& key, const std::string& what) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  ImGui::TextUnformatted(what.c_str());
+  ImGui::TextWrapped("%s", what.c_str());
   ImGui::TableNextColumn();
   ImGui::PushStyleColor(ImGuiCol_Text, color(theme().accent_text));
   ImGui::TextWrapped("%s", key.c_str());

@@ -51,8 +51,16 @@ void HandlesTool::add(Desk& desk, const Lens& lens, const Vec2& at, bool holds) 
   auto picked = std::make_shared<std::optional<Picked>>();
   desk.jobs.worker.start(
       "looking for the surface", [picked, lens, at](Session& session) { *picked = pick(session.scene(), lens, at); },
-      [this, picked, holds] {
-        if (*picked) pins_.push_back({(*picked)->world, (*picked)->world, holds});
+      [this, &desk, picked, holds] {
+        if (!*picked || !from_) return;
+        const NodePtr node = find(*from_, (*picked)->node);
+        const bool taken = node && (!target_.node || target_.node->id == node->id) &&
+                           (!target_.selection || (node->selection && (*node->selection)[(*picked)->triangle] != 0));
+        if (taken)
+          pins_.push_back({(*picked)->world, (*picked)->world, holds});
+        else
+          desk.messages.say(target_.selection ? "That is not selected: only selected triangles bend."
+                                              : "That is not picked: only " + desk.scope_words().substr(3) + " bends.");
       });
 }
 

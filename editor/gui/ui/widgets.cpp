@@ -106,7 +106,12 @@ bool quiet_icon(const char* icon, const char* name, bool chosen) {
 }
 
 bool toggle(const char* label, bool& value) {
+  // A box that is not checked is told from its ground by its edge.
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, px(1));
+  ImGui::PushStyleColor(ImGuiCol_Border, color(theme().muted));
   const bool changed = ImGui::Checkbox(label, &value);
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
   announce::item(announced(label));
   return changed;
 }

@@ -228,15 +228,13 @@ class EditorWindow {
     }
     if (desk_.asking.palette || desk_.asking.keys) {
       desk_.asking.palette = desk_.asking.keys = false;
-    } else if (desk_.messages.close_failures()) {
-      return;
     } else if (desk_.jobs.turntable) {
       desk_.messages.say(fmt::format("Stopped: {} of {} pictures are in {}", desk_.jobs.turntable->next,
                                      desk_.jobs.turntable->count, desk_.jobs.turntable->folder.string()));
       desk_.jobs.turntable.reset();
     } else if (!desk_.asking.form.empty()) {
       desk_.asking.form.clear();
-    } else if (viewport().cancel(desk_)) {
+    } else if (viewport().cancel(desk_) || desk_.messages.close_failures()) {
       return;
     } else if (desk_.jobs.worker.busy()) {
       desk_.jobs.worker.cancel();
