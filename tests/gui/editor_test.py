@@ -209,10 +209,21 @@ class EditorTest(unittest.TestCase):
         editor.key("Return")
         self.assertEqual(editor.last_edit()["position"], [1, 2, 0])
         steps = editor.state()["steps"]
-        x, y = editor.where("properties/Position/Z")
-        editor.drag([(x, y), (x + 40, y)])
-        self.assertGreater(editor.last_edit()["position"][2], 0)
+        x, y = editor.where("properties/Rotation/Y")
+        editor.drag([(x, y), (x + 60, y)])
+        half = math.radians(30)
+        self.assertAlmostEqual(editor.last_edit()["rotation"][2], math.sin(half), places=12, msg="a degree a pixel, to its end")
         self.assertEqual(editor.state()["steps"], steps + 1, "a drag is one step")
+        # Escape lets go of a drag, and of what is typed; the node stays picked, and keys go on working.
+        x, y = editor.where("properties/Position/Z")
+        editor.drag([(x, y), (x + 40, y)], meanwhile=lambda: editor.key("Escape"))
+        editor.click("properties/Position/X")
+        editor.type("5")
+        editor.key("Escape")
+        self.assertEqual(editor.state()["picked"], ["ficus"])
+        self.assertEqual(editor.state()["steps"], steps + 1)
+        editor.key("l")
+        self.assertEqual(editor.state()["tool"], "Lasso")
 
     def test_keys_of_blender_begin_a_drag(self):
         self.screen.settings(blender_keys=True)
@@ -277,6 +288,21 @@ class EditorTest(unittest.TestCase):
         self.assertEqual(editor.state()["picked"], ["ficus.2"])
         editor.key("ctrl+d")
         self.assertEqual(editor.state()["picked"], ["ficus.2.2"])
+        # A name is kept however its field is left.
+        editor.double_click(*editor.where("outline/ficus.2/name"))
+        editor.key("ctrl+a")
+        editor.type("branch")
+        editor.click("outline/ficus.2.2/name")
+        self.assertEqual(editor.last_edit(), {"op": "rename", "node": 2, "name": "branch"})
+        # Dropped once, it is one step.
+        editor.click("outline/branch/name")
+        editor.key("ctrl+g")
+        steps = editor.state()["steps"]
+        editor.drag([editor.where("outline/ficus.2.2/name"), editor.where("outline/group/name")])
+        self.assertEqual(editor.state()["steps"], steps + 1)
+        editor.drag([editor.where("outline/ficus.2.2/name"), editor.where("outline/below")])
+        self.assertEqual(editor.state()["steps"], steps + 2)
+        self.assertTrue(editor.last_edit()["top"])
         editor.click(*editor.where("outline/ficus.2.2/name"), button=3)
         editor.click("context/Remove picked nodes")
         self.assertEqual(editor.last_edit()["op"], "remove")
@@ -313,6 +339,12 @@ class EditorTest(unittest.TestCase):
         self.assertEqual(editor.items("cage"), points)
         self.assertEqual(editor.state()["steps"], 1)
         editor.key("ctrl+y", "ctrl+y")
+        self.assertEqual(editor.items("cage"), second)
+        # Its border stays adjustable, and the cage with it.
+        editor.click("adjust/Soft border/value")
+        editor.type("0.1")
+        editor.key("Return")
+        self.assertEqual(editor.last_edit()["falloff"], 0.1)
         self.assertEqual(editor.items("cage"), second)
         # However the tool is left, what was done stays; Escape takes back the present drag only.
         x, y, _, _ = min(editor.items("cage").values(), key=lambda box: box[1])
@@ -392,6 +424,19 @@ class EditorTest(unittest.TestCase):
         self.assertEqual(editor.state()["steps"], 4)
         editor.key("ctrl+z", "ctrl+z")
         self.assertAlmostEqual(self.leaves(), before, delta=0.02 * before)
+
+    def test_a_bend_of_what_is_seen_offers_the_rest(self):
+        editor = self.open_ficus()
+        seen = self.select_branch()
+        editor.key("n")
+        editor.click("options/Take the back sides too")
+        self.assertGreater(editor.state()["selected"], 1.3 * seen)
+        self.assertNotIn("options/Take the back sides too", editor.state()["items"])
+        # The handles follow what was bent.
+        x, y = editor.where("bend/tip")
+        editor.drag([(x, y), (x - 10, y - 70)])
+        after = editor.where("bend/tip")
+        self.assertLess(abs(after[0] - x + 10) + abs(after[1] - y + 70), 25, "it stays where it was dragged to")
 
     def test_bend_a_whole_node_by_its_end(self):
         editor = self.open_ficus()
@@ -506,7 +551,23 @@ class EditorTest(unittest.TestCase):
         project = self.folder / "plant.rebake"
         editor.key("ctrl+q")
         self.assertIsNone(editor.process.poll(), "there are unsaved changes")
-        # Save quits once it is saved.
+        # Save quits once it is saved; where it cannot be, it is asked for again, and nothing follows a later save.
+        editor.click("dialog/Save...")
+        editor.answer("/nowhere/plant.rebake")
+        self.assertTrue(editor.state()["asks"], "there is no such folder: it stays open")
+        editor.key("Escape", "ctrl+s")
+        editor.answer(str(self.folder / "first.rebake"))
+        until((self.folder / "first.rebake").is_file, "the project")
+        editor.settle()
+        self.assertIsNone(editor.process.poll(), "only what was asked for")
+        editor.key("ctrl+i", "ctrl+q")
+        x, y = editor.where("dialog/Save")
+        editor.move(x, y)
+        editor.tool("click", 1)
+        self.assertEqual(editor.process.wait(20), 0)
+        editor = self.open(FICUS)
+        editor.until_ops("import")
+        editor.key("ctrl+a", "ctrl+q")
         editor.click("dialog/Save...")
         editor.key("ctrl+a")
         editor.type(str(project))
@@ -564,6 +625,22 @@ class EditorTest(unittest.TestCase):
         editor.key("ctrl+i")
         editor.until_ops("import", "select", "select")
 
+    def test_the_sheet_of_keys_holds_keys_back(self):
+        editor = self.open_ficus()
+        self.select_branch()
+        editor.key("F1", "Delete")
+        self.assertEqual(editor.last_edit()["op"], "select_picture")
+        editor.key("F1", "Delete")
+        self.assertEqual(editor.last_edit()["op"], "delete")
+
+    def test_menus_open_in_the_smallest_window(self):
+        editor = self.open_ficus()
+        editor.resize(640, 400)
+        editor.key("1")
+        editor.click("menu/Tool")
+        self.assertEqual(editor.state()["tool"], "Move", "it opens, and nothing in it is taken")
+        self.assertIn("menu/Rectangle", editor.state()["items"])
+
     def test_an_export_never_replaces_what_was_imported(self):
         source = self.folder / "plant"
         shutil.copytree(FICUS, source)
@@ -574,7 +651,7 @@ class EditorTest(unittest.TestCase):
         editor.until_ops("import", "select", "delete")
         editor.key("ctrl+z", "ctrl+e")
         editor.answer(str(source))
-        editor.click("dialog/Replace")
+        editor.key("Return")  # to replace it
         editor.until(lambda state: state["messages"], "a refusal")
         self.assertEqual({file.name: file.read_bytes() for file in source.iterdir()}, before)
 

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "editor/gui/panels/euler.h"
 #include "editor/gui/panels/panels.h"
@@ -79,7 +80,7 @@ ui::Changed draw_values(const Adjustable& field, json& object, double unit) {
       const ui::Changed changed = ui::number_field(name, value[axis], "{:.4g}", step, width);
       if (changed != ui::Changed::nothing) result = changed;
     }
-    if (result == ui::Changed::nothing) return result;
+    if (result != ui::Changed::dragged && result != ui::Changed::finished) return result;
     if (field.kind == Kind::turn) {
       const Eigen::Quaterniond q(rotation_of(value));
       object[field.field] = {q.w(), q.x(), q.y(), q.z()};
@@ -95,7 +96,7 @@ ui::Changed draw_values(const Adjustable& field, json& object, double unit) {
                                                    : 1;
   const ui::Changed changed = ui::number_field("value", value, field.kind == Kind::degrees ? "{:.4g}°" : "{:.4g}", step,
                                                ImGui::GetContentRegionAvail().x);
-  if (changed == ui::Changed::nothing || changed == ui::Changed::failed) return changed;
+  if (changed != ui::Changed::dragged && changed != ui::Changed::finished) return changed;
   if (field.kind == Kind::number)
     object[field.field] = std::max(1, static_cast<int>(std::lround(value)));
   else
@@ -116,7 +117,7 @@ ui::Changed draw_field(const Adjustable& field, json& object, double unit) {
 
 }  // namespace
 
-void AdjustPanel::draw(Desk& desk, const ImVec2& corner) {
+void AdjustPanel::draw(Desk& desk, const ImVec2& corner, const ImVec2& room) {
   const Snapshot& now = *desk.now;
   if (now.steps_done == 0 || !now.before_last) return;
   const std::size_t edits = now.steps[now.steps_done - 1].edits;
@@ -140,10 +141,14 @@ void AdjustPanel::draw(Desk& desk, const ImVec2& corner) {
   ImGui::PopStyleColor();
   const announce::Part part("adjust");
   const std::string& title = now.steps[now.steps_done - 1].title;
-  ui::section(ui::shortened(title, px(230)).c_str(), desk.settings.adjust_open);
+  ui::section(ui::shortened(title, px(230)).c_str(), was_small_ ? opened_small_ : desk.settings.adjust_open);
   ui::tip(title, "F9", "The fields of the last step: change them, and it is done again with these.");
   ui::Changed changed = ui::Changed::nothing;
-  if (desk.settings.adjust_open) {
+  // In a small picture its title only: a click opens it.
+  const bool small = room.x < px(560) || room.y < px(330);
+  if (small && !std::exchange(was_small_, small)) opened_small_ = false;
+  was_small_ = small;
+  if (small ? opened_small_ : desk.settings.adjust_open) {
     const double size =
         std::max(1e-300, world_bounds(now.scene).isEmpty() ? 1 : world_bounds(now.scene).diagonal().norm());
     const double unit = std::pow(10, std::floor(std::log10(size)) - 2);
@@ -151,7 +156,12 @@ void AdjustPanel::draw(Desk& desk, const ImVec2& corner) {
       if (const ui::Changed one = draw_field(field, object_, unit); one != ui::Changed::nothing) changed = one;
   }
   ImGui::End();
-  if (changed == ui::Changed::nothing || changed == ui::Changed::failed) return;
+  if (changed == ui::Changed::cancelled) {
+    of_ = nullptr;
+    changing_ = false;
+    desk.drop_preview();
+  }
+  if (changed != ui::Changed::dragged && changed != ui::Changed::finished) return;
   try {
     const std::vector<Edit> list = changed_edits(now, edits);
     changing_ = changed == ui::Changed::dragged;
@@ -162,7 +172,7 @@ void AdjustPanel::draw(Desk& desk, const ImVec2& corner) {
         return made;
       });
     } else {
-      desk.adjust(list);
+      desk.adjust(list, {}, [this] { of_ = nullptr; });
     }
   } catch (const std::exception& error) {
     desk.messages.fail(error.what());

@@ -88,16 +88,28 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, const ImVec
     list.AddPolyline(line.data(), static_cast<int>(line.size()),
                      color32(samples ? theme().accent_text : theme().muted, 0.6F), 0, px(2));
   }
+  // Of several under the pointer the nearest.
+  const Choice* nearest = nullptr;
+  float least = px(10);
+  for (const Choice& choice : choices) {
+    const ImVec2 p = place(choice.ms, choice.decibels);
+    const float away = std::hypot(mouse.x - p.x, mouse.y - p.y);
+    if (!over || away >= least) continue;
+    least = away;
+    nearest = &choice;
+  }
   for (const Choice& choice : choices) {
     const ImVec2 p = place(choice.ms, choice.decibels);
     const bool now =
         choice.samples > 0 ? choice.samples == view.samples : std::abs(choice.share - view.moving_share) < 0.01;
-    const bool hot = over && std::hypot(mouse.x - p.x, mouse.y - p.y) < px(10);
+    const bool hot = nearest == &choice;
     announce::point(choice.name, p);
     list.AddCircleFilled(p, px(hot || now ? 7 : 5), color32(now ? theme().accent : theme().panel));
     list.AddCircle(p, px(hot || now ? 7 : 5), color32(choice.samples > 0 ? theme().accent_text : theme().muted), 0,
                    px(2));
-    list.AddText({p.x + px(9), p.y - px(8)}, color32(now || hot ? theme().text : theme().muted), choice.name.c_str());
+    // Shares below their points, samples above: they lie close together.
+    list.AddText({p.x + px(9), p.y + (choice.samples > 0 ? -px(18) : px(3))},
+                 color32(now || hot ? theme().text : theme().muted), choice.name.c_str());
     if (!hot) continue;
     ImGui::SetTooltip("%s: %.1f ms, %.1f dB, largest error %.0f of 255\n%s", choice.name.c_str(), choice.ms,
                       choice.decibels, choice.largest,

@@ -64,6 +64,14 @@ bool begin_question(const char* title) {
   return true;
 }
 
+// Answers stand at the right, as wide as each other.
+ImVec2 answer_size() { return {px(110), 0}; }
+void answers_right(int count) {
+  const float all =
+      static_cast<float>(count) * answer_size().x + static_cast<float>(count - 1) * ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - all));
+}
+
 void say(const std::string& text) {
   ImGui::PushTextWrapPos(px(520));
   ImGui::PushStyleColor(ImGuiCol_Text, color(theme().muted));
@@ -79,6 +87,18 @@ Content content_of(const fs::path& folder) {
   std::error_code error;
   const bool baked = fs::exists(folder / "mlp.json", error) || fs::exists(folder / "scene.json", error);
   return baked ? Content::scene : Content::folder;
+}
+
+// What is wrong with a path before anything is tried, empty for nothing.
+std::string problem_with(const fs::path& path, bool writes) {
+  std::error_code error;
+  if (path.empty()) return "Type or choose a path.";
+  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (writes && !fs::is_directory(parent, error)) return "There is no folder " + parent.string() + ".";
+  if (!writes && !fs::exists(path, error)) return "There is nothing at " + path.string() + ".";
+  if (!writes && fs::is_directory(path, error) && content_of(path) != Content::scene)
+    return path.filename().string() + " holds no scene: no mlp.json and no scene.json lie in it.";
+  return "";
 }
 
 struct Bookmark {
@@ -116,12 +136,14 @@ std::vector<std::string> losses(const Scene& scene) {
         fmt::format("{} objects: one folder holds one decoder; those that do not fit together become a "
                     "scene folder (scene.json)",
                     objects));
-  if (hidden > 0) lines.push_back(fmt::format("{} hidden objects are left out", hidden));
+  if (hidden > 0)
+    lines.push_back(hidden == 1 ? std::string("1 hidden object is left out")
+                                : fmt::format("{} hidden objects are left out", hidden));
   if (turned > 0)
     lines.push_back(
-        fmt::format("{} bent or turned objects: the plain format keeps places, not turned view directions; "
-                    "the log says what that costs in dB",
-                    turned));
+        fmt::format("{} bent: the plain format keeps places, not turned view directions; the messages "
+                    "say what that costs in dB",
+                    turned == 1 ? std::string("1 object is") : fmt::format("{} objects are", turned)));
   lines.emplace_back("names, groups, stored views and history are not in the plain format");
   return lines;
 }
@@ -139,7 +161,8 @@ void Dialogs::begin_path(const Desk& desk) {
   const bool reads = asked_ == PathQuestion::open || asked_ == PathQuestion::run_script;
   const fs::path last = reads ? desk.settings.opened_from : desk.settings.written_to;
   const fs::path start = fs::is_directory(last, gone) ? last : fs::current_path(gone);
-  path_ = kept ? desk.project.path.string() : start.string() + "/";
+  path_ = kept ? desk.project.path.string() : (start / "").string();
+  problem_.clear();
   if (kept || reads || desk.scene().roots.empty()) return;
   // A name to begin with.
   const std::string title = desk.scene().roots.front()->name;
@@ -246,7 +269,7 @@ void Dialogs::draw_path(Desk& desk) {
   ImGui::PopFont();
   ImGui::SameLine(0, px(12));
   ImGui::TextDisabled("%s", question.hint);
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  if (ImGui::IsWindowAppearing() || std::exchange(refocuses_, false)) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
   bool done = ImGui::InputText("##text", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
   announce::item("path");
@@ -256,8 +279,10 @@ void Dialogs::draw_path(Desk& desk) {
   const bool pictures = desk.asking.path == PathQuestion::screenshot || desk.asking.path == PathQuestion::turntable;
   const std::vector<std::string> lost =
       desk.asking.path == PathQuestion::export_folder ? losses(desk.scene()) : std::vector<std::string>{};
-  const float below = ImGui::GetFrameHeightWithSpacing() * (pictures ? 2.0F : 1.0F) + px(10) +
-                      ImGui::GetTextLineHeightWithSpacing() * (static_cast<float>(lost.size()) * 1.6F + 1);
+  float below = ImGui::GetFrameHeightWithSpacing() * (pictures ? 2.0F : 1.0F) + ImGui::GetTextLineHeightWithSpacing();
+  for (const std::string& line : lost)
+    below += ImGui::CalcTextSize(("•  " + line).c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y +
+             ImGui::GetStyle().ItemSpacing.y;
   const float high = std::max(px(80), ImGui::GetContentRegionAvail().y - below);
   ImGui::PushStyleColor(ImGuiCol_ChildBg, color(theme().field));
   ImGui::BeginChild("places", {px(180), high}, true);
@@ -296,7 +321,9 @@ void Dialogs::draw_path(Desk& desk) {
   const bool replaces = writes && path != desk.project.path && (fs::is_regular_file(path, error) || filled);
   const bool asks = replaces && replacing_ == path;
   if (asks)
-    ui::wrapped(path.filename().string() + " is there already. Replace it?", theme().danger);
+    ui::wrapped(path.filename().string() + " is there already. Replace it? Enter or the button does.", theme().danger);
+  else if (!problem_.empty() && problem_of_ == path_)
+    ui::wrapped(problem_, theme().danger);
   else
     ImGui::TextUnformatted("");
   const float width = px(120);
@@ -304,11 +331,20 @@ void Dialogs::draw_path(Desk& desk) {
   const bool cancelled = ui::button("Cancel", {width, 0});
   ImGui::SameLine();
   done = ui::primary_button(asks ? "Replace" : question.action, {width, 0}) || done;
+  if (done) {
+    problem_of_ = path_;
+    problem_ = problem_with(path, writes);
+    if (!problem_.empty()) {
+      done = false;
+      refocuses_ = true;
+    }
+  }
   if (done && replaces && !asks) {
     replacing_ = path;
     done = false;
+    refocuses_ = true;
   }
-  if (done && !path_.empty()) carry_out(desk, path);
+  if (done) carry_out(desk, path);
   if (cancelled) desk.project.saved_then = nullptr;
   if (done || cancelled) {
     desk.asking.path = PathQuestion::none;
@@ -364,9 +400,10 @@ void Dialogs::draw_quitting(Desk& desk) {
            : "Changes that are not saved are lost" + (desk.project.path.empty()
                                                           ? std::string(".")
                                                           : " from " + desk.project.path.filename().string() + "."));
+  answers_right(3);
   ImGui::BeginDisabled(busy);
   const auto quit = [this] { may_quit_ = true; };
-  if (ui::primary_button(desk.project.path.empty() ? "Save..." : "Save")) {
+  if (ui::primary_button(desk.project.path.empty() ? "Save..." : "Save", answer_size())) {
     desk.asking.quitting = false;
     desk.project.saved_then = quit;
     if (desk.project.path.empty())
@@ -377,9 +414,9 @@ void Dialogs::draw_quitting(Desk& desk) {
   }
   ImGui::EndDisabled();
   ImGui::SameLine();
-  if (ui::button("Don't save")) may_quit_ = true;
+  if (ui::button("Don't save", answer_size())) may_quit_ = true;
   ImGui::SameLine();
-  if (ui::button("Cancel")) {
+  if (ui::button("Cancel", answer_size())) {
     desk.asking.quitting = false;
     ImGui::CloseCurrentPopup();
   }
@@ -392,7 +429,8 @@ void Dialogs::draw_replacing(Desk& desk) {
   Project& project = desk.project;
   say("Another project takes the place of this one. Changes that are not saved are lost.");
   bool done = false;
-  if (ui::primary_button(project.path.empty() ? "Save..." : "Save")) {
+  answers_right(3);
+  if (ui::primary_button(project.path.empty() ? "Save..." : "Save", answer_size())) {
     project.saved_then = [&project, paths = project.to_open] { project.open(paths, true); };
     if (project.path.empty())
       desk.asking.path = PathQuestion::save_project;
@@ -401,12 +439,12 @@ void Dialogs::draw_replacing(Desk& desk) {
     done = true;
   }
   ImGui::SameLine();
-  if (ui::button("Don't save")) {
+  if (ui::button("Don't save", answer_size())) {
     project.open(project.to_open, true);
     done = true;
   }
   ImGui::SameLine();
-  if (ui::button("Cancel")) done = true;
+  if (ui::button("Cancel", answer_size())) done = true;
   if (done) {
     project.to_open.clear();
     ImGui::CloseCurrentPopup();

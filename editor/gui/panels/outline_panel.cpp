@@ -66,9 +66,8 @@ void OutlinePanel::pick(Desk& desk, NodeId id) {
     }
     return;
   }
-  const bool alone = active && desk.active.size() == 1;
   if (!io.KeyCtrl) desk.active.clear();
-  if ((io.KeyCtrl && active) || alone)
+  if (io.KeyCtrl && active)
     desk.active.erase(id);
   else
     desk.active.insert(id);
@@ -79,17 +78,15 @@ void OutlinePanel::draw_name(Desk& desk, const Node& node) {
   if (focus_name_) ImGui::SetKeyboardFocusHere();
   focus_name_ = false;
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::InputText("##name", &name_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll)) {
-    if (name_ != node.name) {
-      Rename rename;
-      rename.node = NodeRef{node.id};
-      rename.name = name_;
-      desk.edit(rename);
-    }
-    renaming_ = NodeId::none;
-  } else if (ImGui::IsItemDeactivated()) {
-    renaming_ = NodeId::none;
-  }
+  ImGui::InputText("##name", &name_, ImGuiInputTextFlags_AutoSelectAll);
+  if (!ImGui::IsItemDeactivated()) return;
+  // However the field is left; Esc has put the old name back.
+  renaming_ = NodeId::none;
+  if (name_ == node.name || name_.empty()) return;
+  Rename rename;
+  rename.node = NodeRef{node.id};
+  rename.name = name_;
+  desk.edit(rename);
 }
 
 void OutlinePanel::draw_node(Desk& desk, const PlacedNode& placed, int depth) {
@@ -107,7 +104,7 @@ void OutlinePanel::draw_node(Desk& desk, const PlacedNode& placed, int depth) {
     if (ui::quiet_icon(folded ? icons::chevron_right : icons::chevron_down, folded ? "Unfold" : "Fold"))
       folded ? (void)folded_.erase(node.id) : (void)folded_.insert(node.id);
   } else {
-    ImGui::PushStyleColor(ImGuiCol_Text, color(theme().muted));
+    ImGui::PushStyleColor(ImGuiCol_Text, color(desk.active.contains(node.id) ? theme().on_accent : theme().muted));
     ImGui::TextUnformatted(node.object ? icons::cube_outline : icons::folder_outline);
     ImGui::PopStyleColor();
   }
@@ -158,10 +155,13 @@ void OutlinePanel::draw_node(Desk& desk, const PlacedNode& placed, int depth) {
     const std::string text = rounded(static_cast<double>(node.object->triangle_count()));
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x -
                          ImGui::CalcTextSize(text.c_str()).x);
-    ImGui::TextDisabled("%s", text.c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, color(desk.active.contains(node.id) ? theme().on_accent : theme().muted));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
   }
   ImGui::TableNextColumn();
-  if (ui::quiet_icon(node.visible ? icons::eye : icons::eye_off, "Visible", node.visible)) {
+  const bool on_accent = desk.active.contains(node.id);
+  if (ui::quiet_icon(node.visible ? icons::eye : icons::eye_off, "Visible", node.visible, on_accent)) {
     if (node.visible)
       desk.edit(Hide{ref});
     else
@@ -169,7 +169,7 @@ void OutlinePanel::draw_node(Desk& desk, const PlacedNode& placed, int depth) {
   }
   ui::tip(node.visible ? "Hide" : "Show", command_key("Hide", desk), "Nothing is exported of what is hidden.");
   ImGui::TableNextColumn();
-  if (ui::quiet_icon(node.locked ? icons::lock : icons::lock_open_outline, "Locked", node.locked)) {
+  if (ui::quiet_icon(node.locked ? icons::lock : icons::lock_open_outline, "Locked", node.locked, on_accent)) {
     if (node.locked)
       desk.edit(Unlock{ref});
     else
@@ -208,8 +208,11 @@ void OutlinePanel::draw(Desk& desk) {
     }
     if (!inside_folded.contains(id)) draw_node(desk, placed, depth);
   }
-  ImGui::EndTable();
-  // Below the last node: out of every group.
+  // Below the last node: out of every group, and nothing picked.
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  if (ImGui::Selectable("##below", false, ImGuiSelectableFlags_SpanAllColumns, {0, px(40)})) desk.active.clear();
+  announce::item("below");
   if (const auto dragged = dropped_node()) {
     Reorder reorder;
     reorder.node = NodeRef{*dragged};
@@ -217,7 +220,7 @@ void OutlinePanel::draw(Desk& desk) {
     reorder.index = static_cast<int>(scene.roots.size());
     desk.edit(reorder);
   }
-  if (ImGui::IsItemClicked() && !ImGui::IsAnyItemHovered()) desk.active.clear();
+  ImGui::EndTable();
   ImGui::TextDisabled("%s", fmt::format("{} triangles, {} selected", triangles, desk.selected_triangles()).c_str());
 }
 

@@ -41,7 +41,8 @@ class PropertiesPanel {
   void draw_several(Desk& desk);
   std::set<NodeId> of_;  ///< what the numbers say
   Vec3 position_{0, 0, 0}, angles_{0, 0, 0}, scale_{1, 1, 1};
-  bool dragging_ = false;  ///< a number: they are not those of the document
+  bool dragging_ = false;    ///< a number: they are not those of the document
+  std::size_t said_at_ = 0;  ///< steps of history when the problem was said
   std::string problem_;
 };
 
@@ -80,14 +81,15 @@ void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameRep
 /// The fields of the last step, which change it until the next is done.
 class AdjustPanel {
  public:
-  /// Above `corner`, to its right.
-  void draw(Desk& desk, const ImVec2& corner);
+  /// Above `corner`, to its right, over a picture of that size.
+  void draw(Desk& desk, const ImVec2& corner, const ImVec2& room);
 
  private:
   std::vector<Edit> changed_edits(const Snapshot& now, std::size_t edits) const;
   const void* of_ = nullptr;  ///< the edit that the fields were taken from
   nlohmann::json object_;
-  bool changing_ = false;  ///< a field is being dragged: the document does not hold it yet
+  bool changing_ = false;                          ///< a field is being dragged: the document does not hold it yet
+  bool was_small_ = false, opened_small_ = false;  ///< little room, and opened all the same
 };
 
 /// The latest messages, above `corner` and to its left.
@@ -154,9 +156,11 @@ class Dialogs {
   PathQuestion asked_ = PathQuestion::none;
   std::filesystem::path entries_of_;  ///< the folder that was read
   std::vector<Entry> entries_;
-  std::filesystem::path replacing_;  ///< is there already: asked for once
-  int width_ = 0, height_ = 0;       ///< of pictures, in pixels
-  int pictures_ = 36;                ///< of a turntable
+  std::string problem_, problem_of_;  ///< what is wrong with which path
+  bool refocuses_ = false;            ///< the path takes the keyboard again
+  std::filesystem::path replacing_;   ///< is there already: asked for once
+  int width_ = 0, height_ = 0;        ///< of pictures, in pixels
+  int pictures_ = 36;                 ///< of a turntable
   bool may_quit_ = false, closes_ = false;
 };
 

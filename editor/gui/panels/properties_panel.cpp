@@ -92,6 +92,11 @@ void PropertiesPanel::draw_one(Desk& desk, const PlacedNode& placed) {
   take(row("Scale", scale_, "{:.5g}", 0.01), [&] { place.scale = Scale{scale_}; });
   if (changed == ui::Changed::nothing) return;
   problem_.clear();
+  if (changed == ui::Changed::cancelled) {
+    dragging_ = false;
+    desk.drop_preview();
+    return;
+  }
   if (place.scale && (scale_.array() == 0).any()) {
     problem_ = "A scale cannot be 0.";
     dragging_ = false;
@@ -118,7 +123,11 @@ void PropertiesPanel::draw_several(Desk& desk) {
   for (const ui::Changed one : {row("Move by", position_, "{:.5g}", unit), row("Turn by", angles_, "{:.5g}°", 1),
                                 row("Scale by", scale_, "{:.5g}", 0.01)})
     if (one != ui::Changed::nothing) changed = one;
-  if (changed == ui::Changed::nothing || changed == ui::Changed::failed) return;
+  if (changed == ui::Changed::cancelled) {
+    dragging_ = false;
+    desk.drop_preview();
+  }
+  if (changed != ui::Changed::dragged && changed != ui::Changed::finished) return;
   std::vector<Edit> list;
   for (const NodeId id : desk.active_tops()) {
     Transform transform;
@@ -146,7 +155,10 @@ void PropertiesPanel::draw(Desk& desk) {
   const auto placed = find_placed(desk.scene(), *desk.active.begin());
   if (!placed) return;
   if (of_ != desk.active) dragging_ = false;
+  // What was wrong is no news after the next step.
+  if (of_ != desk.active || said_at_ != desk.now->steps_done) problem_.clear();
   of_ = desk.active;
+  said_at_ = desk.now->steps_done;
   ImGui::TextUnformatted(desk.active.size() == 1 ? placed->node->name.c_str()
                                                  : fmt::format("{} nodes", desk.active.size()).c_str());
   if (placed->locked) {

@@ -10,9 +10,11 @@
 #include "editor/edits/deform/stretch.h"
 #include "editor/edits/deform/taper.h"
 #include "editor/edits/deform/twist.h"
+#include "editor/edits/select/select_picture.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/number_field.h"
 #include "editor/gui/ui/widgets.h"
+#include "mesh_ops/deform/closed_form.h"
 
 namespace rebake {
 
@@ -40,6 +42,46 @@ Spine spine_of_targets(const Scene& scene, const std::vector<DeformTarget>& targ
   return spine_of(part, rest).value_or(Spine{});
 }
 
+// What an edit does to space, where it was made along that spine; nothing for others.
+std::optional<ClosedForm> form_along(const Edit& edit, const Spine& spine) {
+  ClosedForm form;
+  const DeformAxis* axis = nullptr;
+  if (const auto* bend = edit.as<Bend>()) {
+    form.radians = bend->degrees * std::numbers::pi / 180;
+    form.direction = bend->direction;
+    axis = &bend->axis;
+  } else if (const auto* twist = edit.as<Twist>()) {
+    form.kind = ClosedForm::Kind::twist;
+    form.radians = twist->degrees * std::numbers::pi / 180;
+    axis = &twist->axis;
+  } else if (const auto* taper = edit.as<Taper>()) {
+    form.kind = ClosedForm::Kind::taper;
+    form.factor = taper->factor;
+    axis = &taper->axis;
+  } else if (const auto* stretch = edit.as<Stretch>()) {
+    form.kind = ClosedForm::Kind::stretch;
+    form.factor = stretch->factor;
+    axis = &stretch->axis;
+  }
+  if (axis == nullptr || axis->axis != spine.along || axis->origin != spine.foot || !axis->from || !axis->to)
+    return std::nullopt;
+  form.axis = spine.along;
+  form.origin = spine.foot;
+  form.from = *axis->from;
+  form.to = *axis->to;
+  return form;
+}
+
+// The last selecting, where it took what was seen only; else null.
+const SelectPicture* seen_last(const Desk& desk) {
+  for (auto edit = desk.now->done.rbegin(); edit != desk.now->done.rend(); ++edit)
+    if (edit->type().selects) {
+      const auto* picture = edit->as<SelectPicture>();
+      return picture != nullptr && !picture->through ? picture : nullptr;
+    }
+  return nullptr;
+}
+
 }  // namespace
 
 BendTool::Found BendTool::present(const Desk& desk) const {
@@ -55,14 +97,7 @@ BendTool::Found BendTool::present(const Desk& desk) const {
 // Whether the document's last step was made along the spine that is held.
 bool BendTool::made_last(const Desk& desk) const {
   const std::optional<Bent> here = bent(desk);
-  if (!here || desk.now->done.empty()) return false;
-  const Edit& last = desk.now->done.back();
-  const DeformAxis* axis = nullptr;
-  if (const auto* bend = last.as<Bend>()) axis = &bend->axis;
-  if (const auto* twist = last.as<Twist>()) axis = &twist->axis;
-  if (const auto* taper = last.as<Taper>()) axis = &taper->axis;
-  if (const auto* stretch = last.as<Stretch>()) axis = &stretch->axis;
-  return axis != nullptr && axis->axis == here->spine.along && axis->origin == here->spine.foot;
+  return here && !desk.now->done.empty() && form_along(desk.now->done.back(), here->spine);
 }
 
 void BendTool::find_spine(Desk& desk) {
@@ -110,21 +145,33 @@ std::optional<BendTool::Bent> BendTool::bent(const Desk& desk) const {
   return bent;
 }
 
+// Where a point of the spine is after what was done along it last.
+Vec3 BendTool::shown(const Desk& desk, const Bent& bent, const Vec3& point) {
+  const std::vector<Edit>& done = desk.now->done;
+  std::size_t first = done.size();
+  while (first > 0 && form_along(done[first - 1], bent.spine)) --first;
+  Vec3 result = point;
+  // Several nodes are bent by an edit each, all alike.
+  for (std::size_t k = first; k < done.size(); k += bent.targets.size())
+    result = deform(*form_along(done[k], bent.spine), result).point;
+  return result;
+}
+
 Vec3 BendTool::place(const Bent& bent, Handle handle) const {
   return handle == Handle::from ? bent.at(from_) : handle == Handle::to ? bent.at(to_) : bent.tip();
 }
 
-BendTool::Handle BendTool::handle_at(const Bent& bent, const Lens& lens, const Vec2& at) const {
+BendTool::Handle BendTool::handle_at(const Desk& desk, const Bent& bent, const Lens& lens, const Vec2& at) const {
   for (const Handle handle : {Handle::tip, Handle::to, Handle::from})
-    if (const auto pixel = lens.pixel(place(bent, handle));
+    if (const auto pixel = lens.pixel(shown(desk, bent, place(bent, handle)));
         pixel && (*pixel - at).norm() < static_cast<double>(px(bend_grab_pixels)))
       return handle;
   return Handle::none;
 }
 
-std::vector<Edit> BendTool::edits(const Lens& lens) const {
+std::vector<Edit> BendTool::edits(const Desk& desk, const Lens& lens) const {
   const Bent& bent = *held_bent_;
-  const auto foot = lens.pixel(bent.at(from_)), tip = lens.pixel(bent.tip());
+  const auto foot = lens.pixel(shown(desk, bent, bent.at(from_))), tip = lens.pixel(shown(desk, bent, bent.tip()));
   if (!foot || !tip || !(to_ > from_)) return {};
   const Vec2 before = *tip - *foot, after = before + (now_ - began_);
   const auto fill = [&](auto made) {
@@ -180,7 +227,7 @@ void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     if (!pointer.pressed || !pointer.inside) return;
     held_bent_ = bent(desk);
     if (!held_bent_) return;
-    held_ = handle_at(*held_bent_, lens, pointer.at);
+    held_ = handle_at(desk, *held_bent_, lens, pointer.at);
     began_ = now_ = pointer.at;
     typed_.clear();
     typed_text_.clear();
@@ -190,7 +237,7 @@ void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   typed_text_ = typed_.text();
   now_ = pointer.at;
   if (held_ == Handle::tip) {
-    const std::vector<Edit> made = edits(lens);
+    const std::vector<Edit> made = edits(desk, lens);
     readout_ = made.empty() ? "" : readout(made.front());
     if (pointer.released) {
       held_ = Handle::none;
@@ -234,10 +281,12 @@ void BendTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, 
   const std::optional<Bent> here = held_ != Handle::none ? held_bent_ : bent(desk);
   if (!here) return;
   const announce::Part part("bend");
-  const Handle hot = held_ != Handle::none ? held_ : pointer.inside ? handle_at(*here, lens, pointer.at) : Handle::none;
+  const Handle hot = held_ != Handle::none ? held_
+                     : pointer.inside      ? handle_at(desk, *here, lens, pointer.at)
+                                           : Handle::none;
   for (const auto& [handle, name] :
        {std::pair(Handle::from, "from"), std::pair(Handle::to, "to"), std::pair(Handle::tip, "tip")}) {
-    const auto pixel = lens.pixel(place(*here, handle));
+    const auto pixel = lens.pixel(shown(desk, *here, place(*here, handle)));
     if (!pixel) continue;
     const bool drags = held_ == Handle::tip && handle == Handle::tip;
     const ImVec2 at = on_screen(drags ? Vec2(*pixel + now_ - began_) : *pixel, origin);
@@ -256,8 +305,13 @@ void BendTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, 
 void BendTool::add_guides(const Desk& desk, std::vector<Guides::Line>& lines) const {
   const std::optional<Bent> here = held_ != Handle::none ? held_bent_ : bent(desk);
   if (!here) return;
-  lines.push_back({here->at(from_), here->at(to_), Color(0.35, 0.65, 1), 1, 0.6});
-  lines.push_back({here->at(to_), here->tip(), Color(1, 0.5, 0.8), 1, 0.6});
+  // A line of pieces, for it may be bent.
+  constexpr int pieces = 24;
+  for (int k = 0; k < pieces; ++k) {
+    const auto at = [&](int piece) { return shown(desk, *here, here->at(from_ + (to_ - from_) * piece / pieces)); };
+    lines.push_back({at(k), at(k + 1), Color(0.35, 0.65, 1), 1, 0.6});
+  }
+  lines.push_back({shown(desk, *here, here->at(to_)), shown(desk, *here, here->tip()), Color(1, 0.5, 0.8), 1, 0.6});
   // The soft border's width, as a ring where it begins.
   if (!(falloff_ > 0)) return;
   const Vec3 middle = here->at(from_), u = here->spine.along.unitOrthogonal(), v = here->spine.along.cross(u);
@@ -291,8 +345,18 @@ void BendTool::options(Desk& desk) {
   const ui::Changed changed = ui::number_field("Soft border", falloff, "{:.3g}", step, px(70));
   if (changed == ui::Changed::dragged || changed == ui::Changed::finished) falloff_ = std::max(0.0, falloff);
   ui::tip("Soft border", "", "How far what is not selected follows, in scene units; 0 is a hard cut.");
+  if (found_ && found_->touched >= interleaved && seen_last(desk) != nullptr) {
+    ui::flow(px(180));
+    if (ui::primary_button("Take the back sides too")) {
+      SelectPicture all = *seen_last(desk);
+      all.through = true;
+      desk.edit(all);
+    }
+    ui::tip("Take the back sides too", "",
+            "Only what is seen was selected. What lies behind it would stay, and the branch would tear.");
+  }
   if (found_ && found_->touched >= interleaved)
-    ui::hint("Parts among it are not selected and stay: select without \"Visible only\" to bend all of it.");
+    ui::hint("Parts among it are not selected and stay.");
   else if (bent(desk))
     ui::hint("Drag the pink end, or type a number meanwhile; the blue ends are limits.");
   else

@@ -36,8 +36,9 @@ class BendTool final : public ViewTool {
   bool made_last(const Desk& desk) const;
   Found present(const Desk& desk) const;
   Vec3 place(const Bent& bent, Handle handle) const;
-  Handle handle_at(const Bent& bent, const Lens& lens, const Vec2& at) const;
-  std::vector<Edit> edits(const Lens& lens) const;
+  static Vec3 shown(const Desk& desk, const Bent& bent, const Vec3& point);
+  Handle handle_at(const Desk& desk, const Bent& bent, const Lens& lens, const Vec2& at) const;
+  std::vector<Edit> edits(const Desk& desk, const Lens& lens) const;
   static std::string readout(const Edit& edit);
 
   enum class Kind { bend, twist, taper, stretch };

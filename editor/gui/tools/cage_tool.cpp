@@ -146,6 +146,9 @@ void CageTool::follow(Desk& desk) {
   }
   const CageDeform* last = desk.now->done.empty() ? nullptr : desk.now->done.back().as<CageDeform>();
   if (last != nullptr)
+    // Its border may have been adjusted since.
+    edit_.target.falloff = last->target.falloff;
+  if (last != nullptr)
     for (std::size_t k = 1; k < steps_.size(); ++k)
       if (to_json(edit_for(steps_[k])) == to_json(*last)) {
         if (at_ != k) moved_ = steps_[at_ = k];

@@ -22,12 +22,13 @@ namespace {
 // One field at a time is typed in or dragged; the window's thread only.
 struct Editing {
   ImGuiID typed = 0;         ///< the field that is typed in
+  int seen = 0;              ///< the frame in which it was drawn last
   bool begins = false;       ///< its text takes the keyboard with this frame
   bool next = false;         ///< Tab was pressed: the next field drawn is typed in
   std::string text, before;  ///< now, and as it was
   ImGuiID dragged = 0;
   double from = 0;  ///< the dragged value when its drag began
-  bool moved = false;
+  bool moved = false, cancelled = false;
 };
 Editing editing;
 
@@ -63,7 +64,11 @@ Changed typed_field(double& value, float width) {
 
 }  // namespace
 
+bool cancel_drag() { return editing.dragged != 0 && (editing.cancelled = true); }
+
 bool takes_text() {
+  // A field that is not drawn any more is typed in no more.
+  if (editing.typed != 0 && ImGui::GetFrameCount() > editing.seen + 1) editing.typed = 0;
   const ImGuiContext& context = *ImGui::GetCurrentContext();
   const bool in_text = context.ActiveId != 0 && context.ActiveId == context.InputTextState.ID;
   return editing.typed != 0 || in_text || context.IO.WantTextInput;
@@ -74,6 +79,7 @@ Changed number_field(const char* id, double& value, const char* format, double s
   const ImGuiID self = ImGui::GetID("field");
   const std::string text = fmt::format(fmt::runtime(format), value);
   if (std::exchange(editing.next, false) || editing.typed == self) {
+    editing.seen = ImGui::GetFrameCount();
     if (editing.typed != self) {
       editing.typed = self;
       editing.begins = true;
@@ -86,7 +92,7 @@ Changed number_field(const char* id, double& value, const char* format, double s
   }
   ImGui::PushStyleColor(ImGuiCol_Button, color(theme().field));
   ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0, 0.5F});
-  const bool clicked = ImGui::Button((text + "##field").c_str(), {width, 0});
+  const bool clicked = ImGui::Button((text + "###field").c_str(), {width, 0});
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   announce::item(id);
@@ -98,7 +104,12 @@ Changed number_field(const char* id, double& value, const char* format, double s
     editing.moved = false;
   }
   const float way = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0).x;
-  if (ImGui::IsItemActive() && editing.dragged == self) {
+  if (editing.dragged == self && std::exchange(editing.cancelled, false)) {
+    editing.dragged = 0;
+    ImGui::ClearActiveID();
+    value = editing.from;
+    changed = Changed::cancelled;
+  } else if (ImGui::IsItemActive() && editing.dragged == self) {
     editing.moved = editing.moved || std::abs(way) > px(3);
     if (editing.moved) {
       const double fine = ImGui::GetIO().KeyShift ? 0.1 : 1;
@@ -116,6 +127,7 @@ Changed number_field(const char* id, double& value, const char* format, double s
       changed = Changed::finished;
     } else if (clicked) {
       editing.typed = self;
+      editing.seen = ImGui::GetFrameCount();
       editing.begins = true;
       editing.text = editing.before = without_unit(text);
     }

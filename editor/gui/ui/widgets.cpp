@@ -92,11 +92,11 @@ bool icon_button(const char* icon, const char* name, bool chosen) {
   return pressed;
 }
 
-bool quiet_icon(const char* icon, const char* name, bool chosen) {
+bool quiet_icon(const char* icon, const char* name, bool chosen, bool on_accent) {
   ImGui::PushID(name);
   ImGui::PushStyleColor(ImGuiCol_Button, color(theme().panel, 0));
-  ImGui::PushStyleColor(ImGuiCol_Text, color(chosen ? theme().text : theme().muted));
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(3), px(2)});
+  ImGui::PushStyleColor(ImGuiCol_Text, color(on_accent ? theme().on_accent : chosen ? theme().text : theme().muted));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(3), 0});
   const bool pressed = ImGui::Button(fonts().have_icons ? icon : std::string(name).substr(0, 3).c_str());
   ImGui::PopStyleVar();
   ImGui::PopStyleColor(2);

@@ -19,8 +19,9 @@ bool button(const char* label, const ImVec2& size = {0, 0});
 bool primary_button(const char* label, const ImVec2& size = {0, 0});
 /// A square button with a sign; `name` is what it is called, and stands in it where there is no font of signs.
 bool icon_button(const char* icon, const char* name, bool chosen = false);
-/// The same without a ground until the pointer is over it, as high as a line.
-bool quiet_icon(const char* icon, const char* name, bool chosen = false);
+/// The same without a ground until the pointer is over it, as high as a line; `on_accent`: what lies behind it is
+/// chosen.
+bool quiet_icon(const char* icon, const char* name, bool chosen = false, bool on_accent = false);
 /// On or off, as a button with a check mark.
 bool toggle(const char* label, bool& value);
 /// A choice among a few, side by side; true when another was made.

@@ -126,7 +126,7 @@ void Desk::edits(const std::vector<Edit>& list, std::function<void()> then, std:
       });
 }
 
-void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then) {
+void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
   jobs.worker.start(
       "adjust",
       [list](Session& session) {
@@ -142,7 +142,10 @@ void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then) {
         drop_preview();
         if (then) then();
       },
-      [this] { drop_preview(); });
+      [this, otherwise = std::move(otherwise)] {
+        drop_preview();
+        if (otherwise) otherwise();
+      });
 }
 
 void Desk::undo(int steps) {

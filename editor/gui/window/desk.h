@@ -75,7 +75,7 @@ struct Desk {
   /// failed or were stopped.
   void edits(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
   /// In place of the last step, which is taken back; where they fail it stays.
-  void adjust(const std::vector<Edit>& list, std::function<void()> then = {});
+  void adjust(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
   void undo(int steps = 1);
   void redo(int steps = 1);
   const Scene& scene() const { return now->scene; }

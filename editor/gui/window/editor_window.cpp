@@ -199,9 +199,14 @@ class EditorWindow {
   void key(const KeyPress& press) {
     const bool plain = !press.control && !press.alt;
     if (press.key == GLFW_KEY_ESCAPE) {
+      const bool in_panel = !desk_.asking.palette && !desk_.asking.keys && desk_.asking.form.empty() && !asks();
+      // A field takes its own.
+      if (in_panel && (ui::cancel_drag() || ui::takes_text())) return;
       escape();
       return;
     }
+    // The sheet of keys lies over all: what is not seen is not done.
+    if (desk_.asking.keys && press.key != GLFW_KEY_F1) return;
     // Text fields take what is typed; commands with Ctrl other than those of editing text go on working.
     if ((ui::takes_text() || desk_.asking.palette) && (plain || (press.key != GLFW_KEY_S && press.key != GLFW_KEY_P)))
       return;
@@ -218,6 +223,12 @@ class EditorWindow {
       command->run(desk_);
     else
       desk_.messages.say(std::string(command->title) + ": there is nothing to do it with.");
+  }
+
+  // Whether a dialog waits for an answer.
+  bool asks() const {
+    return desk_.asking.path != PathQuestion::none || desk_.asking.quitting || !desk_.project.recoverable.empty() ||
+           desk_.project.relinking.has_value() || !desk_.project.to_open.empty();
   }
 
   void escape() {
@@ -323,7 +334,7 @@ class EditorWindow {
     panel(
         "picture", at, size, [&] { viewport().draw(desk_, window().moves()); }, {0, 0}, ImGuiWindowFlags_NoScrollbar);
     draw_start(desk_, {at.x + size.x / 2, at.y + size.y / 2});
-    if (!desk_.view.alone) adjust_.draw(desk_, {at.x, at.y + size.y});
+    if (!desk_.view.alone) adjust_.draw(desk_, {at.x, at.y + size.y}, size);
     draw_toasts(desk_.messages, {at.x + size.x, at.y + size.y});
     context_menu();
   }
@@ -407,9 +418,7 @@ class EditorWindow {
       if (const NodePtr node = find(desk_.scene(), id)) state["picked"].push_back(node->name);
     state["messages"] = nlohmann::json::array();
     for (const std::size_t k : desk_.messages.shown()) state["messages"].push_back(desk_.messages.log()[k].text);
-    state["asks"] = desk_.asking.path != PathQuestion::none || desk_.asking.quitting ||
-                    !desk_.project.recoverable.empty() || desk_.project.relinking.has_value() ||
-                    !desk_.project.to_open.empty();
+    state["asks"] = asks();
     state["scale"] = scale_;
     state["window"] = {window().width(), window().height()};
     state["longest_pause_ms"] = std::lround(longest_pause_ms_);
@@ -465,6 +474,8 @@ class EditorWindow {
     menu_height_ = ImGui::GetWindowHeight();
     const announce::Part part("menu");
     for (const char* name : {"File", "Edit", "Select", "Tool", "View", "Window", "Help"}) {
+      // Below the bar, however small the window: it scrolls.
+      ImGui::SetNextWindowSizeConstraints({0, 0}, {1e5F, ImGui::GetIO().DisplaySize.y - menu_height_ - px(4)});
       const bool open = ImGui::BeginMenu(name);
       announce::item(name);
       if (!open) continue;

@@ -153,7 +153,9 @@ void Project::save(const fs::path& file) {
         settings_.remember(file.string());
         messages_.say("Saved " + file.string());
         if (saved_then) std::exchange(saved_then, nullptr)();
-      });
+      },
+      // What was to follow is not wanted any more: another save is another thing.
+      [this] { saved_then = nullptr; });
 }
 
 void Project::save_scene(const fs::path& folder) {
