@@ -96,8 +96,10 @@ std::optional<Spine> spine_of(const std::vector<WeightedPoint>& part, const std:
     std::sort(along.begin(), along.end());
     const auto at_weight = [&](double share) {
       double sum = 0;
-      for (const auto& [place, weight] : along)
-        if ((sum += weight) >= share * touching.weight) return place;
+      for (const auto& [place, weight] : along) {
+        sum += weight;
+        if (sum >= share * touching.weight) return place;
+      }
       return along.back().first;
     };
     spine.touched = std::clamp(at_weight(0.95), 0.0, 1.0) - std::clamp(at_weight(0.05), 0.0, 1.0);

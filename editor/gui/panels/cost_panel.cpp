@@ -65,13 +65,16 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, const ImVec
     const ImVec2 extent = ImGui::CalcTextSize(said.c_str());
     list.AddText({where.x - align * extent.x, where.y - extent.y / 2}, color32(theme().muted), said.c_str());
   };
-  for (double db = std::ceil(least_db / 10) * 10; db <= most_db; db += 10) {
+  for (int tens = static_cast<int>(std::ceil(least_db / 10)); tens * 10 <= most_db; ++tens) {
+    const double db = 10.0 * tens;
     const ImVec2 p = place(least_ms, db), q = place(most_ms, db);
     list.AddLine(p, q, color32(theme().text, 0.12F));
     text({p.x - px(6), p.y}, fmt::format("{:.0f}", db), 1);
   }
-  for (double decade = std::pow(10, std::floor(std::log10(least_ms))); decade <= most_ms; decade *= 10)
+  const int last = static_cast<int>(std::floor(std::log10(most_ms)));
+  for (int power = static_cast<int>(std::floor(std::log10(least_ms))); power <= last; ++power)
     for (const double factor : {1.0, 2.0, 5.0}) {
+      const double decade = std::pow(10, power);
       if (decade * factor < least_ms || decade * factor > most_ms) continue;
       const ImVec2 p = place(decade * factor, least_db), q = place(decade * factor, most_db);
       list.AddLine(p, q, color32(theme().text, 0.07F));

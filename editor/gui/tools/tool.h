@@ -54,9 +54,9 @@ Tools make_tools();
 
 /// How a tool is shown in the tool bar. Its name, key and help are those of the command that takes it.
 struct ToolButton {
-  ToolKind kind;
   const char* icon;
   const char* command;
+  ToolKind kind;
   bool begins_group = false;
 };
 std::span<const ToolButton> tool_buttons();

@@ -25,19 +25,19 @@ Tools make_tools() {
 
 std::span<const ToolButton> tool_buttons() {
   static constexpr ToolButton buttons[] = {
-      {ToolKind::pick, icons::cursor_default, "Pick nodes"},
-      {ToolKind::rectangle, icons::selection, "Rectangle", true},
-      {ToolKind::lasso, "", "Lasso"},
-      {ToolKind::polygon, icons::vector_polygon, "Polygon"},
-      {ToolKind::brush, icons::brush, "Brush"},
-      {ToolKind::flood, icons::format_color_fill, "Flood"},
-      {ToolKind::erase, icons::eraser, "Eraser", true},
-      {ToolKind::move, icons::cursor_move, "Move", true},
-      {ToolKind::turn, icons::rotate_3d, "Turn"},
-      {ToolKind::scale, icons::arrow_expand_all, "Scale"},
-      {ToolKind::cage, icons::cube_unfolded, "Cage", true},
-      {ToolKind::bend, icons::vector_curve, "Bend, twist, taper"},
-      {ToolKind::handles, icons::pin, "Handles"},
+      {icons::cursor_default, "Pick nodes", ToolKind::pick},
+      {icons::selection, "Rectangle", ToolKind::rectangle, true},
+      {"", "Lasso", ToolKind::lasso},
+      {icons::vector_polygon, "Polygon", ToolKind::polygon},
+      {icons::brush, "Brush", ToolKind::brush},
+      {icons::format_color_fill, "Flood", ToolKind::flood},
+      {icons::eraser, "Eraser", ToolKind::erase, true},
+      {icons::cursor_move, "Move", ToolKind::move, true},
+      {icons::rotate_3d, "Turn", ToolKind::turn},
+      {icons::arrow_expand_all, "Scale", ToolKind::scale},
+      {icons::cube_unfolded, "Cage", ToolKind::cage, true},
+      {icons::vector_curve, "Bend, twist, taper", ToolKind::bend},
+      {icons::pin, "Handles", ToolKind::handles},
   };
   return buttons;
 }

@@ -55,6 +55,7 @@ class Viewport {
   void write_pictures(Desk& desk);
   bool moving() const;
 
+  Vec2 right_pressed_at_{0, 0};
   Renderer& renderer_;
   std::function<std::unique_ptr<gl::Context>()> window_context_;
   std::unique_ptr<Renderer> before_;  ///< of the scene as imported; null while it is not compared with
@@ -72,7 +73,6 @@ class Viewport {
   bool drew_ = false;        ///< a picture in this frame
   double moving_scale_ = 1;  ///< of the resolution while the camera moves
   bool orbiting_ = false, panning_ = false, wiping_ = false;
-  Vec2 right_pressed_at_{0, 0};
 };
 
 }  // namespace rebake
