@@ -535,6 +535,23 @@ class EditorTest(unittest.TestCase):
         self.assertAlmostEqual(corner[0], 1100 - x, delta=3)
         self.assertAlmostEqual(corner[1], 700 - y, delta=3)
 
+    def test_a_cut_shows_and_selects_what_lies_behind_it(self):
+        editor = self.open_ficus()
+        everything = [editor.in_viewport(0.02, 0.02), editor.in_viewport(0.98, 0.98)]
+        editor.key("r", "t")
+        editor.drag(everything)
+        whole = editor.state()["selected"]
+        before = editor.viewport()
+        editor.key("shift+t", "shift+x")
+        self.assertGreater((abs(editor.viewport() - before).max(axis=2) > 30).sum(), 5000)
+        editor.drag(everything)
+        behind = editor.state()["selected"]
+        self.assertLess(behind, 0.9 * whole)
+        self.assertGreater(behind, 0.1 * whole)
+        editor.key("shift+x")
+        editor.drag(everything)
+        self.assertEqual(editor.state()["selected"], whole)
+
     def test_the_picture_can_have_the_whole_window(self):
         editor = self.open_ficus()
         editor.key("ctrl+space")

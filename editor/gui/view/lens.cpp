@@ -41,8 +41,8 @@ std::optional<Picked> pick(const Scene& scene, const Lens& lens, const Vec2& pix
     instances.push_back({std::move(tree), placed.to_world, placed.node->object->bounds().diagonal().norm()});
   }
   const ViewRay ray = lens.ray(pixel);
-  const auto hit =
-      SceneRays(std::move(instances)).nearest(ray.origin, ray.direction, 0, std::numeric_limits<double>::infinity());
+  const auto hit = SceneRays(std::move(instances))
+                       .nearest(ray.origin, ray.direction, lens.near_plane(), std::numeric_limits<double>::infinity());
   if (!hit) return std::nullopt;
   return Picked{ids[hit->instance], hit->triangle, ray.origin + hit->t * ray.direction};
 }

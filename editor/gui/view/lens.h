@@ -17,6 +17,8 @@ class Lens {
   Vec3 towards_eye(const Vec3& world) const;
   /// What a way on the screen is in the world, at a world point's depth.
   Vec3 motion(const Vec3& world, const Vec2& pixels) const;
+  /// Nothing nearer than this is seen, along the line of sight.
+  double near_plane() const { return camera_.near_plane; }
   /// Along the line of sight.
   double depth(const Vec3& world) const;
   /// Scene units that a pixel spans at a world point's depth.

@@ -11,6 +11,7 @@ struct ViewState {
   int width = 1, height = 1;  ///< the viewport's pixels
   bool flying = false;
   bool alone = false;  ///< without panels around it
+  double cut = 0;      ///< what is nearer to the eye, in scene units, is neither shown nor selected; 0: nothing is cut
   bool show_selection = true;
   int samples = 4;          ///< a pixel, at rest
   double moving_share = 0;  ///< of the resolution each way while the view moves; 0: what keeps the rate below

@@ -97,7 +97,10 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && picks && !io.KeyShift && !io.KeyCtrl)
       if (const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false))
         desk.view.camera = centred(desk.view.camera, picked->world);
-    if (io.MouseWheel != 0) {
+    if (io.MouseWheel != 0 && desk.view.cut > 0 && io.KeyAlt) {
+      const double size = desk.focus().isEmpty() ? 1 : desk.focus().diagonal().norm();
+      desk.view.cut = std::max(1e-6 * size, desk.view.cut + 0.02 * size * static_cast<double>(io.MouseWheel));
+    } else if (io.MouseWheel != 0) {
       // Towards what lies under the pointer; beside everything, towards the target's depth there.
       const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false);
       const ViewRay ray = lens.ray(pointer.at);
@@ -240,6 +243,11 @@ bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, con
 // What the colours mean when they are not the scene's.
 void Viewport::draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin) {
   std::string text;
+  if (desk.view.cut > 0 && desk.view.inspect == Guides::Inspect::none) {
+    draw_label(list, {origin.x + px(12), origin.y + px(12)},
+               fmt::format("Cut {:.4g} before the eye: Alt + wheel moves it", desk.view.cut));
+    return;
+  }
   switch (desk.view.inspect) {
     case Guides::Inspect::none:
       return;
@@ -389,6 +397,9 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
   if (desk.view.flying) fly(desk);
   // What edits select through this camera is what is drawn through it.
   desk.view.camera = with_depth_for(desk.view.camera, drawn_bounds(desk));
+  if (desk.view.cut > 0)
+    desk.view.camera.near_plane =
+        std::min(std::max(desk.view.camera.near_plane, desk.view.cut), desk.view.camera.far_plane / 2);
   const Lens lens(desk.view.camera, desk.view.width, desk.view.height);
   try {
     if (!desk.jobs.worker.busy() || !tool(desk).wants_scene() || tool(desk).busy())

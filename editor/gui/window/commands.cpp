@@ -154,6 +154,11 @@ void look_along(Desk& desk) {
 
 void project_otherwise(Desk& desk) { desk.view.camera = projected_otherwise(desk.view.camera); }
 
+void toggle_cut(Desk& desk) {
+  // Through the middle of what is looked at.
+  desk.view.cut = desk.view.cut > 0 ? 0 : (desk.view.camera.eye - desk.view.camera.target).norm();
+}
+
 template <Guides::Inspect inspect>
 void look_at(Desk& desk) {
   desk.view.inspect = inspect;
@@ -341,6 +346,9 @@ const std::vector<Command>& command_table() {
        next_channel, looks_at<Guides::Inspect::channel>},
       {"View", "Show overdraw", "Alt+6", "Alt+6", "Brighter where more triangles lie behind each other.", always,
        look_at<Guides::Inspect::overdraw>, looks_at<Guides::Inspect::overdraw>},
+      {"View", "Cut into the scene", "Shift+X", "Alt+B",
+       "Leaves out what is near; what is cut off is not selected. Alt + wheel moves the cut.", has_scene, toggle_cut,
+       [](const Desk& desk) { return desk.view.cut > 0; }},
       {"View", "Only the picture", "Ctrl+Space", "Ctrl+Space", "The picture takes the whole window.", always,
        [](Desk& desk) { desk.view.alone = !desk.view.alone; }, [](const Desk& desk) { return desk.view.alone; }},
       {"View", "Restart graphics", "", "", "Makes all that lives on the graphics card anew.", always,
