@@ -1,5 +1,3 @@
-#include <epoxy/gl.h>
-
 #include <algorithm>
 
 #include "render/passes/pass_support.h"
@@ -14,31 +12,11 @@ bool outlined(const FramePlan& plan, const Draw& draw) {
 }
 
 void execute(const PassInput& input) {
-  input.draw_to({Target::mask}, false);
-  begin_overlay(input.plan);
-  const float nothing[4] = {};
-  glClearBufferfv(GL_COLOR, 0, nothing);
-  glEnable(GL_BLEND);
-  glBlendEquation(GL_MAX);
-  const gl::Program& mask = program(input.state, "geometry.vert", "selection_mask.frag", "#define TURNED_MESH 0\n");
-  glUseProgram(mask.name());
-  bind_scene_depth(input, mask);
+  const gl::Program& mask = begin_mask(input);
   for (const Draw& draw : input.plan.draws)
     if (outlined(input.plan, draw)) draw_set(input, draw, mask);
-  glBlendEquation(GL_FUNC_ADD);
-  end_geometry();
-
-  input.draw_to({Target::picture}, false);
-  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  const gl::Program& line = program(input.state, "fullscreen.vert", "outline.frag", "");
-  glUseProgram(line.name());
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, input.read(Target::mask));
-  set_uniform(line, "mask", 0);
-  glBindVertexArray(input.state.empty_array.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindVertexArray(0);
-  glDisable(GL_BLEND);
+  end_mask();
+  draw_by_mask(input, "outline.frag");
 }
 
 std::optional<Decision> decide(const FrameFacts& facts) {

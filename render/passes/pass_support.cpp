@@ -264,4 +264,36 @@ void end_geometry() {
   if (reversed_depth()) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
+const gl::Program& begin_mask(const PassInput& input) {
+  input.draw_to({Target::mask}, false);
+  begin_overlay(input.plan);
+  const float nothing[4] = {};
+  glClearBufferfv(GL_COLOR, 0, nothing);
+  glEnable(GL_BLEND);
+  glBlendEquation(GL_MAX);
+  const gl::Program& mask = program(input.state, "geometry.vert", "selection_mask.frag", "#define TURNED_MESH 0\n");
+  glUseProgram(mask.name());
+  bind_scene_depth(input, mask);
+  return mask;
+}
+
+void end_mask() {
+  glBlendEquation(GL_FUNC_ADD);
+  end_geometry();
+}
+
+void draw_by_mask(const PassInput& input, const std::string& fragment) {
+  input.draw_to({Target::picture}, false);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  const gl::Program& shader = program(input.state, "fullscreen.vert", fragment, "");
+  glUseProgram(shader.name());
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, input.read(Target::mask));
+  set_uniform(shader, "mask", 0);
+  glBindVertexArray(input.state.empty_array.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glBindVertexArray(0);
+  glDisable(GL_BLEND);
+}
+
 }  // namespace rebake

@@ -47,6 +47,11 @@ void end_geometry();
 void begin_overlay(const FramePlan& plan);
 /// Binds the scene's depth to texture unit 1, and sets scene_depth, side and nearer.
 void bind_scene_depth(const PassInput& input, const gl::Program& program);
+/// Clears Target::mask and makes ready to draw geometry into it, nearest marks staying; end_mask() after that.
+const gl::Program& begin_mask(const PassInput& input);
+void end_mask();
+/// Draws a fragment shader that reads the mask over the whole picture.
+void draw_by_mask(const PassInput& input, const std::string& fragment);
 void set_camera_to_clip(const FramePlan& plan, const gl::Program& program);
 /// A vertex array over a mesh's vertices, without indices.
 gl::VertexArray make_position_array(const GpuMesh& mesh);

@@ -26,15 +26,7 @@ SelectedFaces upload(const Draw& draw, const GpuMesh& mesh) {
 }
 
 void execute(const PassInput& input) {
-  input.draw_to({Target::mask}, false);
-  begin_overlay(input.plan);
-  const float nothing[4] = {};
-  glClearBufferfv(GL_COLOR, 0, nothing);
-  glEnable(GL_BLEND);
-  glBlendEquation(GL_MAX);
-  const gl::Program& mask = program(input.state, "geometry.vert", "selection_mask.frag", "#define TURNED_MESH 0\n");
-  glUseProgram(mask.name());
-  bind_scene_depth(input, mask);
+  const gl::Program& mask = begin_mask(input);
   std::map<SelectionKey, SelectedFaces> kept;
   for (const Draw& draw : input.plan.draws) {
     if (draw.selection == nullptr) continue;
@@ -50,20 +42,8 @@ void execute(const PassInput& input) {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(faces.count), GL_UNSIGNED_INT, nullptr);
   }
   input.state.selected = std::move(kept);
-  glBlendEquation(GL_FUNC_ADD);
-  end_geometry();
-
-  input.draw_to({Target::picture}, false);
-  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  const gl::Program& tint = program(input.state, "fullscreen.vert", "selection.frag", "");
-  glUseProgram(tint.name());
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, input.read(Target::mask));
-  set_uniform(tint, "mask", 0);
-  glBindVertexArray(input.state.empty_array.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindVertexArray(0);
-  glDisable(GL_BLEND);
+  end_mask();
+  draw_by_mask(input, "selection.frag");
 }
 
 std::optional<Decision> decide(const FrameFacts& facts) {

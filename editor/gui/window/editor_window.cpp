@@ -197,6 +197,7 @@ class EditorWindow {
   }
 
   void key(const KeyPress& press) {
+    longest_pause_ms_ = 0;
     const bool plain = !press.control && !press.alt;
     if (press.key == GLFW_KEY_ESCAPE) {
       const bool in_panel = !desk_.asking.palette && !desk_.asking.keys && desk_.asking.form.empty() && !asks();
@@ -646,7 +647,7 @@ class EditorWindow {
   std::optional<WantedLooks> looks_of_;   ///< what is set
   bool system_dark_ = desktop_is_dark();  ///< as the desktop was when the editor began
   int frames_ = 0;                        ///< still to be drawn after the last event
-  double longest_pause_ms_ = 0;           ///< between two frames while there was something to draw
+  double longest_pause_ms_ = 0;           ///< between two frames while there was something to draw, since the last key
   std::string title_;
 };
 
