@@ -177,6 +177,8 @@ TEST_F(Script, ANodeFallsOntoWhatIsBelowAndOntoTheGround) {
   run(R"({"op": "place", "node": "upper", "position": [50, 9, 0]}
 {"op": "drop", "node": "upper", "ground": -2})");
   EXPECT_NEAR(low("upper"), -2, 1e-12);
+  run(R"({"op": "drop", "node": "upper", "ground": -1})");
+  EXPECT_NEAR(low("upper"), -2, 1e-12) << "it crosses that ground, and sinks no deeper";
   expect_error(R"({"op": "drop", "node": "upper", "ground": 7})", "below the ground");
 }
 
@@ -195,6 +197,8 @@ TEST_F(Script, NodesAreAlignedAndSpread) {
   EXPECT_EQ(box("c").max().x(), last.max().x());
   EXPECT_NEAR(box("b").min().x() - box("ball").max().x(), box("c").min().x() - box("b").max().x(), 1e-12);
   expect_error(R"({"op": "align", "nodes": ["ball"]})", "at least two");
+  run(R"({"op": "group", "nodes": ["b"], "as": "g"})");
+  expect_error(R"({"op": "align", "nodes": ["ball", "g", "b"]})", "a group that it lies in");
   expect_error(R"({"op": "align", "nodes": ["ball", "b"], "axis": "w"})", "must be x, y or z");
 }
 

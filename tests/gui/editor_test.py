@@ -377,9 +377,24 @@ class EditorTest(unittest.TestCase):
         x, y = editor.where("handle/1")
         editor.drag([(x, y), (x + 50, y)], meanwhile=lambda: editor.key("Escape"))
         self.assertEqual(editor.where("handle/1"), (x, y))
+        # Another point set on what is bent holds that, where it is.
+        editor.click("options/Hold")
+        editor.click(*editor.in_viewport(0.37, 0.28))
+        self.assertEqual(len(editor.items("handle")), 3)
+        x, y = editor.where("handle/1")
+        editor.drag([(x, y), (x, y + 10)])
+        self.assertEqual(len(editor.last_edit()["moves"]) + len(editor.last_edit()["fixed"]), 3)
+        # Undo takes the releases back one by one; redo brings the points back.
+        third = editor.items("handle")
+        editor.key("ctrl+z", "ctrl+z")
+        self.assertEqual(editor.state()["steps"], 2)
         editor.key("ctrl+z")
         self.assertEqual(editor.state()["steps"], 1)
         self.assertAlmostEqual(self.leaves(), before, delta=0.02 * before)
+        editor.key("ctrl+y", "ctrl+y", "ctrl+y")
+        self.assertEqual(editor.items("handle"), third)
+        editor.key("v")
+        self.assertEqual(editor.state()["steps"], 2, "what was done stays")
 
     def test_a_kettle_is_put_onto_the_pot(self):
         editor = self.open(FICUS, KETTLE)

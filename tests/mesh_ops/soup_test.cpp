@@ -7,7 +7,7 @@
 namespace rebake::test {
 namespace {
 
-Soup moved_part(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first, const Affine& motion) {
+Soup moved_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first, const Affine& motion) {
   return move_faces(soup, flags, first, motion, orthogonal_factor(motion.linear()));
 }
 
@@ -20,7 +20,7 @@ Soup square() {
 
 TEST(Soup, MovedFacesSplitSharedVertices) {
   const Affine motion(Eigen::Translation3d(0, 0, 5));
-  const Soup moved = moved_part(square(), {0, 1}, 0, motion);
+  const Soup moved = moved_faces(square(), {0, 1}, 0, motion);
   EXPECT_EQ(moved.positions().size(), 6U);
   EXPECT_EQ(moved.faces()[0], (Face{0, 1, 2}));
   for (const std::uint32_t v : moved.faces()[1]) EXPECT_EQ(moved.positions()[v].z(), 5);
@@ -31,12 +31,12 @@ TEST(Soup, MovedFacesSplitSharedVertices) {
 
 TEST(Soup, TurnsAccumulateAndScaleDoesNotCount) {
   const Affine quarter(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()) * Eigen::Scaling(3.0));
-  Soup soup = moved_part(square(), {1, 0}, 0, quarter);
+  Soup soup = moved_faces(square(), {1, 0}, 0, quarter);
   ASSERT_NE(soup.rotations(), nullptr);
   EXPECT_TRUE(
       (*soup.rotations())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
   EXPECT_TRUE((*soup.rotations())[3].isIdentity(0));
-  soup = moved_part(soup, {1, 0}, 0, quarter);
+  soup = moved_faces(soup, {1, 0}, 0, quarter);
   EXPECT_TRUE((*soup.rotations())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
 }
 
@@ -57,7 +57,7 @@ TEST(Soup, AttributesFollowTheirVerticesAndFaces) {
   EXPECT_EQ(*part.vertex_attributes().find<float>("light"), (std::vector<float>{2, 3, 4}));
   EXPECT_EQ(*part.face_attributes().find<int>("label"), (std::vector<int>{8}));
   // Split corners keep their values, and get a rotation beside them.
-  const Soup moved = moved_part(soup, {0, 1}, 0, Affine(Eigen::AngleAxisd(1, Vec3::UnitZ())));
+  const Soup moved = moved_faces(soup, {0, 1}, 0, Affine(Eigen::AngleAxisd(1, Vec3::UnitZ())));
   for (std::size_t f = 0; f < 2; ++f)
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(light(moved, moved.faces()[f][k]), light(soup, soup.faces()[f][k]));
   EXPECT_NE(moved.rotations(), nullptr);

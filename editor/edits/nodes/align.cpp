@@ -48,6 +48,9 @@ Scene apply(const Scene& scene, const Align& edit) {
   };
   std::vector<Placed> list;
   for (const NodeRef& node : edit.nodes) {
+    for (NodeId above = parent_of(scene, node.id); above != NodeId::none; above = parent_of(scene, above))
+      if (std::any_of(edit.nodes.begin(), edit.nodes.end(), [&](const NodeRef& other) { return other.id == above; }))
+        throw FieldError("nodes", "must not name a node and a group that it lies in");
     const Box box = subtree_bounds(scene, editable_with_children(scene, node.id).node->id);
     if (box.isEmpty()) throw FieldError("nodes", "must name nodes that hold triangles");
     list.push_back({node, box.min()[axis], box.max()[axis]});

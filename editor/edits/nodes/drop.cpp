@@ -65,8 +65,9 @@ Outcome apply(const Scene& scene, const Drop& edit) {
     for (const Vec3& corner : shown_corners(placed)) {
       box.extend(corner);
       if (const auto hit = below.nearest(corner, Vec3(0, -1, 0), -slack, far)) stop(hit->t);
-      stop(corner.y() >= edit.ground - slack ? corner.y() - edit.ground : far);
     }
+  // What is in the ground already stays there; what is below it falls on.
+  if (!box.isEmpty() && box.max().y() >= edit.ground) stop(box.min().y() - edit.ground);
   if (box.isEmpty()) throw EditError("the node shows nothing, so nothing can fall");
   const SceneRays body = rays_through(falling);
   for (const PlacedNode& placed : others)

@@ -116,18 +116,23 @@ CageDeform CageTool::edit_for(const Points& points) const {
 void CageTool::commit(Desk& desk, const Points& points, std::size_t step) {
   const CageDeform edit = edit_for(points);
   const auto done = [this, step] { at_ = step; };
+  const auto failed = [this] {
+    // What was not done is not there to be undone.
+    steps_.resize(at_ + 1);
+    moved_ = steps_[at_];
+  };
   if (edit.moves.empty()) {
     if (at_ > 0) desk.undo();
     at_ = step;
   } else if (at_ == 0) {
-    desk.edits({edit}, done);
+    desk.edits({edit}, done, failed);
   } else {
-    desk.adjust({edit}, done);
+    desk.adjust({edit}, done, failed);
   }
 }
 
 bool CageTool::step(Desk& desk, int direction) {
-  if (!bound_ || busy() || desk.jobs.worker.busy()) return bound_ != nullptr;
+  if (!bound_ || busy() || !desk.at_rest()) return bound_ != nullptr;
   if (direction < 0 && at_ == 0) return false;
   if (direction > 0 && at_ + 1 >= steps_.size()) return false;
   const std::size_t next = direction < 0 ? at_ - 1 : at_ + 1;
@@ -139,7 +144,7 @@ bool CageTool::step(Desk& desk, int direction) {
 
 // What others did to the document: the cage is there as long as the document holds its scene, or its edit last.
 void CageTool::follow(Desk& desk) {
-  if (!bound_ || desk.jobs.worker.busy()) return;
+  if (!bound_ || !desk.at_rest()) return;
   if (desk.scene().roots == bound_->scene.roots) {
     if (at_ > 0) moved_ = steps_[at_ = 0];
     return;

@@ -3,6 +3,8 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <Eigen/QR>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "editor/gui/ui/announce.h"
@@ -16,14 +18,37 @@ constexpr float pin_grab_pixels = 11;
 // A pin takes the cage's points this many times the cage's coarseness around it, so that it takes some.
 constexpr double reach_of_coarseness = 1.3;
 
+// World corners of a triangle, in the object's numbering.
+std::array<Vec3, 3> corners_of(const PlacedNode& placed, std::size_t triangle) {
+  for (const TextureSet& set : placed.node->object->sets) {
+    if (triangle < set.soup.triangle_count()) {
+      std::array<Vec3, 3> corners;
+      for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = placed.to_world * set.soup.positions()[set.soup.faces()[triangle][k]];
+      return corners;
+    }
+    triangle -= set.soup.triangle_count();
+  }
+  return {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+}
+
+// The point of triangle `b` that lies as `point` does in triangle `a`.
+Vec3 same_point(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Vec3& point) {
+  if (a == b) return point;
+  Eigen::Matrix<double, 3, 2> edges;
+  edges << a[1] - a[0], a[2] - a[0];
+  const Vec2 shares = edges.colPivHouseholderQr().solve(point - a[0]);
+  return b[0] + shares.x() * (b[1] - b[0]) + shares.y() * (b[2] - b[0]);
+}
+
 }  // namespace
 
 // Nothing while no pin is pulled.
-std::optional<HandlesDeform> HandlesTool::edit() const {
+std::optional<HandlesDeform> HandlesTool::edit_for(const Pins& pins) const {
   HandlesDeform edit;
   edit.target = target_;
   edit.cage.wrap = static_cast<double>(coarseness_);
-  for (const Pin& pin : pins_) {
+  for (const Pin& pin : pins) {
     CageMove move;
     move.sphere = SphereRegion{pin.at, reach_};
     move.translate = pin.motion();
@@ -35,76 +60,120 @@ std::optional<HandlesDeform> HandlesTool::edit() const {
 
 // Pins begin on the scene as it is.
 void HandlesTool::begin(Desk& desk) {
+  end(desk);
   const std::vector<DeformTarget> targets = desk.deform_targets();
-  from_.reset();
-  pins_.clear();
-  committed_.clear();
   if (targets.empty()) return;
   target_ = targets.front();
   from_ = desk.scene();
   reach_ = reach_of_coarseness * static_cast<double>(coarseness_) * desk.deform_bounds({target_}).diagonal().norm();
+  steps_ = {{}};
+  desk.tools.own_step = [this, &desk](int direction) { return step(desk, direction); };
+}
+
+void HandlesTool::end(Desk& desk) {
+  if (from_) desk.tools.own_step = nullptr;
+  from_.reset();
+  pins_.clear();
+  steps_.clear();
+  at_ = 0;
 }
 
 void HandlesTool::add(Desk& desk, const Lens& lens, const Vec2& at, bool holds) {
   if (!from_) begin(desk);
   if (!from_) return;
   auto picked = std::make_shared<std::optional<Picked>>();
+  auto scene = std::make_shared<Scene>();
   desk.jobs.worker.start(
-      "looking for the surface", [picked, lens, at](Session& session) { *picked = pick(session.scene(), lens, at); },
-      [this, &desk, picked, holds] {
+      "looking for the surface",
+      [picked, scene, lens, at](Session& session) {
+        *scene = session.scene();
+        *picked = pick(*scene, lens, at);
+      },
+      [this, &desk, picked, scene, holds] {
         if (!*picked || !from_) return;
-        const NodePtr node = find(*from_, (*picked)->node);
-        const bool taken = node && (!target_.node || target_.node->id == node->id) &&
-                           (!target_.selection || (node->selection && (*node->selection)[(*picked)->triangle] != 0));
-        if (taken)
-          pins_.push_back({(*picked)->world, (*picked)->world, holds});
-        else
+        const auto rest = find_placed(*from_, (*picked)->node), now = find_placed(*scene, (*picked)->node);
+        const bool taken =
+            rest && now && (!target_.node || target_.node->id == rest->node->id) &&
+            (!target_.selection || (rest->node->selection && (*rest->node->selection)[(*picked)->triangle] != 0));
+        if (!taken) {
           desk.messages.say(target_.selection ? "That is not selected: only selected triangles bend."
-                                              : "That is not picked: only " + desk.scope_words().substr(3) + " bends.");
+                                              : "That is not what bends (" + desk.scope_words() + ").");
+          return;
+        }
+        // The same point of the same triangle, before it was bent.
+        const Vec3 was =
+            same_point(corners_of(*now, (*picked)->triangle), corners_of(*rest, (*picked)->triangle), (*picked)->world);
+        pins_.push_back({was, (*picked)->world, holds});
       });
 }
 
-// What others did to the document ends it: the pins would mean other places.
+// What others did to the document: pins are there as long as it holds their scene, or their edit last.
 void HandlesTool::follow(Desk& desk) {
-  if (!from_ || desk.jobs.worker.busy() || busy()) return;
-  const bool at_start = desk.scene().roots == from_->roots;
-  const bool ours =
-      !committed_.empty() && !desk.now->done.empty() && to_json(desk.now->done.back()).dump() == committed_;
-  if (at_start && !committed_.empty()) {
-    // Undone.
-    for (Pin& pin : pins_) pin.moved = pin.at;
-    committed_.clear();
-  } else if (!at_start && !ours) {
-    from_.reset();
-    pins_.clear();
-    committed_.clear();
+  if (!from_ || !desk.at_rest() || busy()) return;
+  if (desk.scene().roots == from_->roots) {
+    if (at_ > 0) {
+      at_ = 0;
+      for (Pin& pin : pins_) pin.moved = pin.at;
+    }
+    return;
   }
+  const HandlesDeform* last = desk.now->done.empty() ? nullptr : desk.now->done.back().as<HandlesDeform>();
+  if (last != nullptr)
+    for (std::size_t k = 1; k < steps_.size(); ++k)
+      if (const auto made = edit_for(steps_[k]); made && to_json(*made) == to_json(*last)) {
+        if (at_ != k) pins_ = steps_[at_ = k];
+        return;
+      }
+  end(desk);
 }
 
 void HandlesTool::show(Desk& desk) {
-  const std::optional<HandlesDeform> wanted = edit();
-  if (!wanted) {
-    desk.drop_preview();
-    return;
-  }
-  desk.previews.request(desk.scene().roots, [from = *from_, wanted = *wanted](const Progress& progress) {
-    return rebake::apply(from, Edit(wanted), progress).scene;
+  const std::optional<HandlesDeform> wanted = edit_for(pins_);
+  desk.previews.request(desk.scene().roots, [from = *from_, wanted](const Progress& progress) {
+    return wanted ? rebake::apply(from, Edit(*wanted), progress).scene : from;
   });
 }
 
-void HandlesTool::commit(Desk& desk) {
-  const std::optional<HandlesDeform> wanted = edit();
+// Makes the document hold the pins as they are, which are the tool's step of that number.
+void HandlesTool::commit(Desk& desk, std::size_t step) {
+  const std::optional<HandlesDeform> wanted = edit_for(pins_);
+  const auto done = [this, step] { at_ = step; };
+  const auto failed = [this] {
+    steps_.resize(at_ + 1);
+    if (at_ > 0)
+      pins_ = steps_[at_];
+    else
+      for (Pin& pin : pins_) pin.moved = pin.at;
+  };
   if (!wanted) {
-    if (!committed_.empty()) desk.undo();
-    committed_.clear();
-    return;
+    if (at_ > 0) desk.undo();
+    at_ = step;
+  } else if (at_ == 0) {
+    desk.edits({*wanted}, done, failed);
+  } else {
+    desk.adjust({*wanted}, done, failed);
   }
-  const bool again = !committed_.empty();
-  committed_ = to_json(*wanted).dump();
-  if (again)
-    desk.adjust({*wanted});
+}
+
+// What was just changed is a step.
+void HandlesTool::release(Desk& desk) {
+  steps_.resize(at_ + 1);
+  steps_.push_back(pins_);
+  commit(desk, at_ + 1);
+}
+
+bool HandlesTool::step(Desk& desk, int direction) {
+  if (!from_ || busy() || !desk.at_rest()) return from_.has_value();
+  if (direction < 0 && at_ == 0) return false;
+  if (direction > 0 && at_ + 1 >= steps_.size()) return false;
+  const std::size_t next = direction < 0 ? at_ - 1 : at_ + 1;
+  if (next > 0)
+    pins_ = steps_[next];
   else
-    desk.edits({*wanted}, {}, [this] { committed_.clear(); });
+    for (Pin& pin : pins_) pin.moved = pin.at;
+  show(desk);
+  commit(desk, next);
+  return true;
 }
 
 int HandlesTool::pin_at(const Lens& lens, const Vec2& at) const {
@@ -127,9 +196,7 @@ void HandlesTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) 
       return;
     }
     if (pointer.control) {
-      pins_.erase(pins_.begin() + pin);
-      show(desk);
-      commit(desk);
+      take_away(desk, static_cast<std::size_t>(pin));
       return;
     }
     held_ = pin;
@@ -147,7 +214,14 @@ void HandlesTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) 
   }
   if (!pointer.released) return;
   held_ = -1;
-  if (pins_[k].moved != before_[k].moved) commit(desk);
+  if (pins_[k].moved != before_[k].moved) release(desk);
+}
+
+void HandlesTool::take_away(Desk& desk, std::size_t pin) {
+  pins_.erase(pins_.begin() + static_cast<std::ptrdiff_t>(pin));
+  if (at_ == 0) return;  // it did nothing yet
+  show(desk);
+  release(desk);
 }
 
 void HandlesTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& pointer, ImDrawList& list,
@@ -175,9 +249,7 @@ void HandlesTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& po
 
 bool HandlesTool::key(Desk& desk, const KeyPress& press) {
   if (press.key != GLFW_KEY_BACKSPACE || pins_.empty() || busy()) return false;
-  pins_.pop_back();
-  show(desk);
-  commit(desk);
+  if (desk.at_rest()) take_away(desk, pins_.size() - 1);
   return true;
 }
 
@@ -193,11 +265,7 @@ void HandlesTool::options(Desk& desk) {
   ui::tip("Fineness", "", "Of the cage that is bent along, as a share of the size; before the first point is set.");
   if (!pins_.empty()) {
     ui::flow(px(60));
-    if (ui::button("Clear")) {
-      from_.reset();
-      pins_.clear();
-      committed_.clear();
-    }
+    if (ui::button("Clear")) end(desk);
     ui::tip("Clear", "", "Takes the points away; what they did stays.");
   }
   ui::hint(pins_.empty()
@@ -212,9 +280,7 @@ void HandlesTool::cancel(Desk& desk) {
     desk.drop_preview();
     return;
   }
-  from_.reset();
-  pins_.clear();
-  committed_.clear();
+  end(desk);
 }
 
 void HandlesTool::leave(Desk& desk) {

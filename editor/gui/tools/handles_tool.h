@@ -6,7 +6,7 @@
 namespace rebake {
 
 /// Points on the surface that are held or pulled, with what lies between as rigid as possible. Every release changes
-/// the one edit that is the document's last step.
+/// the one edit that is the document's last step; undo and redo go through the releases one by one.
 class HandlesTool final : public ViewTool {
  public:
   void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
@@ -25,21 +25,27 @@ class HandlesTool final : public ViewTool {
     bool holds;  ///< it stays where it is
     Vec3 motion() const { return moved - at; }
   };
-  std::optional<HandlesDeform> edit() const;
+  using Pins = std::vector<Pin>;
+  std::optional<HandlesDeform> edit_for(const Pins& pins) const;
   void begin(Desk& desk);
   void add(Desk& desk, const Lens& lens, const Vec2& at, bool holds);
   void follow(Desk& desk);
   void show(Desk& desk);
-  void commit(Desk& desk);
+  void commit(Desk& desk, std::size_t step);
+  void release(Desk& desk);
+  void take_away(Desk& desk, std::size_t pin);
+  bool step(Desk& desk, int direction);
+  void end(Desk& desk);
   int pin_at(const Lens& lens, const Vec2& at) const;
 
   bool holds_ = true;  ///< what a click makes
   float coarseness_ = 0.08F;
-  std::vector<Pin> pins_, before_;  ///< now, and when the drag began
-  std::optional<Scene> from_;       ///< that the pins were set in; the edit is made of it
+  Pins pins_, before_;         ///< now, and when the drag began
+  std::vector<Pins> steps_;    ///< at rest, and after each release
+  std::size_t at_ = 0;         ///< which of them the document holds
+  std::optional<Scene> from_;  ///< that the pins were set in; the edit is made of it
   DeformTarget target_;
-  double reach_ = 0;       ///< radius around a pin within which the cage goes with it
-  std::string committed_;  ///< the edit that the document holds last, as JSON; empty for none
+  double reach_ = 0;  ///< radius around a pin within which the cage goes with it
   int held_ = -1;
   Vec2 pressed_at_{0, 0};
 };

@@ -33,7 +33,7 @@ bool same_view(const View& a, const View& b) {
 }  // namespace
 
 Viewport::Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_ptr<gl::Context>()> window_context)
-    : renderer_(renderer), window_context_(std::move(window_context)), tools_(tools) {
+    : renderer_(renderer), tools_(tools), window_context_(std::move(window_context)) {
   report_.device = renderer.device();
 }
 Viewport::~Viewport() = default;

@@ -57,21 +57,21 @@ class Viewport {
 
   Vec2 right_pressed_at_{0, 0};
   Renderer& renderer_;
-  std::function<std::unique_ptr<gl::Context>()> window_context_;
   std::unique_ptr<Renderer> before_;  ///< of the scene as imported; null while it is not compared with
-  unsigned before_texture_ = 0;
   Tools& tools_;
-  ToolKind last_tool_ = ToolKind::pick;
-  std::optional<Made> made_;
-  unsigned texture_ = 0;
-  FrameReport report_;
-  bool each_pass_ = false;
-  Camera last_camera_;
   Clock::time_point moved_at_{}, flown_at_{}, drawn_at_{};
   double full_ms_ = 0;       ///< of a picture at full quality
   double rest_ms_ = 0;       ///< of a frame beside its picture
-  bool drew_ = false;        ///< a picture in this frame
   double moving_scale_ = 1;  ///< of the resolution while the camera moves
+  std::function<std::unique_ptr<gl::Context>()> window_context_;
+  Camera last_camera_;
+  FrameReport report_;
+  std::optional<Made> made_;
+  unsigned before_texture_ = 0;
+  ToolKind last_tool_ = ToolKind::pick;
+  unsigned texture_ = 0;
+  bool each_pass_ = false;
+  bool drew_ = false;  ///< a picture in this frame
   bool orbiting_ = false, panning_ = false, wiping_ = false;
 };
 

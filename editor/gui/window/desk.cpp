@@ -15,6 +15,7 @@
 #include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
 #include "editor/gui/view/navigation.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/formats.h"
 
 namespace rebake {
@@ -37,6 +38,7 @@ Desk::Desk(Settings with, std::function<void()> wake)
 }
 
 void Desk::update() {
+  at_rest_ = !jobs.worker.busy();
   std::vector<Worker::Message> news = jobs.worker.take_messages();
   for (Worker::Message& message : news) {
     switch (message.kind) {
@@ -104,6 +106,14 @@ void Desk::show_preview(std::vector<Edit> list) {
   });
 }
 
+// The preview that stood for a job; what was begun since goes on.
+void Desk::end_preview(std::size_t shown) {
+  if (previews.requests() == shown)
+    drop_preview();
+  else
+    preview.reset();
+}
+
 void Desk::drop_preview() {
   previews.drop();
   preview.reset();
@@ -113,37 +123,50 @@ void Desk::edit(const Edit& one) { edits({one}); }
 
 void Desk::edits(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
   if (list.empty()) return;
+  at_rest_ = false;
+  const std::size_t shown = previews.requests();
   jobs.worker.start(
       list.front().type().op, [list](Session& session) { session.edits(list); },
-      [this, then = std::move(then)] {
-        drop_preview();
+      [this, shown, then = std::move(then)] {
+        end_preview(shown);
         if (then) then();
       },
       // What was not done is not shown.
-      [this, otherwise = std::move(otherwise)] {
-        drop_preview();
+      [this, shown, otherwise = std::move(otherwise)] {
+        end_preview(shown);
         if (otherwise) otherwise();
       });
 }
 
 void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
+  if (now->done.empty()) return;
+  at_rest_ = false;
+  const std::size_t shown = previews.requests();
   jobs.worker.start(
       "adjust",
-      [list](Session& session) {
+      [list, last = now->done.back().value()](Session& session) {
+        const std::vector<Edit> done = session.document.history().edits();
+        if (done.empty() || done.back().value() != last)
+          throw EditError("another step was done meanwhile; nothing was changed");
         session.document.undo_step(session.progress);
         try {
           session.edits(list);
         } catch (...) {
-          session.document.redo_step();
+          try {
+            session.document.redo_step();
+          } catch (const std::exception& lost) {
+            session.say(std::string("The step that was to be adjusted is undone, and can be done again: ") +
+                        lost.what());
+          }
           throw;
         }
       },
-      [this, then = std::move(then)] {
-        drop_preview();
+      [this, shown, then = std::move(then)] {
+        end_preview(shown);
         if (then) then();
       },
-      [this, otherwise = std::move(otherwise)] {
-        drop_preview();
+      [this, shown, otherwise = std::move(otherwise)] {
+        end_preview(shown);
         if (otherwise) otherwise();
       });
 }

@@ -53,6 +53,8 @@ struct Desk {
 
   /// Takes in what the worker did.
   void update();
+  /// Whether `now` is what the document holds: nothing was being done when it was taken.
+  bool at_rest() const { return at_rest_; }
 
   /// An edit of triangles, of the picked nodes only where there are some; for edits with a field `node`.
   template <class T>
@@ -95,10 +97,12 @@ struct Desk {
   /// Whether an edit wants selected triangles to be there.
   template <class T>
   static constexpr bool needs_selection = false;
+  void end_preview(std::size_t shown);
   void pick_new(const std::vector<PlacedNode>& before);
   /// Titles of the steps that undoing (negative) or redoing so many passes.
   std::string title_of_steps(int steps) const;
   std::size_t selected_ = 0;
+  bool at_rest_ = false;
   bool fresh_ = true;  ///< nothing was shown yet: the first scene is framed
 };
 

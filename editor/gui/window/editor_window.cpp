@@ -303,7 +303,8 @@ class EditorWindow {
                              ? 0
                              : std::min(static_cast<float>(desk_.settings.bottom_height) * s, 0.45F * height);
     const float line = ImGui::GetFrameHeight() + px(14), options = std::max(line, options_height_);
-    panel("tool bar", {0, top}, {tools, height}, [&] { tool_bar(); }, {px(8), px(8)});
+    panel(
+        "tool bar", {0, top}, {tools, height}, [&] { tool_bar(); }, {px(8), px(8)}, ImGuiWindowFlags_NoScrollbar);
     panel(
         "options", {tools, top}, {screen.x - tools - side, options},
         [&] {

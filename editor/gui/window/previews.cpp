@@ -23,6 +23,7 @@ void Previews::request(std::vector<NodePtr> of, Make make) {
   {
     const std::lock_guard lock(mutex_);
     wanted_ = Wanted{std::move(of), std::move(make)};
+    ++requests_;
   }
   changed_.notify_all();
 }
@@ -37,6 +38,11 @@ void Previews::drop() {
   wanted_.reset();
   made_.reset();
   if (running_) cancel_ = true;
+}
+
+std::size_t Previews::requests() const {
+  const std::lock_guard lock(mutex_);
+  return requests_;
 }
 
 bool Previews::busy() const {

@@ -34,6 +34,8 @@ class Previews {
   void set_prepare(std::function<void(const Scene&)> prepare);
   /// Nothing is wanted any more; what is being made is stopped where it can be.
   void drop();
+  /// How many were asked for so far.
+  std::size_t requests() const;
   /// Whether one is being made or waits to be.
   bool busy() const;
   /// The latest that is done, once.
@@ -53,6 +55,7 @@ class Previews {
   std::condition_variable changed_;
   std::optional<Wanted> wanted_;
   std::optional<Preview> made_;
+  std::size_t requests_ = 0;
   bool running_ = false, ending_ = false;
   std::atomic<bool> cancel_ = false;
   std::thread thread_;  // last: it uses the others

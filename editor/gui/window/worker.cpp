@@ -142,7 +142,11 @@ void Worker::publish(const Scene& before) {
   name_steps(*next, before);
   {
     const std::lock_guard lock(prepare_mutex_);
-    if (prepare_) prepare_(next->scene);
+    // Only a speed-up: the picture makes what is missing, and says what is wrong.
+    try {
+      if (prepare_) prepare_(next->scene);
+    } catch (const std::exception&) {
+    }
   }
   next->before_last = history.before_last_step();
   const std::lock_guard lock(mutex_);
