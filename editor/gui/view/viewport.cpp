@@ -59,7 +59,9 @@ bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
 
 double Viewport::next_frame_in(const Desk& desk) const {
   if (desk.jobs.turntable || desk.view.flying) return 0;
-  if (!moving()) return made_ && made_->view.width != made_->shown_width ? 0 : -1;
+  // A quick picture is followed by one in full.
+  if (!moving())
+    return made_ && (made_->view.width != made_->shown_width || made_->view.samples != desk.view.samples) ? 0 : -1;
   return std::chrono::duration<double>(settle_time).count();
 }
 

@@ -402,7 +402,7 @@ class EditorWindow {
   void tell() {
     if (!announce::on()) return;
     nlohmann::json state;
-    const bool working = desk_.jobs.worker.busy() || desk_.previews.busy();
+    const bool working = !desk_.at_rest() || desk_.jobs.worker.busy() || desk_.previews.busy();
     state["settled"] = !working && !window().input_waits() && viewport().next_frame_in(desk_) < 0 && frames_ == 0;
     state["input"] = {{"keys", window().seen().keys},
                       {"buttons", window().seen().buttons},
