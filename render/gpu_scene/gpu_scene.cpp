@@ -105,7 +105,7 @@ GpuTexture upload(const std::shared_ptr<const FeatureTexture>& source) {
 PreparedMesh prepared(const TextureSet& set, ShownFaces shown) {
   const Soup& soup = set.soup;
   PreparedMesh made;
-  made.source = soup;
+  made.source = set;
   if (!soup.bounds().isEmpty()) made.center = soup.bounds().center();
   made.vertices = vertices_of(set, made.center);
   if (soup.rotations() != nullptr) {
@@ -136,19 +136,19 @@ PreparedMesh GpuScene::take_prepared(const TextureSet& set) {
     const std::lock_guard lock(mutex_);
     if (auto node = prepared_.extract(key)) return std::move(node.mapped().mesh);
     // Bent triangles show what they showed: that is not worked out again.
-    for (const auto& [held, faces] : held_)
-      if (same_faces(held, key)) shown = faces;
+    for (const auto& [other, held] : held_)
+      if (same_faces(other, key)) shown = held.faces;
   }
   return prepared(set, std::move(shown));
 }
 
 void GpuScene::prepare(const Scene& scene) {
   std::set<MeshKey> there;
-  std::map<MeshKey, ShownFaces> held;
+  std::map<MeshKey, Held> held;
   {
     const std::lock_guard lock(mutex_);
     held = held_;
-    for (const auto& [key, faces] : held_) there.insert(key);
+    for (const auto& [key, mesh] : held_) there.insert(key);
     ++turn_;
     for (const TextureSet& set : diff({}, {}, scene).meshes)
       if (const auto found = prepared_.find(mesh_key(set)); found != prepared_.end()) found->second.turn = turn_;
@@ -159,8 +159,8 @@ void GpuScene::prepare(const Scene& scene) {
   for (const TextureSet& set : diff(there, {}, scene).meshes) {
     const MeshKey key = mesh_key(set);
     ShownFaces shown;
-    for (const auto& [other, faces] : held)
-      if (same_faces(other, key)) shown = faces;
+    for (const auto& [other, mesh] : held)
+      if (same_faces(other, key)) shown = mesh.faces;
     PreparedMesh made = prepared(set, std::move(shown));
     const std::lock_guard lock(mutex_);
     prepared_.insert_or_assign(key, Waiting{std::move(made), turn_});
@@ -176,29 +176,27 @@ void GpuScene::update(const Scene& scene) {
   if (change.meshes.empty() && change.textures.empty() && change.released_meshes.empty() &&
       change.released_textures.empty())
     return;
-  std::vector<PreparedMesh> made;
-  for (const TextureSet& set : change.meshes) made.push_back(take_prepared(set));
-  for (std::size_t k = 0; k < change.meshes.size(); ++k) {
-    const MeshKey key = mesh_key(change.meshes[k]);
-    // What has only moved keeps its buffers.
+  // What has only moved keeps its buffers.
+  std::erase_if(change.meshes, [&](const TextureSet& set) {
+    const MeshKey key = mesh_key(set);
     const auto held = std::find_if(change.released_meshes.begin(), change.released_meshes.end(),
                                    [&](const MeshKey& other) { return differs_in_place(other, key); });
-    if (held == change.released_meshes.end()) {
-      meshes_.emplace(key, upload(std::move(made[k])));
-      continue;
-    }
+    if (held == change.released_meshes.end()) return false;
     auto node = meshes_.extract(*held);
     change.released_meshes.erase(held);
     node.key() = key;
-    move_vertices(node.mapped(), std::move(made[k]));
+    move_vertices(node.mapped(), take_prepared(set));
     meshes_.insert(std::move(node));
-  }
+    return true;
+  });
+  // Before what comes needs the room; held_ still knows what of them showed something.
   for (const MeshKey& key : change.released_meshes) meshes_.erase(key);
   for (const TextureKey key : change.released_textures) textures_.erase(key);
+  for (const TextureSet& set : change.meshes) meshes_.emplace(mesh_key(set), upload(take_prepared(set)));
   for (const auto& texture : change.textures) textures_.emplace(texture.get(), upload(texture));
   const std::lock_guard lock(mutex_);
   held_.clear();
-  for (const auto& [key, mesh] : meshes_) held_.emplace(key, mesh.faces);
+  for (const auto& [key, mesh] : meshes_) held_.emplace(key, Held{mesh.source, mesh.faces});
   std::erase_if(prepared_, [&](const auto& entry) { return held_.contains(entry.first); });
 }
 

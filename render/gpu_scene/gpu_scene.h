@@ -28,7 +28,7 @@ using ShownFaces = std::shared_ptr<const std::vector<Face>>;
 
 /// What is uploaded of a texture set, worked out beforehand: positions as floats relative to `center`, UVs in texels.
 struct PreparedMesh {
-  Soup source;  ///< keeps the arrays alive, so that their addresses stay identities
+  TextureSet source;  ///< keeps arrays and texels alive, so that their addresses stay identities
   Vec3 center{0, 0, 0};
   std::vector<GpuVertex> vertices;
   std::vector<float> turns;  ///< 9 a vertex; empty where none is turned
@@ -40,7 +40,7 @@ PreparedMesh prepared(const TextureSet& set, ShownFaces shown = nullptr);
 
 /// A texture set's triangles on the GPU.
 struct GpuMesh {
-  Soup source;
+  TextureSet source;
   Vec3 center{0, 0, 0};
   gl::VertexArray array;
   gl::Buffer vertices;
@@ -73,7 +73,11 @@ class GpuScene {
   std::map<TextureKey, GpuTexture> textures_;
   // Shared with prepare():
   std::mutex mutex_;
-  std::map<MeshKey, ShownFaces> held_;  ///< of what is on the GPU
+  struct Held {
+    TextureSet source;  ///< keeps what the key is made of alive
+    ShownFaces faces;
+  };
+  std::map<MeshKey, Held> held_;  ///< of what is on the GPU
   struct Waiting {
     PreparedMesh mesh;
     unsigned turn = 0;  ///< the call of prepare() that wanted it last

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "render/picture.h"
@@ -51,6 +52,35 @@ TEST(GpuScene, WhatWasPreparedIsDrawnAlike) {
       Renderer fresh;
       EXPECT_EQ(kept.render(next, view).rgb, fresh.render(next, view).rgb) << k;
     }
+}
+
+// Other texels at the address of those that were prepared and are gone are not taken for them.
+TEST(GpuScene, WhatWasPreparedForTexelsThatAreGoneIsNotUsed) {
+  const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
+  const auto with_texels = [&](bool empty) {
+    return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
+      auto object = std::make_shared<BakedObject>(*node.object);
+      const FeatureTexture& old = *object->sets[0].texels;
+      object->sets[0].texels = std::make_shared<const FeatureTexture>(
+          empty ? FeatureTexture::from_rows(
+                      old.width(), old.height(), AlphaCode::halved,
+                      [&](int, Texel* row) { std::fill_n(row, old.width(), empty_texel(AlphaCode::halved)); })
+                : old);
+      node.object = object;
+    });
+  };
+  View view;
+  view.width = view.height = 100;
+  view.camera.eye = {0.5, 1, 4};
+  view.camera.near_plane = 0.1;
+  Renderer kept;
+  kept.render({}, view);
+  for (int k = 0; k < 8; ++k) {
+    kept.prepare(with_texels(true));
+    const Scene next = with_texels(false);
+    kept.prepare(next);
+    EXPECT_EQ(kept.render(next, view).rgb, Renderer().render(next, view).rgb);
+  }
 }
 
 TEST(GpuScene, WhatOnlyMovedIsDrawnAsIfItWereNew) {
