@@ -126,8 +126,8 @@ void AdjustPanel::draw(Desk& desk, const ImVec2& corner, const ImVec2& room) {
   if (fields == adjustable_edits().end()) return;
   for (std::size_t k = 0; k < edits; ++k)
     if (&now.done[now.done.size() - 1 - k].type() != &last.type()) return;
-  if (of_ != last.value() && !changing_) {
-    of_ = last.value();
+  if ((!of_ || of_->value() != last.value()) && !changing_) {
+    of_ = last;
     object_ = to_json(last);
   }
   ImGui::SetNextWindowPos({corner.x + px(12), corner.y - px(12)}, ImGuiCond_Always, {0, 1});
@@ -157,7 +157,7 @@ void AdjustPanel::draw(Desk& desk, const ImVec2& corner, const ImVec2& room) {
   }
   ImGui::End();
   if (changed == ui::Changed::cancelled) {
-    of_ = nullptr;
+    of_.reset();
     changing_ = false;
     desk.drop_preview();
   }
@@ -166,13 +166,9 @@ void AdjustPanel::draw(Desk& desk, const ImVec2& corner, const ImVec2& room) {
     const std::vector<Edit> list = changed_edits(now, edits);
     changing_ = changed == ui::Changed::dragged;
     if (changing_) {
-      desk.previews.request(now.scene.roots, [list, from = *now.before_last](const Progress& progress) {
-        Scene made = from;
-        for (const Edit& one : list) made = rebake::apply(made, one, progress).scene;
-        return made;
-      });
+      desk.show_preview(list, *now.before_last);
     } else {
-      desk.adjust(list, {}, [this] { of_ = nullptr; });
+      desk.adjust(list, {}, [this] { of_.reset(); });
     }
   } catch (const std::exception& error) {
     desk.messages.fail(error.what());

@@ -15,6 +15,7 @@
 #include "editor/gui/ui/fonts.h"
 #include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/widgets.h"
+#include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
@@ -81,12 +82,14 @@ void say(const std::string& text) {
   ImGui::Dummy({0, px(4)});
 }
 
-// What a folder holds, by the file that says so.
-enum class Content { folder, scene };
-Content content_of(const fs::path& folder) {
-  std::error_code error;
-  const bool baked = fs::exists(folder / "mlp.json", error) || fs::exists(folder / "scene.json", error);
-  return baked ? Content::scene : Content::folder;
+// Whether some format knows the folder.
+bool holds_scene(const fs::path& folder) {
+  const auto known = formats();
+  try {
+    return std::any_of(known.begin(), known.end(), [&](const Format& format) { return format.recognises(folder); });
+  } catch (const fs::filesystem_error&) {
+    return false;  // it may not be looked into
+  }
 }
 
 // What is wrong with a path before anything is tried, empty for nothing.
@@ -96,8 +99,8 @@ std::string problem_with(const fs::path& path, bool writes) {
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (writes && !fs::is_directory(parent, error)) return "There is no folder " + parent.string() + ".";
   if (!writes && !fs::exists(path, error)) return "There is nothing at " + path.string() + ".";
-  if (!writes && fs::is_directory(path, error) && content_of(path) != Content::scene)
-    return path.filename().string() + " holds no scene: no mlp.json and no scene.json lie in it.";
+  if (!writes && fs::is_directory(path, error) && !holds_scene(path))
+    return path.filename().string() + " holds no scene that can be read.";
   return "";
 }
 
@@ -181,7 +184,7 @@ bool Dialogs::draw_entries(const Desk& desk, const fs::path& folder, const std::
       if (at->path().filename().string().starts_with('.')) continue;
       std::error_code unknown;
       const bool is_folder = at->is_directory(unknown);
-      entries_.push_back({at->path(), is_folder, is_folder && content_of(at->path()) == Content::scene});
+      entries_.push_back({at->path(), is_folder, is_folder && holds_scene(at->path())});
     }
     std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
       return std::pair(!a.is_folder, a.path) < std::pair(!b.is_folder, b.path);

@@ -86,7 +86,7 @@ class AdjustPanel {
 
  private:
   std::vector<Edit> changed_edits(const Snapshot& now, std::size_t edits) const;
-  const void* of_ = nullptr;  ///< the edit that the fields were taken from
+  std::optional<Edit> of_;  ///< the edit that the fields were taken from
   nlohmann::json object_;
   bool changing_ = false;                          ///< a field is being dragged: the document does not hold it yet
   bool was_small_ = false, opened_small_ = false;  ///< little room, and opened all the same

@@ -72,25 +72,17 @@ std::optional<ClosedForm> form_along(const Edit& edit, const Spine& spine) {
   return form;
 }
 
-// The last selecting, where it took what was seen only; else null.
-const SelectPicture* seen_last(const Desk& desk) {
-  for (auto edit = desk.now->done.rbegin(); edit != desk.now->done.rend(); ++edit)
-    if (edit->type().selects) {
-      const auto* picture = edit->as<SelectPicture>();
-      return picture != nullptr && !picture->through ? picture : nullptr;
-    }
-  return nullptr;
-}
-
 }  // namespace
 
 BendTool::Found BendTool::present(const Desk& desk) const {
-  Found found = {{nullptr, reinterpret_cast<const void*>(static_cast<std::uintptr_t>(axis_))}};
-  for (const DeformTarget& target : desk.deform_targets())
+  Found found{axis_, false, {}};
+  for (const DeformTarget& target : desk.deform_targets()) {
+    found.selection = target.selection;
     for (const PlacedNode& placed : placed_nodes(desk.scene()))
       if (placed.node->object && (!target.node || target.node->id == placed.node->id) &&
           (!target.selection || placed.node->selection))
-        found.push_back({placed.node.get(), target.selection ? placed.node->selection.get() : nullptr});
+        found.nodes.push_back(placed.node);
+  }
   return found;
 }
 
@@ -345,10 +337,10 @@ void BendTool::options(Desk& desk) {
   const ui::Changed changed = ui::number_field("Soft border", falloff, "{:.3g}", step, px(70));
   if (changed == ui::Changed::dragged || changed == ui::Changed::finished) falloff_ = std::max(0.0, falloff);
   ui::tip("Soft border", "", "How far what is not selected follows, in scene units; 0 is a hard cut.");
-  if (found_ && found_->touched >= interleaved && seen_last(desk) != nullptr) {
+  if (found_ && found_->touched >= interleaved && desk.seen_last() != nullptr) {
     ui::flow(px(180));
     if (ui::primary_button("Take the back sides too")) {
-      SelectPicture all = *seen_last(desk);
+      SelectPicture all = *desk.seen_last();
       all.through = true;
       desk.edit(all);
     }

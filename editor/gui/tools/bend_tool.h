@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "editor/gui/tools/tool.h"
 #include "editor/gui/tools/typed_number.h"
 #include "mesh_ops/deform/spine.h"
@@ -29,8 +27,13 @@ class BendTool final : public ViewTool {
     Vec3 at(double share) const { return spine.foot + share * spine.length * spine.along; }
     Vec3 tip() const { return at(1.15); }  ///< beyond the upper limit, so that both can be taken
   };
-  /// What a spine was found for: objects and selections, by their arrays.
-  using Found = std::vector<std::array<const void*, 2>>;
+  /// What a spine was found for. Holds the nodes, so that another one is never taken for them.
+  struct Found {
+    int axis = 0;
+    bool selection = false;
+    std::vector<NodePtr> nodes;
+    bool operator==(const Found&) const = default;
+  };
   std::optional<Bent> bent(const Desk& desk) const;
   void find_spine(Desk& desk);
   bool made_last(const Desk& desk) const;

@@ -128,10 +128,9 @@ void HandlesTool::follow(Desk& desk) {
 }
 
 void HandlesTool::show(Desk& desk) {
-  const std::optional<HandlesDeform> wanted = edit_for(pins_);
-  desk.previews.request(desk.scene().roots, [from = *from_, wanted](const Progress& progress) {
-    return wanted ? rebake::apply(from, Edit(*wanted), progress).scene : from;
-  });
+  std::vector<Edit> list;
+  if (const auto wanted = edit_for(pins_)) list.emplace_back(*wanted);
+  desk.show_preview(std::move(list), from_);
 }
 
 // Makes the document hold the pins as they are, which are the tool's step of that number.

@@ -12,6 +12,7 @@
 #include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/nodes/merge.h"
+#include "editor/edits/select/select_picture.h"
 #include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
 #include "editor/gui/view/navigation.h"
@@ -98,8 +99,8 @@ void Desk::pick_new(const std::vector<PlacedNode>& before) {
   active = {tops.begin(), tops.end()};
 }
 
-void Desk::show_preview(std::vector<Edit> list) {
-  previews.request(scene().roots, [from = scene(), list = std::move(list)](const Progress& progress) {
+void Desk::show_preview(std::vector<Edit> list, std::optional<Scene> from) {
+  previews.request(scene().roots, [from = from.value_or(scene()), list = std::move(list)](const Progress& progress) {
     Scene made = from;
     for (const Edit& one : list) made = rebake::apply(made, one, progress).scene;
     return made;
@@ -121,57 +122,46 @@ void Desk::drop_preview() {
 
 void Desk::edit(const Edit& one) { edits({one}); }
 
+void Desk::change(std::string title, Worker::Job job, std::function<void()> then, std::function<void()> otherwise) {
+  at_rest_ = false;
+  const auto ending = [this, shown = previews.requests()](std::function<void()> after) {
+    return [this, shown, after = std::move(after)] {
+      end_preview(shown);  // what was not done is not shown either
+      if (after) after();
+    };
+  };
+  jobs.worker.start(std::move(title), std::move(job), ending(std::move(then)), ending(std::move(otherwise)));
+}
+
 void Desk::edits(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
   if (list.empty()) return;
-  at_rest_ = false;
-  const std::size_t shown = previews.requests();
-  jobs.worker.start(
-      list.front().type().op, [list](Session& session) { session.edits(list); },
-      [this, shown, then = std::move(then)] {
-        end_preview(shown);
-        if (then) then();
-      },
-      // What was not done is not shown.
-      [this, shown, otherwise = std::move(otherwise)] {
-        end_preview(shown);
-        if (otherwise) otherwise();
-      });
+  change(
+      list.front().type().op, [list](Session& session) { session.edits(list); }, std::move(then), std::move(otherwise));
 }
 
 void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
   if (now->done.empty()) return;
-  at_rest_ = false;
-  const std::size_t shown = previews.requests();
-  jobs.worker.start(
-      "adjust",
-      [list, last = now->done.back().value()](Session& session) {
-        const std::vector<Edit> done = session.document.history().edits();
-        if (done.empty() || done.back().value() != last)
-          throw EditError("another step was done meanwhile; nothing was changed");
-        session.document.undo_step(session.progress);
-        try {
-          session.edits(list);
-        } catch (...) {
-          try {
-            session.document.redo_step();
-          } catch (const std::exception& lost) {
-            session.say(std::string("The step that was to be adjusted is undone, and can be done again: ") +
-                        lost.what());
-          }
-          throw;
-        }
-      },
-      [this, shown, then = std::move(then)] {
-        end_preview(shown);
-        if (then) then();
-      },
-      [this, shown, otherwise = std::move(otherwise)] {
-        end_preview(shown);
-        if (otherwise) otherwise();
-      });
+  const auto job = [list, last = now->done.back()](Session& session) {
+    const std::vector<Edit> done = session.document.history().edits();
+    if (done.empty() || done.back().value() != last.value())
+      throw EditError("another step was done meanwhile; nothing was changed");
+    session.document.undo_step(session.progress);
+    try {
+      session.edits(list);
+    } catch (...) {
+      try {
+        session.document.redo_step();
+      } catch (const std::exception& lost) {
+        session.say(std::string("The step that was to be adjusted is undone, and can be done again: ") + lost.what());
+      }
+      throw;
+    }
+  };
+  change("adjust", job, std::move(then), std::move(otherwise));
 }
 
 void Desk::undo(int steps) {
+  at_rest_ = false;
   jobs.worker.start(
       "undo",
       [steps](Session& session) {
@@ -181,6 +171,7 @@ void Desk::undo(int steps) {
       [this, said = title_of_steps(-steps)] { status = "Undid: " + said; });
 }
 void Desk::redo(int steps) {
+  at_rest_ = false;
   jobs.worker.start(
       "redo",
       [steps](Session& session) {
@@ -188,6 +179,13 @@ void Desk::redo(int steps) {
         while (done < steps && session.document.redo_step(session.progress)) ++done;
       },
       [this, said = title_of_steps(steps)] { status = "Did again: " + said; });
+}
+
+const SelectPicture* Desk::seen_last() const {
+  const auto last =
+      std::find_if(now->done.rbegin(), now->done.rend(), [](const Edit& edit) { return edit.type().selects; });
+  const auto* picture = last == now->done.rend() ? nullptr : last->as<SelectPicture>();
+  return picture != nullptr && !picture->through ? picture : nullptr;
 }
 
 std::string Desk::title_of_steps(int steps) const {

@@ -23,6 +23,8 @@
 
 namespace rebake {
 
+struct SelectPicture;
+
 /// What the window shows beside the document: panels, tools and commands act upon it, each on the part that it needs.
 /// What people make is in the document, which the worker owns; `now` is a copy.
 struct Desk {
@@ -45,8 +47,8 @@ struct Desk {
   /// Drawn in place of the scene that it was made of, while something is dragged or typed, and until the job that
   /// carries it out has ended.
   std::optional<Preview> preview;
-  /// Has what edits would make of the scene shown, as soon as it is made.
-  void show_preview(std::vector<Edit> list);
+  /// Has what edits would make of a scene (left out: the present one) shown in its place, as soon as it is made.
+  void show_preview(std::vector<Edit> list, std::optional<Scene> from = {});
   void drop_preview();
   /// What the viewport draws.
   const Scene& shown() const { return preview && preview->of == scene().roots ? preview->scene : scene(); }
@@ -91,12 +93,16 @@ struct Desk {
   /// World box of those.
   Box deform_bounds(const std::vector<DeformTarget>& targets) const;
   std::size_t selected_triangles() const { return selected_; }
+  /// The last selecting, where it took in a picture what was seen only; else null.
+  const SelectPicture* seen_last() const;
   void frame_view();
 
  private:
   /// Whether an edit wants selected triangles to be there.
   template <class T>
   static constexpr bool needs_selection = false;
+  /// A job that changes the document, for which the present preview stands until it has ended.
+  void change(std::string title, Worker::Job job, std::function<void()> then, std::function<void()> otherwise);
   void end_preview(std::size_t shown);
   void pick_new(const std::vector<PlacedNode>& before);
   /// Titles of the steps that undoing (negative) or redoing so many passes.

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "editor/document/journal.h"
-#include "editor/edits/select/select_picture.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/fonts.h"
 #include "editor/gui/ui/icons.h"
@@ -583,7 +582,8 @@ class EditorWindow {
     // What is selected, and how; and what can be opened below.
     std::string selected;
     if (desk_.selected_triangles() > 0)
-      selected = fmt::format("{} selected{}", desk_.selected_triangles(), seen_only() ? ", back sides not" : "");
+      selected = fmt::format("{} selected{}", desk_.selected_triangles(),
+                             desk_.seen_last() != nullptr ? ", back sides not" : "");
     const float buttons = px(4 * 30);
     ImGui::SameLine(ImGui::GetWindowWidth() - buttons - px(20) - ImGui::CalcTextSize(selected.c_str()).x);
     ImGui::TextDisabled("%s", selected.c_str());
@@ -602,16 +602,6 @@ class EditorWindow {
       ui::tip(command.title, command.key_of(desk_), command.help);
       ImGui::SameLine(0, px(6));
     }
-  }
-
-  // Whether the last selecting took what was seen only.
-  bool seen_only() const {
-    for (auto edit = desk_.now->done.rbegin(); edit != desk_.now->done.rend(); ++edit)
-      if (edit->type().selects) {
-        const auto* picture = edit->as<SelectPicture>();
-        return picture != nullptr && !picture->through;
-      }
-    return false;
   }
 
   void set_title() {
