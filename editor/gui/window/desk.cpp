@@ -100,11 +100,12 @@ void Desk::pick_new(const std::vector<PlacedNode>& before) {
 }
 
 void Desk::show_preview(std::vector<Edit> list, std::optional<Scene> from) {
-  previews.request(scene().roots, [from = from.value_or(scene()), list = std::move(list)](const Progress& progress) {
-    Scene made = from;
-    for (const Edit& one : list) made = rebake::apply(made, one, progress).scene;
-    return made;
-  });
+  previews.request(scene().roots,
+                   [from = from ? *std::move(from) : scene(), list = std::move(list)](const Progress& progress) {
+                     Scene made = from;
+                     for (const Edit& one : list) made = rebake::apply(made, one, progress).scene;
+                     return made;
+                   });
 }
 
 // The preview that stood for a job; what was begun since goes on.
