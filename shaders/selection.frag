@@ -1,4 +1,4 @@
-// Tints what the mask marks and draws a line around it that shows on any colour.
+// Tints what the mask marks, with stripes that show on the tint's own colour, and draws a line around it.
 uniform sampler2D mask;
 out vec4 color;
 
@@ -10,5 +10,7 @@ void main() {
     around = max(around, texelFetch(mask, clamp(pixel + step, ivec2(0), last), 0).r);
   }
   if (here == 0.0 && around == 0.0) discard;
-  color = here > 0.0 ? vec4(1.0, 0.5, 0.05, 0.5 * here) : vec4(0.25, 0.08, 0.0, around);
+  bool stripe = (pixel.x + pixel.y) % 8 < 2;
+  vec4 tint = stripe ? vec4(0.3, 0.1, 0.0, 0.4 * here) : vec4(1.0, 0.5, 0.05, 0.5 * here);
+  color = here > 0.0 ? tint : vec4(0.25, 0.08, 0.0, around);
 }

@@ -2,6 +2,7 @@
 
 #include "editor/commands/describe.h"
 #include "editor/commands/views.h"
+#include "editor/edits/support.h"
 
 #include <fmt/format.h>
 
@@ -20,14 +21,14 @@ namespace rebake {
 
 namespace {
 
-// How pictures of another scene differ from those of the session's, from four sides.
+// How pictures of another scene differ from those of `scene`, from four sides.
 struct SeenLoss {
   double mean_db = 0, worst_db = 100;
   int largest = 0;          ///< of a channel, 0 … 255
   double share_beyond = 0;  ///< of pixels that differ by more than 2/255
 };
-SeenLoss seen_loss(Session& session, const Scene& other) {
-  const Camera front = framing_of(session.scene(), 1);
+SeenLoss seen_loss(Session& session, const Scene& scene, const Scene& other) {
+  const Camera front = framing_of(scene, 1);
   SeenLoss loss;
   double squares = 0;
   constexpr int sides = 4;
@@ -38,7 +39,7 @@ SeenLoss seen_loss(Session& session, const Scene& other) {
     view.camera.eye = front.target + Eigen::AngleAxisd(side * 2 * std::numbers::pi / sides, front.up.normalized()) *
                                          (front.eye - front.target);
     Renderer& renderer = session.renderer();
-    const Difference difference = compare(renderer.render(session.scene(), view), renderer.render(other, view), 2);
+    const Difference difference = compare(renderer.render(scene, view), renderer.render(other, view), 2);
     const double psnr = std::min(100.0, difference.psnr_db);
     squares += std::pow(10, -psnr / 10) / sides;
     loss.worst_db = std::min(loss.worst_db, psnr);
@@ -51,9 +52,9 @@ SeenLoss seen_loss(Session& session, const Scene& other) {
 
 // Says what `describe` makes of a loss. It needs OpenGL; says so where there is none.
 template <class Describe>
-void say_loss(Session& session, const Scene& other, const Describe& describe) {
+void say_loss(Session& session, const Scene& scene, const Scene& other, const Describe& describe) {
   try {
-    session.say("note: " + describe(seen_loss(session, other)));
+    session.say("note: " + describe(seen_loss(session, scene, other)));
   } catch (const DeviceError& error) {
     session.say(fmt::format("note: what that costs cannot be measured here: {}", error.what()));
   }
@@ -69,18 +70,18 @@ std::size_t decoders_of(const Scene& scene) {
 }
 
 // What the export shows otherwise than the scene, by pictures of both.
-void say_losses(Session& session, const ExportAction& action, const ExportReport& report) {
+void say_losses(Session& session, const Scene& scene, const ExportAction& action, const ExportReport& report) {
   std::vector<std::string> bent;
-  const Scene flat = without_bends(session.scene(), &bent);
+  const Scene flat = without_bends(scene, &bent);
   if (!bent.empty())
-    say_loss(session, flat, [](const SeenLoss& loss) {
+    say_loss(session, scene, flat, [](const SeenLoss& loss) {
       return fmt::format("that costs {:.1f} dB PSNR over four sides, {:.1f} dB at the worst", loss.mean_db,
                          loss.worst_db);
     });
   // Samples of one decoder are mixed before it, those of several after: at the edges between parts that were turned
   // apart pixels differ.
-  if (!report.one_folder && bent.empty() && report.folders > decoders_of(session.scene()))
-    say_loss(session, read_any(action.out, Axes::y_up, session.progress), [](const SeenLoss& loss) {
+  if (!report.one_folder && bent.empty() && report.folders > decoders_of(scene))
+    say_loss(session, scene, read_any(action.out, Axes::y_up, session.progress), [](const SeenLoss& loss) {
       return fmt::format(
           "parts of one decoder that are turned apart have one each now, which mix otherwise where they meet: over "
           "four "
@@ -93,12 +94,13 @@ void say_losses(Session& session, const ExportAction& action, const ExportReport
 
 void run(Session& session, const ExportAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
+  const Scene scene = showing_only(session.scene(), action.nodes);
   const ExportReport report =
       format_named(action.format)
-          .write(session.scene(), action.out, {action.layout, session.document.sources()}, session.progress);
+          .write(scene, action.out, {action.layout, session.document.sources()}, session.progress);
   session.exports.push_back(action.out);
   for (const std::string& note : report.notes) session.say("note: " + note);
-  if (!report.keeps_everything) say_losses(session, action, report);
+  if (!report.keeps_everything) say_losses(session, scene, action, report);
   session.say(fmt::format("exported {}", action.out));
 }
 
@@ -109,6 +111,7 @@ REBAKE_DESCRIBE_ACTION(
       visit("out", action.out, Need::required, "folder to write");
       visit("format", action.format, Need::optional, "mobilenerf: what viewers read; rebake: keeps every node");
       visit("layout", action.layout, Need::optional, "convert to this layout; left out: as read");
+      visit("nodes", action.nodes, Need::optional, "only these, with what is inside them; left out: all");
     })
 
 }  // namespace rebake

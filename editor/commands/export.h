@@ -12,6 +12,7 @@ struct ExportAction {
   std::string out;
   std::string format = "mobilenerf";
   std::optional<Layout> layout;
+  std::vector<NodeRef> nodes;  ///< only these and what is inside them; empty: all
 };
 template <>
 const ActionType& action_type<ExportAction>();

@@ -2,6 +2,7 @@
 
 #include "editor/commands/describe.h"
 #include "editor/commands/views.h"
+#include "editor/edits/support.h"
 
 #include <fmt/format.h>
 
@@ -10,12 +11,12 @@
 namespace rebake {
 
 void run(Session& session, const RenderAction& action) {
-  const View view =
-      chosen_view(session.scene(), action.camera, action.view, action.width, action.height, action.samples);
-  const Image picture = session.renderer().render(session.scene(), view);
+  const Scene scene = showing_only(session.scene(), action.nodes);
+  const View view = chosen_view(scene, action.camera, action.view, action.width, action.height, action.samples);
+  const Image picture = session.renderer().render(scene, view);
   write_png(picture, action.out, session.document.sources());
   session.say(fmt::format("rendered {}", action.out));
-  if (const auto why = why_blank(session.scene(), view, picture)) session.say(*why);
+  if (const auto why = why_blank(scene, view, picture)) session.say(*why);
 }
 
 REBAKE_DESCRIBE_ACTION(
@@ -27,6 +28,7 @@ REBAKE_DESCRIBE_ACTION(
       visit("width", action.width, Need::optional, "of the picture", Unit::pixels);
       visit("height", action.height, Need::optional, "of the picture", Unit::pixels);
       visit("samples", action.samples, Need::optional, "a pixel: 1, 4 or 16");
+      visit("nodes", action.nodes, Need::optional, "only these, with what is inside them; left out: all");
     })
 
 }  // namespace rebake

@@ -15,6 +15,7 @@ struct RenderAction {
   int width = 800;
   int height = 800;
   int samples = 4;
+  std::vector<NodeRef> nodes;  ///< only these and what is inside them; empty: all
 };
 template <>
 const ActionType& action_type<RenderAction>();

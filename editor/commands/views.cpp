@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "editor/edits/stored_view.h"
@@ -11,11 +12,62 @@
 
 namespace rebake {
 
+namespace {
+
+// The box around the middle nine tenths of what is visible, along each axis.
+Box dense_bounds(const Scene& scene) {
+  const std::vector<PlacedNode> placed_all = placed_nodes(scene);
+  std::size_t triangles = 0;
+  for (const PlacedNode& placed : placed_all)
+    if (placed.visible && placed.node->object) triangles += placed.node->object->triangle_count();
+  constexpr std::size_t enough = 20000;
+  const std::size_t step = std::max<std::size_t>(1, triangles / enough);
+  std::array<std::vector<double>, 3> along;
+  std::size_t number = 0;
+  for (const PlacedNode& placed : placed_all) {
+    if (!placed.visible || !placed.node->object) continue;
+    for (const TextureSet& set : placed.node->object->sets)
+      for (std::size_t f = 0; f < set.soup.triangle_count(); ++f) {
+        if (number++ % step != 0) continue;
+        Vec3 middle(0, 0, 0);
+        for (const std::uint32_t vertex : set.soup.faces()[f]) middle += set.soup.positions()[vertex] / 3;
+        middle = placed.to_world * middle;
+        if (!middle.allFinite()) continue;
+        for (int axis = 0; axis < 3; ++axis) along[static_cast<std::size_t>(axis)].push_back(middle[axis]);
+      }
+  }
+  Box box;
+  if (along[0].empty()) return box;
+  const auto quantile = [&](double share) {
+    Vec3 at;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<double>& values = along[static_cast<std::size_t>(axis)];
+      const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+      std::nth_element(values.begin(), values.begin() + k, values.end());
+      at[axis] = values[static_cast<std::size_t>(k)];
+    }
+    return at;
+  };
+  box.extend(quantile(0.05)).extend(quantile(0.95));
+  return box;
+}
+
+}  // namespace
+
 Camera framing_of(const Scene& scene, double aspect, double fov_degrees) {
   bool forward = true;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.visible && placed.node->object) forward = forward && placed.node->object->axes == Axes::forward;
-  return framing(world_bounds(scene), aspect, forward, fov_degrees);
+  const Box all = world_bounds(scene);
+  if (forward) return framing(all, aspect, forward, fov_degrees);
+  // A backdrop far around what was photographed is no place to look from.
+  const Box dense = dense_bounds(scene);
+  constexpr double backdrop = 0.4;
+  const bool inside = !dense.isEmpty() && dense.diagonal().norm() < backdrop * all.diagonal().norm();
+  Camera camera = framing(inside ? dense : all, aspect, forward, fov_degrees);
+  if (!inside) return camera;
+  camera.near_plane = camera.far_plane = 0;
+  return with_planes(camera, all, aspect);
 }
 
 Camera fitted(const Scene& scene, const Camera& camera, double aspect) {

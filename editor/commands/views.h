@@ -9,7 +9,8 @@
 
 namespace rebake {
 
-/// The camera that frames everything visible; forward-facing when all objects are.
+/// The camera that frames everything visible, or its dense middle where a backdrop lies far around it; forward-facing
+/// when all objects are.
 Camera framing_of(const Scene& scene, double aspect, double fov_degrees = Camera{}.fov_degrees);
 
 /// The camera with planes that fit what is visible, where it leaves them open.

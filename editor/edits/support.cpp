@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "mesh_ops/base/polar.h"
 
@@ -101,6 +102,21 @@ OutlinePlace place_of(const Scene& scene, NodeId id) {
   std::size_t index = 0;
   while (index < siblings.size() && siblings[index]->id != id) ++index;
   return {parent, index};
+}
+
+Scene showing_only(const Scene& scene, const std::vector<NodeRef>& nodes) {
+  if (nodes.empty()) return scene;
+  std::set<NodeId> shown;
+  for (const NodeRef& node : nodes) shown.insert(present(scene, node.id).node->id);
+  Scene result = scene;
+  for (const PlacedNode& placed : placed_nodes(scene)) {  // parents come before children
+    const NodeId id = placed.node->id;
+    if (shown.contains(id))
+      for (const NodePtr& child : placed.node->children) shown.insert(child->id);
+    else if (placed.node->object)
+      result = with_changed(result, id, [](Node& node) { node.visible = false; });
+  }
+  return result;
 }
 
 Box subtree_bounds(const Scene& scene, NodeId id) {

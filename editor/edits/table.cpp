@@ -19,6 +19,8 @@
   X(Lock) \
   X(Unlock) \
   X(StoreView) \
+  X(RenameView) \
+  X(RemoveView) \
   X(Background) \
   X(Transform) \
   X(Place) \

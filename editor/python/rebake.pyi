@@ -126,11 +126,12 @@ class Document:
         node: node to rename
         name: new name, not in use yet
         """
-    def duplicate(self, *, node: Node, as_: str = "") -> None:
+    def duplicate(self, *, node: Node, as_: str = "", translate: Vector = [0.0,0.0,0.0]) -> None:
         """Adds a copy of a node and its children after it; triangles and texels stay shared.
 
         node: node to copy
         as_: name of the copy; empty: the node's with a number
+        translate: how far from the node the copy stands (scene units)
         """
     def group(self, *, nodes: Sequence[Node], as_: str = "") -> None:
         """Puts nodes into a new group; they stay where they are in the world.
@@ -171,6 +172,17 @@ class Document:
 
         name: name of the view
         camera: the camera; what is left out has its usual value, and planes fit what is visible
+        """
+    def rename_view(self, *, name: str, to: str) -> None:
+        """Gives a stored view another name.
+
+        name: name of the view
+        to: new name, not in use yet
+        """
+    def remove_view(self, *, name: str) -> None:
+        """Forgets a stored view.
+
+        name: name of the view
         """
     def background(self, *, color: Vector) -> None:
         """Sets the colour behind everything.

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "editor/commands/views.h"
 #include "editor/gui/view/lens.h"
+#include "tests/support/made_scenes.h"
 
 namespace rebake::test {
 namespace {
@@ -27,6 +29,25 @@ TEST(Navigation, OrbitingKeepsTheDistanceAndStopsAtThePoles) {
   const Vec3 direction = (moved.eye - moved.target).normalized();
   EXPECT_GT(direction.y(), 0.9999);
   EXPECT_LT(direction.y(), 1);
+}
+
+TEST(Navigation, ASceneOpensOnItsDenseMiddleNotOutsideItsBackdrop) {
+  Scene scene = scene_of(made_object({.columns = 64, .rows = 32}), "thing");
+  const Camera alone = framing_of(scene, 1);
+  Node backdrop;
+  backdrop.name = "backdrop";
+  backdrop.object = made_object({.columns = 8, .rows = 4, .radius = 50});
+  scene = with_added(scene, std::move(backdrop), NodeId::none, 1);
+  const Camera inside = framing_of(scene, 1);
+  EXPECT_LT((inside.eye - inside.target).norm(), 1.1 * (alone.eye - alone.target).norm());
+  EXPECT_GT(inside.far_plane, 50) << "the backdrop is drawn";
+  // Two things beside each other are both looked at.
+  const Scene pair = with_changed(scene, placed_nodes(scene)[1].node->id, [](Node& node) {
+    node.object = made_object({.columns = 64, .rows = 32});
+    node.to_parent.translation() = Vec3(6, 0, 0);
+  });
+  const Camera both = framing_of(pair, 1);
+  EXPECT_NEAR(both.target.x(), 3, 1e-6);
 }
 
 TEST(Navigation, AFullTurnComesBack) {

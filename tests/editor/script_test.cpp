@@ -12,6 +12,7 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/formats.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -180,6 +181,48 @@ TEST_F(Script, ANodeFallsOntoWhatIsBelowAndOntoTheGround) {
   run(R"({"op": "drop", "node": "upper", "ground": -1})");
   EXPECT_NEAR(low("upper"), -2, 1e-12) << "it crosses that ground, and sinks no deeper";
   expect_error(R"({"op": "drop", "node": "upper", "ground": 7})", "below the ground");
+}
+
+TEST_F(Script, ACopyStandsWhereItIsPut) {
+  run(import + R"({"op": "transform", "node": "ball", "translate": [1, 0, 0], "scale": 2})"
+               "\n"
+               R"({"op": "duplicate", "node": "ball", "as": "beside", "translate": [0.25, 0, -3]})");
+  EXPECT_EQ(node("beside")->object, node("ball")->object);
+  EXPECT_EQ(node("beside")->to_parent.linear(), node("ball")->to_parent.linear());
+  EXPECT_EQ(node("beside")->to_parent.translation() - node("ball")->to_parent.translation(), Vec3(0.25, 0, -3));
+}
+
+TEST_F(Script, ViewsAreRenamedAndForgotten) {
+  run(import + R"({"op": "view", "name": "front", "camera": {"eye": [0, 0, 4]}})"
+               "\n"
+               R"({"op": "rename_view", "name": "front", "to": "before"})");
+  EXPECT_EQ(session.scene().views.size(), 1U);
+  EXPECT_EQ(session.scene().views.at("before").eye, Vec3(0, 0, 4));
+  expect_error(R"({"op": "rename_view", "name": "front", "to": "x"})", "there are before");
+  run(R"({"op": "view", "name": "other", "camera": {"eye": [0, 0, 5]}})");
+  expect_error(R"({"op": "rename_view", "name": "other", "to": "before"})", "another view");
+  run(R"({"op": "remove_view", "name": "before"})");
+  EXPECT_FALSE(session.scene().views.contains("before"));
+  expect_error(R"({"op": "remove_view", "name": "before"})", "there are other");
+}
+
+TEST_F(Script, ExportsAndPicturesOfSomeNodesOnly) {
+  run(import + R"({"op": "import", "path": "{here}/other", "as": "other"})"
+               "\n"
+               R"({"op": "transform", "node": "other", "translate": [3, 0, 0]})"
+               "\n"
+               R"({"op": "group", "nodes": ["other"], "as": "inside"})");
+  for (const std::string some : {R"("inside")", R"("other")"})
+    run(R"({"op": "export", "out": "{here}/some", "nodes": [)" + some + R"(]})");
+  const Scene some = read_any(folder_.path() / "some", Axes::y_up, {});
+  ASSERT_EQ(some.roots.size(), 1U);
+  EXPECT_EQ(*some.roots[0]->object->decoder, *node("other")->object->decoder);
+  run(R"({"op": "render", "out": "{here}/some.png", "nodes": ["inside"], "width": 40, "height": 40, "samples": 1})");
+  run(R"({"op": "hide", "node": "ball"})"
+      "\n"
+      R"({"op": "render", "out": "{here}/hidden.png", "width": 40, "height": 40, "samples": 1})");
+  EXPECT_EQ(read_file(folder_.path() / "some.png"), read_file(folder_.path() / "hidden.png"));
+  expect_error(R"({"op": "export", "out": "{here}/none", "nodes": ["nobody"]})", "nobody");
 }
 
 TEST_F(Script, NodesAreAlignedAndSpread) {

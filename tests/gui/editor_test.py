@@ -265,6 +265,23 @@ class EditorTest(unittest.TestCase):
         editor.key("x")
         editor.until_ops("import", *["transform"] * 4, "remove")
 
+    def test_a_plane_handle_moves_along_two_axes_and_alt_drags_a_copy(self):
+        editor = self.open_ficus()
+        editor.key("1")
+        x, y = editor.where("gizmo/x plane")
+        editor.drag([(x, y), (x + 40, y - 30)])
+        editor.until_ops("import", "transform")
+        moved = editor.last_edit()["translate"]
+        self.assertEqual(moved[0], 0)
+        self.assertGreater(min(abs(moved[1]), abs(moved[2])), 0.01)
+        x, y = editor.where("gizmo/x")
+        editor.drag([(x, y), (x + 60, y + 5)], held="alt")
+        editor.until_ops("import", "transform", "duplicate")
+        copy = editor.last_edit()["translate"]
+        self.assertGreater(copy[0], 0.05)
+        self.assertEqual(copy[1:], [0, 0])
+        self.assertEqual(editor.state()["picked"], ["ficus.2"])
+
     def test_several_nodes_are_one_step(self):
         editor = self.open(FICUS, KETTLE)
         editor.until_ops("import", "import")
@@ -503,6 +520,29 @@ class EditorTest(unittest.TestCase):
                                                 capture_output=True).returncode
         self.assertEqual(compared("000.png", "009.png"), 3, "a quarter turn shows")
 
+    def test_stored_views_have_pictures_and_are_renamed_and_forgotten(self):
+        editor = self.open_ficus()
+        editor.command("store view")
+        editor.drag([editor.in_viewport(0.4, 0.8), editor.in_viewport(0.6, 0.6)], button=2)
+        editor.click("status/Views")
+        editor.click("tabs/views/Store view")
+        editor.until_ops("import", "view", "view")
+        before = editor.viewport()
+        x, y, width, height = (round(v) for v in editor.state()["items"]["tabs/views/view 1/picture"])
+        picture = editor.picture()[y:y + height, x:x + width]
+        self.assertGreater(green(picture).sum(), 200, "leaves are in it")
+        editor.click("tabs/views/view 1/picture")
+        self.assertGreater((abs(editor.viewport() - before).max(axis=2) > 30).sum(), 5000)
+        editor.double_click(*editor.where("tabs/views/view 1/picture"))
+        editor.key("ctrl+a")
+        editor.type("front")
+        editor.key("Return")
+        editor.until_ops("import", "view", "view", "rename_view")
+        editor.click("tabs/views/view 2/Delete")
+        editor.until_ops("import", "view", "view", "rename_view", "remove_view")
+        self.assertIn("tabs/views/front/picture", editor.state()["items"])
+        self.assertNotIn("tabs/views/view 2/picture", editor.state()["items"])
+
     def test_axis_knobs_and_menus(self):
         editor = self.open_ficus()
         editor.click("axes/+Y")
@@ -631,6 +671,35 @@ class EditorTest(unittest.TestCase):
         editor.click("dialog/Samples")
         editor.double_click(*editor.where("dialog/entries/kettle"))
         editor.until_ops("import", "import")
+
+    def test_what_was_opened_before_has_a_picture(self):
+        self.open_ficus()
+        kept = self.screen.home / "cache" / "rebake" / "pictures"
+        self.assertEqual(len(list(kept.glob("*.png"))), 1)
+        self.editor.tool("key", "ctrl+q")
+        self.editor.process.wait(timeout=20)
+        editor = self.open()
+        x, y, width, height = (round(v) for v in editor.state()["items"]["start/recent/ficus"])
+        self.assertGreater(green(editor.picture()[y:y + height, x:x + width]).sum(), 200)
+        editor.click("start/recent/ficus")
+        editor.until_ops("import")
+
+    def test_only_what_is_picked_is_exported(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        self.assertEqual(editor.state()["picked"], ["kettle"])
+        out = self.folder / "kettle alone"
+        editor.key("ctrl+e")
+        editor.click("dialog/Only the picked nodes")
+        editor.click("dialog/path")
+        editor.answer(str(out))
+        until(lambda: out.is_dir(), "the export")
+        editor.settle()
+        told = subprocess.run([PROGRAM, "info", out], capture_output=True, text=True).stdout
+        alone = subprocess.run([PROGRAM, "info", KETTLE], capture_output=True, text=True).stdout
+        geometry = lambda text: [line for line in text.splitlines() if "geometry  " in line]
+        self.assertEqual(geometry(told), geometry(alone), told)
+        self.assertEqual(len(geometry(told)), 1)
 
     def test_a_full_disk_is_said_and_nothing_is_lost(self):
         editor = self.open_ficus()

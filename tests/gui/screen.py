@@ -34,7 +34,7 @@ class Screen:
         with os.fdopen(read) as pipe:
             self.display = ":" + pipe.readline().strip()
         self.environment = dict(os.environ, DISPLAY=self.display, HOME=str(self.home),
-                                XDG_CONFIG_HOME=str(self.home / "config"), XDG_STATE_HOME=str(self.home / "state"),
+                                XDG_CONFIG_HOME=str(self.home / "config"), XDG_CACHE_HOME=str(self.home / "cache"), XDG_STATE_HOME=str(self.home / "state"),
                                 REBAKE_ANNOUNCE=str(self.home / "announced"))
 
     def settings(self, **values):
@@ -150,15 +150,19 @@ class Editor:
         self.counted("wheel", 1, lambda: self.tool("click", 4 if away else 5))
         self.settle()
 
-    def drag(self, points, button=1, meanwhile=lambda: None):
-        """Along points, with steps between them as a hand makes."""
+    def drag(self, points, button=1, meanwhile=lambda: None, held=None):
+        """Along points, with steps between them as a hand makes; with a key held."""
         self.move(*points[0])
+        if held:
+            self.counted("keys", 1, lambda: self.tool("keydown", held))
         self.press(button)
         for (x0, y0), (x1, y1) in zip(points, points[1:]):
             for k in range(1, 7):
                 self.move(round(x0 + (x1 - x0) * k / 6), round(y0 + (y1 - y0) * k / 6))
         meanwhile()
         self.press(button, down=False)
+        if held:
+            self.counted("keys", 1, lambda: self.tool("keyup", held))
         self.settle()
 
     def key(self, *keys):

@@ -9,6 +9,7 @@
 
 #include "mesh_ops/texture/decoder.h"
 #include "render/compare.h"
+#include "render/picture_texture.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/oracle.h"
 
@@ -250,6 +251,16 @@ TEST(Picture, RealMicGeometry) {
   view.camera.near_plane = 2;
   view.camera.far_plane = 6;
   expect_as_cast(scene_of(mic), view);
+}
+
+TEST(Thumbnail, AveragesTheMiddleAndNeverEnlarges) {
+  Image image{8, 2, {}};
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 8; ++x)
+      for (int c = 0; c < 3; ++c) image.rgb.push_back(static_cast<std::uint8_t>(x < 2 || x > 5 ? 255 : 10 * x + y));
+  const Image small = thumbnail_of(image, 2, 1);              // half the size, of the middle four columns
+  EXPECT_EQ(small, (Image{2, 1, {26, 26, 26, 46, 46, 46}}));  // 25.5 and 45.5
+  EXPECT_EQ(thumbnail_of(small, 100, 100).rgb, small.rgb);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "editor/edits/nodes/duplicate.h"
 
 #include "editor/edits/describe.h"
+#include "editor/edits/nodes/transform.h"
 
 namespace rebake {
 
@@ -13,7 +14,13 @@ Scene apply(const Scene& scene, const Duplicate& edit) {
     copy.name = edit.as;
   }
   const auto [parent, index] = place_of(scene, edit.node.id);
-  return with_added(scene, std::move(copy), parent, index + 1);
+  const Scene made = with_added(scene, std::move(copy), parent, index + 1);
+  if (edit.translate.isZero(0)) return made;
+  const auto& beside = parent == NodeId::none ? made.roots : find(made, parent)->children;
+  Transform move;
+  move.node = NodeRef{beside[index + 1]->id};
+  move.translate = edit.translate;
+  return apply(made, move);
 }
 
 REBAKE_DESCRIBE_EDIT(
@@ -21,6 +28,7 @@ REBAKE_DESCRIBE_EDIT(
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::required, "node to copy");
       visit("as", edit.as, Need::optional, "name of the copy; empty: the node's with a number");
+      visit("translate", edit.translate, Need::optional, "how far from the node the copy stands", Unit::length);
     })
 
 }  // namespace rebake

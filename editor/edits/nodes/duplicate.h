@@ -9,6 +9,7 @@ struct Duplicate {
   static constexpr const char* op = "duplicate";
   NodeRef node;
   std::string as;
+  Vec3 translate{0, 0, 0};
 };
 template <>
 const EditType& edit_type<Duplicate>();

@@ -8,6 +8,7 @@
 
 #include "editor/edits/nodes/place.h"
 #include "editor/gui/ui/number_field.h"
+#include "editor/gui/view/thumbnails.h"
 #include "editor/gui/window/desk.h"
 #include "render/picture.h"
 
@@ -55,6 +56,18 @@ class HistoryPanel {
   std::shared_ptr<const Snapshot> of_;  ///< what was drawn last
 };
 
+/// Stored views with pictures: a click looks from there.
+class ViewsPanel {
+ public:
+  void draw(Desk& desk, Thumbnails& thumbnails);
+
+ private:
+  void draw_card(Desk& desk, Thumbnails& thumbnails, const std::string& name);
+  void draw_name(Desk& desk, const std::string& name, float width);
+  std::string renaming_, name_;  ///< the view, and what is typed
+  bool focus_name_ = false;
+};
+
 /// The edits as script lines, to be copied or saved, and a line to type one.
 class ScriptPanel {
  public:
@@ -97,7 +110,7 @@ void draw_toasts(Messages& messages, const ImVec2& corner);
 /// All keys, where they are asked for.
 void draw_keys_sheet(Desk& desk);
 /// What to begin with, while nothing is open.
-void draw_start(Desk& desk, const ImVec2& middle);
+void draw_start(Desk& desk, Thumbnails& thumbnails, const ImVec2& middle);
 
 /// What was said, newest last.
 void draw_log(const Messages& messages);
@@ -126,42 +139,6 @@ class EditForm {
   std::string op_, problem_;
   nlohmann::json values_;
   std::map<std::string, std::string> texts_;  ///< of fields that are typed as JSON
-};
-
-/// Asks for a path; says what an export can and cannot keep; asks before work is lost.
-class Dialogs {
- public:
-  void draw(Desk& desk);
-  /// Answers the question that is open with "not now"; false when none is.
-  bool escape(Desk& desk);
-  /// Closes what Dear ImGui has open, with the next frame.
-  void close_popups() { closes_ = true; }
-  /// True once the window may close.
-  bool may_quit() const { return may_quit_; }
-
- private:
-  struct Entry {
-    std::filesystem::path path;
-    bool is_folder = false, is_scene = false;
-  };
-  void begin_path(const Desk& desk);
-  void draw_path(Desk& desk);
-  bool draw_entries(const Desk& desk, const std::filesystem::path& folder, const std::string& ending);
-  void carry_out(Desk& desk, const std::filesystem::path& path);
-  void draw_recovery(Project& project);
-  void draw_quitting(Desk& desk);
-  void draw_replacing(Desk& desk);
-  void draw_relinking(Project& project);
-  std::string path_;
-  PathQuestion asked_ = PathQuestion::none;
-  std::filesystem::path entries_of_;  ///< the folder that was read
-  std::vector<Entry> entries_;
-  std::string problem_, problem_of_;  ///< what is wrong with which path
-  bool refocuses_ = false;            ///< the path takes the keyboard again
-  std::filesystem::path replacing_;   ///< is there already: asked for once
-  int width_ = 0, height_ = 0;        ///< of pictures, in pixels
-  int pictures_ = 36;                 ///< of a turntable
-  bool may_quit_ = false, closes_ = false;
 };
 
 }  // namespace rebake

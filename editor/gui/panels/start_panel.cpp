@@ -15,6 +15,29 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// What was opened before has a picture, where one is kept.
+void card(Desk& desk, unsigned picture, const std::string& path, const ImVec2& size) {
+  const std::string name = fs::path(path).filename().string();
+  ImGui::PushID(path.c_str());
+  ImGui::BeginGroup();
+  const ImVec2 at = ImGui::GetCursorScreenPos(), end{at.x + size.x, at.y + size.y};
+  if (ImGui::InvisibleButton("card", size)) desk.project.open({path});
+  announce::item(name);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, end, color32(theme().field), px(4));
+  if (picture != 0)
+    list.AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture)), at, end, {0, 0}, {1, 1},
+                         IM_COL32_WHITE, px(4));
+  else
+    list.AddText({at.x + size.x / 2 - ImGui::GetFontSize() / 2, at.y + size.y / 2 - ImGui::GetFontSize() / 2},
+                 color32(theme().muted), icons::cube_outline);
+  if (ImGui::IsItemHovered()) list.AddRect(at, end, color32(theme().accent), px(4), 0, px(2));
+  ui::tip(name, "", path);
+  ImGui::TextUnformatted(ui::shortened(name, size.x).c_str());
+  ImGui::EndGroup();
+  ImGui::PopID();
+}
+
 void entry(Desk& desk, const char* icon, const std::string& path) {
   const fs::path file(path);
   const std::string name = file.filename().string();
@@ -27,7 +50,7 @@ void entry(Desk& desk, const char* icon, const std::string& path) {
 
 }  // namespace
 
-void draw_start(Desk& desk, const ImVec2& middle) {
+void draw_start(Desk& desk, Thumbnails& thumbnails, const ImVec2& middle) {
   if (!desk.scene().roots.empty() || desk.jobs.worker.busy() || !desk.now->done.empty()) return;
   const float width = px(420);
   ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5F, 0.5F});
@@ -50,12 +73,16 @@ void draw_start(Desk& desk, const ImVec2& middle) {
   std::error_code error;
   std::vector<std::string> recent;
   for (const std::string& path : desk.settings.recent)
-    if (recent.size() < 5 && fs::exists(path, error)) recent.push_back(path);
+    if (recent.size() < 6 && fs::exists(path, error)) recent.push_back(path);
   if (!recent.empty()) {
     ImGui::Dummy({0, px(8)});
     ImGui::TextDisabled("Recent");
     const announce::Part inside("recent");
-    for (const std::string& path : recent) entry(desk, icons::history, path);
+    const float gap = px(10), across = (ImGui::GetContentRegionAvail().x - 2 * gap) / 3;
+    for (std::size_t k = 0; k < recent.size(); ++k) {
+      if (k % 3 != 0) ImGui::SameLine(0, gap);
+      card(desk, thumbnails.of_file(recent[k]), recent[k], {across, across * 0.625F});
+    }
   }
   ImGui::Dummy({0, px(8)});
   ImGui::TextDisabled("Samples");

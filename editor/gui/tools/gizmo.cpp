@@ -3,10 +3,12 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
 
+#include "editor/edits/nodes/duplicate.h"
 #include "editor/edits/nodes/transform.h"
 #include "editor/edits/support.h"
 #include "editor/gui/ui/announce.h"
@@ -50,7 +52,36 @@ std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, do
   return points;
 }
 
+// Corners of the handle of a plane: a square between its two axes.
+constexpr double square_from = 0.28, square_to = 0.46;  // of the handles' length
+std::array<Vec3, 4> square(const Vec3& pivot, const Vec3& u, const Vec3& v, double reach) {
+  const double a = square_from * reach, b = square_to * reach;
+  return {pivot + a * u + a * v, pivot + b * u + a * v, pivot + b * u + b * v, pivot + a * u + b * v};
+}
+
+// A plane seen edge on cannot be dragged in.
+constexpr double least_tilt = 0.15;
+
+bool inside(const std::vector<Vec2>& corners, const Vec2& p) {
+  int left = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vec2 along = corners[(k + 1) % corners.size()] - corners[k], to = p - corners[k];
+    if (along.x() * to.y() - along.y() * to.x() > 0) ++left;
+  }
+  return left == 0 || left == static_cast<int>(corners.size());
+}
+
 }  // namespace
+
+std::vector<Vec2> Gizmo::plane_handle(const Target& target, const Lens& lens, int axis) const {
+  if (kind_ != ToolKind::move || std::abs(target.axes.col(axis).dot(target.towards_eye)) < least_tilt) return {};
+  std::vector<Vec2> corners;
+  for (const Vec3& corner : square(target.pivot, target.axes.col((axis + 1) % 3), target.axes.col((axis + 2) % 3),
+                                   reach(lens, target.pivot)))
+    if (const auto pixel = lens.pixel(corner)) corners.push_back(*pixel);
+  if (corners.size() < 4) corners.clear();
+  return corners;
+}
 
 std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) const {
   Target target;
@@ -92,6 +123,9 @@ int Gizmo::handle_at(const Target& target, const Lens& lens, const Vec2& at) con
   const auto middle = lens.pixel(target.pivot);
   if (!middle) return none;
   if (kind_ != ToolKind::turn && (*middle - at).norm() < static_cast<double>(px(gizmo_grab_pixels))) return all;
+  for (int axis = 0; axis < 3; ++axis)
+    if (const std::vector<Vec2> corners = plane_handle(target, lens, axis); !corners.empty() && inside(corners, at))
+      return plane + axis;
   int found = none;
   double least = static_cast<double>(px(gizmo_grab_pixels));
   for (int axis = 0; axis < (kind_ == ToolKind::turn ? 4 : 3); ++axis) {
@@ -111,6 +145,7 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
   if (!middle) return 0;
   const double fine = pointer.shift ? 0.1 : 1;
   double result = 0;
+  if (moves_in_plane()) return 1;
   if (kind_ == ToolKind::turn) {
     const Vec3 axis = at_.axis(held_);
     const Vec2 a = from_ - *middle, b = now_ - *middle;
@@ -143,6 +178,31 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
   return std::round(result / step) * step;
 }
 
+Vec3 Gizmo::motion_in_plane(const Lens& lens, const Pointer& pointer) const {
+  const int axis = held_ - plane;
+  const Vec3 normal = at_.axes.col(axis);
+  const auto meets = [&](const Vec2& pixel) -> std::optional<Vec3> {
+    const ViewRay ray = lens.ray(pixel);
+    const double t = (at_.pivot - ray.origin).dot(normal) / ray.direction.dot(normal);
+    if (!std::isfinite(t)) return std::nullopt;
+    return Vec3(ray.origin + t * ray.direction);
+  };
+  const auto from = meets(from_), to = meets(now_);
+  // Beyond the horizon it stays where it was.
+  if (!from || !to) return in_plane_;
+  Vec3 along = at_.axes.transpose() * (*to - *from) * (pointer.shift ? 0.1 : 1);
+  const double step = std::pow(10, std::floor(std::log10(reach(lens, at_.pivot))));
+  if (pointer.control) along = (along / step).array().round().matrix() * step;
+  along[axis] = 0;
+  return at_.axes * along;
+}
+
+bool Gizmo::takes_alt(const Desk& desk, const Lens& lens, const Vec2& at) const {
+  if (kind_ != ToolKind::move) return false;
+  const std::optional<Target> here = target(desk, lens);
+  return here && !here->triangles && handle_at(*here, lens, at) != none;
+}
+
 std::vector<Edit> Gizmo::edits(const Lens& lens) const {
   Transform transform;
   transform.selection = at_.triangles;
@@ -158,11 +218,20 @@ std::vector<Edit> Gizmo::edits(const Lens& lens) const {
     transform.scale_axes = Rotation(Eigen::Quaterniond(at_.axes.determinant() < 0 ? Mat3(-at_.axes) : at_.axes));
   } else if (held_ == all) {
     transform.translate = onto_ ? Vec3(*onto_ - foot_) : Vec3(amount_ * lens.motion(at_.pivot, now_ - from_));
+  } else if (moves_in_plane()) {
+    transform.translate = in_plane_;
   } else {
     transform.translate = amount_ * at_.axes.col(held_);
   }
   std::vector<Edit> result;
   for (const NodeId id : at_.nodes) {
+    if (copies_) {
+      Duplicate copy;
+      copy.node = NodeRef{id};
+      copy.translate = transform.translate;
+      result.emplace_back(copy);
+      continue;
+    }
     transform.node = NodeRef{id};
     result.emplace_back(transform);
   }
@@ -191,6 +260,8 @@ void Gizmo::begin(const Target& target, int handle, const Vec2& at) {
   at_ = target;
   foot_ = target.foot;
   onto_.reset();
+  copies_ = false;
+  in_plane_ = Vec3::Zero();
   held_ = handle;
   from_ = now_ = at;
   amount_ = 0;
@@ -219,6 +290,7 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     }
     begin(*here, by_key ? all : handle_at(*here, lens, pointer.at), pointer.at);
     by_key_ = by_key;
+    copies_ = pointer.alt && kind_ == ToolKind::move && !at_.triangles;
     return;
   }
   // A view turned meanwhile changes what the same way of the pointer means.
@@ -227,13 +299,14 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   now_ = pointer.at;
   const double before = amount_;
   amount_ = amount(lens, pointer);
+  if (moves_in_plane()) in_plane_ = motion_in_plane(lens, pointer);
   const bool free = held_ == all && kind_ == ToolKind::move;
   if (free && desk.tools.snaps && !at_.triangles)
     onto_ = surface(desk, lens, now_);
   else
     onto_.reset();
   if (typed_.value()) amount_ = *typed_.value() - (kind_ == ToolKind::scale ? 1 : 0);
-  const bool nothing = amount_ == 0 || (held_ == all && kind_ == ToolKind::move && now_ == from_);
+  const bool nothing = amount_ == 0 || (free && now_ == from_) || (moves_in_plane() && in_plane_.isZero(0));
   const std::vector<Edit> made = nothing ? std::vector<Edit>{} : edits(lens);
   if (moved || amount_ != before) preview(desk, made);
   if (by_key_ ? !pointer.pressed && !std::exchange(entered_, false) : !pointer.released) return;
@@ -244,7 +317,12 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     desk.edits(made);
 }
 
-void Gizmo::constrain(int axis) {
+void Gizmo::constrain(int axis, bool across) {
+  if (across) {
+    held_ = plane + axis;
+    constrained_ = true;
+    return;
+  }
   // As in Blender: along the world's, then the local one, then free again.
   axis_presses_ = held_ == axis ? (axis_presses_ + 1) % 3 : 1;
   held_ = axis_presses_ == 0 ? all : axis;
@@ -255,7 +333,7 @@ void Gizmo::constrain(int axis) {
 bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
   if (held_ == none || press.control || press.alt) return false;
   if (press.key >= GLFW_KEY_X && press.key <= GLFW_KEY_Z) {
-    if (!press.repeated) constrain(press.key - GLFW_KEY_X);
+    if (!press.repeated) constrain(press.key - GLFW_KEY_X, press.shift && kind_ == ToolKind::move);
     return true;
   }
   if (by_key_ && (press.key == GLFW_KEY_ENTER || press.key == GLFW_KEY_KP_ENTER)) {
@@ -263,7 +341,7 @@ bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
     return true;
   }
   // A move in the view's plane has no one number.
-  if (held_ == all && kind_ == ToolKind::move) return false;
+  if ((held_ == all && kind_ == ToolKind::move) || moves_in_plane()) return false;
   return typed_.key(press);
 }
 
@@ -289,15 +367,27 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
       list.AddRectFilled({line.back().x - px(6), line.back().y - px(6)}, {line.back().x + px(6), line.back().y + px(6)},
                          color);
   }
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<Vec2> corners = plane_handle(*here, lens, axis);
+    if (corners.empty()) continue;
+    std::array<ImVec2, 4> at;
+    for (std::size_t k = 0; k < 4; ++k) at[k] = on_screen(corners[k], origin);
+    const ImU32 color = hot == plane + axis ? IM_COL32(255, 230, 60, 255) : axis_colors[axis];
+    list.AddConvexPolyFilled(at.data(), 4, (color & ~IM_COL32_A_MASK) | (ImU32{150} << IM_COL32_A_SHIFT));
+    list.AddPolyline(at.data(), 4, color, ImDrawFlags_Closed, px(1.5F));
+    announce::point(std::string(1, "xyz"[axis]) + " plane", on_screen((corners[0] + corners[2]) / 2, origin));
+  }
   announce::point("middle", on_screen(*middle, origin));
   if (kind_ != ToolKind::turn)
     list.AddCircleFilled(on_screen(*middle, origin), px(6), hot == all ? IM_COL32(255, 230, 60, 255) : axis_colors[3]);
   if (held_ == none) return;
-  const char* const names[] = {"X", "Y", "Z", kind_ == ToolKind::scale ? "all" : "view"};
+  const char* const names[] = {"X", "Y", "Z", kind_ == ToolKind::scale ? "all" : "view", "YZ", "ZX", "XY"};
   std::string text = kind_ == ToolKind::turn    ? fmt::format("{} {:.2f}°", names[held_], amount_)
                      : kind_ == ToolKind::scale ? fmt::format("{} × {:.3f}", names[held_], 1 + amount_)
                      : held_ == all             ? std::string(names[held_])
+                     : moves_in_plane()         ? fmt::format("{} {:.4g}", names[held_], in_plane_.norm())
                                                 : fmt::format("{} {:.4g}", names[held_], amount_);
+  if (copies_) text = "copy " + text;
   if (held_ != all && at_.axes != Mat3::Identity()) text = "local " + text;
   if (!typed_.text().empty()) text += "  [" + typed_.text() + "]";
   draw_label(list, on_screen(now_ + Vec2(16, 16), origin), text);
@@ -317,9 +407,10 @@ void Gizmo::options(Desk& desk) {
   if (!here)
     ui::hint("Pick a node, or select triangles.");
   else
-    ui::hint(fmt::format("{}: {}. X Y Z take an axis, digits a number, Ctrl snaps, Shift is fine, Esc lets go.",
+    ui::hint(fmt::format("{}: {}. X Y Z take an axis, digits a number, Ctrl snaps, Shift is fine{}.",
                          here->triangles ? "The selected triangles" : "The picked nodes",
-                         by_key_ ? "move the pointer, click or Enter ends" : "drag a handle"));
+                         by_key_ ? "move the pointer, click or Enter ends" : "drag a handle",
+                         kind_ == ToolKind::move && !here->triangles ? ", Alt drags a copy" : ""));
 }
 
 void Gizmo::cancel(Desk& desk) {

@@ -15,10 +15,11 @@ class Gizmo final : public ViewTool {
   bool key(Desk& desk, const KeyPress& press) override;
   void options(Desk& desk) override;
   bool busy() const override { return held_ != none; }
+  bool takes_alt(const Desk& desk, const Lens& lens, const Vec2& at) const override;
   void cancel(Desk& desk) override;
 
  private:
-  static constexpr int none = -1, all = 3;
+  static constexpr int none = -1, all = 3, plane = 4;  ///< plane + k: the plane across axis k
   struct Target {
     std::vector<NodeId> nodes;
     bool triangles = false;  ///< selected ones, not the nodes
@@ -33,24 +34,32 @@ class Gizmo final : public ViewTool {
   void begin(const Target& target, int handle, const Vec2& at);
   void end(Desk& desk);
   /// Keys of axes during a drag: along one, along its local one, free again.
-  void constrain(int axis);
+  /// `across`: in the plane that it is normal to.
+  void constrain(int axis, bool across);
   /// Length of the handles in scene units, the same on the screen everywhere.
   static double reach(const Lens& lens, const Vec3& pivot);
-  /// 0 to 2 an axis, `all` of them (the view's plane, about the line of sight, or all sizes), or `none`.
+  /// 0 to 2 an axis, `all` of them (the view's plane, about the line of sight, or all sizes), a plane, or `none`.
   int handle_at(const Target& target, const Lens& lens, const Vec2& at) const;
   /// What the drag comes to: units, degrees, or a factor less 1.
   double amount(const Lens& lens, const Pointer& pointer) const;
+  /// Its corners on the screen; empty where it is seen edge on.
+  std::vector<Vec2> plane_handle(const Target& target, const Lens& lens, int axis) const;
+  /// How far a drag in a plane goes.
+  Vec3 motion_in_plane(const Lens& lens, const Pointer& pointer) const;
   std::vector<Edit> edits(const Lens& lens) const;
+  bool moves_in_plane() const { return held_ >= plane; }
   /// Where the surface under the pointer is, of nodes that are not moved.
   std::optional<Vec3> surface(const Desk& desk, const Lens& lens, const Vec2& at) const;
   static void preview(Desk& desk, const std::vector<Edit>& made);
 
   ToolKind kind_;
   int held_ = none;
+  bool copies_ = false;  ///< what is dragged is a copy
   bool by_key_ = false;  ///< begun by a key: a click ends it, no button is held
   Target at_;            ///< as it was when the drag began
   Vec2 from_{0, 0}, now_{0, 0};
   double amount_ = 0;
+  Vec3 in_plane_{0, 0, 0};    ///< motion of a drag in a plane
   Camera camera_;             ///< that amount_ was worked out with
   Vec3 foot_{0, 0, 0};        ///< middle of the underside of what is moved
   std::optional<Vec3> onto_;  ///< the surface that it is put onto

@@ -22,7 +22,7 @@ struct Pointer {
   bool pressed = false, down = false, released = false;  ///< left button: just now, held, just now
   bool double_clicked = false;
   bool let_go = false;  ///< right button, just now
-  bool shift = false, control = false;
+  bool shift = false, control = false, alt = false;
 };
 
 /// What the left button does in the viewport. A drag is a preview; release makes one edit.
@@ -41,6 +41,8 @@ class ViewTool {
   virtual void options(Desk& desk) = 0;
   /// Whether it wants the scene as it is now: it waits for what is being done.
   virtual bool wants_scene() const { return true; }
+  /// Whether a press there with Alt held is for the tool; else it turns the view.
+  virtual bool takes_alt(const Desk& /*desk*/, const Lens& /*lens*/, const Vec2& /*at*/) const { return false; }
   /// True while something is held that Escape would let go of.
   virtual bool busy() const { return false; }
   virtual void cancel(Desk& desk) = 0;

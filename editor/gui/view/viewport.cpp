@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "editor/edits/nodes/import.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/style.h"
 #include "editor/gui/view/navigation.h"
@@ -58,7 +59,7 @@ bool Viewport::cancel(Desk& desk) {
 bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
 
 double Viewport::next_frame_in(const Desk& desk) const {
-  if (desk.jobs.turntable || desk.view.flying) return 0;
+  if (desk.jobs.turntable || desk.view.flying || (thumbnails_.wants() && !moving() && desk.at_rest())) return 0;
   // A quick picture is followed by one in full.
   if (!moving())
     return made_ && (made_->view.width != made_->shown_width || made_->view.samples != desk.view.samples) ? 0 : -1;
@@ -94,7 +95,8 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
       panning_ = true;
       right_pressed_at_ = pointer.at;
     }
-    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) && (io.KeyAlt || (picks && !io.KeyShift && !io.KeyCtrl)))
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) &&
+        (io.KeyAlt ? !pointer.pressed : picks && !io.KeyShift && !io.KeyCtrl))
       orbiting_ = true;
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && picks && !io.KeyShift && !io.KeyCtrl)
       if (const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false))
@@ -215,6 +217,24 @@ void Viewport::picture(Desk& desk) {
   }
   texture_ = shown.texture;
   drew_ = true;
+  if (still && !desk.preview && view.width == desk.view.width) keep_picture(desk);
+}
+
+// Of what was just opened or saved, for the list of recent files.
+void Viewport::keep_picture(const Desk& desk) {
+  const std::vector<Edit>& done = desk.now->done;
+  const bool imported = done.size() == 1 && done.front().is<Import>() && !desk.settings.recent.empty();
+  const std::string of = !desk.project.path.empty() ? (desk.project.unsaved() ? "" : desk.project.path.string())
+                         : imported                 ? desk.settings.recent.front()
+                                                    : "";
+  if (of.empty() || (of == kept_of_ && kept_roots_ == desk.scene().roots)) return;
+  kept_of_ = of;
+  kept_roots_ = desk.scene().roots;
+  try {
+    thumbnails_.keep(of, desk.settings.recent, renderer_.shown_image());
+  } catch (const std::exception&) {
+    // Without a place to keep it the list has no pictures; nothing else is missing.
+  }
 }
 
 void Viewport::frame_took(double ms) {
@@ -372,7 +392,10 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
   for (const auto& [x, y] : moves)
     pointer.way.emplace_back(x - static_cast<double>(origin.x), y - static_cast<double>(origin.y));
   pointer.inside = ImGui::IsItemHovered();
-  pointer.pressed = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !io.KeyAlt;
+  pointer.alt = io.KeyAlt;
+  pointer.pressed =
+      ImGui::IsMouseClicked(ImGuiMouseButton_Left) &&
+      (!io.KeyAlt || tool(desk).takes_alt(desk, Lens(desk.view.camera, desk.view.width, desk.view.height), pointer.at));
   pointer.down = io.MouseDown[0];
   pointer.released = ImGui::IsMouseReleased(ImGuiMouseButton_Left);
   pointer.double_clicked = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
@@ -418,6 +441,10 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
   }
   try {
     write_pictures(desk);
+    if (thumbnails_.wants() && !moving() && desk.at_rest() && !tool(desk).busy()) {
+      made_.reset();
+      thumbnails_.draw_one(renderer_, on_ground(desk.scene(), desk));
+    }
     picture(desk);
     tool(desk).draw(desk, lens, pointer, list, origin);
   } catch (const std::exception& error) {

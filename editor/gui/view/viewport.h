@@ -31,6 +31,7 @@ class Viewport {
   void frame_took(double ms);
   const FrameReport& report() const { return report_; }
   bool& each_pass() { return each_pass_; }
+  Thumbnails& thumbnails() { return thumbnails_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -53,6 +54,7 @@ class Viewport {
   /// `over`: the pointer may take a knob. True while it is on one.
   bool draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, bool over);
   void write_pictures(Desk& desk);
+  void keep_picture(const Desk& desk);
   bool moving() const;
 
   Vec2 right_pressed_at_{0, 0};
@@ -70,6 +72,9 @@ class Viewport {
   unsigned before_texture_ = 0;
   ToolKind last_tool_ = ToolKind::pick;
   unsigned texture_ = 0;
+  Thumbnails thumbnails_;
+  std::string kept_of_;  ///< what a picture is kept of, as `kept_roots_` looked
+  std::vector<NodePtr> kept_roots_;
   bool each_pass_ = false;
   bool drew_ = false;  ///< a picture in this frame
   bool orbiting_ = false, panning_ = false, wiping_ = false;

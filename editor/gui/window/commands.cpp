@@ -203,18 +203,17 @@ void next_channel(Desk& desk) {
   desk.view.inspect = Guides::Inspect::channel;
 }
 
-void store_view(Desk& desk) {
+}  // namespace
+
+void store_view(Desk& desk, const std::string& name) {
   StoreView edit;
+  edit.name = name;
   edit.camera = desk.view.camera;
   edit.camera.near_plane = edit.camera.far_plane = 0;  // to fit what the scene becomes
-  for (int number = 1;; ++number) {
-    edit.name = "view " + std::to_string(number);
-    if (!desk.scene().views.contains(edit.name)) break;
-  }
+  for (int number = 1; edit.name.empty(); ++number)
+    if (std::string free = "view " + std::to_string(number); !desk.scene().views.contains(free)) edit.name = free;
   desk.edit(edit);
 }
-
-}  // namespace
 
 const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
@@ -353,9 +352,12 @@ const std::vector<Command>& command_table() {
        [](Desk& desk) { desk.view.alone = !desk.view.alone; }, [](const Desk& desk) { return desk.view.alone; }},
       {"View", "Restart graphics", "", "", "Makes all that lives on the graphics card anew.", always,
        [](Desk& desk) { desk.jobs.restarts_graphics = true; }},
-      {"View", "Store view", "", "", "Keeps this view with the scene.", has_scene, store_view},
+      {"View", "Store view", "", "", "Keeps this view with the scene.", has_scene,
+       [](Desk& desk) { store_view(desk); }},
       {"Window", "History", "", "", "All steps; a click goes there.", always, toggle_tab<BottomTab::history>,
        shows_tab<BottomTab::history>},
+      {"Window", "Views", "", "", "Stored views with pictures.", always, toggle_tab<BottomTab::views>,
+       shows_tab<BottomTab::views>},
       {"Window", "Script", "", "", "The steps as lines of a script.", always, toggle_tab<BottomTab::script>,
        shows_tab<BottomTab::script>},
       {"Window", "Cost", "", "", "What accuracy costs in time, and which effects run.", always,

@@ -39,6 +39,9 @@ const Command& command_named(const std::string& title);
 /// Its first key, for tooltips; empty for none.
 std::string command_key(const std::string& title, const Desk& desk);
 
+/// Keeps the present camera with the scene: under that name, or under a new one.
+void store_view(Desk& desk, const std::string& name = "");
+
 /// The command that a key starts now, null for none.
 const Command* command_for(const KeyPress& press, const Desk& desk);
 

@@ -12,15 +12,15 @@
 #include <thread>
 #include <utility>
 
-#include "editor/document/journal.h"
+#include "editor/gui/panels/dialogs.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/fonts.h"
-#include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/number_field.h"
 #include "editor/gui/ui/widgets.h"
 #include "editor/gui/view/viewport.h"
 #include "editor/gui/window/commands.h"
 #include "editor/gui/window/desktop.h"
+#include "editor/gui/window/window_layout.h"
 
 namespace rebake {
 
@@ -31,7 +31,7 @@ namespace {
 // Frames that Dear ImGui needs after an event until hovering, popups and focus have settled.
 constexpr int frames_after_event = 4;
 
-/// Everything in the window, laid out.
+/// The loop: events, keys, frames, and what lives on the GPU.
 class EditorWindow {
  public:
   explicit EditorWindow(const std::vector<std::string>& paths)
@@ -39,7 +39,7 @@ class EditorWindow {
         kept_settings_(read_settings(settings_file_, settings_problem_)),
         tools_(make_tools()),
         graphics_(std::make_unique<Graphics>(system_, kept_settings_, tools_)),
-        lost_(lost_work()),
+        lost_(Project::lost_work()),
         desk_(kept_settings_, WindowSystem::wake) {
     begin_graphics();
     if (!settings_problem_.empty()) desk_.messages.fail(settings_problem_);
@@ -151,37 +151,6 @@ class EditorWindow {
     desk_.messages.say("The graphics were made anew; the work is as it was.");
   }
 
-  // What other editors left behind when they ended without saving, the latest first.
-  static std::vector<Project::LostWork> lost_work() {
-    std::vector<Project::LostWork> found;
-    std::error_code error;
-    for (fs::directory_iterator at(journal_folder(), error), end; !error && at != end; at.increment(error)) {
-      const fs::path& path = at->path();
-      if (path.extension() != ".journal" || Journal::in_use(path)) continue;
-      try {
-        const Journal::Contents contents = Journal::read(path);
-        std::string first;
-        for (const std::string& text : contents.entries) {
-          const nlohmann::json entry = nlohmann::json::parse(text);
-          if (first.empty() && entry.contains("edit") && entry.at("edit").contains("path"))
-            first = entry.at("edit").at("path").get<std::string>();
-        }
-        if (!contents.entries.empty()) {
-          found.push_back({path, fmt::format("{} edits, {}", contents.entries.size(), first)});
-          continue;
-        }
-        // Nothing was done there; a fresh one may be another editor's that is just starting.
-        std::error_code unknown;
-        const auto age = fs::file_time_type::clock::now() - fs::last_write_time(path, unknown);
-        if (!unknown && age > std::chrono::minutes(1)) fs::remove(path, unknown);
-      } catch (const std::exception& problem) {
-        found.push_back({path, problem.what()});
-      }
-    }
-    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.journal > b.journal; });
-    return found;
-  }
-
   // On the disk once nothing is held any more, so that they are there however the editor ends.
   void keep_settings() {
     desk_.settings.window_width = static_cast<int>(window().width() / scale_);
@@ -276,125 +245,11 @@ class EditorWindow {
     set_looks();
     window().begin_frame();
     ImGui::PushFont(fonts().text);
-    const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    if (desk_.view.alone) {
-      picture({0, 0}, screen);
-    } else {
-      lay_out(screen);
-    }
-    palette_.draw(desk_);
-    form_.draw(desk_);
-    draw_keys_sheet(desk_);
+    layout_.draw(viewport(), window().moves());
     dialogs_.draw(desk_);
     ImGui::PopFont();
     window().end_frame();
     tell();
-  }
-
-  void lay_out(const ImVec2& screen) {
-    menu();
-    const float top = menu_height_, status_line = ImGui::GetFrameHeight() + px(6);
-    const float height = screen.y - top - status_line;
-    // In a small window the picture comes first.
-    const auto s = static_cast<float>(scale_);
-    const float side = std::min(static_cast<float>(desk_.settings.side_width) * s, 0.4F * screen.x), tools = px(50);
-    const float bottom = !desk_.settings.bottom_open
-                             ? 0
-                             : std::min(static_cast<float>(desk_.settings.bottom_height) * s, 0.45F * height);
-    const float line = ImGui::GetFrameHeight() + px(14), options = std::max(line, options_height_);
-    panel(
-        "tool bar", {0, top}, {tools, height}, [&] { tool_bar(); }, {px(8), px(8)}, ImGuiWindowFlags_NoScrollbar);
-    panel(
-        "options", {tools, top}, {screen.x - tools - side, options},
-        [&] {
-          scope();
-          const announce::Part part("options");
-          viewport().tool(desk_).options(desk_);
-          options_height_ = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + px(7);
-        },
-        {px(10), px(7)}, ImGuiWindowFlags_NoScrollbar);
-    picture({tools, top + options}, {screen.x - tools - side, height - bottom - options});
-    sides({screen.x - side, top}, {side, height - bottom});
-    if (bottom > 0) panel("bottom", {tools, top + height - bottom}, {screen.x - tools, bottom}, [&] { tabs(); });
-    panel("status", {0, screen.y - status_line}, {screen.x, status_line}, [&] { status(); }, {px(10), px(3)});
-    splitter("side", {screen.x - side - px(3), top}, {px(6), height - bottom}, ImGuiMouseCursor_ResizeEW,
-             [&](const ImVec2& moved) {
-               desk_.settings.side_width =
-                   std::clamp(desk_.settings.side_width - static_cast<double>(moved.x / s), 200.0, 700.0);
-             });
-    if (bottom > 0)
-      splitter("height", {tools, top + height - bottom - px(3)}, {screen.x - tools, px(6)}, ImGuiMouseCursor_ResizeNS,
-               [&](const ImVec2& moved) {
-                 desk_.settings.bottom_height =
-                     std::clamp(desk_.settings.bottom_height - static_cast<double>(moved.y / s), 80.0, 800.0);
-               });
-  }
-
-  // The picture and what floats over it.
-  void picture(const ImVec2& at, const ImVec2& size) {
-    panel(
-        "picture", at, size, [&] { viewport().draw(desk_, window().moves()); }, {0, 0}, ImGuiWindowFlags_NoScrollbar);
-    draw_start(desk_, {at.x + size.x / 2, at.y + size.y / 2});
-    if (!desk_.view.alone) adjust_.draw(desk_, {at.x, at.y + size.y}, size);
-    draw_toasts(desk_.messages, {at.x + size.x, at.y + size.y});
-    context_menu();
-  }
-
-  void sides(const ImVec2& at, const ImVec2& size) {
-    Settings& settings = desk_.settings;
-    const float closed = px(space::heading + 26);
-    const bool both = settings.outline_open && settings.properties_open;
-    const float upper = !settings.outline_open      ? closed
-                        : !settings.properties_open ? size.y - closed
-                                                    : size.y * static_cast<float>(settings.outline_share);
-    panel("outline", at, {size.x, upper - 1}, [&] {
-      if (ui::section("Outline", settings.outline_open)) outline_.draw(desk_);
-    });
-    panel("properties", {at.x, at.y + upper}, {size.x, size.y - upper}, [&] {
-      if (ui::section("Properties", settings.properties_open)) properties_.draw(desk_);
-    });
-    if (both)
-      splitter("sides", {at.x, at.y + upper - px(3)}, {size.x, px(6)}, ImGuiMouseCursor_ResizeNS,
-               [&](const ImVec2& moved) {
-                 settings.outline_share =
-                     std::clamp(settings.outline_share + static_cast<double>(moved.y / size.y), 0.15, 0.85);
-               });
-  }
-
-  // What the tool in hand works on.
-  void scope() {
-    const ToolKind kind = desk_.tools.kind;
-    if (kind == ToolKind::pick || desk_.scene().roots.empty()) return;
-    ImGui::AlignTextToFramePadding();
-    ImGui::PushStyleColor(ImGuiCol_Text, color(theme().accent_text));
-    ImGui::TextUnformatted(ui::shortened(desk_.scope_words(), px(160)).c_str());
-    ImGui::PopStyleColor();
-    ui::tip("Works " + desk_.scope_words(), "",
-            "Tools work on the picked nodes; with none picked, on all that is visible and not locked.");
-    ImGui::SameLine(0, px(space::section));
-  }
-
-  void context_menu() {
-    if (std::exchange(desk_.asking.context, false)) ImGui::OpenPopup("context");
-    if (!ImGui::BeginPopup("context")) return;
-    const announce::Part part("context");
-    for (const char* title : {"Frame selection", "", "Duplicate", "Group", "Hide", "Show all", "Separate", "", "Grow",
-                              "Shrink", "Connected", "Invert", "", "Delete", "Remove picked nodes"}) {
-      if (*title == '\0') {
-        ImGui::Separator();
-        continue;
-      }
-      menu_item(command_named(title));
-    }
-    ImGui::EndPopup();
-  }
-
-  void menu_item(const Command& command) {
-    const bool checked = command.checked != nullptr && command.checked(desk_);
-    if (ImGui::MenuItem(command.title, command.key_of(desk_).c_str(), checked, command.enabled(desk_)))
-      command.run(desk_);
-    announce::item(command.title);
-    if (*command.help != '\0') ui::tip(command.title, "", command.help);
   }
 
   // For other programs: what is true of the frame that was just drawn.
@@ -432,178 +287,6 @@ class EditorWindow {
     return "";
   }
 
-  template <class Content>
-  void panel(const char* name, const ImVec2& at, const ImVec2& size, Content content, const ImVec2& padding = {-1, -1},
-             ImGuiWindowFlags flags = 0) {
-    ImGui::SetNextWindowPos(at);
-    ImGui::SetNextWindowSize(size);
-    if (padding.x >= 0) ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
-    ImGui::Begin(name, nullptr,
-                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
-    if (padding.x >= 0) ImGui::PopStyleVar();
-    content();
-    // Panels are told apart by a line, not by a frame around each.
-    ImGui::GetWindowDrawList()->AddLine({at.x, at.y}, {at.x + size.x, at.y}, color32(theme().border));
-    ImGui::GetWindowDrawList()->AddLine({at.x, at.y}, {at.x, at.y + size.y}, color32(theme().border));
-    ImGui::End();
-  }
-
-  template <class Moved>
-  void splitter(const char* name, const ImVec2& at, const ImVec2& size, ImGuiMouseCursor cursor, Moved moved) {
-    ImGui::SetNextWindowPos(at);
-    ImGui::SetNextWindowSize(size);
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-    ImGui::Begin(name, nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
-                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
-    ImGui::InvisibleButton("handle", size);
-    if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(cursor);
-    if (ImGui::IsItemActive()) moved(ImGui::GetIO().MouseDelta);
-    ImGui::End();
-    ImGui::PopStyleVar(2);
-  }
-
-  void menu() {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(8), px(7)});
-    if (!ImGui::BeginMainMenuBar()) {
-      ImGui::PopStyleVar();
-      return;
-    }
-    menu_height_ = ImGui::GetWindowHeight();
-    const announce::Part part("menu");
-    for (const char* name : {"File", "Edit", "Select", "Tool", "View", "Window", "Help"}) {
-      // Below the bar, however small the window: it scrolls.
-      ImGui::SetNextWindowSizeConstraints({0, 0}, {1e5F, ImGui::GetIO().DisplaySize.y - menu_height_ - px(4)});
-      const bool open = ImGui::BeginMenu(name);
-      announce::item(name);
-      if (!open) continue;
-      for (const Command& command : command_table())
-        if (command.menu == std::string_view(name)) menu_item(command);
-      if (name == std::string_view("File") && ImGui::BeginMenu("Recent", !desk_.settings.recent.empty())) {
-        const std::vector<std::string> recent = desk_.settings.recent;
-        for (const std::string& path : recent)
-          if (ImGui::MenuItem(path.c_str())) desk_.project.open({path});
-        ImGui::EndMenu();
-      }
-      if (name == std::string_view("View") && ImGui::BeginMenu("Stored views", !desk_.scene().views.empty())) {
-        for (const auto& [view, camera] : desk_.scene().views)
-          if (ImGui::MenuItem(view.c_str())) desk_.view.camera = camera;
-        ImGui::EndMenu();
-      }
-      ImGui::EndMenu();
-    }
-    ImGui::PopStyleVar();
-    ImGui::EndMainMenuBar();
-  }
-
-  void tool_bar() {
-    const announce::Part part("tool");
-    for (const ToolButton& button : tool_buttons()) {
-      if (button.begins_group) {
-        ImGui::Dummy({0, px(1)});
-        const ImVec2 at = ImGui::GetCursorScreenPos();
-        ImGui::GetWindowDrawList()->AddLine({at.x + px(5), at.y}, {at.x + px(29), at.y}, color32(theme().text, 0.15F));
-        ImGui::Dummy({0, px(1)});
-      }
-      const Command& command = command_named(button.command);
-      const bool taken = desk_.tools.kind == button.kind;
-      if (ui::icon_button(button.icon, command.title, taken)) desk_.tools.kind = button.kind;
-      if (button.kind == ToolKind::lasso) draw_lasso(color32(taken ? theme().on_accent : theme().text));
-      ui::tip(command.title, command.key_of(desk_), command.help);
-    }
-  }
-
-  // No font here has a lasso: a loop of dashes with an end that hangs.
-  static void draw_lasso(ImU32 color) {
-    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    const ImVec2 middle{(low.x + high.x) / 2, (low.y + high.y) / 2 - px(2)};
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    constexpr int dashes = 9;
-    for (int k = 0; k < dashes; ++k) {
-      ImVec2 arc[4];
-      for (int i = 0; i < 4; ++i) {
-        const float angle = 6.2832F * (static_cast<float>(k) + 0.2F * static_cast<float>(i)) / dashes + 0.5F;
-        arc[i] = {middle.x + px(8.5F) * std::cos(angle), middle.y + px(6) * std::sin(angle)};
-      }
-      list.AddPolyline(arc, 4, color, 0, px(1.8F));
-    }
-    list.AddBezierQuadratic({middle.x - px(5), middle.y + px(5)}, {middle.x - px(7), middle.y + px(9)},
-                            {middle.x - px(1), middle.y + px(11)}, color, px(1.8F));
-  }
-
-  void tabs() {
-    const announce::Part part("tabs");
-    int tab = static_cast<int>(desk_.settings.bottom_tab);
-    if (ui::choice("tabs", tab, {"History", "Script", "Cost", "Messages"}))
-      desk_.settings.bottom_tab = static_cast<BottomTab>(tab);
-    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - px(24));
-    if (ui::quiet_icon(icons::close, "Close")) desk_.settings.bottom_open = false;
-    ImGui::BeginChild("content");
-    switch (desk_.settings.bottom_tab) {
-      case BottomTab::history:
-        history_.draw(desk_);
-        break;
-      case BottomTab::script:
-        script_.draw(desk_);
-        break;
-      case BottomTab::cost:
-        draw_costs(desk_.jobs, desk_.view, *desk_.now, viewport().report(), viewport().each_pass());
-        break;
-      default:
-        draw_log(desk_.messages);
-    }
-    ImGui::EndChild();
-  }
-
-  void status() {
-    const announce::Part part("status");
-    ImGui::AlignTextToFramePadding();
-    if (desk_.jobs.turntable) {
-      ImGui::Text("Turntable: picture %d of %d (Esc ends it)", desk_.jobs.turntable->next + 1,
-                  desk_.jobs.turntable->count);
-    } else if (desk_.jobs.worker.busy()) {
-      const Worker::Status now = desk_.jobs.worker.status();
-      if (ui::quiet_icon(icons::close, "Stop")) desk_.jobs.worker.cancel();
-      ui::tip("Stop", "Esc");
-      ImGui::SameLine();
-      ImGui::ProgressBar(static_cast<float>(now.share), {px(160), px(6)}, "");
-      ImGui::SameLine();
-      std::string what = now.what.empty() ? now.title : now.title + ": " + now.what;
-      std::replace(what.begin(), what.end(), '_', ' ');
-      ImGui::TextUnformatted(what.c_str());
-    } else if (!desk_.status.empty()) {
-      ImGui::TextUnformatted(ui::shortened(desk_.status, 0.5F * ImGui::GetWindowWidth()).c_str());
-    } else {
-      ImGui::TextDisabled("Middle button turns, wheel zooms. F1 shows all keys, Ctrl+P finds any command.");
-    }
-    // What is selected, and how; and what can be opened below.
-    std::string selected;
-    if (desk_.selected_triangles() > 0)
-      selected = fmt::format("{} selected{}", desk_.selected_triangles(),
-                             desk_.seen_last() != nullptr ? ", back sides not" : "");
-    const float buttons = px(4 * 30);
-    ImGui::SameLine(ImGui::GetWindowWidth() - buttons - px(20) - ImGui::CalcTextSize(selected.c_str()).x);
-    ImGui::TextDisabled("%s", selected.c_str());
-    ImGui::SameLine(ImGui::GetWindowWidth() - buttons);
-    struct Tab {
-      BottomTab tab;
-      const char* icon;
-      const char* command;
-    };
-    for (const Tab& one :
-         {Tab{BottomTab::history, icons::history, "History"}, Tab{BottomTab::script, icons::script, "Script"},
-          Tab{BottomTab::cost, icons::chart_line, "Cost"}, Tab{BottomTab::log, icons::message_text, "Messages"}}) {
-      const Command& command = command_named(one.command);
-      const bool open = desk_.settings.bottom_open && desk_.settings.bottom_tab == one.tab;
-      if (ui::quiet_icon(one.icon, one.command, open)) command.run(desk_);
-      ui::tip(command.title, command.key_of(desk_), command.help);
-      ImGui::SameLine(0, px(6));
-    }
-  }
-
   void set_title() {
     std::string title = "Rebake";
     if (!desk_.project.path.empty()) title = desk_.project.path.filename().string() + " - " + title;
@@ -619,17 +302,9 @@ class EditorWindow {
   std::unique_ptr<Graphics> graphics_;
   std::vector<Project::LostWork> lost_;  ///< looked for before this editor's own journal is begun
   Desk desk_;
-  OutlinePanel outline_;
-  PropertiesPanel properties_;
-  AdjustPanel adjust_;
-  HistoryPanel history_;
-  ScriptPanel script_;
-  PalettePanel palette_;
-  EditForm form_;
+  WindowLayout layout_{desk_};
   Dialogs dialogs_;
-  double scale_ = 1;          ///< pixels of the screen a pixel of a plain one
-  float options_height_ = 0;  ///< that the tool's options took in the last frame
-  float menu_height_ = 0;
+  double scale_ = 1;  ///< pixels of the screen a pixel of a plain one
   struct WantedLooks {
     bool dark;
     double scale;

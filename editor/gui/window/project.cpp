@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "editor/commands/export.h"
 #include "editor/commands/save.h"
+#include "editor/document/journal.h"
 #include "editor/document/project.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
@@ -32,6 +34,36 @@ void keep_journal(Document& document) {
 }
 
 }  // namespace
+
+std::vector<Project::LostWork> Project::lost_work() {
+  std::vector<LostWork> found;
+  std::error_code error;
+  for (fs::directory_iterator at(journal_folder(), error), end; !error && at != end; at.increment(error)) {
+    const fs::path& path = at->path();
+    if (path.extension() != ".journal" || Journal::in_use(path)) continue;
+    try {
+      const Journal::Contents contents = Journal::read(path);
+      std::string first;
+      for (const std::string& text : contents.entries) {
+        const nlohmann::json entry = nlohmann::json::parse(text);
+        if (first.empty() && entry.contains("edit") && entry.at("edit").contains("path"))
+          first = entry.at("edit").at("path").get<std::string>();
+      }
+      if (!contents.entries.empty()) {
+        found.push_back({path, fmt::format("{} edits, {}", contents.entries.size(), first)});
+        continue;
+      }
+      // Nothing was done there; a fresh one may be another editor's that is just starting.
+      std::error_code unknown;
+      const auto age = fs::file_time_type::clock::now() - fs::last_write_time(path, unknown);
+      if (!unknown && age > std::chrono::minutes(1)) fs::remove(path, unknown);
+    } catch (const std::exception& problem) {
+      found.push_back({path, problem.what()});
+    }
+  }
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.journal > b.journal; });
+  return found;
+}
 
 void Project::begin_journal() {
   worker_.start("journal", [](Session& session) { keep_journal(session.document); });
@@ -166,10 +198,11 @@ void Project::save_scene(const fs::path& folder) {
   });
 }
 
-void Project::export_to(const fs::path& folder) {
-  worker_.start("export", [folder](Session& session) {
+void Project::export_to(const fs::path& folder, const std::vector<NodeRef>& nodes) {
+  worker_.start("export", [folder, nodes](Session& session) {
     ExportAction action;
     action.out = folder.string();
+    action.nodes = nodes;
     run(session, action);
   });
 }

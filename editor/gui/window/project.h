@@ -30,6 +30,8 @@ class Project {
     std::string what;  ///< how much, and of what
   };
   std::vector<LostWork> recoverable;
+  /// What other editors left behind when they ended without saving, the latest first.
+  static std::vector<LostWork> lost_work();
   /// Sources that a project or journal wants, and that are not where they were.
   struct Relinking {
     struct Source {
@@ -54,7 +56,8 @@ class Project {
   void relink(bool go_on_without);
   void save(const std::filesystem::path& file);
   void save_scene(const std::filesystem::path& folder);
-  void export_to(const std::filesystem::path& folder);
+  /// Only `nodes`, where there are some.
+  void export_to(const std::filesystem::path& folder, const std::vector<NodeRef>& nodes = {});
   void save_script(const std::filesystem::path& file);
   void run_script(const std::filesystem::path& file);
   /// Whether there is something that no file holds: neither the project nor the sources.

@@ -14,6 +14,7 @@ using nlohmann::json;
 
 NLOHMANN_JSON_SERIALIZE_ENUM(Looks, {{Looks::dark, "dark"}, {Looks::light, "light"}, {Looks::system, "system"}})
 NLOHMANN_JSON_SERIALIZE_ENUM(BottomTab, {{BottomTab::history, "history"},
+                                         {BottomTab::views, "views"},
                                          {BottomTab::script, "script"},
                                          {BottomTab::cost, "cost"},
                                          {BottomTab::log, "messages"}})
@@ -61,6 +62,7 @@ void Settings::remember(const std::string& path) {
 }
 
 fs::path config_folder() { return folder_of_user("XDG_CONFIG_HOME", ".config") / "rebake"; }
+fs::path cache_folder() { return folder_of_user("XDG_CACHE_HOME", ".cache") / "rebake"; }
 fs::path journal_folder() { return folder_of_user("XDG_STATE_HOME", ".local/state") / "rebake" / "journals"; }
 
 Settings read_settings(const fs::path& file, std::string& problem) {

@@ -7,7 +7,7 @@
 namespace rebake {
 
 enum class Looks { dark, light, system };
-enum class BottomTab { history, script, cost, log };
+enum class BottomTab { history, views, script, cost, log };
 
 /// What the editor remembers of a person, as JSON in the user's configuration folder.
 struct Settings {
@@ -37,6 +37,8 @@ struct Settings {
 
 /// $XDG_CONFIG_HOME/rebake, by default ~/.config/rebake.
 std::filesystem::path config_folder();
+/// What can be made anew: $XDG_CACHE_HOME/rebake, by default ~/.cache/rebake.
+std::filesystem::path cache_folder();
 /// Where journals of open editors lie: $XDG_STATE_HOME/rebake/journals, by default ~/.local/state/rebake/journals.
 std::filesystem::path journal_folder();
 

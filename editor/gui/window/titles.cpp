@@ -18,7 +18,9 @@
 #include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/nodes/merge.h"
+#include "editor/edits/nodes/remove_view.h"
 #include "editor/edits/nodes/rename.h"
+#include "editor/edits/nodes/rename_view.h"
 #include "editor/edits/nodes/reorder.h"
 #include "editor/edits/nodes/transform.h"
 #include "editor/edits/nodes/view.h"
@@ -122,6 +124,9 @@ std::string verb_of(const Edit& edit) {
 std::string special(const Edit& edit) {
   if (const auto* import = edit.as<Import>()) return "Imported " + folder_title(import->path);
   if (const auto* view = edit.as<StoreView>()) return "Stored the view \"" + view->name + "\"";
+  if (const auto* view = edit.as<RenameView>())
+    return "Renamed the view \"" + view->name + "\" to \"" + view->to + "\"";
+  if (const auto* view = edit.as<RemoveView>()) return "Forgot the view \"" + view->name + "\"";
   if (const auto* rename = edit.as<Rename>()) return "Renamed to \"" + rename->name + "\"";
   return "";
 }

@@ -1,0 +1,19 @@
+#include "editor/edits/nodes/remove_view.h"
+
+#include "editor/edits/describe.h"
+#include "editor/edits/stored_view.h"
+
+namespace rebake {
+
+Scene apply(const Scene& scene, const RemoveView& edit) {
+  stored_view(scene, edit.name, "name");
+  Scene result = scene;
+  result.views.erase(edit.name);
+  return result;
+}
+
+REBAKE_DESCRIBE_EDIT(
+    RemoveView, "Forgets a stored view.",
+    (auto& edit, auto& visit) { visit("name", edit.name, Need::required, "name of the view"); })
+
+}  // namespace rebake

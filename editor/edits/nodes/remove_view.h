@@ -1,0 +1,17 @@
+#pragma once
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+/// Forgets a stored view.
+struct RemoveView {
+  static constexpr const char* op = "remove_view";
+  std::string name;
+};
+template <>
+const EditType& edit_type<RemoveView>();
+
+Scene apply(const Scene& scene, const RemoveView& edit);
+
+}  // namespace rebake

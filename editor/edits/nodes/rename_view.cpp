@@ -1,0 +1,25 @@
+#include "editor/edits/nodes/rename_view.h"
+
+#include "editor/edits/describe.h"
+#include "editor/edits/stored_view.h"
+
+namespace rebake {
+
+Scene apply(const Scene& scene, const RenameView& edit) {
+  const Camera camera = stored_view(scene, edit.name, "name");
+  if (edit.to.empty()) throw FieldError("to", "is empty");
+  if (edit.to != edit.name && scene.views.contains(edit.to))
+    throw FieldError("to", "\"" + edit.to + "\" is the name of another view already");
+  Scene result = scene;
+  result.views.erase(edit.name);
+  result.views[edit.to] = camera;
+  return result;
+}
+
+REBAKE_DESCRIBE_EDIT(
+    RenameView, "Gives a stored view another name.", (auto& edit, auto& visit) {
+      visit("name", edit.name, Need::required, "name of the view");
+      visit("to", edit.to, Need::required, "new name, not in use yet");
+    })
+
+}  // namespace rebake

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "editor/gui/panels/file_dialog.h"
+
+namespace rebake {
+
+/// Asks before work is lost, and for paths: one question at a time, the most urgent first.
+class Dialogs {
+ public:
+  void draw(Desk& desk);
+  /// Answers the question that is open with "not now"; false when none is.
+  bool escape(Desk& desk);
+  /// Closes what Dear ImGui has open, with the next frame.
+  void close_popups() { closes_ = true; }
+  /// True once the window may close.
+  bool may_quit() const { return may_quit_; }
+
+ private:
+  void draw_recovery(Project& project);
+  void draw_quitting(Desk& desk);
+  void draw_replacing(Desk& desk);
+  void draw_relinking(Project& project);
+  FileDialog files_;
+  bool may_quit_ = false, closes_ = false;
+};
+
+}  // namespace rebake

@@ -1,0 +1,84 @@
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "editor/edits/nodes/remove_view.h"
+#include "editor/edits/nodes/rename_view.h"
+#include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/icons.h"
+#include "editor/gui/ui/widgets.h"
+#include "editor/gui/window/commands.h"
+
+namespace rebake {
+
+namespace {
+
+void look_from(Desk& desk, const std::string& name) { desk.view.camera = desk.scene().views.at(name); }
+
+}  // namespace
+
+void ViewsPanel::draw_name(Desk& desk, const std::string& name, float width) {
+  if (renaming_ != name) {
+    ImGui::TextUnformatted(ui::shortened(name, width - px(52)).c_str());
+    return;
+  }
+  if (std::exchange(focus_name_, false)) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(width - px(52));
+  ImGui::InputText("##name", &name_, ImGuiInputTextFlags_AutoSelectAll);
+  if (!ImGui::IsItemDeactivated()) return;
+  renaming_.clear();
+  if (name_ != name && !name_.empty()) desk.edit(RenameView{name, name_});
+}
+
+void ViewsPanel::draw_card(Desk& desk, Thumbnails& thumbnails, const std::string& name) {
+  const ImVec2 size{px(160), px(100)};
+  const announce::Part part(name);
+  ImGui::PushID(name.c_str());
+  ImGui::BeginGroup();
+  const ImVec2 at = ImGui::GetCursorScreenPos(), end{at.x + size.x, at.y + size.y};
+  const bool clicked = ImGui::InvisibleButton("picture", size);
+  announce::item("picture");
+  const bool hovered = ImGui::IsItemHovered(), here = desk.view.camera == desk.scene().views.at(name);
+  if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+    renaming_ = name_ = name;
+    focus_name_ = true;
+  } else if (clicked) {
+    look_from(desk, name);
+  }
+  ui::tip(name, "", "Click looks from there, double click renames.");
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, end, color32(theme().field), px(4));
+  if (const unsigned texture = thumbnails.of_view(desk.scene(), name))
+    list.AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), at, end, {0, 0}, {1, 1},
+                         IM_COL32_WHITE, px(4));
+  if (hovered || here) list.AddRect(at, end, color32(theme().accent), px(4), 0, px(2));
+  draw_name(desk, name, size.x);
+  ImGui::SameLine(size.x - px(46));
+  if (ui::quiet_icon(icons::camera, "Store here")) store_view(desk, name);
+  ui::tip("Store here", "", "This view takes the place of " + name + ".");
+  ImGui::SameLine(size.x - px(22));
+  if (ui::quiet_icon(icons::trash, "Delete")) desk.edit(RemoveView{name});
+  ui::tip("Delete", "", "Forgets " + name + "; undo brings it back.");
+  ImGui::EndGroup();
+  ImGui::PopID();
+}
+
+void ViewsPanel::draw(Desk& desk, Thumbnails& thumbnails) {
+  const announce::Part part("views");
+  if (desk.scene().roots.empty()) {
+    ui::muted("Nothing is open yet.");
+    return;
+  }
+  if (ui::button("Store view")) store_view(desk);
+  ui::hint("Views are kept with the scene. Click one to look from there.");
+  const float card = px(160) + px(14), room = ImGui::GetContentRegionAvail().x;
+  const int across = std::max(1, static_cast<int>(room / card));
+  int number = 0;
+  for (const auto& [name, camera] : desk.scene().views) {
+    if (number % across != 0) ImGui::SameLine(0, px(14));
+    draw_card(desk, thumbnails, name);
+    ++number;
+  }
+}
+
+}  // namespace rebake

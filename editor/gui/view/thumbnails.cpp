@@ -1,0 +1,64 @@
+#include "editor/gui/view/thumbnails.h"
+
+#include <set>
+
+#include "editor/commands/views.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/hash.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path picture_file(const std::string& path) {
+  return cache_folder() / "pictures" / (hash_text(content_hash(path)) + ".png");
+}
+
+}  // namespace
+
+unsigned Thumbnails::of_view(const Scene& scene, const std::string& name) {
+  const auto found = views_.find(name);
+  const Camera& camera = scene.views.at(name);
+  if (found == views_.end() || !(found->second.camera == camera) || found->second.roots != scene.roots) wanted_ = name;
+  return found == views_.end() ? 0 : found->second.picture.name();
+}
+
+void Thumbnails::draw_one(Renderer& renderer, const Scene& scene) {
+  const std::string name = *std::exchange(wanted_, std::nullopt);
+  const auto found = scene.views.find(name);
+  if (found == scene.views.end()) return;
+  View view;
+  view.width = width;
+  view.height = height;
+  view.camera = fitted(scene, found->second, static_cast<double>(width) / height);
+  views_.insert_or_assign(name, OfView{found->second, scene.roots, PictureTexture(renderer.render(scene, view))});
+}
+
+unsigned Thumbnails::of_file(const std::string& path) {
+  auto found = files_.find(path);
+  if (found == files_.end()) {
+    found = files_.emplace(path, std::nullopt).first;
+    std::error_code unknown;
+    if (const fs::path file = picture_file(path); fs::is_regular_file(file, unknown)) try {
+        found->second.emplace(read_image(file));
+      } catch (const Error&) {
+        fs::remove(file, unknown);  // damaged: made anew when the scene is opened again
+      }
+  }
+  return found->second ? found->second->name() : 0;
+}
+
+void Thumbnails::keep(const std::string& path, const std::vector<std::string>& recent, const Image& seen) {
+  const fs::path file = picture_file(path);
+  fs::create_directories(file.parent_path());
+  std::set<fs::path> wanted = {file};
+  for (const std::string& one : recent) wanted.insert(picture_file(one));
+  for (const fs::directory_entry& entry : fs::directory_iterator(file.parent_path()))
+    if (!wanted.contains(entry.path())) fs::remove(entry.path());
+  write_png(thumbnail_of(seen, width, height), file, {});
+  files_.erase(path);
+}
+
+}  // namespace rebake

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "editor/gui/window/desk.h"
+#include "render/picture.h"
+#include "render/picture_texture.h"
+
+namespace rebake {
+
+/// Small pictures of stored views, and of what was opened before.
+class Thumbnails {
+ public:
+  static constexpr int width = 192, height = 120;
+
+  /// A texture of what a stored view shows; 0 while there is none yet. One that is out of date is shown until
+  /// draw_one() has made it anew.
+  unsigned of_view(const Scene& scene, const std::string& name);
+  /// A texture of what was seen of a file or folder last; 0 where nothing is kept of it.
+  unsigned of_file(const std::string& path);
+
+  /// Whether draw_one() has something to do.
+  bool wants() const { return wanted_.has_value(); }
+  /// Draws what was asked for last. The renderer's picture is another one then.
+  void draw_one(Renderer& renderer, const Scene& scene);
+  /// Keeps a picture of what is seen of a file or folder, and no longer those of what is not among `recent`.
+  void keep(const std::string& path, const std::vector<std::string>& recent, const Image& seen);
+
+ private:
+  struct OfView {
+    Camera camera;
+    std::vector<NodePtr> roots;
+    PictureTexture picture;
+  };
+  std::map<std::string, OfView> views_;
+  std::map<std::string, std::optional<PictureTexture>> files_;
+  std::optional<std::string> wanted_;  ///< a view's name
+};
+
+}  // namespace rebake

@@ -1,0 +1,313 @@
+#include "editor/gui/window/window_layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/icons.h"
+#include "editor/gui/ui/widgets.h"
+
+namespace rebake {
+
+namespace {
+
+template <class Content>
+void panel(const char* name, const ImVec2& at, const ImVec2& size, Content content, const ImVec2& padding = {-1, -1},
+           ImGuiWindowFlags flags = 0) {
+  ImGui::SetNextWindowPos(at);
+  ImGui::SetNextWindowSize(size);
+  if (padding.x >= 0) ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
+  if (padding.x >= 0) ImGui::PopStyleVar();
+  content();
+  // Panels are told apart by a line, not by a frame around each.
+  ImGui::GetWindowDrawList()->AddLine({at.x, at.y}, {at.x + size.x, at.y}, color32(theme().border));
+  ImGui::GetWindowDrawList()->AddLine({at.x, at.y}, {at.x, at.y + size.y}, color32(theme().border));
+  ImGui::End();
+}
+
+template <class Moved>
+void splitter(const char* name, const ImVec2& at, const ImVec2& size, ImGuiMouseCursor cursor, Moved moved) {
+  ImGui::SetNextWindowPos(at);
+  ImGui::SetNextWindowSize(size);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::InvisibleButton("handle", size);
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(cursor);
+  if (ImGui::IsItemActive()) moved(ImGui::GetIO().MouseDelta);
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+}
+
+// No font here has a lasso: a loop of dashes with an end that hangs.
+void draw_lasso(ImU32 color) {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const ImVec2 middle{(low.x + high.x) / 2, (low.y + high.y) / 2 - px(2)};
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  constexpr int dashes = 9;
+  for (int k = 0; k < dashes; ++k) {
+    ImVec2 arc[4];
+    for (int i = 0; i < 4; ++i) {
+      const float angle = 6.2832F * (static_cast<float>(k) + 0.2F * static_cast<float>(i)) / dashes + 0.5F;
+      arc[i] = {middle.x + px(8.5F) * std::cos(angle), middle.y + px(6) * std::sin(angle)};
+    }
+    list.AddPolyline(arc, 4, color, 0, px(1.8F));
+  }
+  list.AddBezierQuadratic({middle.x - px(5), middle.y + px(5)}, {middle.x - px(7), middle.y + px(9)},
+                          {middle.x - px(1), middle.y + px(11)}, color, px(1.8F));
+}
+
+}  // namespace
+
+void WindowLayout::draw(Viewport& viewport, const std::vector<std::array<double, 2>>& moves) {
+  viewport_ = &viewport;
+  moves_ = &moves;
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  if (desk_.view.alone)
+    picture({0, 0}, screen);
+  else
+    lay_out(screen);
+  palette_.draw(desk_);
+  form_.draw(desk_);
+  draw_keys_sheet(desk_);
+}
+
+void WindowLayout::lay_out(const ImVec2& screen) {
+  menu();
+  const float top = menu_height_, status_line = ImGui::GetFrameHeight() + px(6);
+  const float height = screen.y - top - status_line;
+  // In a small window the picture comes first.
+  const auto s = px(1);
+  const float side = std::min(static_cast<float>(desk_.settings.side_width) * s, 0.4F * screen.x), tools = px(50);
+  const float bottom =
+      !desk_.settings.bottom_open ? 0 : std::min(static_cast<float>(desk_.settings.bottom_height) * s, 0.45F * height);
+  const float line = ImGui::GetFrameHeight() + px(14), options = std::max(line, options_height_);
+  panel(
+      "tool bar", {0, top}, {tools, height}, [&] { tool_bar(); }, {px(8), px(8)}, ImGuiWindowFlags_NoScrollbar);
+  panel(
+      "options", {tools, top}, {screen.x - tools - side, options},
+      [&] {
+        scope();
+        const announce::Part part("options");
+        viewport_->tool(desk_).options(desk_);
+        options_height_ = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + px(7);
+      },
+      {px(10), px(7)}, ImGuiWindowFlags_NoScrollbar);
+  picture({tools, top + options}, {screen.x - tools - side, height - bottom - options});
+  sides({screen.x - side, top}, {side, height - bottom});
+  if (bottom > 0) panel("bottom", {tools, top + height - bottom}, {screen.x - tools, bottom}, [&] { tabs(); });
+  panel("status", {0, screen.y - status_line}, {screen.x, status_line}, [&] { status(); }, {px(10), px(3)});
+  splitter("side", {screen.x - side - px(3), top}, {px(6), height - bottom}, ImGuiMouseCursor_ResizeEW,
+           [&](const ImVec2& moved) {
+             desk_.settings.side_width =
+                 std::clamp(desk_.settings.side_width - static_cast<double>(moved.x / s), 200.0, 700.0);
+           });
+  if (bottom > 0)
+    splitter("height", {tools, top + height - bottom - px(3)}, {screen.x - tools, px(6)}, ImGuiMouseCursor_ResizeNS,
+             [&](const ImVec2& moved) {
+               desk_.settings.bottom_height =
+                   std::clamp(desk_.settings.bottom_height - static_cast<double>(moved.y / s), 80.0, 800.0);
+             });
+}
+
+// The picture and what floats over it.
+void WindowLayout::picture(const ImVec2& at, const ImVec2& size) {
+  panel(
+      "picture", at, size, [&] { viewport_->draw(desk_, *moves_); }, {0, 0}, ImGuiWindowFlags_NoScrollbar);
+  draw_start(desk_, viewport_->thumbnails(), {at.x + size.x / 2, at.y + size.y / 2});
+  if (!desk_.view.alone) adjust_.draw(desk_, {at.x, at.y + size.y}, size);
+  draw_toasts(desk_.messages, {at.x + size.x, at.y + size.y});
+  context_menu();
+}
+
+void WindowLayout::sides(const ImVec2& at, const ImVec2& size) {
+  Settings& settings = desk_.settings;
+  const float closed = px(space::heading + 26);
+  const bool both = settings.outline_open && settings.properties_open;
+  const float upper = !settings.outline_open      ? closed
+                      : !settings.properties_open ? size.y - closed
+                                                  : size.y * static_cast<float>(settings.outline_share);
+  panel("outline", at, {size.x, upper - 1}, [&] {
+    if (ui::section("Outline", settings.outline_open)) outline_.draw(desk_);
+  });
+  panel("properties", {at.x, at.y + upper}, {size.x, size.y - upper}, [&] {
+    if (ui::section("Properties", settings.properties_open)) properties_.draw(desk_);
+  });
+  if (both)
+    splitter("sides", {at.x, at.y + upper - px(3)}, {size.x, px(6)}, ImGuiMouseCursor_ResizeNS,
+             [&](const ImVec2& moved) {
+               settings.outline_share =
+                   std::clamp(settings.outline_share + static_cast<double>(moved.y / size.y), 0.15, 0.85);
+             });
+}
+
+// What the tool in hand works on.
+void WindowLayout::scope() {
+  const ToolKind kind = desk_.tools.kind;
+  if (kind == ToolKind::pick || desk_.scene().roots.empty()) return;
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushStyleColor(ImGuiCol_Text, color(theme().accent_text));
+  ImGui::TextUnformatted(ui::shortened(desk_.scope_words(), px(160)).c_str());
+  ImGui::PopStyleColor();
+  ui::tip("Works " + desk_.scope_words(), "",
+          "Tools work on the picked nodes; with none picked, on all that is visible and not locked.");
+  ImGui::SameLine(0, px(space::section));
+}
+
+void WindowLayout::context_menu() {
+  if (std::exchange(desk_.asking.context, false)) ImGui::OpenPopup("context");
+  if (!ImGui::BeginPopup("context")) return;
+  const announce::Part part("context");
+  for (const char* title : {"Frame selection", "", "Duplicate", "Group", "Hide", "Show all", "Separate", "", "Grow",
+                            "Shrink", "Connected", "Invert", "", "Delete", "Remove picked nodes"}) {
+    if (*title == '\0') {
+      ImGui::Separator();
+      continue;
+    }
+    menu_item(command_named(title));
+  }
+  ImGui::EndPopup();
+}
+
+void WindowLayout::menu_item(const Command& command) {
+  const bool checked = command.checked != nullptr && command.checked(desk_);
+  if (ImGui::MenuItem(command.title, command.key_of(desk_).c_str(), checked, command.enabled(desk_)))
+    command.run(desk_);
+  announce::item(command.title);
+  if (*command.help != '\0') ui::tip(command.title, "", command.help);
+}
+
+void WindowLayout::menu() {
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(8), px(7)});
+  if (!ImGui::BeginMainMenuBar()) {
+    ImGui::PopStyleVar();
+    return;
+  }
+  menu_height_ = ImGui::GetWindowHeight();
+  const announce::Part part("menu");
+  for (const char* name : {"File", "Edit", "Select", "Tool", "View", "Window", "Help"}) {
+    // Below the bar, however small the window: it scrolls.
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {1e5F, ImGui::GetIO().DisplaySize.y - menu_height_ - px(4)});
+    const bool open = ImGui::BeginMenu(name);
+    announce::item(name);
+    if (!open) continue;
+    for (const Command& command : command_table())
+      if (command.menu == std::string_view(name)) menu_item(command);
+    if (name == std::string_view("File") && ImGui::BeginMenu("Recent", !desk_.settings.recent.empty())) {
+      const std::vector<std::string> recent = desk_.settings.recent;
+      for (const std::string& path : recent)
+        if (ImGui::MenuItem(path.c_str())) desk_.project.open({path});
+      ImGui::EndMenu();
+    }
+    if (name == std::string_view("View") && ImGui::BeginMenu("Stored views", !desk_.scene().views.empty())) {
+      for (const auto& [view, camera] : desk_.scene().views)
+        if (ImGui::MenuItem(view.c_str())) desk_.view.camera = camera;
+      ImGui::EndMenu();
+    }
+    ImGui::EndMenu();
+  }
+  ImGui::PopStyleVar();
+  ImGui::EndMainMenuBar();
+}
+
+void WindowLayout::tool_bar() {
+  const announce::Part part("tool");
+  for (const ToolButton& button : tool_buttons()) {
+    if (button.begins_group) {
+      ImGui::Dummy({0, px(1)});
+      const ImVec2 at = ImGui::GetCursorScreenPos();
+      ImGui::GetWindowDrawList()->AddLine({at.x + px(5), at.y}, {at.x + px(29), at.y}, color32(theme().text, 0.15F));
+      ImGui::Dummy({0, px(1)});
+    }
+    const Command& command = command_named(button.command);
+    const bool taken = desk_.tools.kind == button.kind;
+    if (ui::icon_button(button.icon, command.title, taken)) desk_.tools.kind = button.kind;
+    if (button.kind == ToolKind::lasso) draw_lasso(color32(taken ? theme().on_accent : theme().text));
+    ui::tip(command.title, command.key_of(desk_), command.help);
+  }
+}
+
+void WindowLayout::tabs() {
+  const announce::Part part("tabs");
+  int tab = static_cast<int>(desk_.settings.bottom_tab);
+  if (ui::choice("tabs", tab, {"History", "Views", "Script", "Cost", "Messages"}))
+    desk_.settings.bottom_tab = static_cast<BottomTab>(tab);
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - px(24));
+  if (ui::quiet_icon(icons::close, "Close")) desk_.settings.bottom_open = false;
+  ImGui::BeginChild("content");
+  switch (desk_.settings.bottom_tab) {
+    case BottomTab::history:
+      history_.draw(desk_);
+      break;
+    case BottomTab::views:
+      views_.draw(desk_, viewport_->thumbnails());
+      break;
+    case BottomTab::script:
+      script_.draw(desk_);
+      break;
+    case BottomTab::cost:
+      draw_costs(desk_.jobs, desk_.view, *desk_.now, viewport_->report(), viewport_->each_pass());
+      break;
+    default:
+      draw_log(desk_.messages);
+  }
+  ImGui::EndChild();
+}
+
+void WindowLayout::status() {
+  const announce::Part part("status");
+  ImGui::AlignTextToFramePadding();
+  if (desk_.jobs.turntable) {
+    ImGui::Text("Turntable: picture %d of %d (Esc ends it)", desk_.jobs.turntable->next + 1,
+                desk_.jobs.turntable->count);
+  } else if (desk_.jobs.worker.busy()) {
+    const Worker::Status now = desk_.jobs.worker.status();
+    if (ui::quiet_icon(icons::close, "Stop")) desk_.jobs.worker.cancel();
+    ui::tip("Stop", "Esc");
+    ImGui::SameLine();
+    ImGui::ProgressBar(static_cast<float>(now.share), {px(160), px(6)}, "");
+    ImGui::SameLine();
+    std::string what = now.what.empty() ? now.title : now.title + ": " + now.what;
+    std::replace(what.begin(), what.end(), '_', ' ');
+    ImGui::TextUnformatted(what.c_str());
+  } else if (!desk_.status.empty()) {
+    ImGui::TextUnformatted(ui::shortened(desk_.status, 0.5F * ImGui::GetWindowWidth()).c_str());
+  } else {
+    ImGui::TextDisabled("Middle button turns, wheel zooms. F1 shows all keys, Ctrl+P finds any command.");
+  }
+  // What is selected, and how; and what can be opened below.
+  std::string selected;
+  if (desk_.selected_triangles() > 0)
+    selected = fmt::format("{} selected{}", desk_.selected_triangles(),
+                           desk_.seen_last() != nullptr ? ", back sides not" : "");
+  const float buttons = px(5 * 30);
+  ImGui::SameLine(ImGui::GetWindowWidth() - buttons - px(20) - ImGui::CalcTextSize(selected.c_str()).x);
+  ImGui::TextDisabled("%s", selected.c_str());
+  ImGui::SameLine(ImGui::GetWindowWidth() - buttons);
+  struct Tab {
+    BottomTab tab;
+    const char* icon;
+    const char* command;
+  };
+  for (const Tab& one :
+       {Tab{BottomTab::history, icons::history, "History"}, Tab{BottomTab::views, icons::camera, "Views"},
+        Tab{BottomTab::script, icons::script, "Script"}, Tab{BottomTab::cost, icons::chart_line, "Cost"},
+        Tab{BottomTab::log, icons::message_text, "Messages"}}) {
+    const Command& command = command_named(one.command);
+    const bool open = desk_.settings.bottom_open && desk_.settings.bottom_tab == one.tab;
+    if (ui::quiet_icon(one.icon, one.command, open)) command.run(desk_);
+    ui::tip(command.title, command.key_of(desk_), command.help);
+    ImGui::SameLine(0, px(6));
+  }
+}
+
+}  // namespace rebake
