@@ -117,5 +117,39 @@ TEST(Previews, OfManyTheLatestIsMade) {
   EXPECT_FALSE(previews.take()) << "what cannot be done is no preview";
 }
 
+TEST(Previews, ABetterOneFollowsWhileNothingElseIsAskedFor) {
+  const auto numbered = [](std::uint64_t number) {
+    Scene scene;
+    scene.next_id = number;
+    return scene;
+  };
+  Previews previews([] {});
+  std::atomic<bool> refining = false;
+  previews.request(
+      {}, [&](const Progress&) { return numbered(1); },
+      [&](const Progress&) {
+        refining = true;
+        while (refining) std::this_thread::yield();
+        return numbered(2);
+      });
+  while (!refining) std::this_thread::yield();
+  EXPECT_EQ(previews.take()->scene.next_id, 1U) << "it is shown while the better one is made";
+  refining = false;
+  while (previews.busy()) std::this_thread::yield();
+  EXPECT_EQ(previews.take()->scene.next_id, 2U);
+  // What is asked for meanwhile stops it.
+  previews.request(
+      {}, [&](const Progress&) { return numbered(3); },
+      [&](const Progress& progress) {
+        refining = true;
+        for (;;) progress.at("waiting", 0);
+        return numbered(4);
+      });
+  while (!refining) std::this_thread::yield();
+  previews.request({}, [&](const Progress&) { return numbered(5); });
+  while (previews.busy()) std::this_thread::yield();
+  EXPECT_EQ(previews.take()->scene.next_id, 5U);
+}
+
 }  // namespace
 }  // namespace rebake::test

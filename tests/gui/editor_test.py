@@ -147,6 +147,33 @@ class EditorTest(unittest.TestCase):
         self.assertFalse(editor.last_edit()["contiguous"])
         self.assertGreater(editor.state()["selected"], 2 * touching)
 
+    def test_a_box_and_a_ball_select_what_they_hold(self):
+        editor = self.open_ficus()
+        editor.key("u")
+        x, y = editor.where("volume/+Y")
+        editor.drag([(x, y), (x, y + 40)])
+        editor.key("Return")
+        edit = editor.last_edit()
+        self.assertEqual(edit["op"], "select")
+        self.assertEqual(edit["mode"], "set")
+        inside = editor.state()["selected"]
+        self.assertGreater(inside, 50)
+        editor.click("options/Ball")
+        x, y = editor.where("volume/middle")
+        editor.drag([(x, y), (x + 60, y - 120)])
+        editor.click("options/Add")
+        edit = editor.last_edit()
+        self.assertEqual(edit["mode"], "add")
+        self.assertIn("radius", edit["sphere"])
+        self.assertGreater(editor.state()["selected"], inside)
+        editor.click("options/Take away")
+        self.assertEqual(editor.last_edit()["mode"], "remove")
+        # Escape lets go of a side.
+        before = editor.items("volume")
+        x, y = editor.where("volume/+X")
+        editor.drag([(x, y), (x + 80, y)], meanwhile=lambda: editor.key("Escape"))
+        self.assertEqual(editor.items("volume"), before)
+
     def test_what_is_seen_is_selected_from_near_far_and_flat(self):
         editor = self.open_ficus()
         middle = editor.in_viewport(0.5, 0.35)
@@ -370,6 +397,48 @@ class EditorTest(unittest.TestCase):
         editor.key("v")
         self.assertEqual(editor.state()["steps"], 2)
         self.assertEqual(editor.last_edit()["op"], "cage")
+
+    def test_cage_points_turn_together_and_on_both_sides(self):
+        editor = self.open_ficus()
+        editor.key("KP_1", "c")
+        editor.click("options/Make cage")
+        rest = editor.items("cage")
+
+        def moves():
+            """Of each point, by its number: how far it was moved."""
+            found = {}
+            for move in editor.last_edit()["moves"]:
+                for part in move["points"]:
+                    first, last = part if isinstance(part, list) else (part, part)
+                    for number in range(first, last + 1):
+                        found[number] = move["translate"]
+            return found
+
+        # A lasso around the upper row of points, seen from the front, and then a turn by one of them.
+        top = min(box[1] for box in rest.values())
+        row = [box for box in rest.values() if box[1] < top + 40]
+        left, right = min(box[0] for box in row) - 25, max(box[0] for box in row) + 25
+        low, high = max(box[1] for box in row) + 25, top - 25
+        corners = [(round(x), round(y)) for x, y in ((left, high), (right, high), (right, low), (left, low))]
+        editor.drag(corners, held="ctrl")
+        editor.click("options/Turn")
+        x, y = max((round(box[0]), round(box[1])) for box in row)
+        editor.drag([(x, y), (x, y + 60)])
+        turned = moves()
+        self.assertGreater(len(turned), 5, "all of the row")
+        middle = [sum(move[axis] for move in turned.values()) / len(turned) for axis in range(3)]
+        self.assertLess(max(map(abs, middle)), 1e-9, "they turn about their own middle")
+        editor.key("ctrl+z")
+        # One point, both sides.
+        editor.click("options/Move")
+        editor.click("options/X")
+        editor.click(*corners[2])
+        editor.drag([(x, y), (x + 40, y - 30)])
+        both = moves()
+        self.assertEqual(len(both), 2)
+        a, b = both.values()
+        self.assertAlmostEqual(a[0], -b[0], places=12)
+        self.assertEqual(a[1:], b[1:])
 
     def test_handles_hold_and_pull(self):
         editor = self.open_ficus()

@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <utility>
 
 #include "editor/edits/deform/cage.h"
 #include "editor/edits/deform/deforming.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/widgets.h"
+#include "editor/gui/window/commands.h"
 #include "mesh_ops/deform/cage_deformation.h"
 
 namespace rebake {
@@ -18,7 +21,23 @@ namespace rebake {
 namespace {
 
 constexpr float cage_grab_pixels = 10;
-constexpr std::size_t most_exact = 10000;  // points that a preview moves with their gradients: about 0.1 s
+// Points times faces that a preview moves with their gradients before anything is shown: about 0.1 s.
+constexpr double most_exact = 2e6;
+
+// For each point the one at the other side of the middle, itself in the middle; none for -1.
+std::vector<std::int32_t> partners(const std::vector<Vec3>& points, int axis) {
+  Box box;
+  for (const Vec3& p : points) box.extend(p);
+  const double near = 1e-6 * box.diagonal().norm();
+  std::vector<std::int32_t> found(points.size(), -1);
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    Vec3 other = points[v];
+    other[axis] = 2 * box.center()[axis] - other[axis];
+    for (std::size_t w = 0; w < points.size() && found[v] < 0; ++w)
+      if ((points[w] - other).cwiseAbs().maxCoeff() <= near) found[v] = static_cast<std::int32_t>(w);
+  }
+  return found;
+}
 
 }  // namespace
 
@@ -32,6 +51,7 @@ struct CageTool::Bound {
   std::vector<std::vector<Vec3>> places;               ///< that move, of each node of the set
   std::vector<std::unique_ptr<CageBinding>> bindings;  ///< one a node of the set
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  std::array<std::vector<std::int32_t>, 3> partners;  ///< along x, y, z
 };
 
 CageTool::CageTool() = default;
@@ -77,6 +97,8 @@ void CageTool::make(Desk& desk) {
         for (const Face& face : bound->cage.faces)
           for (std::size_t k = 0; k < 3; ++k)
             if (face[k] < face[(k + 1) % 3]) bound->edges.emplace_back(face[k], face[(k + 1) % 3]);
+        for (int axis = 0; axis < 3; ++axis)
+          bound->partners[static_cast<std::size_t>(axis)] = partners(bound->cage.vertices, axis);
         *made = std::move(bound);
       },
       [this, &desk, made] {
@@ -169,46 +191,82 @@ void CageTool::unbind(Desk& desk) {
 }
 
 void CageTool::preview(Desk& desk) {
-  desk.previews.request(
-      desk.scene().roots, [bound = bound_, points = moved_, falloff = edit_.target.falloff](const Progress& progress) {
-        Scene scene = bound->scene;
-        for (std::size_t k = 0; k < bound->set.nodes.size(); ++k) {
-          const PlacedNode& placed = bound->set.nodes[k];
-          const auto move = [&](const std::vector<Vec3>& places) {
-            // As the edit does it, colours turned too, where that is quick.
-            if (places.size() <= most_exact)
-              return deform_points(*bound->coordinates, bound->cage, points, places, true, progress);
-            DeformedPoints made{{}, std::vector<Mat3>(places.size(), Mat3::Identity()), {}};
-            bound->bindings[k]->positions(points, made.points);
-            return made;
-          };
-          DeformedObject made = deformed(*placed.node->object, placed.to_world, bound->set.flags[k], falloff, move);
-          scene = with_changed(scene, placed.node->id, [&](Node& node) { node.object = std::move(made.object); });
-        }
-        return scene;
-      });
+  // As the edit does it, colours turned too; where that takes long, what moves is shown first.
+  const auto made = [bound = bound_, points = moved_, falloff = edit_.target.falloff](bool exact) {
+    return [bound, points, falloff, exact](const Progress& progress) {
+      Scene scene = bound->scene;
+      for (std::size_t k = 0; k < bound->set.nodes.size(); ++k) {
+        const PlacedNode& placed = bound->set.nodes[k];
+        const auto move = [&](const std::vector<Vec3>& places) {
+          if (exact) return deform_points(*bound->coordinates, bound->cage, points, places, true, progress);
+          DeformedPoints moved{{}, std::vector<Mat3>(places.size(), Mat3::Identity()), {}};
+          bound->bindings[k]->positions(points, moved.points);
+          return moved;
+        };
+        DeformedObject object = deformed(*placed.node->object, placed.to_world, bound->set.flags[k], falloff, move);
+        scene = with_changed(scene, placed.node->id, [&](Node& node) { node.object = std::move(object.object); });
+      }
+      return scene;
+    };
+  };
+  std::size_t places = 0;
+  for (const std::vector<Vec3>& some : bound_->places) places += some.size();
+  if (static_cast<double>(places * bound_->cage.faces.size()) <= most_exact)
+    desk.previews.request(desk.scene().roots, made(true));
+  else
+    desk.previews.request(desk.scene().roots, made(false), made(true));
 }
 
-int CageTool::point_at(const Lens& lens, const Vec2& at) const {
-  int found = -1;
-  double least = static_cast<double>(px(cage_grab_pixels));
-  for (std::size_t v = 0; v < moved_.size(); ++v)
-    if (const auto pixel = lens.pixel(moved_[v]); pixel && (*pixel - at).norm() < least) {
-      least = (*pixel - at).norm();
-      found = static_cast<int>(v);
-    }
-  return found;
+std::vector<std::uint8_t> CageTool::in_front(const Lens& lens) const {
+  std::vector<Vec3> normals(moved_.size(), Vec3::Zero());
+  for (const Face& face : bound_->cage.faces) {
+    const Vec3 normal = (moved_[face[1]] - moved_[face[0]]).cross(moved_[face[2]] - moved_[face[0]]);
+    for (const std::uint32_t v : face) normals[v] += normal;
+  }
+  std::vector<std::uint8_t> front(moved_.size());
+  for (std::size_t v = 0; v < moved_.size(); ++v) front[v] = normals[v].dot(lens.towards_eye(moved_[v])) >= 0 ? 1 : 0;
+  return front;
+}
+
+// Of those at the front, before those behind.
+int CageTool::point_at(const Desk& desk, const Lens& lens, const Vec2& at) const {
+  const std::vector<std::uint8_t> front = in_front(lens);
+  for (const std::uint8_t side : {1, 0}) {
+    int found = -1;
+    double least = static_cast<double>(px(cage_grab_pixels));
+    for (std::size_t v = 0; v < moved_.size(); ++v)
+      if (const auto pixel = lens.pixel(moved_[v]); front[v] == side && pixel && (*pixel - at).norm() < least) {
+        least = (*pixel - at).norm();
+        found = static_cast<int>(v);
+      }
+    if (found >= 0 || desk.tools.visible_only()) return found;
+  }
+  return -1;
+}
+
+void CageTool::pick_inside(const Desk& desk, const Lens& lens) {
+  const std::vector<std::uint8_t> front = in_front(lens);
+  const Vec2 low = from_.cwiseMin(to_), high = from_.cwiseMax(to_);
+  for (std::size_t v = 0; v < moved_.size(); ++v) {
+    const auto pixel = lens.pixel(moved_[v]);
+    if (!pixel || (desk.tools.visible_only() && front[v] == 0)) continue;
+    if (lassoes_ ? inside_polygon(line_, *pixel)
+                 : (pixel->array() >= low.array()).all() && (pixel->array() <= high.array()).all())
+      picked_[v] = 1;
+  }
 }
 
 void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   if (!dragging_) follow(desk);
   if (!bound_) return;
   if (pointer.pressed && pointer.inside) {
-    held_ = point_at(lens, pointer.at);
+    held_ = point_at(desk, lens, pointer.at);
     from_ = to_ = pointer.at;
     if (held_ < 0) {
       if (!pointer.shift) std::fill(picked_.begin(), picked_.end(), std::uint8_t{0});
       boxing_ = true;
+      lassoes_ = pointer.control;
+      line_ = {pointer.at};
       return;
     }
     const auto v = static_cast<std::size_t>(held_);
@@ -220,23 +278,50 @@ void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   }
   if (boxing_) {
     to_ = pointer.at;
+    line_.insert(line_.end(), pointer.way.begin(), pointer.way.end());
     if (!pointer.released) return;
     boxing_ = false;
-    const Vec2 low = from_.cwiseMin(to_), high = from_.cwiseMax(to_);
-    for (std::size_t v = 0; v < moved_.size(); ++v)
-      if (const auto pixel = lens.pixel(moved_[v]);
-          pixel && (pixel->array() >= low.array()).all() && (pixel->array() <= high.array()).all())
-        picked_[v] = 1;
+    pick_inside(desk, lens);
   }
   if (dragging_) drag(desk, lens, pointer);
 }
 
+std::function<Vec3(const Vec3&)> CageTool::motion(const Lens& lens, const Pointer& pointer) const {
+  const Vec3 way = lens.motion(before_[static_cast<std::size_t>(held_)], pointer.at - from_);
+  if (grip_ == Grip::move) return [way](const Vec3& p) { return Vec3(p + way); };
+  Box picked;
+  for (std::size_t v = 0; v < before_.size(); ++v)
+    if (picked_[v] != 0) picked.extend(before_[v]);
+  const Vec3 middle = picked.center();
+  const auto pixel = lens.pixel(middle);
+  const Vec2 a = from_ - pixel.value_or(from_), b = pointer.at - pixel.value_or(from_);
+  if (!(a.norm() > 1)) return [](const Vec3& p) { return p; };  // held in the very middle
+  if (grip_ == Grip::scale)
+    return [middle, factor = b.norm() / a.norm()](const Vec3& p) { return Vec3(middle + factor * (p - middle)); };
+  // On the screen y points down.
+  const double angle = -std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  const Mat3 turn =
+      Eigen::AngleAxisd(pointer.control ? std::round(angle * 12 / std::numbers::pi) * std::numbers::pi / 12 : angle,
+                        lens.towards_eye(middle))
+          .toRotationMatrix();
+  return [middle, turn](const Vec3& p) { return Vec3(middle + turn * (p - middle)); };
+}
+
+Vec3 CageTool::mirrored(const Vec3& point) const {
+  Box box;
+  for (const Vec3& p : bound_->cage.vertices) box.extend(p);
+  Vec3 other = point;
+  other[symmetric_ - 1] = 2 * box.center()[symmetric_ - 1] - other[symmetric_ - 1];
+  return other;
+}
+
 void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
-  const Vec3 motion = lens.motion(before_[static_cast<std::size_t>(held_)], pointer.at - from_);
+  const std::function<Vec3(const Vec3&)> moves = motion(lens, pointer);
   Box box;
   for (const Vec3& p : bound_->cage.vertices) box.extend(p);
   const double soft = static_cast<double>(softness_) * box.diagonal().norm();
-  bool changed = false;
+  std::vector<Vec3> moved = before_;
+  std::vector<double> shares(moved.size());
   for (std::size_t v = 0; v < moved_.size(); ++v) {
     double share = picked_[v] != 0 ? 1 : 0;
     if (share == 0 && soft > 0)
@@ -245,11 +330,27 @@ void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
           const double t = std::max(0.0, 1 - (before_[v] - before_[w]).norm() / soft);
           share = std::max(share, t * t * (3 - 2 * t));
         }
-    const Vec3 next = share > 0 ? Vec3(before_[v] + share * motion) : before_[v];
-    changed = changed || next != moved_[v];
-    moved_[v] = next;
+    shares[v] = share;
+    if (share > 0) moved[v] = before_[v] + share * (moves(before_[v]) - before_[v]);
   }
-  if (changed) preview(desk);
+  if (symmetric_ > 0) {
+    // The side that follows the pointer more leads; what is in the middle stays there.
+    const std::vector<std::int32_t>& partner = bound_->partners[static_cast<std::size_t>(symmetric_ - 1)];
+    const std::vector<Vec3> led = moved;
+    for (std::size_t v = 0; v < moved.size(); ++v) {
+      if (partner[v] < 0) continue;
+      const auto w = static_cast<std::size_t>(partner[v]);
+      const bool held = w == static_cast<std::size_t>(held_) || (v != static_cast<std::size_t>(held_) && w < v);
+      if (w == v)
+        moved[v] = (led[v] + mirrored(led[v])) / 2;
+      else if (shares[w] > shares[v] || (shares[w] == shares[v] && shares[w] > 0 && held))
+        moved[v] = mirrored(led[w]);
+    }
+  }
+  if (moved != moved_) {
+    moved_ = std::move(moved);
+    preview(desk);
+  }
   if (!pointer.released) return;
   dragging_ = false;
   if (moved_ == before_) return;
@@ -258,22 +359,32 @@ void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
   commit(desk, moved_, at_ + 1);
 }
 
-void CageTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& pointer, ImDrawList& list,
+void CageTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
                     const ImVec2& origin) const {
   if (!bound_) return;
-  if (boxing_) list.AddRect(on_screen(from_, origin), on_screen(to_, origin), IM_COL32(255, 140, 20, 255));
-  const int hot = dragging_ ? held_ : pointer.inside ? point_at(lens, pointer.at) : -1;
+  constexpr ImU32 orange = IM_COL32(255, 140, 20, 255);
+  if (boxing_ && lassoes_) {
+    std::vector<ImVec2> line;
+    for (const Vec2& p : line_) line.push_back(on_screen(p, origin));
+    list.AddPolyline(line.data(), static_cast<int>(line.size()), orange, ImDrawFlags_Closed, px(1));
+  } else if (boxing_) {
+    list.AddRect(on_screen(from_, origin), on_screen(to_, origin), orange);
+  }
+  const std::vector<std::uint8_t> front = in_front(lens);
+  const int hot = dragging_ ? held_ : pointer.inside ? point_at(desk, lens, pointer.at) : -1;
   const announce::Part part("cage");
   for (std::size_t v = 0; v < moved_.size(); ++v) {
     const auto pixel = lens.pixel(moved_[v]);
     if (!pixel) continue;
     const ImVec2 at = on_screen(*pixel, origin);
     announce::point(fmt::format("{}", v), at);
-    list.AddCircleFilled(at, px(5), IM_COL32(0, 0, 0, 160));
-    list.AddCircleFilled(at, px(4),
+    const float radius = px(front[v] != 0 ? 4 : 2.5F);
+    list.AddCircleFilled(at, radius + px(1), IM_COL32(0, 0, 0, 160));
+    list.AddCircleFilled(at, radius,
                          static_cast<int>(v) == hot ? IM_COL32(255, 230, 60, 255)
-                         : picked_[v] != 0          ? IM_COL32(255, 140, 20, 255)
-                                                    : IM_COL32(120, 190, 255, 255));
+                         : picked_[v] != 0          ? orange
+                         : front[v] != 0            ? IM_COL32(120, 190, 255, 255)
+                                                    : IM_COL32(90, 120, 150, 255));
   }
 }
 
@@ -314,7 +425,19 @@ void CageTool::options(Desk& desk) {
   ImGui::SetNextItemWidth(px(110));
   ImGui::SliderFloat("##soft", &softness_, 0, 1, "soft %.2f");
   ui::tip("Soft", "", "How far unpicked points follow, of the cage's size.");
-  ui::hint("Drag points; a box picks several. Undo takes releases back one by one.");
+  ui::flow(px(200));
+  int grip = static_cast<int>(grip_);
+  if (ui::choice("grip", grip, {"Move", "Turn", "Scale"})) grip_ = static_cast<Grip>(grip);
+  ui::flow(px(190));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("Symmetric");
+  ImGui::SameLine();
+  ui::choice("symmetric", symmetric_, {"Off", "X", "Y", "Z"});
+  ui::tip("Symmetric", "", "Points at the other side of the cage's middle move as these do.");
+  ui::flow(px(120));
+  ui::toggle("Visible only", desk.tools.visible_only());
+  ui::tip("Visible only", command_key("Visible only", desk), "Takes points at the front only.");
+  ui::hint("Drag points; a box picks several, with Ctrl a lasso. Undo takes releases back one by one.");
 }
 
 void CageTool::cancel(Desk& desk) {

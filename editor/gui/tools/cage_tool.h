@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "editor/edits/deform/cage.h"
@@ -33,11 +34,20 @@ class CageTool final : public ViewTool {
   void follow(Desk& desk);
   void preview(Desk& desk);
   void drag(Desk& desk, const Lens& lens, const Pointer& pointer);
+  /// What the drag makes of a point that is picked.
+  std::function<Vec3(const Vec3&)> motion(const Lens& lens, const Pointer& pointer) const;
+  Vec3 mirrored(const Vec3& point) const;
+  void pick_inside(const Desk& desk, const Lens& lens);
+  /// Whether a cage point looks towards the eye.
+  std::vector<std::uint8_t> in_front(const Lens& lens) const;
   void unbind(Desk& desk);
-  int point_at(const Lens& lens, const Vec2& at) const;
+  int point_at(const Desk& desk, const Lens& lens, const Vec2& at) const;
 
   CageDeform edit_;  ///< what the options say
   bool wraps_ = false;
+  enum class Grip { move, turn, scale };
+  Grip grip_ = Grip::move;  ///< what dragging does to the picked points
+  int symmetric_ = 0;       ///< 0: no; 1 to 3: both sides of the cage's middle along x, y, z
   int cells_[3] = {2, 2, 2};
   float coarseness_ = 0.1F, softness_ = 0;
   std::shared_ptr<const Bound> bound_;  ///< null before a cage was made
@@ -45,7 +55,9 @@ class CageTool final : public ViewTool {
   std::size_t at_ = 0;                  ///< which of them the document holds
   Points moved_, before_;               ///< cage points now, and when the drag began
   std::vector<std::uint8_t> picked_;
-  bool dragging_ = false, boxing_ = false;  ///< points are dragged; a box is drawn to pick some
+  bool dragging_ = false, boxing_ = false;  ///< points are dragged; a box or a line is drawn to pick some
+  bool lassoes_ = false;                    ///< a line
+  std::vector<Vec2> line_;
   int held_ = -1;
   Vec2 from_{0, 0}, to_{0, 0};
 };

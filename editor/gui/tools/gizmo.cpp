@@ -62,15 +62,6 @@ std::array<Vec3, 4> square(const Vec3& pivot, const Vec3& u, const Vec3& v, doub
 // A plane seen edge on cannot be dragged in.
 constexpr double least_tilt = 0.15;
 
-bool inside(const std::vector<Vec2>& corners, const Vec2& p) {
-  int left = 0;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const Vec2 along = corners[(k + 1) % corners.size()] - corners[k], to = p - corners[k];
-    if (along.x() * to.y() - along.y() * to.x() > 0) ++left;
-  }
-  return left == 0 || left == static_cast<int>(corners.size());
-}
-
 }  // namespace
 
 std::vector<Vec2> Gizmo::plane_handle(const Target& target, const Lens& lens, int axis) const {
@@ -124,7 +115,8 @@ int Gizmo::handle_at(const Target& target, const Lens& lens, const Vec2& at) con
   if (!middle) return none;
   if (kind_ != ToolKind::turn && (*middle - at).norm() < static_cast<double>(px(gizmo_grab_pixels))) return all;
   for (int axis = 0; axis < 3; ++axis)
-    if (const std::vector<Vec2> corners = plane_handle(target, lens, axis); !corners.empty() && inside(corners, at))
+    if (const std::vector<Vec2> corners = plane_handle(target, lens, axis);
+        !corners.empty() && inside_polygon(corners, at))
       return plane + axis;
   int found = none;
   double least = static_cast<double>(px(gizmo_grab_pixels));

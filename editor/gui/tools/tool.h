@@ -67,6 +67,17 @@ inline ImVec2 on_screen(const Vec2& pixel, const ImVec2& origin) {
   return {origin.x + static_cast<float>(pixel.x()), origin.y + static_cast<float>(pixel.y())};
 }
 
+/// Whether a pixel lies in a polygon, by the even-odd rule.
+inline bool inside_polygon(const std::vector<Vec2>& corners, const Vec2& p) {
+  bool inside = false;
+  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++)
+    if ((corners[i].y() > p.y()) != (corners[j].y() > p.y()) &&
+        p.x() - corners[i].x() <
+            (corners[j].x() - corners[i].x()) * (p.y() - corners[i].y()) / (corners[j].y() - corners[i].y()))
+      inside = !inside;
+  return inside;
+}
+
 /// A line of text that can be read over any picture.
 inline void draw_label(ImDrawList& list, const ImVec2& at, const std::string& text) {
   if (text.empty()) return;

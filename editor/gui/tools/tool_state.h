@@ -6,7 +6,22 @@
 
 namespace rebake {
 
-enum class ToolKind { pick, rectangle, lasso, polygon, brush, flood, erase, move, turn, scale, cage, bend, handles };
+enum class ToolKind {
+  pick,
+  rectangle,
+  lasso,
+  polygon,
+  brush,
+  flood,
+  volume,
+  erase,
+  move,
+  turn,
+  scale,
+  cage,
+  bend,
+  handles
+};
 
 /// Which tool is in hand, and how tools behave.
 struct ToolState {
@@ -14,9 +29,10 @@ struct ToolState {
   std::optional<ToolKind> drag_begins;  ///< takes hold of its target at once, without a button
   std::optional<ToolKind> before;       ///< to come back to after such a drag
   /// Whether the tool in hand takes what is seen only, not what lies behind it.
-  bool& visible_only() { return takes_seen.try_emplace(kind, true).first->second; }
-  bool visible_only() const { return !takes_seen.contains(kind) || takes_seen.at(kind); }
-  std::map<ToolKind, bool> takes_seen;  ///< of tools where it was changed
+  bool& visible_only() { return takes_seen.try_emplace(kind, at_first()).first->second; }
+  bool visible_only() const { return takes_seen.contains(kind) ? takes_seen.at(kind) : at_first(); }
+  bool at_first() const { return kind != ToolKind::cage; }  ///< a cage is held all around
+  std::map<ToolKind, bool> takes_seen;                      ///< of tools where it was changed
   /// Takes back (-1) or does again (1) a step that is the tool's own; false when there is none. Null without such
   /// steps.
   std::function<bool(int)> own_step;

@@ -4,6 +4,7 @@
 #include "editor/gui/tools/handles_tool.h"
 #include "editor/gui/tools/pick_tool.h"
 #include "editor/gui/tools/region_tool.h"
+#include "editor/gui/tools/volume_tool.h"
 #include "editor/gui/ui/icons.h"
 
 namespace rebake {
@@ -17,6 +18,7 @@ Tools make_tools() {
     tools[kind] = std::make_unique<RegionTool>(kind);
   for (const ToolKind kind : {ToolKind::move, ToolKind::turn, ToolKind::scale})
     tools[kind] = std::make_unique<Gizmo>(kind);
+  tools[ToolKind::volume] = std::make_unique<VolumeTool>();
   tools[ToolKind::bend] = std::make_unique<BendTool>();
   tools[ToolKind::handles] = std::make_unique<HandlesTool>();
   tools[ToolKind::cage] = std::make_unique<CageTool>();
@@ -31,6 +33,7 @@ std::span<const ToolButton> tool_buttons() {
       {icons::vector_polygon, "Polygon", ToolKind::polygon},
       {icons::brush, "Brush", ToolKind::brush},
       {icons::format_color_fill, "Flood", ToolKind::flood},
+      {icons::package_variant, "Volume", ToolKind::volume},
       {icons::eraser, "Eraser", ToolKind::erase, true},
       {icons::cursor_move, "Move", ToolKind::move, true},
       {icons::rotate_3d, "Turn", ToolKind::turn},

@@ -67,5 +67,8 @@ constexpr const char* content_save = "\xEF\x86\x93";
 constexpr const char* target = "\xEF\x93\xBE";
 constexpr const char* layers_off = "\xEF\x8C\xA9";
 constexpr const char* image = "\xEF\x8B\xA9";
+constexpr const char* image_multiple = "\xEF\x8B\xB9";
+constexpr const char* package_variant = "\xEF\x8F\x96";
+constexpr const char* filmstrip = "\xEF\x88\xB0";
 
 }  // namespace rebake::icons

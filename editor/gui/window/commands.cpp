@@ -89,7 +89,7 @@ void duplicate(Desk& desk) {
 
 bool selects_triangles(ToolKind tool) {
   return tool == ToolKind::rectangle || tool == ToolKind::lasso || tool == ToolKind::polygon ||
-         tool == ToolKind::brush || tool == ToolKind::flood || tool == ToolKind::erase;
+         tool == ToolKind::brush || tool == ToolKind::flood || tool == ToolKind::volume || tool == ToolKind::erase;
 }
 
 void remove(Desk& desk) {
@@ -285,6 +285,7 @@ const std::vector<Command>& command_table() {
       {"Tool", "Brush", "B", "C", "Selects triangles by painting over them.", always, take<ToolKind::brush>},
       {"Tool", "Flood", "O", "O", "Click to select what touches and has the same colour.", always,
        take<ToolKind::flood>},
+      {"Tool", "Volume", "U", "U", "Selects what lies in a box or a ball.", always, take<ToolKind::volume>},
       {"Tool", "Eraser", "E", "E", "Makes what is painted over transparent.", always, take<ToolKind::erase>},
       {"Tool", "Move", "1", "G", "Moves the selected triangles, else the picked nodes.", always, grab<ToolKind::move>},
       {"Tool", "Turn", "2", "R", "Turns the selected triangles, else the picked nodes.", always, grab<ToolKind::turn>},

@@ -19,10 +19,11 @@ Previews::~Previews() {
   thread_.join();
 }
 
-void Previews::request(std::vector<NodePtr> of, Make make) {
+void Previews::request(std::vector<NodePtr> of, Make make, Make exact) {
   {
     const std::lock_guard lock(mutex_);
-    wanted_ = Wanted{std::move(of), std::move(make)};
+    wanted_ = Wanted{std::move(of), std::move(make), std::move(exact)};
+    if (refining_) cancel_ = true;
     ++requests_;
   }
   changed_.notify_all();
@@ -55,27 +56,36 @@ std::optional<Preview> Previews::take() {
   return std::exchange(made_, std::nullopt);
 }
 
+void Previews::make(std::unique_lock<std::mutex>& lock, const std::vector<NodePtr>& of, const Make& make) {
+  cancel_ = false;
+  lock.unlock();
+  std::optional<Preview> made;
+  try {
+    made = Preview{make(Progress([](std::string_view, double) {}, &cancel_)), of};
+    const std::lock_guard ready(prepare_mutex_);
+    if (prepare_) prepare_(made->scene);
+  } catch (const std::exception&) {
+    // What cannot be done is said when it is to be done.
+  }
+  lock.lock();
+  if (made && !cancel_) made_ = std::move(made);
+}
+
 void Previews::loop() {
-  const Progress progress([](std::string_view, double) {}, &cancel_);
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return ending_ || wanted_; });
     if (ending_) return;
     const Wanted next = *std::exchange(wanted_, std::nullopt);
     running_ = true;
-    cancel_ = false;
-    lock.unlock();
-    std::optional<Preview> made;
-    try {
-      made = Preview{next.make(progress), next.of};
-      const std::lock_guard ready(prepare_mutex_);
-      if (prepare_) prepare_(made->scene);
-    } catch (const std::exception&) {
-      // What cannot be done is said when it is to be done.
+    make(lock, next.of, next.make);
+    if (next.exact && !wanted_ && !cancel_ && !ending_) {
+      refining_ = true;
+      wake_();
+      make(lock, next.of, next.exact);
+      refining_ = false;
     }
-    lock.lock();
     running_ = false;
-    if (made && !cancel_) made_ = std::move(made);
     wake_();
   }
 }

@@ -28,8 +28,9 @@ class Previews {
   Previews(const Previews&) = delete;
   Previews& operator=(const Previews&) = delete;
 
-  /// `make` may throw Error: there is no preview then, and what is shown stays.
-  void request(std::vector<NodePtr> of, Make make);
+  /// `make` may throw Error: there is no preview then, and what is shown stays. `exact` makes a better one of the same,
+  /// where there is one, while nothing else is asked for.
+  void request(std::vector<NodePtr> of, Make make, Make exact = {});
   /// Called with every preview before it can be taken, on their thread; null for none.
   void set_prepare(std::function<void(const Scene&)> prepare);
   /// Nothing is wanted any more; what is being made is stopped where it can be.
@@ -43,10 +44,11 @@ class Previews {
 
  private:
   void loop();
+  void make(std::unique_lock<std::mutex>& lock, const std::vector<NodePtr>& of, const Make& make);
 
   struct Wanted {
     std::vector<NodePtr> of;
-    Make make;
+    Make make, exact;
   };
   std::function<void()> wake_;
   std::mutex prepare_mutex_;
@@ -56,7 +58,7 @@ class Previews {
   std::optional<Wanted> wanted_;
   std::optional<Preview> made_;
   std::size_t requests_ = 0;
-  bool running_ = false, ending_ = false;
+  bool running_ = false, refining_ = false, ending_ = false;
   std::atomic<bool> cancel_ = false;
   std::thread thread_;  // last: it uses the others
 };

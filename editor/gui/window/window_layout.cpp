@@ -299,7 +299,7 @@ void WindowLayout::status() {
     const char* command;
   };
   for (const Tab& one :
-       {Tab{BottomTab::history, icons::history, "History"}, Tab{BottomTab::views, icons::camera, "Views"},
+       {Tab{BottomTab::history, icons::history, "History"}, Tab{BottomTab::views, icons::image_multiple, "Views"},
         Tab{BottomTab::script, icons::script, "Script"}, Tab{BottomTab::cost, icons::chart_line, "Cost"},
         Tab{BottomTab::log, icons::message_text, "Messages"}}) {
     const Command& command = command_named(one.command);
