@@ -81,7 +81,11 @@ Difference compare(const Image& a, const Image& b, int tolerance) {
       squares += d * d;
       worst = std::max(worst, d);
     }
-    result.largest = std::max(result.largest, worst);
+    if (worst > result.largest) {
+      result.largest = worst;
+      result.x = static_cast<int>(p / 3 % static_cast<std::size_t>(a.width));
+      result.y = static_cast<int>(p / 3 / static_cast<std::size_t>(a.width));
+    }
     beyond += worst > tolerance ? 1 : 0;
   }
   const double pixels = static_cast<double>(a.rgb.size()) / 3;

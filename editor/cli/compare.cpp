@@ -31,14 +31,16 @@ void describe_compare(CommandDescription& command) {
     if (options->json) {
       nlohmann::json out = {{"ssim", d.ssim},
                             {"largest", d.largest},
+                            {"largest_at", {d.x, d.y}},
                             {"share_beyond", d.share_beyond},
                             {"tolerance", options->tolerance}};
       out["psnr_db"] = std::isinf(d.psnr_db) ? nlohmann::json() : nlohmann::json(d.psnr_db);
       fmt::print("{}\n", out.dump(1));
     } else {
       fmt::print("PSNR     {}\n", std::isinf(d.psnr_db) ? "equal" : fmt::format("{:.2f} dB", d.psnr_db));
-      fmt::print("SSIM     {:.5f}\nlargest  {}/255\nbeyond   {:.4f} % of pixels differ by more than {}/255\n", d.ssim,
-                 d.largest, d.share_beyond * 100, options->tolerance);
+      fmt::print("SSIM     {:.5f}\nlargest  {}/255{}\nbeyond   {:.4f} % of pixels differ by more than {}/255\n", d.ssim,
+                 d.largest, d.largest > 0 ? fmt::format(" at pixel {}, {}", d.x, d.y) : "", d.share_beyond * 100,
+                 options->tolerance);
     }
     if (d.psnr_db < options->least_psnr) throw ExitWith{3};
   });

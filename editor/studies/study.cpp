@@ -63,7 +63,13 @@ std::string plotted(const std::string& script) {
 }  // namespace
 
 StudyTable picture_table() {
-  return {{"milliseconds a frame", "PSNR dB (100: equal)", "largest of 255"}, {}, 0, 1, false, false};
+  return {{"milliseconds a frame", "PSNR dB (100: equal)", "largest of 255", "fastest ms", "slowest ms", "x of largest",
+           "y of largest"},
+          {},
+          0,
+          1,
+          false,
+          false};
 }
 
 StudyTable::Row measured(const StudyInput& input, const std::string& choice, const View& view,
@@ -73,13 +79,15 @@ StudyTable::Row measured(const StudyInput& input, const std::string& choice, con
   std::vector<double> times;
   for (int i = 0; i < input.frames; ++i)
     times.push_back(renderer.time_frame(input.scene, view, options, false).frame_ms);
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+  std::sort(times.begin(), times.end());
   const Difference difference = compare(picture.width == reference.width && picture.height == reference.height
                                             ? picture
                                             : enlarged(picture, reference.width, reference.height),
                                         reference, 2);
-  return {choice,
-          {times[times.size() / 2], std::min(difference.psnr_db, 100.0), static_cast<double>(difference.largest)}};
+  return {
+      choice,
+      {times[times.size() / 2], std::min(difference.psnr_db, 100.0), static_cast<double>(difference.largest),
+       times.front(), times.back(), (difference.x + 0.5) / reference.width, (difference.y + 0.5) / reference.height}};
 }
 
 double median_milliseconds(int repeats, const std::function<void()>& run) {

@@ -753,6 +753,84 @@ class EditorTest(unittest.TestCase):
         editor.click("start/recent/ficus")
         editor.until_ops("import")
 
+    def program(self, name, script):
+        """A program of that name that the editor finds before any other."""
+        folder = self.folder / "programs"
+        folder.mkdir(exist_ok=True)
+        (folder / name).write_text("#!/bin/sh\n" + script)
+        (folder / name).chmod(0o755)
+        self.screen.environment["PATH"] = f"{folder}:{self.screen.environment['PATH']}"
+
+    def test_the_file_dialog_completes_filters_and_takes_several(self):
+        scenes = self.folder / "scenes"
+        for name in ("plant", "pot", "mug"):
+            shutil.copytree(KETTLE, scenes / name)
+        editor = self.open()
+        editor.key("ctrl+o")
+        editor.key("ctrl+a")
+        editor.type(str(scenes) + "/P")
+        self.assertEqual(set(editor.items("dialog/entries")), {"..", "plant", "pot"})
+        editor.type("L")
+        editor.key("Tab", "Return")
+        editor.until_ops("import")
+        self.assertTrue(editor.last_edit()["path"].endswith("scenes/plant"))
+        # The arrows walk through the list.
+        editor.key("ctrl+o", "Down", "Down", "Down", "Return")
+        editor.until_ops("import", "import")
+        self.assertTrue(editor.last_edit()["path"].endswith("scenes/pot"))
+        # Several, with Ctrl.
+        editor.key("ctrl+o")
+        editor.click("dialog/entries/plant")
+        editor.click("dialog/entries/mug", held="ctrl")
+        editor.click("dialog/Open 2")
+        editor.until_ops("import", "import", "import", "import")
+        self.assertEqual([edit["edit"]["path"].rsplit("/", 1)[1] for edit in editor.journal()],
+                         ["plant", "pot", "mug", "plant"])
+
+    def test_the_desktops_own_dialog(self):
+        self.program("zenity", f"echo \"$@\" > '{self.folder}/asked'; sleep 0.3; echo '{FICUS}'; echo '{KETTLE}'")
+        editor = self.open()
+        editor.key("ctrl+o")
+        editor.click("dialog/Folders...")
+        editor.until_ops("import", "import")
+        self.assertIn("--directory --multiple", (self.folder / "asked").read_text())
+        # What it proposes to write is still asked for here.
+        out = self.folder / "chosen"
+        self.program("zenity", f"echo '{out}'")
+        editor.key("ctrl+e")
+        editor.click("dialog/Browse...")
+        self.assertFalse(out.exists())
+        editor.click("dialog/Export")
+        until(out.is_dir, "the export")
+
+    def test_a_video_on_a_way_through_stored_views(self):
+        # Counts the pictures in place of encoding them.
+        self.program("ffmpeg", 'for last; do :; done; ls "$(dirname "$last")" > "$last.txt"; mv "$last.txt" "$last"')
+        editor = self.open_ficus()
+        editor.command("store view")
+        editor.drag([editor.in_viewport(0.4, 0.8), editor.in_viewport(0.6, 0.6)], button=2)
+        editor.command("store view")
+        video = self.folder / "way.mp4"
+        editor.command("camera path")
+        editor.click("dialog/Video")
+        editor.click("dialog/pictures")
+        editor.key("ctrl+a")
+        editor.type("5")
+        editor.click("dialog/path")
+        editor.answer(str(video)[:-4])
+        until(video.exists, "the video")
+        self.assertEqual(len([name for name in video.read_text().split() if name.endswith(".png")]), 5)
+        editor.settle()
+        self.assertEqual(list((self.screen.home / "cache" / "rebake").glob("film*")), [], "nothing is left behind")
+        # A program that fails is said, and there is nothing then.
+        self.program("ffmpeg", "exit 7")
+        editor.command("turntable")
+        editor.click("dialog/Video")
+        editor.click("dialog/path")
+        editor.answer(str(self.folder / "none.mp4"))
+        editor.until(lambda state: any("ffmpeg ended with 7" in text for text in state["messages"]), "it is said")
+        self.assertFalse((self.folder / "none.mp4").exists())
+
     def test_only_what_is_picked_is_exported(self):
         editor = self.open(FICUS, KETTLE)
         editor.until_ops("import", "import")
@@ -794,6 +872,21 @@ class EditorTest(unittest.TestCase):
         until(project.is_file, "the project")
         editor.key("ctrl+i")
         editor.until_ops("import", "select", "select")
+
+    def test_costs_are_a_chart_to_choose_from(self):
+        editor = self.open_ficus()
+        editor.command("cost")
+        editor.click("tabs/cost/Measure this view")
+        x, y = editor.where("tabs/cost/chart/16 samples")
+        editor.move(x, y)
+        ring = until(lambda: editor.state()["items"].get("largest error"), "a ring where the error is")
+        left, top, width, height = editor.state()["items"]["viewport"]
+        self.assertTrue(left <= ring[0] <= left + width and top <= ring[1] <= top + height, ring)
+        editor.click(x, y)
+        editor.key("ctrl+p")
+        editor.key("Escape")
+        editor.move(*editor.in_viewport(0.5, 0.5))
+        editor.until(lambda state: "largest error" not in state["items"], "no ring")
 
     def test_the_sheet_of_keys_holds_keys_back(self):
         editor = self.open_ficus()

@@ -130,12 +130,16 @@ class Editor:
         self.counted("buttons", 1, lambda: self.tool("mousedown" if down else "mouseup", button))
         self.clicks += down
 
-    def click(self, where, y=None, button=1):
-        """A point, or the name of an item."""
+    def click(self, where, y=None, button=1, held=None):
+        """A point, or the name of an item; with a key held."""
         x, y = self.where(where) if y is None else (where, y)
         self.move(x, y)
+        if held:
+            self.counted("keys", 1, lambda: self.tool("keydown", held))
         self.press(button)
         self.press(button, down=False)
+        if held:
+            self.counted("keys", 1, lambda: self.tool("keyup", held))
         self.settle()
 
     def double_click(self, x, y):

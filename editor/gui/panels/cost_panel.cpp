@@ -17,7 +17,8 @@ namespace {
 /// A measured choice, and what choosing it means.
 struct Choice {
   std::string name;
-  double ms, decibels, largest;
+  double ms, decibels, largest, fastest, slowest;
+  Vec2 worst;        ///< where the largest error is, by shares of the picture's size
   int samples = 0;   ///< a pixel; 0: this is a share of the resolution
   double share = 1;  ///< of the resolution, each way
 };
@@ -27,7 +28,13 @@ std::vector<Choice> choices_of(const Jobs::Costs& costs) {
   std::vector<Choice> list;
   for (const StudyTable::Row& row : costs.rows) {
     // "50 %, 1 sample": what all have in common is not said at each point.
-    Choice choice{row.choice.substr(0, row.choice.find(',')), row.values.at(0), row.values.at(1), row.values.at(2)};
+    Choice choice{row.choice.substr(0, row.choice.find(',')),
+                  row.values.at(0),
+                  row.values.at(1),
+                  row.values.at(2),
+                  row.values.at(3),
+                  row.values.at(4),
+                  Vec2(row.values.at(5), row.values.at(6))};
     const double number = std::atof(row.choice.c_str());
     if (row.choice.find('%') != std::string::npos)
       choice.share = number / 100;
@@ -40,7 +47,8 @@ std::vector<Choice> choices_of(const Jobs::Costs& costs) {
 }
 
 // Accuracy upright, time lying, by its logarithm; a click on a point takes it.
-void draw_chart(const std::vector<Choice>& choices, ViewState& view, const ImVec2& size) {
+// `same`: of the view that is shown.
+void draw_chart(const std::vector<Choice>& choices, ViewState& view, bool same, const ImVec2& size) {
   const announce::Part part("chart");
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("chart", size);
@@ -48,8 +56,8 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, const ImVec
   list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, color32(theme().field), px(space::rounding));
   double least_ms = 1e300, most_ms = 0, least_db = 1e300, most_db = -1e300;
   for (const Choice& choice : choices) {
-    least_ms = std::min(least_ms, choice.ms / 1.3);
-    most_ms = std::max(most_ms, choice.ms * 1.5);
+    least_ms = std::min(least_ms, choice.fastest / 1.2);
+    most_ms = std::max(most_ms, choice.slowest * 1.4);
     least_db = std::min(least_db, choice.decibels - 3);
     most_db = std::max(most_db, choice.decibels + 3);
   }
@@ -107,15 +115,22 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, const ImVec
         choice.samples > 0 ? choice.samples == view.samples : std::abs(choice.share - view.moving_share) < 0.01;
     const bool hot = nearest == &choice;
     announce::point(choice.name, p);
+    // From the fastest run to the slowest.
+    const ImU32 ink = color32(choice.samples > 0 ? theme().accent_text : theme().muted);
+    const ImVec2 first = place(choice.fastest, choice.decibels), last_run = place(choice.slowest, choice.decibels);
+    list.AddLine(first, last_run, ink, px(1.5F));
+    for (const ImVec2& end : {first, last_run})
+      list.AddLine({end.x, end.y - px(4)}, {end.x, end.y + px(4)}, ink, px(1.5F));
     list.AddCircleFilled(p, px(hot || now ? 7 : 5), color32(now ? theme().accent : theme().panel));
-    list.AddCircle(p, px(hot || now ? 7 : 5), color32(choice.samples > 0 ? theme().accent_text : theme().muted), 0,
-                   px(2));
+    list.AddCircle(p, px(hot || now ? 7 : 5), ink, 0, px(2));
     // Shares below their points, samples above: they lie close together.
     list.AddText({p.x + px(9), p.y + (choice.samples > 0 ? -px(18) : px(3))},
                  color32(now || hot ? theme().text : theme().muted), choice.name.c_str());
     if (!hot) continue;
-    ImGui::SetTooltip("%s: %.1f ms, %.1f dB, largest error %.0f of 255\n%s", choice.name.c_str(), choice.ms,
-                      choice.decibels, choice.largest,
+    if (same) view.marked = choice.worst;
+    ImGui::SetTooltip("%s: %.1f ms (%.1f to %.1f), %.1f dB, largest error %.0f of 255%s\n%s", choice.name.c_str(),
+                      choice.ms, choice.fastest, choice.slowest, choice.decibels, choice.largest,
+                      same ? ", ringed in the picture" : "",
                       choice.samples > 0 ? "Click to use it at rest." : "Click to use it while the view moves.");
     if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left)) continue;
     if (choice.samples > 0)
@@ -152,7 +167,7 @@ void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameRep
   const bool measures = jobs.costs ? ui::button("Measure again") : ui::primary_button("Measure this view");
   ImGui::EndDisabled();
   if (measures) jobs.measure_costs(view, now.scene);
-  ui::tip("Measure this view", "", "Times each choice, the median of three, and compares it with 64 samples a pixel.");
+  ui::tip("Measure this view", "", "Times each choice five times, and compares it with 64 samples a pixel.");
   ImGui::SameLine(0, px(space::section));
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("Samples a pixel");
@@ -181,7 +196,7 @@ void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameRep
   if (jobs.costs) {
     const bool same = jobs.costs->view.camera == view.camera && jobs.costs->roots == now.scene.roots;
     ImGui::BeginGroup();
-    draw_chart(choices_of(*jobs.costs), view,
+    draw_chart(choices_of(*jobs.costs), view, same,
                {chart, std::max(px(120), room.y - (same ? 0 : ImGui::GetTextLineHeightWithSpacing()))});
     if (!same) ImGui::TextDisabled("Of the view or scene as it was: measure again for this one.");
     ImGui::EndGroup();

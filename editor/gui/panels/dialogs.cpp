@@ -206,7 +206,7 @@ bool Dialogs::escape(Desk& desk) {
 }
 
 // One at a time, the most urgent first.
-void Dialogs::draw(Desk& desk) {
+void Dialogs::draw(Desk& desk, Thumbnails& thumbnails) {
   if (std::exchange(closes_, false)) ImGui::ClosePopupsOverWindow(nullptr, false);
   if (desk.asking.quitting)
     draw_quitting(desk);
@@ -217,7 +217,7 @@ void Dialogs::draw(Desk& desk) {
   else if (!desk.project.recoverable.empty())
     draw_recovery(desk.project);
   else
-    files_.draw(desk);
+    files_.draw(desk, thumbnails);
 }
 
 }  // namespace rebake

@@ -7,11 +7,13 @@ namespace rebake {
 /// Asks before work is lost, and for paths: one question at a time, the most urgent first.
 class Dialogs {
  public:
-  void draw(Desk& desk);
+  void draw(Desk& desk, Thumbnails& thumbnails);
   /// Answers the question that is open with "not now"; false when none is.
   bool escape(Desk& desk);
   /// Closes what Dear ImGui has open, with the next frame.
   void close_popups() { closes_ = true; }
+  /// Whether another program's answer is waited for.
+  bool waits() const { return files_.waits(); }
   /// True once the window may close.
   bool may_quit() const { return may_quit_; }
 

@@ -15,7 +15,9 @@
 #include "editor/gui/ui/fonts.h"
 #include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/widgets.h"
-#include "mesh_ops/formats/formats.h"
+#include "editor/gui/view/navigation.h"
+#include "editor/gui/window/child_process.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 
@@ -37,6 +39,7 @@ constexpr Question questions[] = {
     {PathQuestion::export_folder, "Export", "A folder that MobileNeRF viewers open.", "Export", ""},
     {PathQuestion::screenshot, "Screenshot", "A PNG file of the scene, without grid and handles.", "Write", ".png"},
     {PathQuestion::turntable, "Turntable", "A folder for pictures from all around: 000.png, 001.png, …", "Write", ""},
+    {PathQuestion::camera_path, "Camera path", "A folder for pictures on a way through the stored views.", "Write", ""},
     {PathQuestion::save_script, "Save as script", "A file with a line an edit.", "Save", ".jsonl"},
     {PathQuestion::run_script, "Run script", "A file with a line an edit.", "Run", ".jsonl"},
 };
@@ -45,16 +48,6 @@ const Question& question_of(PathQuestion kind) {
   for (const Question& question : questions)
     if (question.kind == kind) return question;
   return questions[0];
-}
-
-// Whether some format knows the folder.
-bool holds_scene(const fs::path& folder) {
-  const auto known = formats();
-  try {
-    return std::any_of(known.begin(), known.end(), [&](const Format& format) { return format.recognises(folder); });
-  } catch (const fs::filesystem_error&) {
-    return false;  // it may not be looked into
-  }
 }
 
 // What is wrong with a path before anything is tried, empty for nothing.
@@ -68,6 +61,8 @@ std::string problem_with(const fs::path& path, bool writes) {
     return path.filename().string() + " holds no scene that can be read.";
   return "";
 }
+
+bool makes_film(PathQuestion asked) { return asked == PathQuestion::turntable || asked == PathQuestion::camera_path; }
 
 struct Bookmark {
   const char* icon;
@@ -129,7 +124,8 @@ void FileDialog::begin(const Desk& desk) {
   asked_ = desk.asking.path;
   only_picked_ = false;
   replacing_.clear();
-  entries_of_.clear();
+  list_.look_at({}, "", true);
+  video_ = false;
   width_ = desk.view.width;
   height_ = desk.view.height;
   std::error_code gone;
@@ -147,55 +143,18 @@ void FileDialog::begin(const Desk& desk) {
   if (!ending.empty()) path_ += title + ending;
 }
 
-// What lies in the folder that is typed; true when something of it is to be taken at once.
-bool FileDialog::draw_entries(const Desk& desk, const fs::path& folder, const std::string& ending) {
-  std::error_code error;
-  if (entries_of_ != folder) {
-    entries_of_ = folder;
-    entries_.clear();
-    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-      if (at->path().filename().string().starts_with('.')) continue;
-      std::error_code unknown;
-      const bool is_folder = at->is_directory(unknown);
-      entries_.push_back({at->path(), is_folder, is_folder && holds_scene(at->path())});
-    }
-    std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-      return std::pair(!a.is_folder, a.path) < std::pair(!b.is_folder, b.path);
-    });
-  }
-  bool taken = false;
-  const bool opens = desk.asking.path == PathQuestion::open;
-  const announce::Part part("entries");
-  if (ImGui::Selectable((std::string(icons::arrow_up) + "  ..").c_str(), false))
-    path_ = (folder / "..").lexically_normal().string();
-  announce::item("..");
-  for (const Entry& entry : entries_) {
-    const std::string name = entry.path.filename().string();
-    const std::string wanted = opens ? ".rebake" : ending;
-    if (!entry.is_folder && (wanted.empty() || entry.path.extension() != wanted)) continue;
-    const char* icon = entry.is_scene    ? icons::cube_outline
-                       : entry.is_folder ? icons::folder_outline
-                                         : icons::file_outline;
-    ImGui::PushStyleColor(ImGuiCol_Text, color(entry.is_folder && !entry.is_scene ? theme().muted : theme().text));
-    const bool chosen = fs::path(path_) == entry.path;
-    const bool clicked =
-        ImGui::Selectable(fmt::format("{}  {}", icon, name).c_str(), chosen, ImGuiSelectableFlags_AllowDoubleClick);
-    ImGui::PopStyleColor();
-    announce::item(name);
-    if (!clicked) continue;
-    const bool enters = entry.is_folder && !(entry.is_scene && opens);
-    path_ = entry.path.string() + (enters ? "/" : "");
-    taken = !enters && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
-  }
-  return taken;
-}
-
 void FileDialog::carry_out(Desk& desk, const fs::path& path) {
   const bool reads = desk.asking.path == PathQuestion::open || desk.asking.path == PathQuestion::run_script;
   (reads ? desk.settings.opened_from : desk.settings.written_to) = path.parent_path().string();
   switch (desk.asking.path) {
     case PathQuestion::open:
-      desk.project.open({path.string()});
+      if (list_.chosen().size() > 1) {
+        std::vector<std::string> several;
+        for (const fs::path& one : list_.chosen()) several.push_back(one.string());
+        desk.project.open(several);
+      } else {
+        desk.project.open({path.string()});
+      }
       break;
     case PathQuestion::save_project:
       desk.project.save(path);
@@ -210,8 +169,14 @@ void FileDialog::carry_out(Desk& desk, const fs::path& path) {
       desk.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
       break;
     case PathQuestion::turntable:
-      desk.jobs.turntable = Jobs::Turntable{path, width_, height_, pictures_};
+      desk.jobs.film.emplace(path, width_, height_, turntable(desk.view.camera, pictures_), desk.now->sources);
       break;
+    case PathQuestion::camera_path: {
+      std::vector<Camera> views;
+      for (const auto& [name, camera] : desk.scene().views) views.push_back(camera);
+      desk.jobs.film.emplace(path, width_, height_, camera_path(views, pictures_), desk.now->sources);
+      break;
+    }
     case PathQuestion::save_script:
       desk.project.save_script(path);
       break;
@@ -220,9 +185,69 @@ void FileDialog::carry_out(Desk& desk, const fs::path& path) {
   }
 }
 
-void FileDialog::draw(Desk& desk) {
+// To the left of the answers, the dialog that people know from elsewhere.
+void FileDialog::draw_desktop_buttons(const Desk& desk, bool reads, const std::string& ending) {
+  if (!DesktopFileDialog::there()) return;
+  using Kind = DesktopFileDialog::Kind;
+  const Question& question = question_of(desk.asking.path);
+  const auto offer = [&](const char* label, Kind kind, const char* help, const std::string& files) {
+    ImGui::BeginDisabled(desktop_ != nullptr);
+    if (ui::button(label)) try {
+        desktop_ = std::make_unique<DesktopFileDialog>(kind, question.title, path_, files);
+      } catch (const Error& failed) {
+        problem_of_ = path_;
+        problem_ = failed.what();
+      }
+    ImGui::EndDisabled();
+    ui::tip(label, "", help);
+    ImGui::SameLine();
+  };
+  if (desk.asking.path == PathQuestion::open) {
+    offer("Folders...", Kind::open_folders, "The desktop's dialog, for scenes.", "");
+    offer("Project...", Kind::open_file, "The desktop's dialog, for a project.", ".rebake");
+  } else {
+    offer("Browse...",
+          reads            ? Kind::open_file
+          : ending.empty() ? Kind::save_folder
+                           : Kind::save_file,
+          "The desktop's dialog.", ending);
+  }
+}
+
+void FileDialog::take_answer(Desk& desk) {
+  if (!desktop_) return;
+  const std::optional<std::vector<std::string>> paths = desktop_->answer();
+  if (!paths) return;
+  desktop_.reset();
+  refocuses_ = true;
+  if (paths->empty()) return;
+  path_ = paths->front();
+  if (desk.asking.path != PathQuestion::open) return;
+  desk.settings.opened_from = fs::path(path_).parent_path().string();
+  desk.project.open(*paths);
+  desk.asking.path = PathQuestion::none;
+}
+
+// Tab completes, the arrows walk through the list.
+int FileDialog::on_key(ImGuiInputTextCallbackData* data) {
+  auto& self = *static_cast<FileDialog*>(data->UserData);
+  const fs::path typed(data->Buf);
+  std::string text;
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion)
+    text = (typed.parent_path() / self.list_.completed(typed.filename().string())).string();
+  else if (const fs::path next = self.list_.step(data->EventKey == ImGuiKey_UpArrow ? -1 : 1); !next.empty())
+    text = next.string();
+  if (text.empty()) return 0;
+  data->DeleteChars(0, data->BufTextLen);
+  data->InsertChars(0, text.c_str());
+  return 0;
+}
+
+void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
+  take_answer(desk);
   if (desk.asking.path == PathQuestion::none) {
     asked_ = PathQuestion::none;
+    desktop_.reset();
     return;
   }
   const Question& question = question_of(desk.asking.path);
@@ -247,12 +272,18 @@ void FileDialog::draw(Desk& desk) {
   ImGui::TextDisabled("%s", question.hint);
   if (ImGui::IsWindowAppearing() || std::exchange(refocuses_, false)) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
-  bool done = ImGui::InputText("##text", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
+  bool done = ImGui::InputText("##text", &path_,
+                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
+                                   ImGuiInputTextFlags_CallbackHistory,
+                               on_key, this);
   announce::item("path");
+  const bool opens = desk.asking.path == PathQuestion::open, film = makes_film(desk.asking.path);
+  if (list_.chosen().size() > 1 && !list_.chosen().contains(path_)) list_.choose_none();
   const fs::path typed(path_);
   std::error_code error;
-  const fs::path folder = typed.has_filename() ? typed.parent_path() : typed;
-  const bool pictures = desk.asking.path == PathQuestion::screenshot || desk.asking.path == PathQuestion::turntable;
+  const fs::path folder = typed.parent_path();  // of "a/b/" that is "a/b"
+  const bool pictures = film || desk.asking.path == PathQuestion::screenshot;
+  const std::string ending = film && video_ ? ".mp4" : question.ending;
   // With all of it picked there is nothing to choose.
   const bool offers_picked = desk.asking.path == PathQuestion::export_folder && !desk.active.empty() &&
                              desk.active_tops().size() < desk.scene().roots.size();
@@ -267,6 +298,7 @@ void FileDialog::draw(Desk& desk) {
              ImGui::GetStyle().ItemSpacing.y;
   const float high = std::max(px(80), ImGui::GetContentRegionAvail().y - below);
   ImGui::PushStyleColor(ImGuiCol_ChildBg, color(theme().field));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(6)});
   ImGui::BeginChild("places", {px(180), high}, true);
   for (const Bookmark& place : bookmarks(desk.settings)) {
     if (ImGui::Selectable(fmt::format("{}  {}", place.icon, ui::shortened(place.name, px(130))).c_str()))
@@ -277,8 +309,16 @@ void FileDialog::draw(Desk& desk) {
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("entries", {0, high}, true);
-  done = draw_entries(desk, folder, question.ending) || done;
+  list_.look_at(folder, opens ? ".rebake" : ending);
+  // What is typed to be written is a new name, not one that is looked for.
+  const bool reads = opens || desk.asking.path == PathQuestion::run_script;
+  list_.filter(reads ? typed.filename().string() : "");
+  if (const FolderList::Taken taken = list_.draw(thumbnails, opens, opens); !taken.path.empty()) {
+    path_ = taken.path.string();
+    done = done || taken.at_once;
+  }
   ImGui::EndChild();
+  ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   if (offers_picked) {
     ui::toggle("Only the picked nodes", only_picked_);
@@ -290,20 +330,31 @@ void FileDialog::draw(Desk& desk) {
     const auto pixels = [](const char* label, int& value, int least, int most) {
       ImGui::SetNextItemWidth(px(90));
       ImGui::InputInt(label, &value, 0);
+      announce::item(label);
       value = std::clamp(value, least, most);
     };
     pixels("wide", width_, 16, 8192);
     ImGui::SameLine();
     pixels("high, pixels", height_, 16, 8192);
-    if (desk.asking.path == PathQuestion::turntable) {
+    if (film) {
       ImGui::SameLine();
       pixels("pictures", pictures_, 2, 1000);
+      ImGui::SameLine();
+      const bool can = !program_path("ffmpeg").empty();
+      ImGui::BeginDisabled(!can);
+      const bool was = video_;
+      ui::toggle("Video", video_);
+      ImGui::EndDisabled();
+      ui::tip("Video", "",
+              can ? fmt::format("An MP4 file of {} pictures a second.", Film::rate)
+                  : std::string("Needs the program ffmpeg."));
+      if (was && !video_ && path_.ends_with(".mp4")) path_.resize(path_.size() - 4);
     }
   }
   fs::path path(path_);
   if (!path.has_filename()) path = path.parent_path();
-  if (question.ending[0] != '\0' && path.extension() != question.ending) path += question.ending;
-  const bool writes = desk.asking.path != PathQuestion::open && desk.asking.path != PathQuestion::run_script;
+  if (!ending.empty() && path.extension() != ending) path += ending;
+  const bool writes = !reads;
   const bool filled = fs::is_directory(path, error) && !fs::is_empty(path, error);
   const bool replaces = writes && path != desk.project.path && (fs::is_regular_file(path, error) || filled);
   const bool asks = replaces && replacing_ == path;
@@ -313,11 +364,14 @@ void FileDialog::draw(Desk& desk) {
     ui::wrapped(problem_, theme().danger);
   else
     ImGui::TextUnformatted("");
+  draw_desktop_buttons(desk, reads, ending);
   const float width = px(120);
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * width - ImGui::GetStyle().ItemSpacing.x);
   const bool cancelled = ui::button("Cancel", {width, 0});
   ImGui::SameLine();
-  done = ui::primary_button(asks ? "Replace" : question.action, {width, 0}) || done;
+  const std::size_t several = opens ? list_.chosen().size() : 1;
+  const std::string action = asks ? "Replace" : several > 1 ? fmt::format("Open {}", several) : question.action;
+  done = ui::primary_button(action.c_str(), {width, 0}) || done;
   if (done) {
     problem_of_ = path_;
     problem_ = problem_with(path, writes);
@@ -331,7 +385,14 @@ void FileDialog::draw(Desk& desk) {
     done = false;
     refocuses_ = true;
   }
-  if (done) carry_out(desk, path);
+  if (done) try {
+      carry_out(desk, path);
+    } catch (const Error& failed) {
+      problem_of_ = path_;
+      problem_ = failed.what();
+      done = false;
+      refocuses_ = true;
+    }
   if (cancelled) desk.project.saved_then = nullptr;
   if (done || cancelled) {
     desk.asking.path = PathQuestion::none;

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <imgui.h>
+
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "editor/gui/panels/folder_list.h"
 #include "editor/gui/window/desk.h"
+#include "editor/gui/window/desktop.h"
 
 namespace rebake {
 
@@ -12,27 +17,29 @@ namespace rebake {
 class FileDialog {
  public:
   /// Where one is asked for.
-  void draw(Desk& desk);
+  void draw(Desk& desk, Thumbnails& thumbnails);
+
+  /// Whether another program's answer is waited for.
+  bool waits() const { return desktop_ != nullptr; }
 
  private:
-  struct Entry {
-    std::filesystem::path path;
-    bool is_folder = false, is_scene = false;
-  };
   void begin(const Desk& desk);
   std::vector<NodeRef> exported_nodes(const Desk& desk) const;
-  bool draw_entries(const Desk& desk, const std::filesystem::path& folder, const std::string& ending);
+  void draw_desktop_buttons(const Desk& desk, bool reads, const std::string& ending);
+  void take_answer(Desk& desk);
+  static int on_key(ImGuiInputTextCallbackData* data);
   void carry_out(Desk& desk, const std::filesystem::path& path);
   std::string path_;
   PathQuestion asked_ = PathQuestion::none;
-  std::filesystem::path entries_of_;  ///< the folder that was read
-  std::vector<Entry> entries_;
-  std::string problem_, problem_of_;  ///< what is wrong with which path
-  bool refocuses_ = false;            ///< the path takes the keyboard again
-  std::filesystem::path replacing_;   ///< is there already: asked for once
-  bool only_picked_ = false;          ///< of an export
-  int width_ = 0, height_ = 0;        ///< of pictures, in pixels
-  int pictures_ = 36;                 ///< of a turntable
+  FolderList list_;
+  std::unique_ptr<DesktopFileDialog> desktop_;  ///< while it is open
+  std::string problem_, problem_of_;            ///< what is wrong with which path
+  bool refocuses_ = false;                      ///< the path takes the keyboard again
+  std::filesystem::path replacing_;             ///< is there already: asked for once
+  bool only_picked_ = false;                    ///< of an export
+  int width_ = 0, height_ = 0;                  ///< of pictures, in pixels
+  int pictures_ = 36;                           ///< of a film
+  bool video_ = false;
 };
 
 }  // namespace rebake

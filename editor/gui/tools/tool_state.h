@@ -36,6 +36,7 @@ struct ToolState {
   /// Takes back (-1) or does again (1) a step that is the tool's own; false when there is none. Null without such
   /// steps.
   std::function<bool(int)> own_step;
+  int steps_waiting = 0;  ///< that were asked for while another was being taken; back where below 0
   bool local_axes = false;
   bool snaps = false;  ///< what is moved freely is put onto the surface under the pointer
 };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "mesh_ops/scene/camera.h"
 
 namespace rebake {
@@ -25,6 +27,11 @@ Camera looked(const Camera& camera, double right_pixels, double down_pixels, int
 Camera along_axis(const Camera& camera, const Vec3& axis);
 /// Orthographic where it was perspective and the reverse, with the target as large as before.
 Camera projected_otherwise(const Camera& camera);
+/// So many cameras on a smooth way through the given ones, from the first to the last: each is passed, and what lies
+/// between turns about what is looked at. Of one camera, all are that.
+std::vector<Camera> camera_path(const std::vector<Camera>& through, int count);
+/// So many cameras once around the target.
+std::vector<Camera> turntable(const Camera& camera, int count);
 /// Near and far planes that hold the box, whatever lies around it; an orthographic camera stands before the box.
 Camera with_depth_for(const Camera& camera, const Box& box);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "mesh_ops/scene/camera.h"
 #include "render/graph/guides.h"
 
@@ -17,9 +19,10 @@ struct ViewState {
   double moving_share = 0;  ///< of the resolution each way while the view moves; 0: what keeps the rate below
   int target_rate = 17;     ///< pictures a second while the view moves
   Guides::Inspect inspect = Guides::Inspect::none;
-  int channel = 1;       ///< of the features, when they are inspected
-  bool wipe = false;     ///< the scene as imported is shown left of `wipe_at`
-  double wipe_at = 0.5;  ///< share of the viewport's width
+  int channel = 1;             ///< of the features, when they are inspected
+  bool wipe = false;           ///< the scene as imported is shown left of `wipe_at`
+  std::optional<Vec2> marked;  ///< a place in the picture that a panel points at, by shares of its size
+  double wipe_at = 0.5;        ///< share of the viewport's width
 
   double aspect() const { return static_cast<double>(width) / height; }
 };

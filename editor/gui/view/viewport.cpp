@@ -59,7 +59,7 @@ bool Viewport::cancel(Desk& desk) {
 bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
 
 double Viewport::next_frame_in(const Desk& desk) const {
-  if (desk.jobs.turntable || desk.view.flying || (thumbnails_.wants() && !moving() && desk.at_rest())) return 0;
+  if (desk.jobs.film || desk.view.flying || (thumbnails_.wants() && !moving() && desk.at_rest())) return 0;
   // A quick picture is followed by one in full.
   if (!moving())
     return made_ && (made_->view.width != made_->shown_width || made_->view.samples != desk.view.samples) ? 0 : -1;
@@ -351,19 +351,17 @@ void Viewport::write_pictures(Desk& desk) {
       written(desk.view.camera, shot->width, shot->height, shot->path);
       desk.messages.say("Wrote " + shot->path.string());
     }
-    if (desk.jobs.turntable) {
-      Jobs::Turntable& turntable = *desk.jobs.turntable;
-      std::filesystem::create_directories(turntable.folder);
-      const double turn = 2.0 * desk.view.height * turntable.next / turntable.count;
-      written(orbited(desk.view.camera, turn, 0, desk.view.height), turntable.width, turntable.height,
-              turntable.folder / fmt::format("{:03}.png", turntable.next));
-      if (++turntable.next == turntable.count) {
-        desk.messages.say(fmt::format("Wrote {} pictures to {}", turntable.count, turntable.folder.string()));
-        desk.jobs.turntable.reset();
+    if (desk.jobs.film) {
+      const std::string said = desk.jobs.film->go_on([&](const Camera& camera, const std::filesystem::path& path) {
+        written(camera, desk.jobs.film->width(), desk.jobs.film->height(), path);
+      });
+      if (!said.empty()) {
+        desk.messages.say(said);
+        desk.jobs.film.reset();
       }
     }
   } catch (const std::exception& error) {
-    desk.jobs.turntable.reset();
+    desk.jobs.film.reset();
     desk.messages.fail(error.what());
   }
 }
@@ -409,6 +407,13 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
   list.ChannelsSplit(2);
   list.ChannelsSetCurrent(1);
   draw_legend(desk, list, origin);
+  if (desk.view.marked) {
+    const ImVec2 at = on_screen(desk.view.marked->cwiseProduct(Vec2(desk.view.width, desk.view.height)), origin);
+    announce::point("largest error", at);
+    list.AddCircle(at, px(14), IM_COL32(0, 0, 0, 200), 0, px(5));
+    list.AddCircle(at, px(14), IM_COL32(255, 230, 60, 255), 0, px(2.5F));
+    draw_label(list, {at.x + px(22), at.y - px(8)}, "largest error");
+  }
   const bool on_axes = draw_axes(desk, list, {origin.x + size.x, origin.y}, pointer.inside && !tool(desk).busy());
   if (on_axes || (desk.view.wipe && draw_wipe(desk, list, origin, pointer))) {
     pointer.inside = false;
@@ -429,6 +434,8 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
   try {
     if (!desk.jobs.worker.busy() || !tool(desk).wants_scene() || tool(desk).busy())
       tool(desk).pointer(desk, lens, pointer);
+    else if (pointer.pressed && pointer.inside)
+      desk.messages.say("Something is still being done: click again when it is, or press Esc to stop it.");
     last_tool_ = desk.tools.kind;  // a drag that a key began ends with the tool before it, and what it did stays
   } catch (const std::exception& error) {
     desk.messages.fail(error.what());

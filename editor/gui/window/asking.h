@@ -13,6 +13,7 @@ enum class PathQuestion {
   export_folder,
   screenshot,
   turntable,
+  camera_path,
   save_script,
   run_script
 };

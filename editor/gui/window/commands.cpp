@@ -33,6 +33,7 @@ namespace {
 
 bool always(const Desk&) { return true; }
 bool has_scene(const Desk& desk) { return !desk.scene().roots.empty(); }
+bool has_views(const Desk& desk) { return desk.scene().views.size() > 1; }
 bool has_active(const Desk& desk) { return !desk.active.empty(); }
 bool has_selection(const Desk& desk) { return desk.selected_triangles() > 0; }
 bool has_either(const Desk& desk) { return has_active(desk) || has_selection(desk); }
@@ -168,13 +169,8 @@ bool looks_at(const Desk& desk) {
   return desk.view.inspect == inspect;
 }
 
-// A tool with steps of its own takes them back first.
-void undo(Desk& desk) {
-  if (!desk.tools.own_step || !desk.tools.own_step(-1)) desk.undo();
-}
-void redo(Desk& desk) {
-  if (!desk.tools.own_step || !desk.tools.own_step(1)) desk.redo();
-}
+void undo(Desk& desk) { desk.step(-1); }
+void redo(Desk& desk) { desk.step(1); }
 
 template <BottomTab tab>
 void toggle_tab(Desk& desk) {
@@ -228,7 +224,10 @@ const std::vector<Command>& command_table() {
        ask<PathQuestion::export_folder>},
       {"File", "Screenshot...", "F12", "F12", "Writes this view as a picture.", has_scene,
        ask<PathQuestion::screenshot>},
-      {"File", "Turntable...", "", "", "Writes pictures from all around.", has_scene, ask<PathQuestion::turntable>},
+      {"File", "Turntable...", "", "", "Writes pictures or a video from all around.", has_scene,
+       ask<PathQuestion::turntable>},
+      {"File", "Camera path...", "", "", "Writes pictures or a video on a way through the stored views.", has_views,
+       ask<PathQuestion::camera_path>},
       {"File", "Save as script...", "", "", "Writes the steps as lines that other scenes can replay.", has_scene,
        ask<PathQuestion::save_script>},
       {"File", "Run script...", "", "", "Carries out the lines of a script.", always, ask<PathQuestion::run_script>},

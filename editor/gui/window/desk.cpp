@@ -85,6 +85,12 @@ void Desk::update() {
       messages.fail(problem.what());
     }
   }
+  if (!tools.own_step) tools.steps_waiting = 0;
+  if (at_rest_ && tools.steps_waiting != 0) {
+    const int direction = tools.steps_waiting < 0 ? -1 : 1;
+    tools.steps_waiting -= direction;
+    step(direction);
+  }
   if (std::optional<Preview> made = previews.take(); made && made->of == scene().roots) preview = std::move(made);
 }
 
@@ -159,6 +165,15 @@ void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then, std
     }
   };
   change("adjust", job, std::move(then), std::move(otherwise));
+}
+
+void Desk::step(int direction) {
+  if (tools.own_step && !at_rest_) {
+    tools.steps_waiting += direction;
+    return;
+  }
+  if (tools.own_step && tools.own_step(direction)) return;
+  direction < 0 ? undo() : redo();
 }
 
 void Desk::undo(int steps) {

@@ -80,6 +80,9 @@ struct Desk {
   void edits(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
   /// In place of the last step, which is taken back; where they fail it stays.
   void adjust(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
+  /// One back (-1) or on (1): of the tool in hand, which takes its own first, else of the document. What is asked for
+  /// while one is being taken waits for it.
+  void step(int direction);
   void undo(int steps = 1);
   void redo(int steps = 1);
   const Scene& scene() const { return now->scene; }

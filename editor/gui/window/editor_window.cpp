@@ -50,9 +50,9 @@ class EditorWindow {
   void run() {
     frames_ = frames_after_event;
     while (!dialogs_.may_quit()) {
-      const double pause = frames_ > 0 ? 0 : desk_.jobs.worker.busy() ? 0.1 : next_frame_in();
+      const double pause = frames_ > 0 ? 0 : desk_.jobs.worker.busy() || dialogs_.waits() ? 0.1 : next_frame_in();
       const auto waits = std::chrono::steady_clock::now();
-      if (window().wait(pause) || desk_.jobs.worker.busy()) frames_ = frames_after_event;
+      if (window().wait(pause) || desk_.jobs.worker.busy() || dialogs_.waits()) frames_ = frames_after_event;
       if (pause == 0) paused(waits);
       if (desk_.now != desk_.jobs.worker.snapshot()) frames_ = frames_after_event;
       frames_ = std::max(0, frames_ - 1);
@@ -208,10 +208,9 @@ class EditorWindow {
     }
     if (desk_.asking.palette || desk_.asking.keys) {
       desk_.asking.palette = desk_.asking.keys = false;
-    } else if (desk_.jobs.turntable) {
-      desk_.messages.say(fmt::format("Stopped: {} of {} pictures are in {}", desk_.jobs.turntable->next,
-                                     desk_.jobs.turntable->count, desk_.jobs.turntable->folder.string()));
-      desk_.jobs.turntable.reset();
+    } else if (desk_.jobs.film) {
+      desk_.messages.say(desk_.jobs.film->stopped());
+      desk_.jobs.film.reset();
     } else if (!desk_.asking.form.empty()) {
       desk_.asking.form.clear();
     } else if (viewport().cancel(desk_) || desk_.messages.close_failures()) {
@@ -246,7 +245,7 @@ class EditorWindow {
     window().begin_frame();
     ImGui::PushFont(fonts().text);
     layout_.draw(viewport(), window().moves());
-    dialogs_.draw(desk_);
+    dialogs_.draw(desk_, viewport().thumbnails());
     ImGui::PopFont();
     window().end_frame();
     tell();
@@ -256,7 +255,8 @@ class EditorWindow {
   void tell() {
     if (!announce::on()) return;
     nlohmann::json state;
-    const bool working = !desk_.at_rest() || desk_.jobs.worker.busy() || desk_.previews.busy();
+    const bool working =
+        !desk_.at_rest() || desk_.tools.steps_waiting != 0 || desk_.jobs.worker.busy() || desk_.previews.busy();
     state["settled"] = !working && !window().input_waits() && viewport().next_frame_in(desk_) < 0 && frames_ == 0;
     state["input"] = {{"keys", window().seen().keys},
                       {"buttons", window().seen().buttons},

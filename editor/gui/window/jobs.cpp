@@ -12,7 +12,7 @@ void Jobs::measure_costs(const ViewState& view, const Scene& scene) {
   worker.start(
       "measure",
       [measured](Session& session) {
-        constexpr int frames = 3;  // the median counts
+        constexpr int frames = 5;  // the median counts
         const StudyInput input{[&session]() -> Renderer& { return session.renderer(); }, session.scene(),
                                measured->view, frames, session.progress};
         for (const auto study : {study_samples, study_resolution})

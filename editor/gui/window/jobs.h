@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "editor/gui/view/view_state.h"
+#include "editor/gui/window/film.h"
 #include "editor/gui/window/worker.h"
 #include "editor/studies/study.h"
 
@@ -24,19 +25,14 @@ struct Jobs {
     int width = 0, height = 0;  ///< pixels
   };
   std::optional<Screenshot> screenshot;
-  struct Turntable {
-    std::filesystem::path folder;
-    int width = 0, height = 0, count = 36;
-    int next = 0;  ///< number of the picture that comes
-  };
-  std::optional<Turntable> turntable;
+  std::optional<Film> film;
 
   /// What choices cost and how wrong each is, in one view of one scene.
   struct Costs {
     View view;
     std::vector<NodePtr> roots;
     Color background;
-    std::vector<StudyTable::Row> rows;  ///< milliseconds, dB, largest difference of 255
+    std::vector<StudyTable::Row> rows;  ///< as picture_table() has them
     std::string device;
   };
   std::shared_ptr<const Costs> costs;

@@ -123,6 +123,7 @@ void WindowLayout::lay_out(const ImVec2& screen) {
 void WindowLayout::picture(const ImVec2& at, const ImVec2& size) {
   panel(
       "picture", at, size, [&] { viewport_->draw(desk_, *moves_); }, {0, 0}, ImGuiWindowFlags_NoScrollbar);
+  desk_.view.marked.reset();  // until a panel points at something again
   draw_start(desk_, viewport_->thumbnails(), {at.x + size.x / 2, at.y + size.y / 2});
   if (!desk_.view.alone) adjust_.draw(desk_, {at.x, at.y + size.y}, size);
   draw_toasts(desk_.messages, {at.x + size.x, at.y + size.y});
@@ -266,9 +267,8 @@ void WindowLayout::tabs() {
 void WindowLayout::status() {
   const announce::Part part("status");
   ImGui::AlignTextToFramePadding();
-  if (desk_.jobs.turntable) {
-    ImGui::Text("Turntable: picture %d of %d (Esc ends it)", desk_.jobs.turntable->next + 1,
-                desk_.jobs.turntable->count);
+  if (desk_.jobs.film) {
+    ImGui::Text("%s (Esc ends it)", desk_.jobs.film->doing().c_str());
   } else if (desk_.jobs.worker.busy()) {
     const Worker::Status now = desk_.jobs.worker.status();
     if (ui::quiet_icon(icons::close, "Stop")) desk_.jobs.worker.cancel();

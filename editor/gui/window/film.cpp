@@ -1,0 +1,69 @@
+#include "editor/gui/window/film.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "editor/gui/window/settings.h"
+#include "mesh_ops/base/error.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+Film::Film(fs::path out, int width, int height, std::vector<Camera> cameras, const SourceGuard& sources)
+    : out_(std::move(out)), width_(width), height_(height), cameras_(std::move(cameras)) {
+  if (out_.extension() != ".mp4") {
+    sources.check_folder(out_);
+    pictures_ = out_;
+  } else {
+    sources.check_file(out_);
+    if (program_path("ffmpeg").empty())
+      throw Error("a video needs the program ffmpeg, which is not installed; a folder gets pictures");
+    pictures_ = cache_folder() / fmt::format("film-{}", ::getpid());
+    // Sizes that video formats take are even.
+    width_ += width_ % 2;
+    height_ += height_ % 2;
+  }
+  std::error_code failed;
+  fs::create_directories(pictures_, failed);
+  if (failed) throw FileError(pictures_, "cannot be made: " + failed.message());
+}
+
+Film::~Film() {
+  encoder_.reset();
+  std::error_code gone;
+  if (video()) fs::remove_all(pictures_, gone);
+}
+
+std::string Film::doing() const {
+  return encoder_ ? "Making the video" : fmt::format("Picture {} of {}", next_ + 1, cameras_.size());
+}
+
+std::string Film::go_on(const std::function<void(const Camera&, const fs::path&)>& write) {
+  const fs::path partial = pictures_ / "video.mp4";
+  if (next_ < cameras_.size()) {
+    write(cameras_[next_], pictures_ / fmt::format("{:03}.png", next_));
+    if (++next_ < cameras_.size()) return "";
+    if (!video()) return fmt::format("Wrote {} pictures to {}", cameras_.size(), out_.string());
+    encoder_ = std::make_unique<ChildProcess>(std::vector<std::string>{
+        program_path("ffmpeg"), "-nostdin", "-loglevel", "error", "-y", "-framerate", std::to_string(rate), "-i",
+        (pictures_ / "%03d.png").string(), "-pix_fmt", "yuv420p", partial.string()});
+    return "";
+  }
+  const std::optional<int> status = encoder_->ended();
+  if (!status) return "";
+  if (*status != 0) throw Error(fmt::format("ffmpeg ended with {}; there is no video", *status));
+  std::error_code failed;
+  const fs::path beside = out_.string() + ".partial";
+  fs::copy_file(partial, beside, fs::copy_options::overwrite_existing, failed);
+  if (!failed) fs::rename(beside, out_, failed);
+  if (failed) throw FileError(out_, "cannot be written: " + failed.message());
+  return fmt::format("Wrote {} seconds of video to {}", static_cast<double>(cameras_.size()) / rate, out_.string());
+}
+
+std::string Film::stopped() const {
+  if (video()) return "Stopped: there is no video";
+  return fmt::format("Stopped: {} of {} pictures are in {}", next_, cameras_.size(), out_.string());
+}
+
+}  // namespace rebake
