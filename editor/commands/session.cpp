@@ -14,6 +14,11 @@ void Session::edits(const std::vector<Edit>& edits) {
     for (const std::string& line : done.lines) report(line);
 }
 
+void Session::adjust(const std::vector<Edit>& edits) {
+  for (const Report& done : document.adjust(edits, progress))
+    for (const std::string& line : done.lines) report(line);
+}
+
 Renderer& Session::renderer() {
   if (!renderer_) renderer_ = std::make_unique<Renderer>();
   return *renderer_;

@@ -23,6 +23,8 @@ class Session {
   void edit(const Edit& edit);
   /// All of them, to be undone together, or none where one throws.
   void edits(const std::vector<Edit>& edits);
+  /// In place of the last step.
+  void adjust(const std::vector<Edit>& edits);
 
   std::vector<std::string> exports;  ///< folders that export wrote
   Progress progress;

@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // One line for what was made together: a torn journal holds all of it or nothing.
-json entry_of(const std::vector<Edit>& edits) {
-  if (edits.size() == 1) return {{"edit", to_json(edits.front())}};
+json entry_of(const std::vector<Edit>& edits, bool list = false) {
+  if (edits.size() == 1 && !list) return {{"edit", to_json(edits.front())}};
   json entry = {{"edits", json::array()}};
   for (const Edit& edit : edits) entry["edits"].push_back(to_json(edit));
   return entry;
@@ -46,6 +46,7 @@ namespace {
 
 // The edits of a journal's line; empty for undo and redo.
 json edits_in(const json& entry) {
+  if (entry.contains("adjust")) return entry.at("adjust").at("edits");
   if (entry.contains("edit")) return json::array({entry.at("edit")});
   return entry.contains("edits") ? entry.at("edits") : json::array();
 }
@@ -68,27 +69,37 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
   result.torn = contents.torn;
   // One line: all of it, or nothing.
   const auto replay = [&](const json& entry) {
-    if (!entry.contains("edit") && !entry.contains("edits")) {
+    const std::size_t adjusted = entry.contains("adjust") ? count_in(entry.at("adjust").at("undo")) : 0;
+    if (adjusted == 0 && !entry.contains("edit") && !entry.contains("edits")) {
       if (!entry.contains("undo") && !entry.contains("redo")) throw Error("is neither an edit nor undo or redo");
       if (entry.contains("undo") ? !history.undo(count_in(entry.at("undo")), progress)
                                  : !history.redo(count_in(entry.at("redo")), progress))
         throw Error("there is nothing to undo or redo");
       return;
     }
+    if (adjusted > 0 && !history.undo(adjusted, progress)) throw Error("there is no step to adjust");
     std::vector<std::pair<Edit, Scene>> made;
-    for (json one : edits_in(entry)) {
-      const Scene& before = made.empty() ? result.document.scene() : made.back().second;
-      if (one.value("op", "") == Import::op) {
-        const fs::path imported = one.at("path").get<std::string>();
-        if (const std::string trouble = trouble_with(imported, one.value("content", ""), links); !trouble.empty()) {
-          result.gone.push_back({imported, trouble});
-          throw FileError(imported, trouble);
+    const auto make = [&] {
+      for (json one : edits_in(entry)) {
+        const Scene& before = made.empty() ? result.document.scene() : made.back().second;
+        if (one.value("op", "") == Import::op) {
+          const fs::path imported = one.at("path").get<std::string>();
+          if (const std::string trouble = trouble_with(imported, one.value("content", ""), links); !trouble.empty()) {
+            result.gone.push_back({imported, trouble});
+            throw FileError(imported, trouble);
+          }
+          one["path"] = relinked(imported, links).string();
         }
-        one["path"] = relinked(imported, links).string();
+        Edit edit = read_edit(one, before);
+        Scene scene = rebake::apply(before, edit, progress).scene;
+        made.emplace_back(std::move(edit), std::move(scene));
       }
-      Edit edit = read_edit(one, before);
-      Scene scene = rebake::apply(before, edit, progress).scene;
-      made.emplace_back(std::move(edit), std::move(scene));
+    };
+    try {
+      make();
+    } catch (...) {
+      if (adjusted > 0) history.redo(adjusted);
+      throw;
     }
     for (const auto& [edit, scene] : made) add_sources(result.document.imported_, {edit});
     for (std::size_t k = 0; k < made.size(); ++k)
@@ -160,24 +171,48 @@ void Document::keep_journal(const fs::path& path) {
 
 void Document::edit(const Edit& edit, const Progress& progress) { edits({edit}, progress); }
 
-std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progress& progress) {
-  std::vector<Scene> scenes;
-  std::vector<Report> reports;
-  std::vector<Edit> whole;
+Document::Done Document::done(const std::vector<Edit>& edits, const Progress& progress) const {
+  Done done;
   for (const Edit& edit : edits) {
-    const Scene& before = scenes.empty() ? scene() : scenes.back();
+    const Scene& before = done.scenes.empty() ? scene() : done.scenes.back();
     // What is carried out is what journals and projects will read, to the last bit: nothing can be accepted now and
     // refused, or done otherwise, later.
-    whole.push_back(read_edit(to_json(completed(edit)), before));
-    Outcome outcome = rebake::apply(before, whole.back(), progress);
-    scenes.push_back(std::move(outcome.scene));
-    reports.push_back(std::move(outcome.report));
+    done.edits.push_back(read_edit(to_json(completed(edit)), before));
+    Outcome outcome = rebake::apply(before, done.edits.back(), progress);
+    done.scenes.push_back(std::move(outcome.scene));
+    done.reports.push_back(std::move(outcome.report));
   }
-  if (whole.empty()) return reports;
-  if (journal_) journal_->append(entry_of(whole));
-  add_sources(imported_, whole);
-  for (std::size_t k = 0; k < whole.size(); ++k) history_.add(std::move(whole[k]), std::move(scenes[k]), k > 0);
-  return reports;
+  return done;
+}
+
+std::vector<Report> Document::take_in(Done done) {
+  add_sources(imported_, done.edits);
+  for (std::size_t k = 0; k < done.edits.size(); ++k)
+    history_.add(std::move(done.edits[k]), std::move(done.scenes[k]), k > 0);
+  return std::move(done.reports);
+}
+
+std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progress& progress) {
+  if (edits.empty()) return {};
+  Done made = done(edits, progress);
+  if (journal_) journal_->append(entry_of(made.edits));
+  return take_in(std::move(made));
+}
+
+std::vector<Report> Document::adjust(const std::vector<Edit>& edits, const Progress& progress) {
+  const std::size_t last = history_.undo_step();
+  if (last == 0 || edits.empty()) throw EditError("there is no step to adjust, or nothing to do in its place");
+  history_.undo(last, progress);
+  Done made;
+  try {
+    made = done(edits, progress);
+    // One line: however the program ends, the step is there as it was, or as it is now.
+    if (journal_) journal_->append({{"adjust", {{"undo", last}, {"edits", entry_of(made.edits, true).at("edits")}}}});
+  } catch (...) {
+    history_.redo(last);
+    throw;
+  }
+  return take_in(std::move(made));
 }
 
 bool Document::undo(std::size_t edits, const Progress& progress) {

@@ -41,6 +41,8 @@ class Document {
   void edit(const Edit& edit, const Progress& progress = {});
   /// All of them, to be undone together, or none where one throws. What each did.
   std::vector<Report> edits(const std::vector<Edit>& edits, const Progress& progress = {});
+  /// In place of the last step, or nothing where one throws: that step stays then. Throws EditError without one.
+  std::vector<Report> adjust(const std::vector<Edit>& edits, const Progress& progress = {});
   /// So many edits back or forth, or none; false where there are fewer.
   bool undo(std::size_t edits = 1, const Progress& progress = {});
   bool redo(std::size_t edits = 1, const Progress& progress = {});
@@ -54,6 +56,14 @@ class Document {
   void discard_journal();
 
  private:
+  struct Done {
+    std::vector<Edit> edits;    ///< as journals and projects read them
+    std::vector<Scene> scenes;  ///< after each
+    std::vector<Report> reports;
+  };
+  Done done(const std::vector<Edit>& edits, const Progress& progress) const;
+  std::vector<Report> take_in(Done done);
+
   bool starts_empty_;
   History history_;
   SourceGuard imported_;  ///< also by edits that history has dropped: a journal reads them again

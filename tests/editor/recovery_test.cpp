@@ -68,6 +68,35 @@ TEST_F(Recovery, AFlippedByteAnywhereLeavesEverythingBeforeIt) {
   }
 }
 
+TEST_F(Recovery, AnAdjustedStepIsThereAsItWasOrAsItIsWhereverTheProgramEnds) {
+  const auto background = [](double blue) {
+    Background edit;
+    edit.color = Vec3(0, 0, blue);
+    return edit;
+  };
+  Document document;
+  document.keep_journal(path("journal"));
+  work(document, 0);
+  document.edits({background(0.25), background(0.5)});
+  const std::string before = read_file(path("journal"));
+  document.adjust({background(0.75)});
+  const std::string after = read_file(path("journal"));
+  EXPECT_EQ(document.history().undo_count(), 2U) << "an import, and the step that took the place of two edits";
+  for (std::size_t end = before.size(); end <= after.size(); ++end) {
+    write(path("cut"), after.substr(0, end));
+    Document::Recovered recovered = Document::recover(path("cut"));
+    const bool whole = end == after.size();
+    EXPECT_EQ(recovered.document.scene().background, Vec3(0, 0, whole ? 0.75 : 0.5)) << end;
+    EXPECT_EQ(recovered.document.history().undo_count(), whole ? 2U : 3U);
+    fs::remove(path("cut"));
+  }
+  // What cannot be done in its place leaves it, and the journal.
+  StoreView nameless;
+  EXPECT_THROW(document.adjust({nameless}), Error);
+  EXPECT_EQ(document.scene().background, Vec3(0, 0, 0.75));
+  EXPECT_EQ(read_file(path("journal")), after);
+}
+
 TEST_F(Recovery, WhatStandsBehindDamageIsListedAndTheJournalStaysAsItIs) {
   std::string bytes = journal(5);
   const std::size_t at = bytes.find("0.02");

@@ -371,7 +371,7 @@ class EditorTest(unittest.TestCase):
         self.assertEqual(len(edit["moves"]), 1)
         first = editor.items("cage")
         drag_top(-50, -40)
-        self.assertEqual(editor.ops(), ["import", "cage", "undo", "cage"], "the same step, done again")
+        self.assertEqual(editor.ops(), ["import", "cage", "adjust", "cage"], "the same step, done again")
         self.assertEqual(editor.state()["steps"], 2)
         second = editor.items("cage")
         self.assertNotEqual(first, second)
@@ -515,7 +515,7 @@ class EditorTest(unittest.TestCase):
         editor.click("adjust/Angle/value")
         editor.type("30")
         editor.key("Return")
-        editor.until_ops("import", "select_picture", "bend", "undo", "bend")
+        editor.until_ops("import", "select_picture", "bend", "adjust", "bend")
         self.assertEqual(editor.last_edit()["degrees"], 30)
         self.assertEqual(editor.state()["steps"], 3)
         # A second bend goes on from the first's axis.

@@ -233,11 +233,15 @@ class Editor:
 
     def last_edit(self):
         line = self.journal()[-1]
+        line = line.get("adjust", line)
         return line["edits"][-1] if "edits" in line else line["edit"]
 
     def ops(self):
         names = []
         for line in self.journal():
+            if "adjust" in line:
+                names.append("adjust")
+                line = line["adjust"]
             edits = line.get("edits", [line["edit"]] if "edit" in line else [])
             names += [edit["op"] for edit in edits] or ["undo" if "undo" in line else "redo"]
         return names

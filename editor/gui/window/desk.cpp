@@ -152,17 +152,7 @@ void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then, std
     const std::vector<Edit> done = session.document.history().edits();
     if (done.empty() || done.back().value() != last.value())
       throw EditError("another step was done meanwhile; nothing was changed");
-    session.document.undo_step(session.progress);
-    try {
-      session.edits(list);
-    } catch (...) {
-      try {
-        session.document.redo_step();
-      } catch (const std::exception& lost) {
-        session.say(std::string("The step that was to be adjusted is undone, and can be done again: ") + lost.what());
-      }
-      throw;
-    }
+    session.adjust(list);
   };
   change("adjust", job, std::move(then), std::move(otherwise));
 }
