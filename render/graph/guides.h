@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <vector>
 
 #include "mesh_ops/scene/scene.h"
@@ -16,6 +18,14 @@ struct Guides {
     bool operator==(const Line&) const = default;
   };
   std::vector<Line> lines;
+  /// Lies on the surface, and shows where that does; corners differ in opacity.
+  struct Triangle {
+    std::array<Vec3, 3> corners;
+    std::array<double, 3> opacity{1, 1, 1};
+  };
+  using Triangles = std::shared_ptr<const std::vector<Triangle>>;
+  Triangles triangles;  ///< null for none
+  Color triangle_color{1, 0.3, 0.1};
   bool selection = true;         ///< tints and outlines selected triangles
   std::vector<NodeId> outlined;  ///< nodes with a line around them
 

@@ -6,6 +6,9 @@ namespace rebake {
 
 namespace {
 
+// A surface is looked for so much before and behind a triangle that lies on it, as a share of its distance.
+constexpr double nearer = 2e-3;
+
 void execute(const PassInput& input) {
   struct Vertex {
     float position[3], color[4], hidden;
@@ -13,6 +16,21 @@ void execute(const PassInput& input) {
   const Camera& camera = input.plan.view.camera;
   const Mat3 rows = world_to_camera(camera);
   std::vector<Vertex> vertices;
+  if (input.plan.guides.triangles) {
+    // A little nearer than the surface that they lie on, at the same pixels.
+    const Eigen::Vector3f c = input.plan.guides.triangle_color.cast<float>();
+    for (const Guides::Triangle& triangle : *input.plan.guides.triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        Vec3 at = rows * (triangle.corners[k] - camera.eye);
+        if (camera.orthographic())
+          at.z() *= 1 - nearer;
+        else
+          at *= 1 - nearer;
+        const Eigen::Vector3f p = at.cast<float>();
+        vertices.push_back({{p.x(), p.y(), p.z()}, {c.x(), c.y(), c.z(), static_cast<float>(triangle.opacity[k])}, -1});
+      }
+  }
+  const auto in_triangles = static_cast<GLsizei>(vertices.size());
   for (const Guides::Line& line : input.plan.guides.lines)
     for (const Vec3* end : {&line.from, &line.to}) {
       const Eigen::Vector3f p = (rows * (*end - camera.eye)).cast<float>();
@@ -40,15 +58,19 @@ void execute(const PassInput& input) {
   bind_scene_depth(input, shader);
   set_uniform(shader, "empty", input.plan.draws.empty() ? 1 : 0);
   set_camera_to_clip(input.plan, shader);
-  glDrawArrays(GL_LINES, 0, static_cast<GLsizei>(vertices.size()));
+  set_uniform(shader, "thickness", static_cast<float>(2 * nearer));
+  glDrawArrays(GL_TRIANGLES, 0, in_triangles);
+  glDrawArrays(GL_LINES, in_triangles, static_cast<GLsizei>(vertices.size()) - in_triangles);
   glDisable(GL_BLEND);
   end_geometry();
 }
 
 std::optional<Decision> decide(const FrameFacts& facts) {
-  const std::size_t lines = facts.plan.guides.lines.size();
-  if (lines == 0) return Decision{false, "no grid, cage or handle is shown"};
-  return Decision{true, plural(lines, "line", "lines")};
+  const Guides& guides = facts.plan.guides;
+  const std::size_t lines = guides.lines.size(), triangles = guides.triangles ? guides.triangles->size() : 0;
+  if (lines + triangles == 0) return Decision{false, "no grid, cage or handle is shown"};
+  return Decision{
+      true, plural(lines, "line", "lines") + (triangles > 0 ? ", " + plural(triangles, "triangle", "triangles") : "")};
 }
 
 constexpr Use reads[] = {{Target::depth}};

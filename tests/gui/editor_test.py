@@ -502,6 +502,12 @@ class EditorTest(unittest.TestCase):
         x, y = editor.where("bend/tip")
         stem = editor.where("bend/from")
         self.assertGreater(x, stem[0] + 60, "it goes to the right, held at the stem")
+        picture = editor.viewport()
+        held = (picture[..., 0] > 200) & (picture[..., 1] < 110) & (picture[..., 2] < 80)
+        left = editor.state()["items"]["viewport"][0]
+        held[:, :150] = held[:, -150:] = False  # the axes' ball
+        self.assertGreater(held.sum(), 200, "what the soft border holds is shaded")
+        self.assertLess(abs(held.nonzero()[1].mean() + left - stem[0]), 0.5 * abs(x - stem[0]), "near the stem")
         before = self.leaves()
         editor.drag([(x, y), (x - 20, y - 60)], meanwhile=lambda: editor.key("9", "0", "slash", "2"))
         editor.until_ops("import", "select_picture", "bend")

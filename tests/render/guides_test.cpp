@@ -62,6 +62,36 @@ TEST_P(GuidesTest, NothingToShowIsThePictureItself) {
     EXPECT_FALSE(pass.runs && (pass.name == "selection" || pass.name == "guides")) << pass.why;
 }
 
+TEST_P(GuidesTest, TrianglesShowOnTheirSurfaceOnly) {
+  const Scene scene = scene_of(made_object({.columns = 32, .rows = 16, .holes = false}));
+  const auto triangles = [&](double side, double scale) {
+    auto list = std::make_shared<std::vector<Guides::Triangle>>();
+    for (const TextureSet& set : scene.roots[0]->object->sets)
+      for (const Face& face : set.soup.faces()) {
+        Guides::Triangle triangle;
+        for (std::size_t k = 0; k < 3; ++k) triangle.corners[k] = scale * set.soup.positions()[face[k]];
+        if (side * triangle.corners[0].z() > 0.3) list->push_back(triangle);
+      }
+    return list;
+  };
+  for (const bool orthographic : {false, true}) {
+    View view = view_of(GetParam());
+    if (orthographic) view.camera.ortho_height = 3;
+    const auto seen = [&](const Guides& guides) {
+      renderer.show(scene, view, {}, guides, false);
+      return renderer.shown_image();
+    };
+    const Image plain = seen({});
+    Guides guides;
+    guides.triangles = triangles(1, 1);
+    EXPECT_GT(changed(plain, seen(guides), 40), 1000U) << "they lie on what is seen";
+    guides.triangles = triangles(-1, 1);
+    EXPECT_EQ(seen(guides), plain) << "they lie behind it";
+    guides.triangles = triangles(1, 1.1);
+    EXPECT_EQ(seen(guides), plain) << "there is nothing where they are";
+  }
+}
+
 TEST_P(GuidesTest, SelectedTrianglesInFrontAreTintedMoreThanThoseBehind) {
   const Image plain = renderer.render(selected_scene(true), view_of(GetParam()));
   const Image front = shown(selected_scene(true), {}), back = shown(selected_scene(false), {});

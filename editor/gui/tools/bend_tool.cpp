@@ -294,18 +294,21 @@ void BendTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, 
              readout_ + (typed_.text().empty() ? "" : "  [" + typed_.text() + "]"));
 }
 
-void BendTool::add_guides(const Desk& desk, std::vector<Guides::Line>& lines) const {
+void BendTool::add_guides(const Desk& desk, Guides& guides) const {
   const std::optional<Bent> here = held_ != Handle::none ? held_bent_ : bent(desk);
   if (!here) return;
   // A line of pieces, for it may be bent.
   constexpr int pieces = 24;
   for (int k = 0; k < pieces; ++k) {
     const auto at = [&](int piece) { return shown(desk, *here, here->at(from_ + (to_ - from_) * piece / pieces)); };
-    lines.push_back({at(k), at(k + 1), Color(0.35, 0.65, 1), 1, 0.6});
+    guides.lines.push_back({at(k), at(k + 1), Color(0.35, 0.65, 1), 1, 0.6});
   }
-  lines.push_back({shown(desk, *here, here->at(to_)), shown(desk, *here, here->tip()), Color(1, 0.5, 0.8), 1, 0.6});
-  // The soft border's width, as a ring where it begins.
+  guides.lines.push_back(
+      {shown(desk, *here, here->at(to_)), shown(desk, *here, here->tip()), Color(1, 0.5, 0.8), 1, 0.6});
+  // What is held by the soft border; where there is too much of it, a ring as wide where it begins.
   if (!(falloff_ > 0)) return;
+  if (held_ == Handle::none && !desk.preview) guides.triangles = shade_.of(desk, here->targets, falloff_);
+  if (guides.triangles) return;
   const Vec3 middle = here->at(from_), u = here->spine.along.unitOrthogonal(), v = here->spine.along.cross(u);
   constexpr int corners = 32;
   for (int k = 0; k < corners; ++k) {
@@ -313,7 +316,7 @@ void BendTool::add_guides(const Desk& desk, std::vector<Guides::Line>& lines) co
       const double angle = 2 * std::numbers::pi * corner / corners;
       return Vec3(middle + falloff_ * (std::cos(angle) * u + std::sin(angle) * v));
     };
-    lines.push_back({at(k), at(k + 1), Color(1, 0.7, 0.2), 0.9, 0.4});
+    guides.lines.push_back({at(k), at(k + 1), Color(1, 0.7, 0.2), 0.9, 0.4});
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "editor/gui/tools/falloff_shade.h"
 #include "editor/gui/tools/tool.h"
 #include "editor/gui/tools/typed_number.h"
 #include "mesh_ops/deform/spine.h"
@@ -12,7 +13,7 @@ class BendTool final : public ViewTool {
   void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
   void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
-  void add_guides(const Desk& desk, std::vector<Guides::Line>& lines) const override;
+  void add_guides(const Desk& desk, Guides& guides) const override;
   bool key(Desk& desk, const KeyPress& press) override;
   void options(Desk& desk) override;
   bool busy() const override { return held_ != Handle::none; }
@@ -55,6 +56,7 @@ class BendTool final : public ViewTool {
   Handle held_ = Handle::none;
   std::optional<Bent> held_bent_;  ///< as it was when the drag began
   Vec2 began_{0, 0}, now_{0, 0};
+  mutable FalloffShade shade_;
   TypedNumber typed_;
   std::string typed_text_, readout_;  ///< as they were with the last preview
 };

@@ -388,9 +388,10 @@ void CageTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, 
   }
 }
 
-void CageTool::add_guides(const Desk& /*desk*/, std::vector<Guides::Line>& lines) const {
+void CageTool::add_guides(const Desk& /*desk*/, Guides& guides) const {
   if (!bound_) return;
-  for (const auto& [a, b] : bound_->edges) lines.push_back({moved_[a], moved_[b], Color(0.35, 0.65, 1), 0.9, 0.3});
+  for (const auto& [a, b] : bound_->edges)
+    guides.lines.push_back({moved_[a], moved_[b], Color(0.35, 0.65, 1), 0.9, 0.3});
 }
 
 void CageTool::options(Desk& desk) {

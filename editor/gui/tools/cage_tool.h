@@ -18,7 +18,7 @@ class CageTool final : public ViewTool {
   void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
   void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
-  void add_guides(const Desk& desk, std::vector<Guides::Line>& lines) const override;
+  void add_guides(const Desk& desk, Guides& guides) const override;
   void options(Desk& desk) override;
   bool busy() const override { return dragging_ || boxing_; }
   void cancel(Desk& desk) override;

@@ -33,8 +33,8 @@ class ViewTool {
   /// Draws over the picture, whose top left corner is at `origin`.
   virtual void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
                     const ImVec2& origin) const = 0;
-  /// Lines in the world.
-  virtual void add_guides(const Desk& /*desk*/, std::vector<Guides::Line>& /*lines*/) const {}
+  /// Lines and triangles in the world.
+  virtual void add_guides(const Desk& /*desk*/, Guides& /*guides*/) const {}
   /// Takes a key before commands do; true when it was for this tool.
   virtual bool key(Desk& /*desk*/, const KeyPress& /*press*/) { return false; }
   /// Options and help, in the tool bar's panel.

@@ -117,12 +117,12 @@ void VolumeTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& poi
   }
 }
 
-void VolumeTool::add_guides(const Desk& /*desk*/, std::vector<Guides::Line>& lines) const {
+void VolumeTool::add_guides(const Desk& /*desk*/, Guides& guides) const {
   if (volume_.half.isZero(0)) return;
   const Color color(0.35, 0.65, 1);
   const auto line = [&](const Vec3& a, const Vec3& b) {
-    lines.push_back({volume_.center + a.cwiseProduct(volume_.half), volume_.center + b.cwiseProduct(volume_.half),
-                     color, 0.95, 0.35});
+    guides.lines.push_back({volume_.center + a.cwiseProduct(volume_.half),
+                            volume_.center + b.cwiseProduct(volume_.half), color, 0.95, 0.35});
   };
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 u(0, 0, 0), v(0, 0, 0), w(0, 0, 0);

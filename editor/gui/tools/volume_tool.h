@@ -12,7 +12,7 @@ class VolumeTool final : public ViewTool {
   void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
   void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
-  void add_guides(const Desk& desk, std::vector<Guides::Line>& lines) const override;
+  void add_guides(const Desk& desk, Guides& guides) const override;
   bool key(Desk& desk, const KeyPress& press) override;
   void options(Desk& desk) override;
   bool wants_scene() const override { return false; }

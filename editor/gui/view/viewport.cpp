@@ -166,7 +166,7 @@ Guides Viewport::guides(const Desk& desk) const {
        desk.selected_triangles() == 0);
   if (nodes && !desk.active.empty())
     for (const std::optional<NodeRef>& node : desk.scope()) result.outlined.push_back(node->id);
-  tools_.at(desk.tools.kind)->add_guides(desk, result.lines);
+  tools_.at(desk.tools.kind)->add_guides(desk, result);
   return result;
 }
 
