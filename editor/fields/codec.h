@@ -53,6 +53,7 @@ REBAKE_CODEC(Scale);
 REBAKE_CODEC(BoxRegion);
 REBAKE_CODEC(SphereRegion);
 REBAKE_CODEC(HalfSpaceRegion);
+REBAKE_CODEC(PolyLine);
 REBAKE_CODEC(PixelPolygon);
 REBAKE_CODEC(BrushStroke);
 REBAKE_CODEC(Interval);

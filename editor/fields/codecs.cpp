@@ -196,6 +196,20 @@ json Codec<HalfSpaceRegion>::write(const HalfSpaceRegion& value) {
   return {{"point", list(value.point)}, {"normal", list(value.normal)}};
 }
 
+FieldType Codec<PolyLine>::type() { return {FieldKind::other, "[[x, y, z], …]", "Sequence[Sequence[float]]", {}}; }
+PolyLine Codec<PolyLine>::read(const json& value, const Scene& scene) {
+  constexpr std::size_t most = 1000;
+  if (!value.is_array() || value.size() > most) throw Error("must be a list of at most 1000 points");
+  PolyLine line;
+  for (const json& point : value) line.points.push_back(Codec<Vec3>::read(point, scene));
+  return line;
+}
+json Codec<PolyLine>::write(const PolyLine& value) {
+  json points = json::array();
+  for (const Vec3& point : value.points) points.push_back(Codec<Vec3>::write(point));
+  return points;
+}
+
 FieldType Codec<PixelPolygon>::type() {
   return {FieldKind::other, "[[x, y], …] in pixels", "Sequence[Sequence[float]]", {}};
 }

@@ -36,6 +36,11 @@ struct Scale {
   Vec3 value{1, 1, 1};
 };
 
+/// A line through points in the world; none: no line.
+struct PolyLine {
+  std::vector<Vec3> points;
+};
+
 /// Corners of a polygon in pixels, x to the right and y down.
 struct PixelPolygon {
   std::vector<Vec2> corners;

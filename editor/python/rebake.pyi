@@ -394,7 +394,7 @@ class Document:
         fixed: points of the cage that are held where they are
         iterations: 1 to 1000, at most; it ends sooner where nothing moves by more than a millionth of the cage's size
         """
-    def bend(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None, direction: Vector = [1.0,0.0,0.0]) -> None:
+    def bend(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None, direction: Vector = [1.0,0.0,0.0]) -> None:
         """Bends triangles along an axis into an arc: the axis keeps its length, what lies beyond the limits follows.
 
         node: with those inside it; left out: all that have selected triangles
@@ -405,11 +405,12 @@ class Document:
         degrees: in all, from one limit to the other (degrees)
         axis: direction of the axis, in world axes
         origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
+        spine: world points of a curved line in place of the axis, which then only says across what it bends; from and to are lengths along it; not for tapers
         from_: where it begins along the axis, from the origin; left out: where the triangles begin (scene units)
         to: where it ends; left out: where the triangles end (scene units)
         direction: where the far end goes; its part across the axis counts
         """
-    def twist(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None) -> None:
+    def twist(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None) -> None:
         """Twists triangles about an axis, more and more between the limits.
 
         node: with those inside it; left out: all that have selected triangles
@@ -420,10 +421,11 @@ class Document:
         degrees: in all, from one limit to the other (degrees)
         axis: direction of the axis, in world axes
         origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
+        spine: world points of a curved line in place of the axis, which then only says across what it bends; from and to are lengths along it; not for tapers
         from_: where it begins along the axis, from the origin; left out: where the triangles begin (scene units)
         to: where it ends; left out: where the triangles end (scene units)
         """
-    def taper(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None) -> None:
+    def taper(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None) -> None:
         """Makes triangles thinner or thicker across an axis, more and more between the limits.
 
         node: with those inside it; left out: all that have selected triangles
@@ -434,10 +436,11 @@ class Document:
         factor: size at the upper limit, of what it is now (factor)
         axis: direction of the axis, in world axes
         origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
+        spine: world points of a curved line in place of the axis, which then only says across what it bends; from and to are lengths along it; not for tapers
         from_: where it begins along the axis, from the origin; left out: where the triangles begin (scene units)
         to: where it ends; left out: where the triangles end (scene units)
         """
-    def stretch(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, from_: float | None = None, to: float | None = None) -> None:
+    def stretch(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None) -> None:
         """Makes triangles longer or shorter along an axis, between the limits.
 
         node: with those inside it; left out: all that have selected triangles
@@ -448,6 +451,7 @@ class Document:
         factor: length between the limits, of what it is now (factor)
         axis: direction of the axis, in world axes
         origin: world point on the axis; left out: where it enters the box of what is deformed, in the middle
+        spine: world points of a curved line in place of the axis, which then only says across what it bends; from and to are lengths along it; not for tapers
         from_: where it begins along the axis, from the origin; left out: where the triangles begin (scene units)
         to: where it ends; left out: where the triangles end (scene units)
         """

@@ -81,4 +81,61 @@ Deformed deform(const ClosedForm& form, const Vec3& point) {
   return {point + frame.transpose() * motion, Mat3::Identity() + frame.transpose() * j * frame};
 }
 
+std::vector<ClosedForm> along_curve(const ClosedForm& form, const std::vector<Vec3>& spine) {
+  if (form.kind == ClosedForm::Kind::taper)
+    throw FieldError("spine", "is for bends, twists and stretches; leave it out");
+  if (spine.size() < 2) throw FieldError("spine", "must have two points or more");
+  const bool bends = form.kind == ClosedForm::Kind::bend;
+  const Vec3 turn = bends ? Vec3(form.axis.cross(form.direction).stableNormalized()) : Vec3(0, 0, 0);
+  std::vector<ClosedForm> pieces;
+  double at = 0;
+  for (std::size_t k = 0; k + 1 < spine.size(); ++k) {
+    ClosedForm piece = form;
+    const Vec3 way = spine[k + 1] - spine[k];
+    const double length = way.stableNorm(), begins = at;
+    if (!way.allFinite() || !(length > 0)) throw FieldError("spine", "must have points that are finite and differ");
+    at += length;
+    piece.origin = spine[k];
+    piece.axis = way;
+    piece.from = std::max(form.from - begins, 0.0);
+    piece.to = std::min(form.to - begins, length);
+    if (!(piece.from < piece.to)) continue;
+    const double angle = form.radians * ((piece.to - piece.from) / (form.to - form.from));
+    piece.radians = angle;
+    if (!bends) {
+      pieces.push_back(piece);
+      continue;
+    }
+    // Turning about a line that is not across the piece is a bend, and a twist about the piece itself.
+    const Vec3 along = way / length;
+    const double twisted = turn.dot(along);
+    const Vec3 across = turn - twisted * along;
+    const double bent = across.norm();
+    constexpr double rounding = 1e-14;  // of products of unit vectors
+    if (std::abs(twisted) > rounding) {
+      ClosedForm twist = piece;
+      twist.kind = ClosedForm::Kind::twist;
+      twist.radians = angle * twisted;
+      pieces.push_back(twist);
+    }
+    if (bent > rounding) {
+      piece.radians = angle * bent;
+      piece.direction = across.cross(along);
+      pieces.push_back(piece);
+    }
+  }
+  if (pieces.empty()) throw FieldError("spine", "is shorter than where the deformation begins");
+  std::reverse(pieces.begin(), pieces.end());
+  return pieces;
+}
+
+Deformed deform(const std::vector<ClosedForm>& forms, const Vec3& point) {
+  Deformed result = deform(forms.front(), point);
+  for (std::size_t k = 1; k < forms.size(); ++k) {
+    const Deformed next = deform(forms[k], result.point);
+    result = {next.point, next.jacobian * result.jacobian};
+  }
+  return result;
+}
+
 }  // namespace rebake

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "mesh_ops/base/types.h"
 
 namespace rebake {
@@ -28,5 +30,15 @@ struct Deformed {
 void check(const ClosedForm& form);
 
 Deformed deform(const ClosedForm& form, const Vec3& point);
+
+/// The same along a curved line: a form for each straight piece of `spine` between `form.from` and `form.to`, which are
+/// lengths along it from its first point, in the order in which deform() below applies them: the last piece first,
+/// since what lies beyond a piece follows it. Bends turn about one line throughout, across the form's axis and
+/// direction: exactly where the curve is across it too, else up to products of the angles of one piece. Along a
+/// straight spine this is the form itself. Throws FieldError for tapers, for fewer than two points, and for points that
+/// coincide.
+std::vector<ClosedForm> along_curve(const ClosedForm& form, const std::vector<Vec3>& spine);
+/// One after the other; at least one.
+Deformed deform(const std::vector<ClosedForm>& forms, const Vec3& point);
 
 }  // namespace rebake

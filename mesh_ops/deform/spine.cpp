@@ -52,6 +52,37 @@ std::vector<WeightedPoint> contacts_of(const std::vector<WeightedPoint>& part, c
   return contacts;
 }
 
+// The part's middle at steps along the line, each from what lies nearer than a step.
+std::vector<Vec3> curve_of(const std::vector<WeightedPoint>& part, const Spine& spine) {
+  constexpr std::size_t steps = 8;
+  std::vector<Mean> near(steps + 1);
+  for (const WeightedPoint& point : part) {
+    const double at =
+        std::clamp((point.at - spine.foot).dot(spine.along) / spine.length, 0.0, 1.0) * static_cast<double>(steps);
+    const std::size_t k = std::min(static_cast<std::size_t>(at), steps - 1);
+    const double share = at - static_cast<double>(k);
+    near[k].add({point.at, point.weight * (1 - share)});
+    near[k + 1].add({point.at, point.weight * share});
+  }
+  std::vector<Vec3> middles;
+  for (const Mean& one : near)
+    if (one.weight > 0) middles.push_back(one.value());
+  if (middles.size() < 3) return {spine.foot, spine.foot + spine.length * spine.along};
+  // Single leaves do not count.
+  std::vector<Vec3> curve = middles;
+  for (std::size_t k = 1; k + 1 < middles.size(); ++k)
+    curve[k] = (middles[k - 1] + 2 * middles[k] + middles[k + 1]) / 4;
+  // On to the part's ends.
+  const auto along = [&](const Vec3& p) { return (p - spine.foot).dot(spine.along); };
+  const auto extend = [&](Vec3& end, const Vec3& before, double to) {
+    const double step = along(end) - along(before);
+    if (step != 0) end += (to - along(end)) / step * (end - before);
+  };
+  extend(curve.front(), curve[1], 0);
+  extend(curve.back(), curve[curve.size() - 2], spine.length);
+  return curve;
+}
+
 }  // namespace
 
 std::optional<Spine> spine_of(const std::vector<WeightedPoint>& part, const std::vector<WeightedPoint>& rest) {
@@ -113,6 +144,7 @@ std::optional<Spine> spine_of(const std::vector<WeightedPoint>& part, const std:
     weights += point.weight;
   }
   if (weights > 0) spine.width = 2 * distances / weights;
+  spine.curve = curve_of(part, spine);
   return spine;
 }
 

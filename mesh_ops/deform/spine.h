@@ -13,7 +13,7 @@ struct WeightedPoint {
   double weight = 1;  ///< e.g. its area
 };
 
-/// The straight line along which a part is bent.
+/// The line along which a part is bent.
 struct Spine {
   Vec3 foot{0, 0, 0};   ///< where the part hangs on the rest
   Vec3 along{0, 1, 0};  ///< of length 1, away from there
@@ -22,6 +22,9 @@ struct Spine {
   /// Over which share of the length the rest touches the part: near 0 for a branch that hangs at its stem, near 1 where
   /// some of the part was not taken.
   double touched = 0;
+  /// Through the middle of the part, from its foot to its far end; for a straight part the line itself. Two points or
+  /// more.
+  std::vector<Vec3> curve;
 };
 
 /// The spine of `part`: the direction in which it is longest, or where it has none, that from where it touches `rest`

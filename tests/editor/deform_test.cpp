@@ -149,6 +149,7 @@ TEST_F(DeformScript, EveryDeformationIsOneLine) {
       const char* line :
       {R"({"op": "bend", "node": "ball", "degrees": 40})",
        R"({"op": "bend", "node": "ball", "degrees": 40, "direction": [0, 0, 1], "from": 0.5, "to": 1.5})",
+       R"({"op": "bend", "node": "ball", "degrees": 40, "spine": [[0, -1, 0], [0.2, 0, 0], [0, 1, 0.1]], "from": 0.3})",
        R"({"op": "twist", "node": "ball", "degrees": 90, "axis": [1, 0, 0]})",
        R"({"op": "taper", "node": "ball", "factor": 0.5})", R"({"op": "stretch", "node": "ball", "factor": 2})",
        R"({"op": "bend", "node": "ball", "degrees": 40, "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds", "falloff": 0.3})",

@@ -532,6 +532,25 @@ class EditorTest(unittest.TestCase):
         editor.key("ctrl+z", "ctrl+z")
         self.assertAlmostEqual(self.leaves(), before, delta=0.02 * before)
 
+    def test_bend_along_a_curve(self):
+        editor = self.open_ficus()
+        editor.key("l", "t")
+        self.select_branch()
+        editor.key("n")
+        editor.click("options/Curved")
+        x, y = editor.where("bend/tip")
+        editor.drag([(x, y), (x - 20, y - 60)], meanwhile=lambda: editor.key("5", "0"))
+        edit = editor.last_edit()
+        self.assertEqual(edit["degrees"], 50)
+        self.assertGreaterEqual(len(edit["spine"]), 5)
+        self.assertNotIn("origin", {name for name, value in edit.items() if value is not None})
+        tip = editor.where("bend/tip")
+        self.assertLess(tip[1], y - 20, "the handle went with it")
+        # A second one starts where the first ended, along the same curve.
+        editor.drag([tip, (tip[0] - 10, tip[1] - 30)])
+        self.assertEqual(editor.ops()[-2:], ["bend", "bend"])
+        self.assertEqual(editor.last_edit()["spine"], edit["spine"])
+
     def test_a_bend_of_what_is_seen_offers_the_rest(self):
         editor = self.open_ficus()
         seen = self.select_branch()

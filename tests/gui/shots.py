@@ -18,8 +18,8 @@ def shots(looks, scale):
     screen.settings(looks=looks, text_scale=scale, window_width=1280 * scale, window_height=800 * scale)
     taken = []
 
-    def shot(name):
-        editor.move(*editor.where("viewport")) if name != "tooltip" else None
+    def shot(name, over="viewport"):
+        editor.move(*editor.where(over))
         editor.settle()
         file = OUT / f"{looks}-{scale}x-{len(taken):02}-{name}.png"
         editor.save_picture(file)
@@ -33,8 +33,7 @@ def shots(looks, scale):
     editor.double_click(*editor.where("dialog/entries/ficus"))
     editor.until_ops("import")
     shot("opened")
-    editor.move(*editor.where("tool/Lasso"))
-    shot("tooltip")
+    shot("tooltip", over="tool/Lasso")
     for menu in ("File", "Edit", "View", "Window"):
         editor.click("menu/" + menu)
         shot("menu-" + menu.lower())
@@ -51,7 +50,7 @@ def shots(looks, scale):
     editor.key("c")
     editor.click("options/Make cage")
     shot("cage")
-    editor.key("Escape", "Escape", "k")
+    editor.key("Escape", "Escape", "ctrl+shift+a", "k")
     editor.click(*editor.in_viewport(0.45, 0.72))
     editor.click("options/Pull")
     editor.click(*editor.in_viewport(0.38, 0.3))
@@ -61,6 +60,15 @@ def shots(looks, scale):
     editor.key("Escape", "2")
     editor.key("ctrl+shift+a")
     shot("turn")
+    editor.key("1")
+    shot("move")
+    editor.key("u")
+    shot("volume")
+    editor.key("v")
+    editor.command("store view")
+    editor.click("status/Views")
+    shot("views")
+    editor.click("tabs/Close")
     editor.click("status/History")
     shot("history")
     editor.click("tabs/Script")
@@ -68,6 +76,7 @@ def shots(looks, scale):
     editor.click("tabs/Cost")
     editor.click("tabs/cost/Measure this view")
     shot("cost")
+    shot("error", over="tabs/cost/chart/4 samples")
     editor.click("tabs/Messages")
     shot("messages")
     editor.click("tabs/Close")
@@ -81,6 +90,9 @@ def shots(looks, scale):
     shot("keys")
     editor.key("Escape", "ctrl+e")
     shot("export")
+    editor.key("Escape")
+    editor.command("turntable")
+    shot("turntable")
     editor.key("Escape")
     editor.click(*editor.where("outline/ficus/name"), button=3)
     shot("context")

@@ -94,6 +94,74 @@ TEST(ClosedForms, JacobiansAreThoseOfTheMap) {
   }
 }
 
+TEST(ClosedForms, AlongAStraightLineOfPiecesIsTheFormItself) {
+  using Kind = ClosedForm::Kind;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-0.5, 1);
+  for (const Kind kind : {Kind::bend, Kind::twist, Kind::stretch}) {
+    const ClosedForm form = form_of(kind);
+    const Vec3 along = form.axis.normalized();
+    ClosedForm from_start = form;
+    from_start.origin = form.origin - 0.5 * along;  // lengths count from the line's first point
+    from_start.from += 0.5;
+    from_start.to += 0.5;
+    const auto pieces =
+        along_curve(from_start, {from_start.origin, form.origin, form.origin + 0.4 * along, form.origin + 3 * along});
+    for (int k = 0; k < 100; ++k) {
+      const Vec3 point(0.3 * any(random), any(random), 0.3 * any(random));
+      const Deformed want = deform(form, point), got = deform(pieces, point);
+      EXPECT_LE((got.point - want.point).norm(), 1e-14);
+      EXPECT_LE((got.jacobian - want.jacobian).norm(), 1e-13);
+    }
+  }
+}
+
+TEST(ClosedForms, AlongACurveTheLineKeepsItsLengthAndWhatIsBeyondFollowsRigidly) {
+  std::vector<Vec3> curve;
+  for (int k = 0; k <= 12; ++k) curve.emplace_back(std::sin(0.1 * k), 0.12 * k, 0.3 * std::cos(0.15 * k));
+  double length = 0;
+  for (std::size_t k = 0; k + 1 < curve.size(); ++k) length += (curve[k + 1] - curve[k]).norm();
+  for (const ClosedForm::Kind kind : {ClosedForm::Kind::bend, ClosedForm::Kind::twist}) {
+    ClosedForm form;
+    form.kind = kind;
+    form.radians = 1.1;
+    form.to = length;
+    const auto pieces = along_curve(form, curve);
+    double after = 0;
+    Vec3 last = deform(pieces, curve[0]).point;
+    EXPECT_EQ(last, curve[0]) << "its foot stays";
+    constexpr int steps = 2000;
+    for (std::size_t k = 0; k + 1 < curve.size(); ++k)
+      for (int i = 1; i <= steps; ++i) {
+        const Vec3 next = deform(pieces, curve[k] + (curve[k + 1] - curve[k]) * i / steps).point;
+        after += (next - last).norm();
+        last = next;
+      }
+    EXPECT_NEAR(after, length, 1e-6 * length);
+    const Vec3 end = (curve[12] - curve[11]).normalized();
+    const Deformed beyond = deform(pieces, curve[12] + 0.3 * end + Vec3(0.02, 0, 0.01));
+    EXPECT_LE((beyond.jacobian.transpose() * beyond.jacobian - Mat3::Identity()).norm(), 1e-12);
+    EXPECT_NEAR(Eigen::AngleAxisd(Mat3(beyond.jacobian)).angle(), 1.1, kind == ClosedForm::Kind::bend ? 1e-4 : 0.2);
+  }
+  // Jacobians are those of the map.
+  ClosedForm form;
+  form.radians = 0.9;
+  form.to = length;
+  const auto pieces = along_curve(form, curve);
+  const Vec3 point(0.5, 0.71, 0.33);
+  Mat3 want;
+  for (int axis = 0; axis < 3; ++axis)
+    want.col(axis) = (deform(pieces, Vec3(point + 1e-5 * Vec3::Unit(axis))).point -
+                      deform(pieces, Vec3(point - 1e-5 * Vec3::Unit(axis))).point) /
+                     2e-5;
+  EXPECT_LE((deform(pieces, point).jacobian - want).norm(), 1e-8);
+  form.kind = ClosedForm::Kind::taper;
+  EXPECT_THROW(along_curve(form, curve), FieldError);
+  form.kind = ClosedForm::Kind::bend;
+  EXPECT_THROW(along_curve(form, {curve[0]}), FieldError);
+  EXPECT_THROW(along_curve(form, {curve[0], curve[0]}), FieldError);
+}
+
 TEST(ClosedForms, DeterminantsAreTheTextbooks) {
   // Barr 1984: 1 for twists, r² for tapers, 1 − κ x for bends.
   const Vec3 point(0.3, 0.4, 0.2);

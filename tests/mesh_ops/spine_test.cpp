@@ -21,6 +21,29 @@ std::vector<WeightedPoint> branch(const Vec3& from, const Vec3& to, double radiu
   return points;
 }
 
+TEST(Spine, ItsCurveRunsThroughTheMiddleOfWhatIsBent) {
+  // A quarter of a ring of radius 2 and 0.1 thick.
+  std::vector<WeightedPoint> part;
+  for (int i = 0; i <= 90; ++i)
+    for (int k = 0; k < 12; ++k) {
+      const double turn = i * std::numbers::pi / 180, around = k * std::numbers::pi / 6;
+      const double radius = 2 + 0.1 * std::cos(around);
+      part.push_back({Vec3(radius * std::cos(turn), radius * std::sin(turn), 0.1 * std::sin(around)), 1});
+    }
+  const auto spine = spine_of(part, {{Vec3(2, -0.05, 0), 1}});
+  ASSERT_TRUE(spine);
+  double worst = 0;
+  for (const Vec3& p : spine->curve) worst = std::max(worst, std::abs(Vec2(p.x(), p.y()).norm() - 2));
+  EXPECT_LT(worst, 0.08) << "the straight line is 0.3 off in the middle";
+  EXPECT_LT((spine->curve.front() - Vec3(2, 0, 0)).norm(), 0.25);
+  EXPECT_LT((spine->curve.back() - Vec3(0, 2, 0)).norm(), 0.25);
+  // That of a straight branch is its straight line.
+  const auto straight = spine_of(branch({0, 0, 0}, {0, 2, 0}, 0.1), {});
+  for (const Vec3& p : straight->curve) EXPECT_LT(Vec2(p.x(), p.z()).norm(), 1e-12);
+  EXPECT_LT((straight->curve.front() - straight->foot).norm(), 1e-12);
+  EXPECT_NEAR(straight->curve.back().y(), 2, 1e-12);
+}
+
 TEST(Spine, FollowsABranchFromItsStem) {
   const Vec3 stem(0, 2, 0), tip(1.5, 3, 0.7);
   const auto trunk = branch({0, 0, 0}, {0, 4, 0}, 0.2);

@@ -4,11 +4,40 @@
 
 namespace rebake {
 
+namespace {
+
+Outcome with_forms(const Scene& scene, const DeformSet& set, const DeformTarget& target,
+                   const std::vector<ClosedForm>& forms) {
+  return with_deformed(scene, set, target.falloff, [&](const std::vector<Vec3>& points) {
+    DeformedPoints result;
+    result.points.resize(points.size());
+    result.jacobians.resize(points.size());
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+      const Deformed one = deform(forms, points[i]);
+      result.points[i] = one.point;
+      result.jacobians[i] = one.jacobian;
+    });
+    return result;
+  });
+}
+
+}  // namespace
+
 Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const DeformAxis& axis, ClosedForm form) {
   const DeformSet set = deform_set(scene, target);
   if (!axis.axis.allFinite() || !(axis.axis.stableNorm() > 0)) throw FieldError("axis", "must have a length");
   form.axis = axis.axis.stableNormalized();
   const auto [low, high] = set.extent_along(form.axis);
+  if (!axis.spine.points.empty()) {
+    if (axis.origin) throw FieldError("origin", "contradicts the spine, which begins at its first point");
+    double length = 0;
+    for (std::size_t k = 0; k + 1 < axis.spine.points.size(); ++k)
+      length += (axis.spine.points[k + 1] - axis.spine.points[k]).stableNorm();
+    form.from = axis.from.value_or(0);
+    form.to = axis.to.value_or(length);
+    check(form);
+    return with_forms(scene, set, target, along_curve(form, axis.spine.points));
+  }
   if (axis.origin) {
     form.origin = *axis.origin;
   } else {
@@ -19,17 +48,7 @@ Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const D
   form.from = axis.from.value_or(low - start);
   form.to = axis.to.value_or(high - start);
   check(form);
-  return with_deformed(scene, set, target.falloff, [&](const std::vector<Vec3>& points) {
-    DeformedPoints result;
-    result.points.resize(points.size());
-    result.jacobians.resize(points.size());
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-      const Deformed one = deform(form, points[i]);
-      result.points[i] = one.point;
-      result.jacobians[i] = one.jacobian;
-    });
-    return result;
-  });
+  return with_forms(scene, set, target, {form});
 }
 
 }  // namespace rebake

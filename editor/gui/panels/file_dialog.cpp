@@ -375,6 +375,13 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   if (done) {
     problem_of_ = path_;
     problem_ = problem_with(path, writes);
+    // Before it is asked whether to replace something.
+    if (problem_.empty() && writes) try {
+        const bool file = !ending.empty();
+        file ? desk.now->sources.check_file(path) : desk.now->sources.check_folder(path);
+      } catch (const Error& refused) {
+        problem_ = refused.what();
+      }
     if (!problem_.empty()) {
       done = false;
       refocuses_ = true;

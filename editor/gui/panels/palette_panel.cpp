@@ -20,12 +20,12 @@ std::string plain(std::string text) {
   return text;
 }
 
-// "Select picture…": its form asks for more.
+// "All fields: Select picture…"
 std::string words_of(const std::string& op) {
   std::string words = op;
   std::replace(words.begin(), words.end(), '_', ' ');
   words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-  return words + "…";
+  return "All fields: " + words + "…";
 }
 
 struct Entry {

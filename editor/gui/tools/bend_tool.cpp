@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -43,7 +44,7 @@ Spine spine_of_targets(const Scene& scene, const std::vector<DeformTarget>& targ
 }
 
 // What an edit does to space, where it was made along that spine; nothing for others.
-std::optional<ClosedForm> form_along(const Edit& edit, const Spine& spine) {
+std::vector<ClosedForm> forms_along(const Edit& edit, const Spine& spine) {
   ClosedForm form;
   const DeformAxis* axis = nullptr;
   if (const auto* bend = edit.as<Bend>()) {
@@ -63,13 +64,15 @@ std::optional<ClosedForm> form_along(const Edit& edit, const Spine& spine) {
     form.factor = stretch->factor;
     axis = &stretch->axis;
   }
-  if (axis == nullptr || axis->axis != spine.along || axis->origin != spine.foot || !axis->from || !axis->to)
-    return std::nullopt;
+  if (axis == nullptr || axis->axis != spine.along || !axis->from || !axis->to) return {};
   form.axis = spine.along;
-  form.origin = spine.foot;
   form.from = *axis->from;
   form.to = *axis->to;
-  return form;
+  if (!axis->spine.points.empty())
+    return axis->spine.points == spine.curve ? along_curve(form, spine.curve) : std::vector<ClosedForm>{};
+  if (axis->origin != spine.foot) return {};
+  form.origin = spine.foot;
+  return {form};
 }
 
 }  // namespace
@@ -89,7 +92,7 @@ BendTool::Found BendTool::present(const Desk& desk) const {
 // Whether the document's last step was made along the spine that is held.
 bool BendTool::made_last(const Desk& desk) const {
   const std::optional<Bent> here = bent(desk);
-  return here && !desk.now->done.empty() && form_along(desk.now->done.back(), here->spine);
+  return here && !desk.now->done.empty() && !forms_along(desk.now->done.back(), here->spine).empty();
 }
 
 void BendTool::find_spine(Desk& desk) {
@@ -109,7 +112,10 @@ void BendTool::find_spine(Desk& desk) {
     const int axis = axis_ > 0 ? axis_ - 1 : 1;
     const Box box = desk.deform_bounds(targets);
     if (box.isEmpty() || !(box.sizes()[axis] > 0)) return;
-    Spine spine{box.center(), Vec3::Unit(axis), box.sizes()[axis], 0};
+    Spine spine;
+    spine.foot = box.center();
+    spine.along = Vec3::Unit(axis);
+    spine.length = box.sizes()[axis];
     spine.foot[axis] = box.min()[axis];
     found_ = std::make_shared<Spine>(spine);
     return;
@@ -133,7 +139,9 @@ std::optional<BendTool::Bent> BendTool::bent(const Desk& desk) const {
   if (flipped_) {
     bent.spine.foot += bent.spine.length * bent.spine.along;
     bent.spine.along = -bent.spine.along;
+    std::reverse(bent.spine.curve.begin(), bent.spine.curve.end());
   }
+  bent.curved = curved_ && kind_ != Kind::taper && bent.spine.curve.size() > 1;
   return bent;
 }
 
@@ -141,12 +149,31 @@ std::optional<BendTool::Bent> BendTool::bent(const Desk& desk) const {
 Vec3 BendTool::shown(const Desk& desk, const Bent& bent, const Vec3& point) {
   const std::vector<Edit>& done = desk.now->done;
   std::size_t first = done.size();
-  while (first > 0 && form_along(done[first - 1], bent.spine)) --first;
+  while (first > 0 && !forms_along(done[first - 1], bent.spine).empty()) --first;
   Vec3 result = point;
   // Several nodes are bent by an edit each, all alike.
   for (std::size_t k = first; k < done.size(); k += bent.targets.size())
-    result = deform(*form_along(done[k], bent.spine), result).point;
+    result = deform(forms_along(done[k], bent.spine), result).point;
   return result;
+}
+
+Vec3 BendTool::Bent::at(double share) const {
+  if (!curved) return spine.foot + share * spine.length * spine.along;
+  // Beyond the ends it goes on straight.
+  const auto pieces = static_cast<double>(spine.curve.size() - 1);
+  const double piece = std::clamp(std::floor(share * pieces), 0.0, pieces - 1);
+  const auto k = static_cast<std::size_t>(piece);
+  return spine.curve[k] + (share * pieces - piece) * (spine.curve[k + 1] - spine.curve[k]);
+}
+
+double BendTool::Bent::length_to(double share) const {
+  if (!curved) return share * spine.length;
+  const auto pieces = static_cast<double>(spine.curve.size() - 1);
+  double length = 0;
+  for (std::size_t k = 0; k + 1 < spine.curve.size(); ++k)
+    length +=
+        std::clamp(share * pieces - static_cast<double>(k), 0.0, 1.0) * (spine.curve[k + 1] - spine.curve[k]).norm();
+  return length;
 }
 
 Vec3 BendTool::place(const Bent& bent, Handle handle) const {
@@ -172,9 +199,12 @@ std::vector<Edit> BendTool::edits(const Desk& desk, const Lens& lens) const {
       made.target = target;
       made.target.falloff = falloff_;
       made.axis.axis = bent.spine.along;
-      made.axis.origin = bent.spine.foot;
-      made.axis.from = from_ * bent.spine.length;
-      made.axis.to = to_ * bent.spine.length;
+      if (bent.curved)
+        made.axis.spine.points = bent.spine.curve;
+      else
+        made.axis.origin = bent.spine.foot;
+      made.axis.from = bent.length_to(from_);
+      made.axis.to = bent.length_to(to_);
       list.emplace_back(made);
     }
     return list;
@@ -331,6 +361,11 @@ void BendTool::options(Desk& desk) {
   ui::flow(px(40));
   if (ui::button("Flip")) flipped_ = !flipped_;
   ui::tip("Flip", "", "Hold it at the other end.");
+  ui::flow(px(90));
+  ImGui::BeginDisabled(!found_ || found_->curve.empty() || kind_ == Kind::taper);
+  ui::toggle("Curved", curved_);
+  ImGui::EndDisabled();
+  ui::tip("Curved", "", "Along the middle of the shape, however it is bent already, in place of a straight line.");
   ui::flow(px(160));
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("Soft border");

@@ -25,7 +25,9 @@ class BendTool final : public ViewTool {
   struct Bent {
     std::vector<DeformTarget> targets;
     Spine spine;
-    Vec3 at(double share) const { return spine.foot + share * spine.length * spine.along; }
+    bool curved = false;  ///< along the spine's curve
+    Vec3 at(double share) const;
+    double length_to(double share) const;  ///< along it, from its foot
     Vec3 tip() const { return at(1.15); }  ///< beyond the upper limit, so that both can be taken
   };
   /// What a spine was found for. Holds the nodes, so that another one is never taken for them.
@@ -47,8 +49,9 @@ class BendTool final : public ViewTool {
 
   enum class Kind { bend, twist, taper, stretch };
   Kind kind_ = Kind::bend;
-  int axis_ = 0;                        ///< along the shape; or 1 to 3 for X, Y, Z
-  bool flipped_ = false;                ///< held at the other end
+  int axis_ = 0;          ///< along the shape; or 1 to 3 for X, Y, Z
+  bool flipped_ = false;  ///< held at the other end
+  bool curved_ = false;
   double from_ = 0, to_ = 1;            ///< limits, as shares of the spine
   double falloff_ = 0;                  ///< scene units
   std::shared_ptr<const Spine> found_;  ///< of what is to be bent; null while it is looked for, or where there is none

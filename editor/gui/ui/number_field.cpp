@@ -62,6 +62,16 @@ Changed typed_field(double& value, float width) {
   return Changed::finished;
 }
 
+// As many digits as there is room for.
+std::string fitting(const std::string& text, double value, float width) {
+  const std::string unit = text.substr(without_unit(text).size());
+  const float room = width - 2 * ImGui::GetStyle().FramePadding.x;
+  std::string shorter = text;
+  for (int digits = 6; digits > 1 && ImGui::CalcTextSize(shorter.c_str()).x > room; --digits)
+    shorter = fmt::format("{:.{}g}", value, digits) + unit;
+  return shorter;
+}
+
 }  // namespace
 
 bool cancel_drag() { return editing.dragged != 0 && (editing.cancelled = true); }
@@ -92,7 +102,7 @@ Changed number_field(const char* id, double& value, const char* format, double s
   }
   ImGui::PushStyleColor(ImGuiCol_Button, color(theme().field));
   ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0, 0.5F});
-  const bool clicked = ImGui::Button((text + "###field").c_str(), {width, 0});
+  const bool clicked = ImGui::Button((fitting(text, value, width) + "###field").c_str(), {width, 0});
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   announce::item(id);

@@ -232,6 +232,8 @@ void WindowLayout::tool_bar() {
     const Command& command = command_named(button.command);
     const bool taken = desk_.tools.kind == button.kind;
     if (ui::icon_button(button.icon, command.title, taken)) desk_.tools.kind = button.kind;
+    // In a small window it may lie outside.
+    if (taken && std::exchange(shown_tool_, button.kind) != button.kind) ImGui::SetScrollHereY();
     if (button.kind == ToolKind::lasso) draw_lasso(color32(taken ? theme().on_accent : theme().text));
     ui::tip(command.title, command.key_of(desk_), command.help);
   }

@@ -41,6 +41,7 @@ class WindowLayout {
   EditForm form_;
   float options_height_ = 0;  ///< that the tool's options took in the last frame
   float menu_height_ = 0;
+  ToolKind shown_tool_ = ToolKind::pick;  ///< that the tool bar was scrolled to
 };
 
 }  // namespace rebake
