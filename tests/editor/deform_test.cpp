@@ -250,6 +250,17 @@ TEST_F(DeformScript, PartsTurnedApartSayWhatTheirSeamsLose) {
   EXPECT_EQ(said.find("turned apart"), std::string::npos) << said;
 }
 
+TEST_F(DeformScript, ASphereWithoutACagePointTakesTheNearestWhereItMay) {
+  const std::string sphere =
+      R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"sphere": {"center": [1.5, 1.4, 1.3], "radius": 0.01}, "translate": [0.5, 0, 0])";
+  expect_error(sphere + "}]}", "no cage point lies inside");
+  run(sphere + R"(, "nearest": true}]})");
+  const auto one = ball().sets[0].soup.positions();
+  run(R"({"op": "undo"})");
+  run(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [7], "translate": [0.5, 0, 0]}]})");
+  EXPECT_EQ(ball().sets[0].soup.positions(), one) << "the corner at the greatest x, y and z";
+}
+
 TEST_F(DeformScript, BadInputSaysWhatToDo) {
   expect_error(R"({"op": "cage", "node": "ball", "moves": []})", "at least one move");
   expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1], "moves": [{"points": [0]}]})",
@@ -282,6 +293,10 @@ TEST_F(DeformScript, BadInputSaysWhatToDo) {
       R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [[0, 7]], "translate": [1e308, 0, 0]}]})",
       "beyond what numbers can hold");
   expect_error(R"({"op": "bend", "degrees": 10})", "no triangle is selected");
+  expect_error(R"({"op": "taper", "node": "ball", "factor": 2, "spine": [[0, 0, 0], [0, 1, 0]]})", "leave it out");
+  expect_error(R"({"op": "bend", "node": "ball", "degrees": 9, "origin": [0, 0, 0], "spine": [[0, 0, 0], [0, 1, 0]]})",
+               "contradicts the spine");
+  expect_error(R"({"op": "bend", "node": "ball", "degrees": 9, "spine": [[0, 0, 0]]})", "spine");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "axis": [0, 0, 0]})", "must have a length");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "from": 2, "to": 1})", "must lie below to");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "falloff": -1})", "must not be negative");

@@ -212,18 +212,27 @@ std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, boo
     Box box;
     for (const Vec3& v : cage.vertices) box.extend(v);
     const double unit = shares ? box.diagonal().norm() : 1;
+    double least = std::numeric_limits<double>::infinity();
+    std::optional<std::uint32_t> nearest;
     for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
       Vec3 p = cage.vertices[v];
       if (shares)
         for (int axis = 0; axis < 3; ++axis)
           p[axis] = box.sizes()[axis] > 0 ? (p[axis] - box.min()[axis]) / box.sizes()[axis] : 0;
-      const bool inside =
-          move.box ? (p.array() >= move.box->min.array()).all() && (p.array() <= move.box->max.array()).all() : [&] {
-            const Vec3 away = p - move.sphere->center;
-            return (shares ? Vec3(away.cwiseProduct(box.sizes())) : away).norm() <= move.sphere->radius * unit;
-          }();
-      if (inside) result.push_back(v);
+      if (move.box) {
+        if ((p.array() >= move.box->min.array()).all() && (p.array() <= move.box->max.array()).all())
+          result.push_back(v);
+        continue;
+      }
+      const Vec3 from_center = p - move.sphere->center;
+      const double away = (shares ? Vec3(from_center.cwiseProduct(box.sizes())) : from_center).norm();
+      if (away <= move.sphere->radius * unit) result.push_back(v);
+      if (away < least) {
+        least = away;
+        nearest = v;
+      }
     }
+    if (result.empty() && move.nearest && nearest) result.push_back(*nearest);
     if (result.empty()) throw FieldError(move.box ? "box" : "sphere", "no cage point lies inside");
   }
   return result;

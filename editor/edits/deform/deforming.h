@@ -54,6 +54,7 @@ struct CageMove {
   NumberRanges points;
   std::optional<BoxRegion> box;
   std::optional<SphereRegion> sphere;
+  bool nearest = false;
   Vec3 translate{0, 0, 0};
   Rotation rotate;
   Scale scale;
@@ -64,6 +65,8 @@ struct CageMove {
     visit("points", self.points, Need::optional, "numbers of cage points");
     visit("box", self.box, Need::optional, "cage points inside a box");
     visit("sphere", self.sphere, Need::optional, "cage points inside a sphere");
+    visit("nearest", self.nearest, Need::optional,
+          "where no point lies inside the sphere: the one nearest to its centre");
     visit("translate", self.translate, Need::optional, "how far the points move", Unit::length);
     visit("rotate", self.rotate, Need::optional, "rotation");
     visit("scale", self.scale, Need::optional, "factor");

@@ -30,6 +30,7 @@ Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const D
   const auto [low, high] = set.extent_along(form.axis);
   if (!axis.spine.points.empty()) {
     if (axis.origin) throw FieldError("origin", "contradicts the spine, which begins at its first point");
+    if (axis.spine.points.size() < 2) throw FieldError("spine", "must have two points or more");
     double length = 0;
     for (std::size_t k = 0; k + 1 < axis.spine.points.size(); ++k)
       length += (axis.spine.points[k + 1] - axis.spine.points[k]).stableNorm();

@@ -124,7 +124,9 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, bool same, 
     list.AddCircleFilled(p, px(hot || now ? 7 : 5), color32(now ? theme().accent : theme().panel));
     list.AddCircle(p, px(hot || now ? 7 : 5), ink, 0, px(2));
     // Shares below their points, samples above: they lie close together.
-    list.AddText({p.x + px(9), p.y + (choice.samples > 0 ? -px(18) : px(3))},
+    const float name_width = ImGui::CalcTextSize(choice.name.c_str()).x;
+    const bool fits = p.x + px(9) + name_width < at.x + size.x;
+    list.AddText({fits ? p.x + px(9) : p.x - px(9) - name_width, p.y + (choice.samples > 0 ? -px(18) : px(3))},
                  color32(now || hot ? theme().text : theme().muted), choice.name.c_str());
     if (!hot) continue;
     if (same) view.marked = choice.worst;

@@ -57,7 +57,9 @@ std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
                         [&](const Entry& entry) { return plain(entry.title).find(wanted) != std::string::npos; });
   std::stable_partition(all.begin(), all.end(), [&](const Entry& entry) {
     const std::size_t colon = entry.title.find(": ");
-    return plain(colon == std::string::npos ? entry.title : entry.title.substr(colon + 2)).starts_with(wanted);
+    // A menu's name counts too: "select" lists that menu before the edits that are called so.
+    return plain(entry.title).starts_with(wanted) ||
+           (colon != std::string::npos && plain(entry.title.substr(colon + 2)).starts_with(wanted));
   });
   return all;
 }

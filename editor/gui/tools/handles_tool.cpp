@@ -51,6 +51,7 @@ std::optional<HandlesDeform> HandlesTool::edit_for(const Pins& pins) const {
   for (const Pin& pin : pins) {
     CageMove move;
     move.sphere = SphereRegion{pin.at, reach_};
+    move.nearest = true;  // a wrap has few points where it is flat
     move.translate = pin.motion();
     (pin.motion().isZero(0) ? edit.fixed : edit.moves).push_back(move);
   }
