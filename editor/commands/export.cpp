@@ -94,7 +94,7 @@ void say_losses(Session& session, const Scene& scene, const ExportAction& action
 
 void run(Session& session, const ExportAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
-  const Scene scene = showing_only(session.scene(), action.nodes);
+  const Scene scene = with_only(session.scene(), action.nodes);
   const ExportReport report =
       format_named(action.format)
           .write(scene, action.out, {action.layout, session.document.sources()}, session.progress);

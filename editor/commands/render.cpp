@@ -11,7 +11,7 @@
 namespace rebake {
 
 void run(Session& session, const RenderAction& action) {
-  const Scene scene = showing_only(session.scene(), action.nodes);
+  const Scene scene = with_only(session.scene(), action.nodes);
   const View view = chosen_view(scene, action.camera, action.view, action.width, action.height, action.samples);
   const Image picture = session.renderer().render(scene, view);
   write_png(picture, action.out, session.document.sources());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "editor/edits/stored_view.h"
@@ -37,12 +38,13 @@ Box dense_bounds(const Scene& scene) {
       }
   }
   Box box;
-  if (along[0].empty()) return box;
+  constexpr std::size_t few = 20;  // of which no tenth can be left out
+  if (along[0].size() < few) return box;
   const auto quantile = [&](double share) {
     Vec3 at;
     for (int axis = 0; axis < 3; ++axis) {
       std::vector<double>& values = along[static_cast<std::size_t>(axis)];
-      const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+      const auto k = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
       std::nth_element(values.begin(), values.begin() + k, values.end());
       at[axis] = values[static_cast<std::size_t>(k)];
     }
@@ -63,7 +65,8 @@ Camera framing_of(const Scene& scene, double aspect, double fov_degrees) {
   // A backdrop far around what was photographed is no place to look from.
   const Box dense = dense_bounds(scene);
   constexpr double backdrop = 0.4;
-  const bool inside = !dense.isEmpty() && dense.diagonal().norm() < backdrop * all.diagonal().norm();
+  const double size = dense.isEmpty() ? 0 : dense.diagonal().norm();
+  const bool inside = size > 1e-6 * all.diagonal().norm() && size < backdrop * all.diagonal().norm();
   Camera camera = framing(inside ? dense : all, aspect, forward, fov_degrees);
   if (!inside) return camera;
   camera.near_plane = camera.far_plane = 0;

@@ -77,6 +77,7 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
         throw Error("there is nothing to undo or redo");
       return;
     }
+    const Scene present = result.document.scene();
     if (adjusted > 0 && !history.undo(adjusted, progress)) throw Error("there is no step to adjust");
     std::vector<std::pair<Edit, Scene>> made;
     const auto make = [&] {
@@ -98,7 +99,7 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
     try {
       make();
     } catch (...) {
-      if (adjusted > 0) history.redo(adjusted);
+      if (adjusted > 0) history.return_to(adjusted, present);
       throw;
     }
     for (const auto& [edit, scene] : made) add_sources(result.document.imported_, {edit});
@@ -202,6 +203,7 @@ std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progre
 std::vector<Report> Document::adjust(const std::vector<Edit>& edits, const Progress& progress) {
   const std::size_t last = history_.undo_step();
   if (last == 0 || edits.empty()) throw EditError("there is no step to adjust, or nothing to do in its place");
+  const Scene present = scene();
   history_.undo(last, progress);
   Done made;
   try {
@@ -209,7 +211,7 @@ std::vector<Report> Document::adjust(const std::vector<Edit>& edits, const Progr
     // One line: however the program ends, the step is there as it was, or as it is now.
     if (journal_) journal_->append({{"adjust", {{"undo", last}, {"edits", entry_of(made.edits, true).at("edits")}}}});
   } catch (...) {
-    history_.redo(last);
+    history_.return_to(last, present);
     throw;
   }
   return take_in(std::move(made));

@@ -115,6 +115,12 @@ bool History::redo(std::size_t edits, const Progress& progress) {
   return true;
 }
 
+void History::return_to(std::size_t edits, Scene scene) {
+  position_ += edits;
+  if (!steps_[position_].scene) keep(position_, std::move(scene));
+  fit_budget();
+}
+
 void History::go_to(std::size_t step, const Progress& progress) {
   std::size_t from = step;
   while (!steps_[from].scene) --from;

@@ -40,6 +40,9 @@ class History {
   bool undo(std::size_t edits = 1, const Progress& progress = {});
   bool redo(std::size_t edits = 1, const Progress& progress = {});
 
+  /// So many edits forth, to the scene that was there: nothing is computed. There are as many.
+  void return_to(std::size_t edits, Scene scene);
+
   /// Bytes that the kept scenes hold, what is shared counted once.
   std::uint64_t memory() const { return memory_; }
   /// Scenes kept as values, of undo_count() + redo_count() + 1.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "mesh_ops/base/polar.h"
@@ -104,18 +105,26 @@ OutlinePlace place_of(const Scene& scene, NodeId id) {
   return {parent, index};
 }
 
-Scene showing_only(const Scene& scene, const std::vector<NodeRef>& nodes) {
+Scene with_only(const Scene& scene, const std::vector<NodeRef>& nodes) {
   if (nodes.empty()) return scene;
-  std::set<NodeId> shown;
-  for (const NodeRef& node : nodes) shown.insert(present(scene, node.id).node->id);
+  std::set<NodeId> wanted;
+  for (const NodeRef& node : nodes) wanted.insert(present(scene, node.id).node->id);
+  // Groups stay around what is wanted: it stands in them.
+  const std::function<NodePtr(const NodePtr&)> kept = [&](const NodePtr& node) -> NodePtr {
+    if (wanted.contains(node->id)) return node;
+    Node around = *node;
+    around.object = nullptr;
+    around.selection = nullptr;
+    around.saved_selections.clear();
+    around.children.clear();
+    for (const NodePtr& child : node->children)
+      if (NodePtr inside = kept(child)) around.children.push_back(std::move(inside));
+    return around.children.empty() ? nullptr : std::make_shared<const Node>(std::move(around));
+  };
   Scene result = scene;
-  for (const PlacedNode& placed : placed_nodes(scene)) {  // parents come before children
-    const NodeId id = placed.node->id;
-    if (shown.contains(id))
-      for (const NodePtr& child : placed.node->children) shown.insert(child->id);
-    else if (placed.node->object)
-      result = with_changed(result, id, [](Node& node) { node.visible = false; });
-  }
+  result.roots.clear();
+  for (const NodePtr& root : scene.roots)
+    if (NodePtr inside = kept(root)) result.roots.push_back(std::move(inside));
   return result;
 }
 

@@ -43,7 +43,7 @@ OutlinePlace place_of(const Scene& scene, NodeId id);
 
 /// The scene without objects that are neither one of the nodes nor inside one; all of it where none is named. Throws
 /// EditError when a node is absent.
-Scene showing_only(const Scene& scene, const std::vector<NodeRef>& nodes);
+Scene with_only(const Scene& scene, const std::vector<NodeRef>& nodes);
 
 /// World box of a node's and its children's triangles.
 Box subtree_bounds(const Scene& scene, NodeId id);

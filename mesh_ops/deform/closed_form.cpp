@@ -129,12 +129,46 @@ std::vector<ClosedForm> along_curve(const ClosedForm& form, const std::vector<Ve
   return pieces;
 }
 
-Deformed deform(const std::vector<ClosedForm>& forms, const Vec3& point) {
-  Deformed result = deform(forms.front(), point);
-  for (std::size_t k = 1; k < forms.size(); ++k) {
-    const Deformed next = deform(forms[k], result.point);
-    result = {next.point, next.jacobian * result.jacobian};
+namespace {
+
+// A piece's part in what becomes of a point: how far it goes follows from where the point was at first, so that what
+// lies beyond the piece moves with it rigidly, however far later pieces have turned it already.
+Deformed deform_after(const ClosedForm& form, const Vec3& rest, const Deformed& so_far) {
+  const Mat3 frame = frame_of(form);
+  const double along = form.axis.stableNormalized().dot(rest - form.origin), length = form.to - form.from;
+  const double inside = std::clamp(along, form.from, form.to), share = (inside - form.from) / length;
+  if (share == 0) return so_far;
+  const bool within = along > form.from && along < form.to;
+  const Vec3 p = frame * (so_far.point - form.origin);
+  const double angle = form.radians * share, rate = form.radians / length, s = elementary::sine_cosine(angle).sine,
+               half = elementary::sine_cosine(angle / 2).sine, c1 = -2 * half * half, c = 1 + c1;
+  Vec3 motion(0, 0, 0), by_inside(0, 0, 0);  // and its derivative by `inside`
+  Mat3 j = Mat3::Zero();                     // its derivative by p
+  if (form.kind == ClosedForm::Kind::twist) {
+    motion = {c1 * p.x() - s * p.y(), s * p.x() + c1 * p.y(), 0};
+    j << c1, -s, 0, s, c1, 0, 0, 0, 0;
+    by_inside = rate * Vec3(-s * p.x() - c * p.y(), c * p.x() - s * p.y(), 0);
+  } else if (form.kind == ClosedForm::Kind::stretch) {
+    motion.z() = (form.factor - 1) * (inside - form.from);
+    by_inside.z() = form.factor - 1;
+  } else {
+    const double beyond = p.z() - inside;
+    const double aside = rate != 0 ? -c1 / rate : 0, shortened = rate != 0 ? s / rate - (inside - form.from) : 0;
+    motion = {aside + c1 * p.x() + s * beyond, 0, shortened - s * p.x() + c1 * beyond};
+    j << c1, 0, s, 0, 0, 0, -s, 0, c1;
+    by_inside = rate * Vec3(c * beyond - s * p.x(), 0, -c * p.x() - s * beyond);
   }
+  Mat3 jacobian = so_far.jacobian + frame.transpose() * j * frame * so_far.jacobian;
+  if (within) jacobian += frame.transpose() * by_inside * frame.row(2);
+  return {so_far.point + frame.transpose() * motion, jacobian};
+}
+
+}  // namespace
+
+Deformed deform(const std::vector<ClosedForm>& forms, const Vec3& point) {
+  if (forms.size() == 1) return deform(forms.front(), point);
+  Deformed result{point, Mat3::Identity()};
+  for (const ClosedForm& form : forms) result = deform_after(form, point, result);
   return result;
 }
 

@@ -38,7 +38,7 @@ Deformed deform(const ClosedForm& form, const Vec3& point);
 /// straight spine this is the form itself. Throws FieldError for tapers, for fewer than two points, and for points that
 /// coincide.
 std::vector<ClosedForm> along_curve(const ClosedForm& form, const std::vector<Vec3>& spine);
-/// One after the other; at least one.
+/// One after the other; at least one. Each goes by where the point was before all of them.
 Deformed deform(const std::vector<ClosedForm>& forms, const Vec3& point);
 
 }  // namespace rebake

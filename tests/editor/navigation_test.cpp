@@ -41,6 +41,9 @@ TEST(Navigation, ASceneOpensOnItsDenseMiddleNotOutsideItsBackdrop) {
   const Camera inside = framing_of(scene, 1);
   EXPECT_LT((inside.eye - inside.target).norm(), 1.1 * (alone.eye - alone.target).norm());
   EXPECT_GT(inside.far_plane, 50) << "the backdrop is drawn";
+  // Two triangles have no middle that others lie around.
+  const auto two = made_object({.columns = 3, .rows = 1, .radius = 2});
+  EXPECT_GT((framing_of(scene_of(two), 1).eye - framing_of(scene_of(two), 1).target).norm(), 2);
   // Two things beside each other are both looked at.
   const Scene pair = with_changed(scene, placed_nodes(scene)[1].node->id, [](Node& node) {
     node.object = made_object({.columns = 64, .rows = 32});

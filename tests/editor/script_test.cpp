@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "editor/edits/nodes/place.h"
+#include "editor/edits/stored_view.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/formats/export.h"
@@ -192,6 +193,12 @@ TEST_F(Script, ACopyStandsWhereItIsPut) {
   EXPECT_EQ(node("beside")->to_parent.translation() - node("ball")->to_parent.translation(), Vec3(0.25, 0, -3));
 }
 
+TEST(StoredViews, AreNamedInTheOrderInWhichPeopleCount) {
+  Scene scene;
+  for (const char* name : {"view 10", "view 2", "a", "view 1", "view 02b", ""}) scene.views[name];
+  EXPECT_EQ(view_names(scene), (std::vector<std::string>{"", "a", "view 1", "view 2", "view 02b", "view 10"}));
+}
+
 TEST_F(Script, ViewsAreRenamedAndForgotten) {
   run(import + R"({"op": "view", "name": "front", "camera": {"eye": [0, 0, 4]}})"
                "\n"
@@ -222,6 +229,11 @@ TEST_F(Script, ExportsAndPicturesOfSomeNodesOnly) {
       "\n"
       R"({"op": "render", "out": "{here}/hidden.png", "width": 40, "height": 40, "samples": 1})");
   EXPECT_EQ(read_file(folder_.path() / "some.png"), read_file(folder_.path() / "hidden.png"));
+  run(R"({"op": "export", "out": "{here}/kept", "format": "rebake", "nodes": ["other"]})");
+  const Scene kept = read_any(folder_.path() / "kept", Axes::y_up, {});
+  std::vector<std::string> names;
+  for (const PlacedNode& placed : placed_nodes(kept)) names.push_back(placed.node->name);
+  EXPECT_EQ(names, (std::vector<std::string>{"inside", "other"})) << "in its group, and nothing else";
   expect_error(R"({"op": "export", "out": "{here}/none", "nodes": ["nobody"]})", "nobody");
 }
 

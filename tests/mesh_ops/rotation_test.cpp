@@ -98,22 +98,24 @@ TEST(ClosedForms, AlongAStraightLineOfPiecesIsTheFormItself) {
   using Kind = ClosedForm::Kind;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-0.5, 1);
-  for (const Kind kind : {Kind::bend, Kind::twist, Kind::stretch}) {
-    const ClosedForm form = form_of(kind);
-    const Vec3 along = form.axis.normalized();
-    ClosedForm from_start = form;
-    from_start.origin = form.origin - 0.5 * along;  // lengths count from the line's first point
-    from_start.from += 0.5;
-    from_start.to += 0.5;
-    const auto pieces =
-        along_curve(from_start, {from_start.origin, form.origin, form.origin + 0.4 * along, form.origin + 3 * along});
-    for (int k = 0; k < 100; ++k) {
-      const Vec3 point(0.3 * any(random), any(random), 0.3 * any(random));
-      const Deformed want = deform(form, point), got = deform(pieces, point);
-      EXPECT_LE((got.point - want.point).norm(), 1e-14);
-      EXPECT_LE((got.jacobian - want.jacobian).norm(), 1e-13);
+  for (const Kind kind : {Kind::bend, Kind::twist, Kind::stretch})
+    for (const double radians : {1.3, -4.7, 12.0}) {
+      ClosedForm form = form_of(kind);
+      form.radians = radians;
+      const Vec3 along = form.axis.normalized();
+      ClosedForm from_start = form;
+      from_start.origin = form.origin - 0.5 * along;  // lengths count from the line's first point
+      from_start.from += 0.5;
+      from_start.to += 0.5;
+      const auto pieces =
+          along_curve(from_start, {from_start.origin, form.origin, form.origin + 0.4 * along, form.origin + 3 * along});
+      for (int k = 0; k < 100; ++k) {
+        const Vec3 point(0.3 * any(random), 2 * any(random), 0.3 * any(random));  // far beyond both limits too
+        const Deformed want = deform(form, point), got = deform(pieces, point);
+        EXPECT_LE((got.point - want.point).norm(), 1e-13);
+        EXPECT_LE((got.jacobian - want.jacobian).norm(), 1e-12);
+      }
     }
-  }
 }
 
 TEST(ClosedForms, AlongACurveTheLineKeepsItsLengthAndWhatIsBeyondFollowsRigidly) {
@@ -139,9 +141,11 @@ TEST(ClosedForms, AlongACurveTheLineKeepsItsLengthAndWhatIsBeyondFollowsRigidly)
       }
     EXPECT_NEAR(after, length, 1e-6 * length);
     const Vec3 end = (curve[12] - curve[11]).normalized();
-    const Deformed beyond = deform(pieces, curve[12] + 0.3 * end + Vec3(0.02, 0, 0.01));
-    EXPECT_LE((beyond.jacobian.transpose() * beyond.jacobian - Mat3::Identity()).norm(), 1e-12);
-    EXPECT_NEAR(Eigen::AngleAxisd(Mat3(beyond.jacobian)).angle(), 1.1, kind == ClosedForm::Kind::bend ? 1e-4 : 0.2);
+    for (const double far : {0.1, 3.0}) {
+      const Deformed beyond = deform(pieces, curve[12] + far * end + Vec3(0.02, 0, 0.01));
+      EXPECT_LE((beyond.jacobian.transpose() * beyond.jacobian - Mat3::Identity()).norm(), 1e-12);
+      EXPECT_NEAR(Eigen::AngleAxisd(Mat3(beyond.jacobian)).angle(), 1.1, kind == ClosedForm::Kind::bend ? 1e-3 : 0.2);
+    }
   }
   // Jacobians are those of the map.
   ClosedForm form;

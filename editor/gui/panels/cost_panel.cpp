@@ -196,7 +196,8 @@ void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameRep
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float chart = jobs.costs ? std::min(room.x * 0.5F, px(640)) : 0;
   if (jobs.costs) {
-    const bool same = jobs.costs->view.camera == view.camera && jobs.costs->roots == now.scene.roots;
+    const bool same = jobs.costs->view.camera == view.camera && jobs.costs->view.width == view.width &&
+                      jobs.costs->view.height == view.height && jobs.costs->roots == now.scene.roots;
     ImGui::BeginGroup();
     draw_chart(choices_of(*jobs.costs), view, same,
                {chart, std::max(px(120), room.y - (same ? 0 : ImGui::GetTextLineHeightWithSpacing()))});

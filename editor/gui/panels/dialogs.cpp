@@ -91,13 +91,13 @@ void Dialogs::draw_recovery(Project& project) {
 }
 
 void Dialogs::draw_quitting(Desk& desk) {
-  if (!desk.project.unsaved() && !desk.jobs.worker.busy()) {
+  if (!desk.project.unsaved() && !desk.jobs.worker.busy() && !desk.jobs.film) {
     may_quit_ = true;
     return;
   }
   if (!begin_question("Save the changes before closing?")) return;
   const announce::Part part("dialog");
-  const bool busy = desk.jobs.worker.busy();
+  const bool busy = desk.jobs.worker.busy() || desk.jobs.film;
   say(busy ? "Something is still being done."
            : "Changes that are not saved are lost" + (desk.project.path.empty()
                                                           ? std::string(".")

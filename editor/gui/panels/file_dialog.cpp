@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "editor/document/sample_folder.h"
+#include "editor/edits/stored_view.h"
 #include "editor/edits/support.h"
 #include "editor/gui/panels/file_dialog.h"
 #include "editor/gui/ui/announce.h"
@@ -140,10 +141,12 @@ void FileDialog::begin(const Desk& desk) {
   const std::string title = desk.scene().roots.front()->name;
   const std::string ending = question_of(asked_).ending;
   if (asked_ == PathQuestion::export_folder) path_ += title + "-edited";
+  if (makes_film(asked_)) path_ += title + (asked_ == PathQuestion::turntable ? "-turntable" : "-path");
   if (!ending.empty()) path_ += title + ending;
 }
 
 void FileDialog::carry_out(Desk& desk, const fs::path& path) {
+  if (makes_film(desk.asking.path) && desk.jobs.film) throw Error("a film is still being made; Esc ends it");
   const bool reads = desk.asking.path == PathQuestion::open || desk.asking.path == PathQuestion::run_script;
   (reads ? desk.settings.opened_from : desk.settings.written_to) = path.parent_path().string();
   switch (desk.asking.path) {
@@ -173,7 +176,8 @@ void FileDialog::carry_out(Desk& desk, const fs::path& path) {
       break;
     case PathQuestion::camera_path: {
       std::vector<Camera> views;
-      for (const auto& [name, camera] : desk.scene().views) views.push_back(camera);
+      for (const std::string& name : view_names(desk.scene())) views.push_back(desk.scene().views.at(name));
+      if (views.size() < 2) throw Error("a path needs two stored views or more");
       desk.jobs.film.emplace(path, width_, height_, camera_path(views, pictures_), desk.now->sources);
       break;
     }
@@ -224,8 +228,12 @@ void FileDialog::take_answer(Desk& desk) {
   path_ = paths->front();
   if (desk.asking.path != PathQuestion::open) return;
   desk.settings.opened_from = fs::path(path_).parent_path().string();
-  desk.project.open(*paths);
   desk.asking.path = PathQuestion::none;
+  try {
+    desk.project.open(*paths);
+  } catch (const std::exception& failed) {
+    desk.messages.fail(failed.what());
+  }
 }
 
 // Tab completes, the arrows walk through the list.
@@ -289,7 +297,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
                              desk.active_tops().size() < desk.scene().roots.size();
   only_picked_ = only_picked_ && offers_picked;
   const std::vector<std::string> lost = desk.asking.path == PathQuestion::export_folder
-                                            ? losses(showing_only(desk.scene(), exported_nodes(desk)))
+                                            ? losses(with_only(desk.scene(), exported_nodes(desk)))
                                             : std::vector<std::string>{};
   float below = ImGui::GetFrameHeightWithSpacing() * (pictures || offers_picked ? 2.0F : 1.0F) +
                 ImGui::GetTextLineHeightWithSpacing();
@@ -360,9 +368,10 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   const bool asks = replaces && replacing_ == path;
   if (asks)
     ui::wrapped(path.filename().string() + " is there already. Replace it? Enter or the button does.", theme().danger);
-  else if (!problem_.empty() && problem_of_ == path_)
+  else if (!problem_.empty() && problem_of_ == path_) {
     ui::wrapped(problem_, theme().danger);
-  else
+    announce::item("problem");
+  } else
     ImGui::TextUnformatted("");
   draw_desktop_buttons(desk, reads, ending);
   const float width = px(120);
@@ -394,7 +403,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   }
   if (done) try {
       carry_out(desk, path);
-    } catch (const Error& failed) {
+    } catch (const std::exception& failed) {
       problem_of_ = path_;
       problem_ = failed.what();
       done = false;

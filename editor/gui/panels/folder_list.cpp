@@ -104,14 +104,20 @@ FolderList::Taken FolderList::draw(Thumbnails& thumbnails, bool opens, bool seve
       chosen_ = {entry->path};
     } else if (io.KeyCtrl && chosen_.contains(entry->path)) {
       chosen_.erase(entry->path);
+      if (chosen_.empty()) continue;
+      taken.path = last_ = *chosen_.begin();
+      continue;
     } else if (io.KeyCtrl) {
       chosen_.insert(entry->path);
     } else {
+      // From the one clicked before, where it is still shown; folders without a scene are passed over.
+      const bool from_last =
+          std::any_of(shown_.begin(), shown_.end(), [&](const Entry* e) { return e->path == last_; });
       bool within = false;
       for (const Entry* const other : shown_) {
-        const bool end = other->path == entry->path || other->path == last_;
-        if (within || end) chosen_.insert(other->path);
-        if (end && entry->path != last_) within = !within;
+        const bool end = other->path == entry->path || (from_last && other->path == last_);
+        if ((within || end) && (!other->is_folder || other->is_scene)) chosen_.insert(other->path);
+        if (end && from_last && entry->path != last_) within = !within;
       }
     }
     last_ = entry->path;

@@ -59,10 +59,11 @@ class HistoryPanel {
 /// Stored views with pictures: a click looks from there.
 class ViewsPanel {
  public:
-  void draw(Desk& desk, Thumbnails& thumbnails);
+  /// `drawn`: the scene as pictures show it.
+  void draw(Desk& desk, const Scene& drawn, Thumbnails& thumbnails);
 
  private:
-  void draw_card(Desk& desk, Thumbnails& thumbnails, const std::string& name);
+  void draw_card(Desk& desk, const Scene& drawn, Thumbnails& thumbnails, const std::string& name);
   void draw_name(Desk& desk, const std::string& name, float width);
   std::string renaming_, name_;  ///< the view, and what is typed
   bool focus_name_ = false;

@@ -1,8 +1,12 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "editor/edits/nodes/remove_view.h"
 #include "editor/edits/nodes/rename_view.h"
+#include "editor/edits/stored_view.h"
 #include "editor/gui/panels/panels.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/icons.h"
@@ -14,6 +18,16 @@ namespace rebake {
 namespace {
 
 void look_from(Desk& desk, const std::string& name) { desk.view.camera = desk.scene().views.at(name); }
+
+// Whatever its planes: those follow the scene.
+bool looks_from(const Camera& camera, const Camera& stored) {
+  if (camera.orthographic() != stored.orthographic() || camera.target != stored.target) return false;
+  const double away = (stored.eye - stored.target).norm();
+  return camera.orthographic()
+             ? camera.ortho_height == stored.ortho_height &&
+                   (camera.eye - camera.target).normalized().isApprox((stored.eye - stored.target).normalized(), 1e-9)
+             : (camera.eye - stored.eye).norm() < 1e-9 * away;
+}
 
 }  // namespace
 
@@ -30,7 +44,7 @@ void ViewsPanel::draw_name(Desk& desk, const std::string& name, float width) {
   if (name_ != name && !name_.empty()) desk.edit(RenameView{name, name_});
 }
 
-void ViewsPanel::draw_card(Desk& desk, Thumbnails& thumbnails, const std::string& name) {
+void ViewsPanel::draw_card(Desk& desk, const Scene& drawn, Thumbnails& thumbnails, const std::string& name) {
   const ImVec2 size{px(160), px(100)};
   const announce::Part part(name);
   ImGui::PushID(name.c_str());
@@ -38,7 +52,7 @@ void ViewsPanel::draw_card(Desk& desk, Thumbnails& thumbnails, const std::string
   const ImVec2 at = ImGui::GetCursorScreenPos(), end{at.x + size.x, at.y + size.y};
   const bool clicked = ImGui::InvisibleButton("picture", size);
   announce::item("picture");
-  const bool hovered = ImGui::IsItemHovered(), here = desk.view.camera == desk.scene().views.at(name);
+  const bool hovered = ImGui::IsItemHovered(), here = looks_from(desk.view.camera, desk.scene().views.at(name));
   if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
     renaming_ = name_ = name;
     focus_name_ = true;
@@ -48,7 +62,7 @@ void ViewsPanel::draw_card(Desk& desk, Thumbnails& thumbnails, const std::string
   ui::tip(name, "", "Click looks from there, double click renames.");
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(at, end, color32(theme().field), px(4));
-  if (const unsigned texture = thumbnails.of_view(desk.scene(), name))
+  if (const unsigned texture = thumbnails.of_view(drawn, name))
     list.AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), at, end, {0, 0}, {1, 1},
                          IM_COL32_WHITE, px(4));
   if (hovered || here) list.AddRect(at, end, color32(theme().accent), px(4), 0, px(2));
@@ -63,7 +77,7 @@ void ViewsPanel::draw_card(Desk& desk, Thumbnails& thumbnails, const std::string
   ImGui::PopID();
 }
 
-void ViewsPanel::draw(Desk& desk, Thumbnails& thumbnails) {
+void ViewsPanel::draw(Desk& desk, const Scene& drawn, Thumbnails& thumbnails) {
   const announce::Part part("views");
   if (desk.scene().roots.empty()) {
     ui::muted("Nothing is open yet.");
@@ -74,9 +88,9 @@ void ViewsPanel::draw(Desk& desk, Thumbnails& thumbnails) {
   const float card = px(160) + px(14), room = ImGui::GetContentRegionAvail().x;
   const int across = std::max(1, static_cast<int>(room / card));
   int number = 0;
-  for (const auto& [name, camera] : desk.scene().views) {
+  for (const std::string& name : view_names(desk.scene())) {
     if (number % across != 0) ImGui::SameLine(0, px(14));
-    draw_card(desk, thumbnails, name);
+    draw_card(desk, drawn, thumbnails, name);
     ++number;
   }
 }

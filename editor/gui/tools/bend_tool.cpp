@@ -395,6 +395,7 @@ void BendTool::options(Desk& desk) {
 
 void BendTool::cancel(Desk& desk) {
   held_ = Handle::none;
+  shade_ = {};
   desk.drop_preview();
 }
 

@@ -337,13 +337,19 @@ void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
     // The side that follows the pointer more leads; what is in the middle stays there.
     const std::vector<std::int32_t>& partner = bound_->partners[static_cast<std::size_t>(symmetric_ - 1)];
     const std::vector<Vec3> led = moved;
+    const int axis = symmetric_ - 1;
+    const auto held = static_cast<std::size_t>(held_);
+    // Whether a point lies at the side that is held.
+    const auto leads = [&](std::size_t v) {
+      const double middle = (before_[v][axis] + mirrored(before_[v])[axis]) / 2;
+      return (before_[v][axis] > middle) == (before_[held][axis] > middle);
+    };
     for (std::size_t v = 0; v < moved.size(); ++v) {
       if (partner[v] < 0) continue;
       const auto w = static_cast<std::size_t>(partner[v]);
-      const bool held = w == static_cast<std::size_t>(held_) || (v != static_cast<std::size_t>(held_) && w < v);
       if (w == v)
         moved[v] = (led[v] + mirrored(led[v])) / 2;
-      else if (shares[w] > shares[v] || (shares[w] == shares[v] && shares[w] > 0 && held))
+      else if (shares[w] > shares[v] || (shares[w] == shares[v] && shares[w] > 0 && leads(w)))
         moved[v] = mirrored(led[w]);
     }
   }

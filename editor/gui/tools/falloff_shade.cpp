@@ -1,5 +1,8 @@
 #include "editor/gui/tools/falloff_shade.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "editor/edits/deform/deforming.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/deform/deform_places.h"
@@ -9,7 +12,7 @@ namespace rebake {
 
 namespace {
 
-constexpr std::size_t most_triangles = 20000;  // some tens of milliseconds
+constexpr std::size_t most_triangles = 100000;  // of the objects: it looks at all of them for the border
 
 void add(const PlacedNode& placed, const TriangleSet& flags, double falloff, std::vector<Guides::Triangle>& triangles) {
   const BakedObject& object = *placed.node->object;
@@ -17,6 +20,7 @@ void add(const PlacedNode& placed, const TriangleSet& flags, double falloff, std
   const FlaggedPlaces places = flagged_places(object, *corners, placed.to_world, flags);
   // What a motion of all of it comes to at each place is that place's share.
   const double size = transformed(object.bounds(), placed.to_world).diagonal().norm();
+  if (!(size > 0) || !std::isfinite(size)) return;
   const DeformedPlaces moved =
       deform_places(object, *corners, placed.to_world, flags, places, falloff, [&](const std::vector<Vec3>& world) {
         DeformedPoints all{world, std::vector<Mat3>(world.size(), Mat3::Identity()), {}};
@@ -42,7 +46,6 @@ void add(const PlacedNode& placed, const TriangleSet& flags, double falloff, std
 
 Guides::Triangles FalloffShade::of(const Desk& desk, const std::vector<DeformTarget>& targets, double falloff) {
   std::vector<NodeRef> nodes;
-  std::size_t count_all = 0;
   for (const DeformTarget& target : targets) {
     if (!target.selection) return nullptr;  // a whole object has no border
     if (target.node) nodes.push_back(*target.node);
@@ -56,18 +59,20 @@ Guides::Triangles FalloffShade::of(const Desk& desk, const std::vector<DeformTar
   nodes_ = nodes;
   falloff_ = falloff;
   made_.reset();
+  std::size_t all = 0;
+  for (const PlacedNode& placed : placed_nodes(desk.scene()))
+    if (placed.node->object && placed.node->selection) all += placed.node->object->triangle_count();
+  if (all > most_triangles) return nullptr;
   try {
     auto triangles = std::make_shared<std::vector<Guides::Triangle>>();
     for (const DeformTarget& target : targets) {
       const DeformSet set = deform_set(desk.scene(), target);
       for (std::size_t k = 0; k < set.nodes.size(); ++k) {
-        count_all += count(set.flags[k]);
-        if (count_all > most_triangles) return nullptr;
         add(set.nodes[k], set.flags[k], falloff, *triangles);
       }
     }
     made_ = std::move(triangles);
-  } catch (const EditError&) {
+  } catch (const Error&) {
     // What cannot be deformed is said when it is to be.
   }
   return made_;

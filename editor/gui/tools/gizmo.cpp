@@ -170,13 +170,13 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
   return std::round(result / step) * step;
 }
 
-Vec3 Gizmo::motion_in_plane(const Lens& lens, const Pointer& pointer) const {
+Vec3 Gizmo::motion_in_plane(const Lens& lens, bool orthographic, const Pointer& pointer) const {
   const int axis = held_ - plane;
   const Vec3 normal = at_.axes.col(axis);
   const auto meets = [&](const Vec2& pixel) -> std::optional<Vec3> {
     const ViewRay ray = lens.ray(pixel);
     const double t = (at_.pivot - ray.origin).dot(normal) / ray.direction.dot(normal);
-    if (!std::isfinite(t)) return std::nullopt;
+    if (!std::isfinite(t) || (t <= 0 && !orthographic)) return std::nullopt;
     return Vec3(ray.origin + t * ray.direction);
   };
   const auto from = meets(from_), to = meets(now_);
@@ -291,14 +291,14 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   now_ = pointer.at;
   const double before = amount_;
   amount_ = amount(lens, pointer);
-  if (moves_in_plane()) in_plane_ = motion_in_plane(lens, pointer);
+  if (moves_in_plane()) in_plane_ = motion_in_plane(lens, desk.view.camera.orthographic(), pointer);
   const bool free = held_ == all && kind_ == ToolKind::move;
   if (free && desk.tools.snaps && !at_.triangles)
     onto_ = surface(desk, lens, now_);
   else
     onto_.reset();
   if (typed_.value()) amount_ = *typed_.value() - (kind_ == ToolKind::scale ? 1 : 0);
-  const bool nothing = amount_ == 0 || (free && now_ == from_) || (moves_in_plane() && in_plane_.isZero(0));
+  const bool nothing = moves_in_plane() ? in_plane_.isZero(0) : amount_ == 0 || (free && now_ == from_);
   const std::vector<Edit> made = nothing ? std::vector<Edit>{} : edits(lens);
   if (moved || amount_ != before) preview(desk, made);
   if (by_key_ ? !pointer.pressed && !std::exchange(entered_, false) : !pointer.released) return;
@@ -311,6 +311,9 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
 
 void Gizmo::constrain(int axis, bool across) {
   if (across) {
+    // One seen edge on cannot be dragged in.
+    if (std::abs(at_.axes.col(axis).dot(at_.towards_eye)) < least_tilt) return;
+    typed_.clear();
     held_ = plane + axis;
     constrained_ = true;
     return;

@@ -45,7 +45,7 @@ class Gizmo final : public ViewTool {
   /// Its corners on the screen; empty where it is seen edge on.
   std::vector<Vec2> plane_handle(const Target& target, const Lens& lens, int axis) const;
   /// How far a drag in a plane goes.
-  Vec3 motion_in_plane(const Lens& lens, const Pointer& pointer) const;
+  Vec3 motion_in_plane(const Lens& lens, bool orthographic, const Pointer& pointer) const;
   std::vector<Edit> edits(const Lens& lens) const;
   bool moves_in_plane() const { return held_ >= plane; }
   /// Where the surface under the pointer is, of nodes that are not moved.

@@ -2,8 +2,10 @@
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "editor/edits/select/select.h"
 #include "editor/gui/ui/announce.h"

@@ -1,6 +1,7 @@
 #include "editor/gui/view/thumbnails.h"
 
 #include <set>
+#include <utility>
 
 #include "editor/commands/views.h"
 #include "mesh_ops/base/error.h"
@@ -21,8 +22,10 @@ fs::path picture_file(const std::string& path) {
 unsigned Thumbnails::of_view(const Scene& scene, const std::string& name) {
   const auto found = views_.find(name);
   const Camera& camera = scene.views.at(name);
-  if (found == views_.end() || !(found->second.camera == camera) || found->second.roots != scene.roots) wanted_ = name;
-  return found == views_.end() ? 0 : found->second.picture.name();
+  if (found == views_.end() || !(found->second.camera == camera) || found->second.roots != scene.roots ||
+      found->second.background != scene.background)
+    wanted_ = name;
+  return found == views_.end() || !found->second.picture ? 0 : found->second.picture->name();
 }
 
 void Thumbnails::draw_one(Renderer& renderer, const Scene& scene) {
@@ -33,7 +36,19 @@ void Thumbnails::draw_one(Renderer& renderer, const Scene& scene) {
   view.width = width;
   view.height = height;
   view.camera = fitted(scene, found->second, static_cast<double>(width) / height);
-  views_.insert_or_assign(name, OfView{found->second, scene.roots, PictureTexture(renderer.render(scene, view))});
+  std::erase_if(views_, [&](const auto& one) { return !scene.views.contains(one.first); });
+  std::optional<PictureTexture> picture;
+  try {
+    picture.emplace(renderer.render(scene, view));
+  } catch (const Error&) {
+    // The main picture says what is wrong.
+  }
+  views_.insert_or_assign(name, OfView{found->second, scene.roots, scene.background, std::move(picture)});
+}
+
+void Thumbnails::forget_views() {
+  views_.clear();
+  wanted_.reset();
 }
 
 unsigned Thumbnails::of_file(const std::string& path) {

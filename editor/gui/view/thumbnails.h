@@ -16,15 +16,18 @@ class Thumbnails {
  public:
   static constexpr int width = 192, height = 120;
 
-  /// A texture of what a stored view shows; 0 while there is none yet. One that is out of date is shown until
-  /// draw_one() has made it anew.
+  /// A texture of what a stored view of the scene, as it is drawn, shows; 0 while there is none yet. One that is out of
+  /// date is shown until draw_one() has made it anew.
   unsigned of_view(const Scene& scene, const std::string& name);
+  /// Of no view any more.
+  void forget_views();
   /// A texture of what was seen of a file or folder last; 0 where nothing is kept of it.
   unsigned of_file(const std::string& path);
 
   /// Whether draw_one() has something to do.
   bool wants() const { return wanted_.has_value(); }
-  /// Draws what was asked for last. The renderer's picture is another one then.
+  /// Draws what was asked for last. The renderer's picture is another one then. A view that cannot be drawn has no
+  /// picture.
   void draw_one(Renderer& renderer, const Scene& scene);
   /// Keeps a picture of what is seen of a file or folder, and no longer those of what is not among `recent`.
   void keep(const std::string& path, const std::vector<std::string>& recent, const Image& seen);
@@ -33,7 +36,8 @@ class Thumbnails {
   struct OfView {
     Camera camera;
     std::vector<NodePtr> roots;
-    PictureTexture picture;
+    Color background;
+    std::optional<PictureTexture> picture;  ///< none where it could not be drawn
   };
   std::map<std::string, OfView> views_;
   std::map<std::string, std::optional<PictureTexture>> files_;

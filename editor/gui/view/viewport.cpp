@@ -39,6 +39,8 @@ Viewport::Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_p
 }
 Viewport::~Viewport() = default;
 
+Scene Viewport::drawn(const Desk& desk) { return on_ground(desk.scene(), desk); }
+
 bool Viewport::key(Desk& desk, const KeyPress& press) { return tool(desk).key(desk, press); }
 
 bool Viewport::cancel(Desk& desk) {
@@ -59,6 +61,7 @@ bool Viewport::cancel(Desk& desk) {
 bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
 
 double Viewport::next_frame_in(const Desk& desk) const {
+  if (desk.jobs.film && desk.jobs.film->waits()) return 0.1;
   if (desk.jobs.film || desk.view.flying || (thumbnails_.wants() && !moving() && desk.at_rest())) return 0;
   // A quick picture is followed by one in full.
   if (!moving())
@@ -227,9 +230,9 @@ void Viewport::keep_picture(const Desk& desk) {
   const std::string of = !desk.project.path.empty() ? (desk.project.unsaved() ? "" : desk.project.path.string())
                          : imported                 ? desk.settings.recent.front()
                                                     : "";
-  if (of.empty() || (of == kept_of_ && kept_roots_ == desk.scene().roots)) return;
+  if (of.empty() || (of == kept_of_ && kept_step_ == desk.now->steps_done)) return;
   kept_of_ = of;
-  kept_roots_ = desk.scene().roots;
+  kept_step_ = desk.now->steps_done;
   try {
     thumbnails_.keep(of, desk.settings.recent, renderer_.shown_image());
   } catch (const std::exception&) {
@@ -352,9 +355,11 @@ void Viewport::write_pictures(Desk& desk) {
       desk.messages.say("Wrote " + shot->path.string());
     }
     if (desk.jobs.film) {
-      const std::string said = desk.jobs.film->go_on([&](const Camera& camera, const std::filesystem::path& path) {
-        written(camera, desk.jobs.film->width(), desk.jobs.film->height(), path);
-      });
+      const std::string said = desk.jobs.film->go_on(
+          [&](const Camera& camera, const std::filesystem::path& path) {
+            written(camera, desk.jobs.film->width(), desk.jobs.film->height(), path);
+          },
+          desk.now->sources);
       if (!said.empty()) {
         desk.messages.say(said);
         desk.jobs.film.reset();

@@ -32,6 +32,8 @@ class Viewport {
   const FrameReport& report() const { return report_; }
   bool& each_pass() { return each_pass_; }
   Thumbnails& thumbnails() { return thumbnails_; }
+  /// The scene before the background that it is drawn on.
+  static Scene drawn(const Desk& desk);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -73,8 +75,8 @@ class Viewport {
   ToolKind last_tool_ = ToolKind::pick;
   unsigned texture_ = 0;
   Thumbnails thumbnails_;
-  std::string kept_of_;  ///< what a picture is kept of, as `kept_roots_` looked
-  std::vector<NodePtr> kept_roots_;
+  std::string kept_of_;        ///< what a picture is kept of,
+  std::size_t kept_step_ = 0;  ///< and after how many steps it looked so
   bool each_pass_ = false;
   bool drew_ = false;  ///< a picture in this frame
   bool orbiting_ = false, panning_ = false, wiping_ = false;

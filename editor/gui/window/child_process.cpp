@@ -61,9 +61,14 @@ std::optional<int> ChildProcess::ended() {
   if (status_) return status_;
   read();
   int status = 0;
-  if (::waitpid(process_, &status, WNOHANG) != process_) return std::nullopt;
+  const pid_t ended = ::waitpid(process_, &status, WNOHANG);
+  if (ended == 0 || (ended < 0 && errno == EINTR)) return std::nullopt;
   read();
-  status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  // Where this program was started so that it is not told of its children, nothing more can be known.
+  if (ended < 0)
+    status_ = 0;
+  else
+    status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return status_;
 }
 

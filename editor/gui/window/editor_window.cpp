@@ -52,7 +52,10 @@ class EditorWindow {
     while (!dialogs_.may_quit()) {
       const double pause = frames_ > 0 ? 0 : desk_.jobs.worker.busy() || dialogs_.waits() ? 0.1 : next_frame_in();
       const auto waits = std::chrono::steady_clock::now();
-      if (window().wait(pause) || desk_.jobs.worker.busy() || dialogs_.waits()) frames_ = frames_after_event;
+      if (window().wait(pause))
+        frames_ = frames_after_event;
+      else if (desk_.jobs.worker.busy() || dialogs_.waits())
+        frames_ = std::max(frames_, 1);  // one that shows how far it is, and a pause
       if (pause == 0) paused(waits);
       if (desk_.now != desk_.jobs.worker.snapshot()) frames_ = frames_after_event;
       frames_ = std::max(0, frames_ - 1);

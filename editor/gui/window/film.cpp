@@ -5,6 +5,7 @@
 
 #include "editor/gui/window/settings.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 
 namespace rebake {
 
@@ -20,6 +21,8 @@ Film::Film(fs::path out, int width, int height, std::vector<Camera> cameras, con
     if (program_path("ffmpeg").empty())
       throw Error("a video needs the program ffmpeg, which is not installed; a folder gets pictures");
     pictures_ = cache_folder() / fmt::format("film-{}", ::getpid());
+    std::error_code nothing;
+    fs::remove_all(pictures_, nothing);  // of an editor that was killed
     // Sizes that video formats take are even.
     width_ += width_ % 2;
     height_ += height_ % 2;
@@ -39,25 +42,22 @@ std::string Film::doing() const {
   return encoder_ ? "Making the video" : fmt::format("Picture {} of {}", next_ + 1, cameras_.size());
 }
 
-std::string Film::go_on(const std::function<void(const Camera&, const fs::path&)>& write) {
+std::string Film::go_on(const std::function<void(const Camera&, const fs::path&)>& write, const SourceGuard& sources) {
   const fs::path partial = pictures_ / "video.mp4";
   if (next_ < cameras_.size()) {
     write(cameras_[next_], pictures_ / fmt::format("{:03}.png", next_));
     if (++next_ < cameras_.size()) return "";
     if (!video()) return fmt::format("Wrote {} pictures to {}", cameras_.size(), out_.string());
-    encoder_ = std::make_unique<ChildProcess>(std::vector<std::string>{
-        program_path("ffmpeg"), "-nostdin", "-loglevel", "error", "-y", "-framerate", std::to_string(rate), "-i",
-        (pictures_ / "%03d.png").string(), "-pix_fmt", "yuv420p", partial.string()});
+    encoder_ = std::make_unique<ChildProcess>(
+        std::vector<std::string>{program_path("ffmpeg"), "-nostdin", "-loglevel", "error", "-y", "-framerate",
+                                 std::to_string(rate), "-i", (pictures_ / "%03d.png").string(), "-frames:v",
+                                 std::to_string(cameras_.size()), "-pix_fmt", "yuv420p", partial.string()});
     return "";
   }
   const std::optional<int> status = encoder_->ended();
   if (!status) return "";
   if (*status != 0) throw Error(fmt::format("ffmpeg ended with {}; there is no video", *status));
-  std::error_code failed;
-  const fs::path beside = out_.string() + ".partial";
-  fs::copy_file(partial, beside, fs::copy_options::overwrite_existing, failed);
-  if (!failed) fs::rename(beside, out_, failed);
-  if (failed) throw FileError(out_, "cannot be written: " + failed.message());
+  write_file_atomically(out_, read_file(partial), sources);
   return fmt::format("Wrote {} seconds of video to {}", static_cast<double>(cameras_.size()) / rate, out_.string());
 }
 

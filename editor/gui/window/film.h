@@ -28,7 +28,10 @@ class Film {
   std::string doing() const;
   /// Has the next picture written by `write`, or looks whether ffmpeg is done. What there is to say once all is, else
   /// nothing. Throws Error.
-  std::string go_on(const std::function<void(const Camera&, const std::filesystem::path&)>& write);
+  std::string go_on(const std::function<void(const Camera&, const std::filesystem::path&)>& write,
+                    const SourceGuard& sources);
+  /// Whether it only waits for ffmpeg.
+  bool waits() const { return encoder_ != nullptr; }
   /// What is there when it is stopped now.
   std::string stopped() const;
 

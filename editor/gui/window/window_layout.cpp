@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "editor/edits/stored_view.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/widgets.h"
@@ -76,6 +77,8 @@ void WindowLayout::draw(Viewport& viewport, const std::vector<std::array<double,
     picture({0, 0}, screen);
   else
     lay_out(screen);
+  // What is not shown keeps no scene alive.
+  if (!std::exchange(views_shown_, false)) viewport.thumbnails().forget_views();
   palette_.draw(desk_);
   form_.draw(desk_);
   draw_keys_sheet(desk_);
@@ -210,8 +213,8 @@ void WindowLayout::menu() {
       ImGui::EndMenu();
     }
     if (name == std::string_view("View") && ImGui::BeginMenu("Stored views", !desk_.scene().views.empty())) {
-      for (const auto& [view, camera] : desk_.scene().views)
-        if (ImGui::MenuItem(view.c_str())) desk_.view.camera = camera;
+      for (const std::string& view : view_names(desk_.scene()))
+        if (ImGui::MenuItem(view.c_str())) desk_.view.camera = desk_.scene().views.at(view);
       ImGui::EndMenu();
     }
     ImGui::EndMenu();
@@ -252,7 +255,8 @@ void WindowLayout::tabs() {
       history_.draw(desk_);
       break;
     case BottomTab::views:
-      views_.draw(desk_, viewport_->thumbnails());
+      views_.draw(desk_, Viewport::drawn(desk_), viewport_->thumbnails());
+      views_shown_ = true;
       break;
     case BottomTab::script:
       script_.draw(desk_);

@@ -41,6 +41,7 @@ class WindowLayout {
   EditForm form_;
   float options_height_ = 0;  ///< that the tool's options took in the last frame
   float menu_height_ = 0;
+  bool views_shown_ = false;              ///< in this frame
   ToolKind shown_tool_ = ToolKind::pick;  ///< that the tool bar was scrolled to
 };
 
