@@ -16,6 +16,7 @@
 #include "editor/gui/tools/expression.h"
 #include "editor/gui/tools/typed_number.h"
 #include "editor/gui/ui/theme.h"
+#include "editor/gui/window/child_process.h"
 #include "editor/gui/window/commands.h"
 #include "editor/gui/window/desk.h"
 #include "editor/gui/window/input_queue.h"
@@ -268,6 +269,27 @@ TEST(SettingsFile, ComesBackAndABadOneIsSaid) {
   }
   write_file_atomically(file, R"({"side_width": -5, "window_width": 1000000, "something_newer": 1})", {});
   EXPECT_EQ(read_settings(file, problem).side_width, 200);
+}
+
+TEST(ChildProcess, IsReadToItsEndAndEndsWithItsOwner) {
+  const auto ended = [](ChildProcess& child) {
+    std::optional<int> status;
+    while (!(status = child.ended())) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return *status;
+  };
+  const std::string shell = program_path("sh");
+  ASSERT_FALSE(shell.empty());
+  EXPECT_TRUE(program_path("no program is called so").empty());
+  // More than a pipe holds, written before anybody reads.
+  ChildProcess talks({shell, "-c", "head -c 200000 /dev/zero | tr '\\0' x; exit 3"});
+  EXPECT_EQ(ended(talks), 3);
+  EXPECT_EQ(talks.output(), std::string(200000, 'x'));
+  ChildProcess killed({shell, "-c", "kill -9 $$"});
+  EXPECT_EQ(ended(killed), 128 + 9);
+  EXPECT_THROW(ChildProcess({"/nowhere/program"}), Error);
+  const auto start = std::chrono::steady_clock::now();
+  { ChildProcess sleeps({shell, "-c", "exec sleep 60"}); }
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30)) << "it is not waited for";
 }
 
 }  // namespace

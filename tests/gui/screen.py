@@ -24,6 +24,7 @@ class Screen:
 
     def __init__(self, width=WIDTH, height=HEIGHT):
         self.width, self.height = width, height
+        self.editors = []  # processes that were started on it
         self.home = pathlib.Path(tempfile.mkdtemp())
         read, write = os.pipe()
         self.server = subprocess.Popen(
@@ -44,6 +45,10 @@ class Screen:
         file.write_text(json.dumps({"window_width": self.width, "window_height": self.height, **values}))
 
     def close(self):
+        for editor in self.editors:
+            if editor.poll() is None:
+                editor.kill()
+                editor.wait()
         self.server.terminate()
         self.server.wait()
         shutil.rmtree(self.home)
@@ -75,6 +80,7 @@ class Editor:
         # Python ignores SIGXFSZ, and so does the editor then: a limit of file size is an error of writing, like a full
         # disk.
         self.process = subprocess.Popen([program, "edit", *map(str, paths)], env=screen.environment, restore_signals=False)
+        screen.editors.append(self.process)
         self.clicks = self.strokes = 0
         self.window = until(lambda: self.tool("search", "--onlyvisible", "--name", "Rebake").split(), "a window")[0]
         self.tool("windowfocus", "--sync", self.window)

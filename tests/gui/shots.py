@@ -15,6 +15,13 @@ BRANCH = [(0.57, 0.22), (0.78, 0.22), (0.78, 0.46), (0.62, 0.46), (0.57, 0.38)]
 
 def shots(looks, scale):
     screen = Screen(1280 * scale, 800 * scale)
+    try:
+        take(screen, looks, scale)
+    finally:
+        screen.close()
+
+
+def take(screen, looks, scale):
     screen.settings(looks=looks, text_scale=scale, window_width=1280 * scale, window_height=800 * scale)
     taken = []
 
@@ -107,7 +114,6 @@ def shots(looks, scale):
     editor.key("y", "ctrl+space")
     shot("alone")
     editor.kill()
-    screen.close()
     subprocess.run(["montage", *taken, "-geometry", "640x400+6+6", "-tile", "4x", "-background", "#808080",
                     str(OUT / f"overview-{looks}-{scale}x.png")], check=True)
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "editor/fields/values.h"
 #include "editor/gui/window/messages.h"
 #include "editor/gui/window/settings.h"
 #include "editor/gui/window/worker.h"
