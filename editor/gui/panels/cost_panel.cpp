@@ -196,12 +196,18 @@ void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameRep
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float chart = jobs.costs ? std::min(room.x * 0.5F, px(640)) : 0;
   if (jobs.costs) {
-    const bool same = jobs.costs->view.camera == view.camera && jobs.costs->view.width == view.width &&
-                      jobs.costs->view.height == view.height && jobs.costs->roots == now.scene.roots;
+    const bool same = jobs.costs->view.camera == view.camera &&
+                      std::abs(jobs.costs->view.width * 1.0 / jobs.costs->view.height - view.aspect()) < 0.01 &&
+                      jobs.costs->roots == now.scene.roots;
+    const bool smaller = jobs.costs->view.width < view.width;
     ImGui::BeginGroup();
     draw_chart(choices_of(*jobs.costs), view, same,
-               {chart, std::max(px(120), room.y - (same ? 0 : ImGui::GetTextLineHeightWithSpacing()))});
-    if (!same) ImGui::TextDisabled("Of the view or scene as it was: measure again for this one.");
+               {chart, std::max(px(120), room.y - (same && !smaller ? 0 : ImGui::GetTextLineHeightWithSpacing()))});
+    if (!same)
+      ImGui::TextDisabled("Of the view or scene as it was: measure again for this one.");
+    else if (smaller)
+      ImGui::TextDisabled("At %d×%d pixels: the reference takes 64 samples of each.", jobs.costs->view.width,
+                          jobs.costs->view.height);
     ImGui::EndGroup();
     ImGui::SameLine(0, px(space::section));
   }

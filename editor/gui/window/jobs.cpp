@@ -1,12 +1,18 @@
 #include "editor/gui/window/jobs.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace rebake {
 
 void Jobs::measure_costs(const ViewState& view, const Scene& scene) {
   auto measured = std::make_shared<Costs>();
-  measured->view = {view.camera, view.width, view.height, 4};
+  // The reference takes 64 samples a pixel, which drivers hold for so many pixels.
+  constexpr double most_pixels = 1e6;
+  const double scale = std::min(1.0, std::sqrt(most_pixels / (static_cast<double>(view.width) * view.height)));
+  measured->view = {view.camera, std::max(1, static_cast<int>(view.width * scale)),
+                    std::max(1, static_cast<int>(view.height * scale)), 4};
   measured->roots = scene.roots;
   measured->background = scene.background;
   worker.start(
