@@ -21,7 +21,4 @@ class PictureTexture {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The middle of an image in the shape of `width` × `height`, averaged over each of those pixels; never enlarged.
-Image thumbnail_of(const Image& image, int width, int height);
-
 }  // namespace rebake

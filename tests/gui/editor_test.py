@@ -10,7 +10,7 @@ import tempfile
 import time
 import unittest
 
-from screen import Editor, Screen, until
+from screen import Editor, Screen, read_picture, until
 
 PROGRAM = sys.argv.pop(1)
 HERE = pathlib.Path(__file__).resolve().parent
@@ -875,6 +875,19 @@ class EditorTest(unittest.TestCase):
         geometry = lambda text: [line for line in text.splitlines() if "geometry  " in line]
         self.assertEqual(geometry(told), geometry(alone), told)
         self.assertEqual(len(geometry(told)), 1)
+        # Pictures too: no leaves are in one of the kettle alone.
+        both, one = self.folder / "both.png", self.folder / "one.png"
+        for picture in (both, one):
+            editor.key("F12")
+            if picture == one:
+                editor.click("dialog/Only the picked nodes")
+                editor.click("dialog/path")
+            editor.answer(str(picture))
+            until(picture.exists, "a screenshot")
+            editor.settle()
+        leaves = lambda file: int(green(read_picture(file)).sum())
+        self.assertGreater(leaves(both), 1000)
+        self.assertEqual(leaves(one), 0)
 
     def test_a_full_disk_is_said_and_nothing_is_lost(self):
         editor = self.open_ficus()

@@ -64,6 +64,14 @@ def until(what, says, seconds=PATIENCE):
     raise AssertionError("in vain: " + says)
 
 
+def read_picture(file):
+    """Rows of pixels, red, green and blue."""
+    size = subprocess.run(["identify", "-format", "%w %h", file], capture_output=True, text=True, check=True).stdout
+    width, height = map(int, size.split())
+    raw = subprocess.run(["convert", file, "-depth", "8", "rgb:-"], capture_output=True, check=True).stdout
+    return numpy.frombuffer(raw, numpy.uint8).reshape(height, width, 3).astype(int)
+
+
 class Editor:
     """The program with its window."""
 

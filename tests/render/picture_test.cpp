@@ -9,7 +9,7 @@
 
 #include "mesh_ops/texture/decoder.h"
 #include "render/compare.h"
-#include "render/picture_texture.h"
+#include "render/thumbnail.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/oracle.h"
 

@@ -1,3 +1,5 @@
+#include "editor/gui/panels/dialogs.h"
+
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -7,7 +9,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "editor/gui/panels/dialogs.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/fonts.h"
 #include "editor/gui/ui/widgets.h"

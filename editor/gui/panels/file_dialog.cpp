@@ -1,3 +1,5 @@
+#include "editor/gui/panels/file_dialog.h"
+
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -11,7 +13,6 @@
 #include "editor/document/sample_folder.h"
 #include "editor/edits/stored_view.h"
 #include "editor/edits/support.h"
-#include "editor/gui/panels/file_dialog.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/fonts.h"
 #include "editor/gui/ui/icons.h"
@@ -114,7 +115,7 @@ std::vector<std::string> losses(const Scene& scene) {
 
 }  // namespace
 
-std::vector<NodeRef> FileDialog::exported_nodes(const Desk& desk) const {
+std::vector<NodeRef> FileDialog::wanted_nodes(const Desk& desk) const {
   std::vector<NodeRef> nodes;
   if (only_picked_)
     for (const NodeId id : desk.active_tops()) nodes.push_back(NodeRef{id});
@@ -149,6 +150,8 @@ void FileDialog::carry_out(Desk& desk, const fs::path& path) {
   if (makes_film(desk.asking.path) && desk.jobs.film) throw Error("a film is still being made; Esc ends it");
   const bool reads = desk.asking.path == PathQuestion::open || desk.asking.path == PathQuestion::run_script;
   (reads ? desk.settings.opened_from : desk.settings.written_to) = path.parent_path().string();
+  if (makes_film(desk.asking.path) || desk.asking.path == PathQuestion::screenshot)
+    desk.jobs.pictured = wanted_nodes(desk);
   switch (desk.asking.path) {
     case PathQuestion::open:
       if (list_.chosen().size() > 1) {
@@ -166,7 +169,7 @@ void FileDialog::carry_out(Desk& desk, const fs::path& path) {
       desk.project.save_scene(path);
       break;
     case PathQuestion::export_folder:
-      desk.project.export_to(path, exported_nodes(desk));
+      desk.project.export_to(path, wanted_nodes(desk));
       break;
     case PathQuestion::screenshot:
       desk.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
@@ -293,13 +296,13 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   const bool pictures = film || desk.asking.path == PathQuestion::screenshot;
   const std::string ending = film && video_ ? ".mp4" : question.ending;
   // With all of it picked there is nothing to choose.
-  const bool offers_picked = desk.asking.path == PathQuestion::export_folder && !desk.active.empty() &&
+  const bool offers_picked = (pictures || desk.asking.path == PathQuestion::export_folder) && !desk.active.empty() &&
                              desk.active_tops().size() < desk.scene().roots.size();
   only_picked_ = only_picked_ && offers_picked;
   const std::vector<std::string> lost = desk.asking.path == PathQuestion::export_folder
-                                            ? losses(with_only(desk.scene(), exported_nodes(desk)))
+                                            ? losses(with_only(desk.scene(), wanted_nodes(desk)))
                                             : std::vector<std::string>{};
-  float below = ImGui::GetFrameHeightWithSpacing() * (pictures || offers_picked ? 2.0F : 1.0F) +
+  float below = ImGui::GetFrameHeightWithSpacing() * (1.0F + (pictures ? 1.0F : 0.0F) + (offers_picked ? 1.0F : 0.0F)) +
                 ImGui::GetTextLineHeightWithSpacing();
   for (const std::string& line : lost)
     below += ImGui::CalcTextSize(("•  " + line).c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y +

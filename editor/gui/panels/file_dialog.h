@@ -24,7 +24,7 @@ class FileDialog {
 
  private:
   void begin(const Desk& desk);
-  std::vector<NodeRef> exported_nodes(const Desk& desk) const;
+  std::vector<NodeRef> wanted_nodes(const Desk& desk) const;
   void draw_desktop_buttons(const Desk& desk, bool reads, const std::string& ending);
   void take_answer(Desk& desk);
   static int on_key(ImGuiInputTextCallbackData* data);
@@ -36,7 +36,7 @@ class FileDialog {
   std::string problem_, problem_of_;            ///< what is wrong with which path
   bool refocuses_ = false;                      ///< the path takes the keyboard again
   std::filesystem::path replacing_;             ///< is there already: asked for once
-  bool only_picked_ = false;                    ///< of an export
+  bool only_picked_ = false;                    ///< of an export, or in pictures
   int width_ = 0, height_ = 0;                  ///< of pictures, in pixels
   int pictures_ = 36;                           ///< of a film
   bool video_ = false;

@@ -21,6 +21,9 @@ constexpr std::pair<const char*, const char*> pointer_lines[] = {
     {"Double click", "sets what the view turns about"},
     {"Right click", "menu of what is under the pointer"},
     {"Shift, Ctrl, both", "add, remove, keep what is in both"},
+    {"Alt + drag a handle of Move", "moves a copy"},
+    {"X, Y, Z during a drag", "along that axis; with Shift across it"},
+    {"Ctrl + drag beside a cage", "picks its points by a lasso"},
     {"Digits during a drag", "a number in place of the pointer's way"},
     {"Esc", "takes back the present drag; else picks nothing"},
 };

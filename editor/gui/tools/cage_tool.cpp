@@ -307,14 +307,6 @@ std::function<Vec3(const Vec3&)> CageTool::motion(const Lens& lens, const Pointe
   return [middle, turn](const Vec3& p) { return Vec3(middle + turn * (p - middle)); };
 }
 
-Vec3 CageTool::mirrored(const Vec3& point) const {
-  Box box;
-  for (const Vec3& p : bound_->cage.vertices) box.extend(p);
-  Vec3 other = point;
-  other[symmetric_ - 1] = 2 * box.center()[symmetric_ - 1] - other[symmetric_ - 1];
-  return other;
-}
-
 void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
   const std::function<Vec3(const Vec3&)> moves = motion(lens, pointer);
   Box box;
@@ -338,11 +330,14 @@ void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
     const std::vector<std::int32_t>& partner = bound_->partners[static_cast<std::size_t>(symmetric_ - 1)];
     const std::vector<Vec3> led = moved;
     const int axis = symmetric_ - 1;
-    const auto held = static_cast<std::size_t>(held_);
+    const double middle = box.center()[axis];
+    const auto mirrored = [&](Vec3 p) {
+      p[axis] = 2 * middle - p[axis];
+      return p;
+    };
     // Whether a point lies at the side that is held.
     const auto leads = [&](std::size_t v) {
-      const double middle = (before_[v][axis] + mirrored(before_[v])[axis]) / 2;
-      return (before_[v][axis] > middle) == (before_[held][axis] > middle);
+      return (before_[v][axis] > middle) == (before_[static_cast<std::size_t>(held_)][axis] > middle);
     };
     for (std::size_t v = 0; v < moved.size(); ++v) {
       if (partner[v] < 0) continue;
@@ -440,7 +435,7 @@ void CageTool::options(Desk& desk) {
   ImGui::TextDisabled("Symmetric");
   ImGui::SameLine();
   ui::choice("symmetric", symmetric_, {"Off", "X", "Y", "Z"});
-  ui::tip("Symmetric", "", "Points at the other side of the cage's middle move as these do.");
+  ui::tip("Symmetric", "", "Points at the other side of the cage's middle, where there are some, move as these do.");
   ui::flow(px(120));
   ui::toggle("Visible only", desk.tools.visible_only());
   ui::tip("Visible only", command_key("Visible only", desk), "Takes points at the front only.");

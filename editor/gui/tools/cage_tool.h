@@ -36,7 +36,6 @@ class CageTool final : public ViewTool {
   void drag(Desk& desk, const Lens& lens, const Pointer& pointer);
   /// What the drag makes of a point that is picked.
   std::function<Vec3(const Vec3&)> motion(const Lens& lens, const Pointer& pointer) const;
-  Vec3 mirrored(const Vec3& point) const;
   void pick_inside(const Desk& desk, const Lens& lens);
   /// Whether a cage point looks towards the eye.
   std::vector<std::uint8_t> in_front(const Lens& lens) const;

@@ -67,9 +67,7 @@ Guides::Triangles FalloffShade::of(const Desk& desk, const std::vector<DeformTar
     auto triangles = std::make_shared<std::vector<Guides::Triangle>>();
     for (const DeformTarget& target : targets) {
       const DeformSet set = deform_set(desk.scene(), target);
-      for (std::size_t k = 0; k < set.nodes.size(); ++k) {
-        add(set.nodes[k], set.flags[k], falloff, *triangles);
-      }
+      for (std::size_t k = 0; k < set.nodes.size(); ++k) add(set.nodes[k], set.flags[k], falloff, *triangles);
     }
     made_ = std::move(triangles);
   } catch (const Error&) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "editor/gui/tools/tool.h"
 
 namespace rebake {
@@ -23,7 +21,6 @@ class VolumeTool final : public ViewTool {
   static constexpr int none = -1, middle = 6;  ///< 0 to 5: the sides at +x, −x, +y, …
   struct Volume {
     Vec3 center{0, 0, 0}, half{0, 0, 0};  ///< in the world; half of zero: not placed yet
-    bool operator==(const Volume&) const = default;
   };
   void place(const Desk& desk);
   Vec3 handle(int number) const;

@@ -6,6 +6,7 @@
 #include "editor/commands/views.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
+#include "render/thumbnail.h"
 
 namespace rebake {
 

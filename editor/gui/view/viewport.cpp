@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "editor/edits/nodes/import.h"
+#include "editor/edits/support.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/style.h"
 #include "editor/gui/view/navigation.h"
@@ -346,8 +347,9 @@ bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, boo
 void Viewport::write_pictures(Desk& desk) {
   const auto written = [&](const Camera& camera, int width, int height, const std::filesystem::path& path) {
     made_.reset();
-    const View view{with_depth_for(camera, world_bounds(desk.scene())), width, height, desk.view.samples};
-    write_png(renderer_.render(desk.scene(), view), path, desk.now->sources);
+    const Scene scene = with_only(desk.scene(), desk.jobs.pictured);
+    const View view{with_depth_for(camera, world_bounds(scene)), width, height, desk.view.samples};
+    write_png(renderer_.render(scene, view), path, desk.now->sources);
   };
   try {
     if (const auto shot = std::exchange(desk.jobs.screenshot, std::nullopt)) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "editor/fields/values.h"
 #include "editor/gui/view/view_state.h"
 #include "editor/gui/window/film.h"
 #include "editor/gui/window/worker.h"
@@ -26,6 +27,7 @@ struct Jobs {
   };
   std::optional<Screenshot> screenshot;
   std::optional<Film> film;
+  std::vector<NodeRef> pictured;  ///< only these are in them; empty: all
 
   /// What choices cost and how wrong each is, in one view of one scene.
   struct Costs {
