@@ -4,7 +4,6 @@ one and two pixels a plain pixel, and all of them beside each other (overview-LO
 import pathlib
 import subprocess
 import sys
-import tempfile
 
 from screen import Editor, Screen
 

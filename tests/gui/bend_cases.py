@@ -1,0 +1,246 @@
+"""Bending: by a cage, by handles, along a spine."""
+
+from window_case import WindowCase, FICUS, KETTLE
+
+
+class BendTest(WindowCase):
+    def test_a_cage_keeps_every_release(self):
+        editor = self.open_ficus()
+        editor.key("c")
+        editor.click("options/Make cage")
+        points = editor.items("cage")
+        self.assertGreaterEqual(len(points), 8)
+
+        def drag_top(dx, dy):
+            x, y, _, _ = min(editor.items("cage").values(), key=lambda box: box[1])
+            editor.drag([(round(x), round(y)), (round(x) + dx, round(y) + dy)])
+
+        drag_top(70, 40)
+        editor.until_ops("import", "cage")
+        edit = editor.last_edit()
+        self.assertEqual(edit["lattice"], [2, 2, 2])
+        self.assertEqual(len(edit["moves"]), 1)
+        first = editor.items("cage")
+        drag_top(-50, -40)
+        self.assertEqual(editor.ops(), ["import", "cage", "adjust", "cage"], "the same step, done again")
+        self.assertEqual(editor.state()["steps"], 2)
+        second = editor.items("cage")
+        self.assertNotEqual(first, second)
+        # Undo takes the releases back one by one, redo brings the cage back with its points.
+        editor.key("ctrl+z")
+        self.assertEqual(editor.items("cage"), first)
+        self.assertEqual(editor.state()["steps"], 2)
+        editor.key("ctrl+z")
+        self.assertEqual(editor.items("cage"), points)
+        self.assertEqual(editor.state()["steps"], 1)
+        editor.key("ctrl+y", "ctrl+y")
+        self.assertEqual(editor.items("cage"), second)
+        # Its border stays adjustable, and the cage with it.
+        editor.click("adjust/Soft border/value")
+        editor.type("0.1")
+        editor.key("Return")
+        self.assertEqual(editor.last_edit()["falloff"], 0.1)
+        self.assertEqual(editor.items("cage"), second)
+        # However the tool is left, what was done stays; Escape takes back the present drag only.
+        x, y, _, _ = min(editor.items("cage").values(), key=lambda box: box[1])
+        editor.drag([(round(x), round(y)), (round(x) + 60, round(y))], meanwhile=lambda: editor.key("Escape"))
+        self.assertEqual(editor.items("cage"), second)
+        editor.key("v")
+        self.assertEqual(editor.state()["steps"], 2)
+        self.assertEqual(editor.last_edit()["op"], "cage")
+
+    def test_cage_points_turn_together_and_on_both_sides(self):
+        editor = self.open_ficus()
+        editor.key("KP_1", "c")
+        editor.click("options/Make cage")
+        rest = editor.items("cage")
+
+        def moves():
+            """Of each point, by its number: how far it was moved."""
+            found = {}
+            for move in editor.last_edit()["moves"]:
+                for part in move["points"]:
+                    first, last = part if isinstance(part, list) else (part, part)
+                    for number in range(first, last + 1):
+                        found[number] = move["translate"]
+            return found
+
+        # A lasso around the upper row of points, seen from the front, and then a turn by one of them.
+        top = min(box[1] for box in rest.values())
+        row = [box for box in rest.values() if box[1] < top + 40]
+        left, right = min(box[0] for box in row) - 25, max(box[0] for box in row) + 25
+        low, high = max(box[1] for box in row) + 25, top - 25
+        corners = [(round(x), round(y)) for x, y in ((left, high), (right, high), (right, low), (left, low))]
+        editor.drag(corners, held="ctrl")
+        editor.click("options/Turn")
+        x, y = max((round(box[0]), round(box[1])) for box in row)
+        editor.drag([(x, y), (x, y + 60)])
+        turned = moves()
+        self.assertGreater(len(turned), 5, "all of the row")
+        middle = [sum(move[axis] for move in turned.values()) / len(turned) for axis in range(3)]
+        self.assertLess(max(map(abs, middle)), 1e-9, "they turn about their own middle")
+        editor.key("ctrl+z")
+        # One point, both sides.
+        editor.click("options/Move")
+        editor.click("options/X")
+        editor.click(*corners[2])
+        editor.drag([(x, y), (x + 40, y - 30)])
+        both = moves()
+        self.assertEqual(len(both), 2)
+        a, b = both.values()
+        self.assertAlmostEqual(a[0], -b[0], places=12)
+        self.assertEqual(a[1:], b[1:])
+
+    def test_handles_hold_and_pull(self):
+        editor = self.open_ficus()
+        editor.key("k")
+        editor.click(*editor.in_viewport(0.45, 0.72))  # the pot
+        editor.click("options/Pull")
+        editor.click(*editor.in_viewport(0.70, 0.33))  # the branch's end
+        self.assertEqual(len(editor.items("handle")), 2)
+        before = self.leaves()
+        x, y = editor.where("handle/1")
+        editor.drag([(x, y), (x, y - 60)])
+        editor.until_ops("import", "handles")
+        edit = editor.last_edit()
+        self.assertEqual([len(edit["moves"]), len(edit["fixed"])], [1, 1])
+        self.assertGreater(edit["moves"][0]["translate"][1], 0.1)
+        # Again: the same step.
+        x, y = editor.where("handle/1")
+        editor.drag([(x, y), (x, y - 20)])
+        self.assertEqual(editor.state()["steps"], 2)
+        self.assertGreater(editor.last_edit()["moves"][0]["translate"][1], edit["moves"][0]["translate"][1])
+        # Escape takes back the present drag only.
+        x, y = editor.where("handle/1")
+        editor.drag([(x, y), (x + 50, y)], meanwhile=lambda: editor.key("Escape"))
+        self.assertEqual(editor.where("handle/1"), (x, y))
+        # Another point set on what is bent holds that, where it is.
+        editor.click("options/Hold")
+        editor.click(*editor.in_viewport(0.37, 0.28))
+        self.assertEqual(len(editor.items("handle")), 3)
+        x, y = editor.where("handle/1")
+        editor.drag([(x, y), (x, y + 10)])
+        self.assertEqual(len(editor.last_edit()["moves"]) + len(editor.last_edit()["fixed"]), 3)
+        # Undo takes the releases back one by one; redo brings the points back.
+        third = editor.items("handle")
+        editor.key("ctrl+z", "ctrl+z")
+        self.assertEqual(editor.state()["steps"], 2)
+        editor.key("ctrl+z")
+        self.assertEqual(editor.state()["steps"], 1)
+        self.assertAlmostEqual(self.leaves(), before, delta=0.02 * before)
+        editor.key("ctrl+y", "ctrl+y", "ctrl+y")
+        self.assertEqual(editor.items("handle"), third)
+        editor.key("v")
+        self.assertEqual(editor.state()["steps"], 2, "what was done stays")
+
+    def test_a_kettle_is_put_onto_the_pot(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        editor.key("1", "m")
+        x, y = editor.where("gizmo/middle")
+        editor.drag([(x, y), editor.in_viewport(0.8, 0.8)])
+        moved = editor.last_edit()
+        self.assertEqual(moved["op"], "transform")
+        editor.key("End")
+        self.assertEqual(editor.last_edit()["op"], "drop")
+        self.assertEqual(editor.state()["status"], "Dropped kettle")
+
+    def test_bend_a_branch_from_its_stem(self):
+        editor = self.open_ficus()
+        editor.key("l", "t")
+        self.select_branch()
+        editor.key("n")
+        x, y = editor.where("bend/tip")
+        stem = editor.where("bend/from")
+        self.assertGreater(x, stem[0] + 60, "it goes to the right, held at the stem")
+        picture = editor.viewport()
+        held = (picture[..., 0] > 200) & (picture[..., 1] < 110) & (picture[..., 2] < 80)
+        left = editor.state()["items"]["viewport"][0]
+        held[:, :150] = held[:, -150:] = False  # the axes' ball
+        self.assertGreater(held.sum(), 200, "what the soft border holds is shaded")
+        self.assertLess(abs(held.nonzero()[1].mean() + left - stem[0]), 0.5 * abs(x - stem[0]), "near the stem")
+        before = self.leaves()
+        editor.drag([(x, y), (x - 20, y - 60)], meanwhile=lambda: editor.key("9", "0", "slash", "2"))
+        editor.until_ops("import", "select_picture", "bend")
+        edit = editor.last_edit()
+        self.assertEqual(edit["degrees"], 45)
+        self.assertTrue(edit["selection"])
+        self.assertGreater(edit["axis"][0], 0.7)
+        self.assertGreater(abs(edit["axis"][1]) + abs(edit["axis"][2]), 0.1, "along the branch, not along a world axis")
+        self.assertGreater(edit["falloff"], 0, "no rip at the border")
+        # What was done last stays adjustable, without another step.
+        editor.click("adjust/Angle/value")
+        editor.type("30")
+        editor.key("Return")
+        editor.until_ops("import", "select_picture", "bend", "adjust", "bend")
+        self.assertEqual(editor.last_edit()["degrees"], 30)
+        self.assertEqual(editor.state()["steps"], 3)
+        # A second bend goes on from the first's axis.
+        x, y = editor.where("bend/tip")
+        editor.drag([(x, y), (x - 10, y + 50)])
+        self.assertEqual(editor.last_edit()["axis"], edit["axis"])
+        self.assertEqual(editor.state()["steps"], 4)
+        editor.key("ctrl+z", "ctrl+z")
+        self.assertAlmostEqual(self.leaves(), before, delta=0.02 * before)
+
+    def test_bend_along_a_curve(self):
+        editor = self.open_ficus()
+        editor.key("l", "t")
+        self.select_branch()
+        editor.key("n")
+        editor.click("options/Curved")
+        x, y = editor.where("bend/tip")
+        editor.drag([(x, y), (x - 20, y - 60)], meanwhile=lambda: editor.key("5", "0"))
+        edit = editor.last_edit()
+        self.assertEqual(edit["degrees"], 50)
+        self.assertGreaterEqual(len(edit["spine"]), 5)
+        self.assertNotIn("origin", {name for name, value in edit.items() if value is not None})
+        tip = editor.where("bend/tip")
+        self.assertLess(tip[1], y - 20, "the handle went with it")
+        # A second one starts where the first ended, along the same curve.
+        editor.drag([tip, (tip[0] - 10, tip[1] - 30)])
+        self.assertEqual(editor.ops()[-2:], ["bend", "bend"])
+        self.assertEqual(editor.last_edit()["spine"], edit["spine"])
+
+    def test_a_bend_of_what_is_seen_offers_the_rest(self):
+        editor = self.open_ficus()
+        seen = self.select_branch()
+        editor.key("n")
+        editor.click("options/Take the back sides too")
+        self.assertGreater(editor.state()["selected"], 1.3 * seen)
+        self.assertNotIn("options/Take the back sides too", editor.state()["items"])
+        # The handles follow what was bent.
+        x, y = editor.where("bend/tip")
+        editor.drag([(x, y), (x - 10, y - 70)])
+        after = editor.where("bend/tip")
+        self.assertLess(abs(after[0] - x + 10) + abs(after[1] - y + 70), 25, "it stays where it was dragged to")
+
+    def test_bend_a_whole_node_by_its_end(self):
+        editor = self.open_ficus()
+        editor.key("n")
+        x, y = editor.where("bend/tip")
+        editor.drag([(x, y), (x + 120, y + 30)])
+        editor.until_ops("import", "bend")
+        edit = editor.last_edit()
+        self.assertGreater(edit["degrees"], 20)
+        self.assertGreater(edit["direction"][0], 0.5, "to the right, as the pointer went")
+        self.assertEqual(edit["axis"], [0, 1, 0], "objects stand")
+
+    def test_bend_by_numbers_is_seen_before_it_is_applied(self):
+        editor = self.open_ficus()
+        before = editor.viewport()[:, :500]
+        editor.command("bend by")
+        editor.click("form/degrees")
+        editor.type("30*2")
+        editor.until(lambda state: state["preview"], "a preview")
+        changed = lambda: int((abs(editor.viewport()[:, :500] - before).max(axis=2) > 30).sum())
+        self.assertGreater(changed(), 10000, "a bent plant")
+        self.assertEqual(editor.ops(), ["import"])
+        editor.key("Escape")
+        self.assertLess(changed(), 100, "closed, it is gone")
+        editor.command("bend by")
+        editor.click("form/degrees")
+        editor.type("60")
+        editor.click("form/Apply")
+        editor.until_ops("import", "bend")
+        self.assertEqual(editor.last_edit()["degrees"], 60)

@@ -1,0 +1,231 @@
+"""Files: opening, saving, exporting, recovering, and the dialogs that ask for them."""
+
+import shutil
+import subprocess
+
+from screen import read_picture, until
+from window_case import WindowCase, FICUS, KETTLE, PROGRAM, green
+
+
+class FileTest(WindowCase):
+    def test_save_quit_and_open_again(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+a")
+        editor.until_ops("import", "select")
+        project = self.folder / "plant.rebake"
+        editor.key("ctrl+q")
+        self.assertIsNone(editor.process.poll(), "there are unsaved changes")
+        # Save quits once it is saved; where it cannot be, it is asked for again, and nothing follows a later save.
+        editor.click("dialog/Save...")
+        editor.answer("/nowhere/plant.rebake")
+        self.assertTrue(editor.state()["asks"], "there is no such folder: it stays open")
+        editor.key("Escape", "ctrl+s")
+        editor.answer(str(self.folder / "first.rebake"))
+        until((self.folder / "first.rebake").is_file, "the project")
+        editor.settle()
+        self.assertIsNone(editor.process.poll(), "only what was asked for")
+        editor.key("ctrl+i", "ctrl+q")
+        x, y = editor.where("dialog/Save")
+        editor.move(x, y)
+        editor.tool("click", 1)
+        self.assertEqual(editor.process.wait(20), 0)
+        editor = self.open(FICUS)
+        editor.until_ops("import")
+        editor.key("ctrl+a", "ctrl+q")
+        editor.click("dialog/Save...")
+        editor.key("ctrl+a")
+        editor.type(str(project))
+        editor.tool("key", "Return")
+        self.assertEqual(editor.process.wait(20), 0)
+        self.assertTrue(project.is_file())
+        self.assertEqual(list((self.screen.home / "state/rebake/journals").iterdir()), [], "the work is safe in the project")
+        editor = self.open(project)
+        editor.settle()
+        self.assertEqual(editor.ops(), ["import", "select"])
+        # Another edit in place of an undone one is a change too.
+        editor.key("ctrl+z", "ctrl+i")
+        editor.until_ops("import", "select", "undo", "select")
+        editor.key("ctrl+q")
+        editor.click("dialog/Cancel")
+        self.assertIsNone(editor.process.poll())
+        editor.key("ctrl+q")
+        x, y = editor.where("dialog/Don't save")
+        editor.move(x, y)
+        editor.tool("click", 1)
+        self.assertEqual(editor.process.wait(20), 0)
+
+    def test_what_was_opened_before_has_a_picture(self):
+        self.open_ficus()
+        kept = self.screen.home / "cache" / "rebake" / "pictures"
+        self.assertEqual(len(list(kept.glob("*.png"))), 1)
+        self.editor.tool("key", "ctrl+q")
+        self.editor.process.wait(timeout=20)
+        editor = self.open()
+        x, y, width, height = (round(v) for v in editor.state()["items"]["start/recent/ficus"])
+        self.assertGreater(green(editor.picture()[y:y + height, x:x + width]).sum(), 200)
+        editor.click("start/recent/ficus")
+        editor.until_ops("import")
+
+    def test_the_file_dialog_completes_filters_and_takes_several(self):
+        scenes = self.folder / "scenes"
+        for name in ("plant", "pot", "mug"):
+            shutil.copytree(KETTLE, scenes / name)
+        editor = self.open()
+        editor.key("ctrl+o")
+        editor.key("ctrl+a")
+        editor.type(str(scenes) + "/P")
+        self.assertEqual(set(editor.items("dialog/entries")), {"..", "plant", "pot"})
+        editor.type("L")
+        editor.key("Tab", "Return")
+        editor.until_ops("import")
+        self.assertTrue(editor.last_edit()["path"].endswith("scenes/plant"))
+        # The arrows walk through the list.
+        editor.key("ctrl+o", "Down", "Down", "Down", "Return")
+        editor.until_ops("import", "import")
+        self.assertTrue(editor.last_edit()["path"].endswith("scenes/pot"))
+        # Several, with Ctrl.
+        editor.key("ctrl+o")
+        editor.click("dialog/entries/plant")
+        editor.click("dialog/entries/mug", held="ctrl")
+        # Ctrl on one that is chosen leaves it out again.
+        editor.click("dialog/entries/pot", held="ctrl")
+        editor.click("dialog/entries/pot", held="ctrl")
+        editor.click("dialog/Open 2")
+        editor.until_ops("import", "import", "import", "import")
+        self.assertEqual([edit["edit"]["path"].rsplit("/", 1)[1] for edit in editor.journal()],
+                         ["plant", "pot", "mug", "plant"])
+
+    def test_the_desktops_own_dialog(self):
+        self.program("zenity", f"echo \"$@\" > '{self.folder}/asked'; sleep 0.3; echo '{FICUS}'; echo '{KETTLE}'")
+        editor = self.open()
+        editor.key("ctrl+o")
+        editor.click("dialog/Folders...")
+        editor.until_ops("import", "import")
+        self.assertIn("--directory --multiple", (self.folder / "asked").read_text())
+        # What it proposes to write is still asked for here.
+        out = self.folder / "chosen"
+        self.program("zenity", f"echo '{out}'")
+        editor.key("ctrl+e")
+        editor.click("dialog/Browse...")
+        self.assertFalse(out.exists())
+        editor.click("dialog/Export")
+        until(out.is_dir, "the export")
+
+    def test_only_what_is_picked_is_exported(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        self.assertEqual(editor.state()["picked"], ["kettle"])
+        out = self.folder / "kettle alone"
+        editor.key("ctrl+e")
+        editor.click("dialog/Only the picked nodes")
+        editor.click("dialog/path")
+        editor.answer(str(out))
+        until(lambda: out.is_dir(), "the export")
+        editor.settle()
+        told = subprocess.run([PROGRAM, "info", out], capture_output=True, text=True).stdout
+        alone = subprocess.run([PROGRAM, "info", KETTLE], capture_output=True, text=True).stdout
+        geometry = lambda text: [line for line in text.splitlines() if "geometry  " in line]
+        self.assertEqual(geometry(told), geometry(alone), told)
+        self.assertEqual(len(geometry(told)), 1)
+        # Pictures too: no leaves are in one of the kettle alone.
+        both, one = self.folder / "both.png", self.folder / "one.png"
+        for picture in (both, one):
+            editor.key("F12")
+            if picture == one:
+                editor.click("dialog/Only the picked nodes")
+                editor.click("dialog/path")
+            editor.answer(str(picture))
+            until(picture.exists, "a screenshot")
+            editor.settle()
+        leaves = lambda file: int(green(read_picture(file)).sum())
+        self.assertGreater(leaves(both), 1000)
+        self.assertEqual(leaves(one), 0)
+
+    def test_a_full_disk_is_said_and_nothing_is_lost(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+a")
+        editor.until_ops("import", "select")
+        project = self.folder / "plant.rebake"
+
+        def save():
+            editor.key("ctrl+s")
+            editor.answer(str(project))
+
+        editor.fill_disk()
+        save()
+        editor.until(lambda state: any("File too large" in text for text in state["messages"]), "said")
+        self.assertEqual(list(self.folder.glob("plant*")), [], "no half of a file")
+        editor.key("Escape")
+        # What cannot be kept safe is not done.
+        editor.key("ctrl+i")
+        self.assertEqual(editor.ops(), ["import", "select"])
+        editor.key("Escape")
+        editor.fill_disk(False)
+        save()
+        until(project.is_file, "the project")
+        editor.key("ctrl+i")
+        editor.until_ops("import", "select", "select")
+
+    def test_an_export_never_replaces_what_was_imported(self):
+        source = self.folder / "plant"
+        shutil.copytree(FICUS, source)
+        before = {file.name: file.read_bytes() for file in source.iterdir()}
+        editor = self.open(source)
+        editor.until_ops("import")
+        editor.key("ctrl+a", "Delete")
+        editor.until_ops("import", "select", "delete")
+        editor.key("ctrl+z", "ctrl+e")
+        editor.answer(str(source))
+        self.assertIn("dialog/problem", editor.state()["items"], "refused before it is asked whether to replace it")
+        editor.key("Return")
+        self.assertTrue(editor.state()["asks"])
+        self.assertEqual({file.name: file.read_bytes() for file in source.iterdir()}, before)
+
+    def test_export_and_replay_give_the_same_bytes(self):
+        editor = self.open_ficus()
+        editor.key("b")
+        editor.drag([editor.in_viewport(0.6, 0.28), editor.in_viewport(0.68, 0.32)])
+        editor.key("Delete")
+        editor.key("n")
+        x, y = editor.where("bend/tip")
+        editor.drag([(x, y), (x + 60, y + 20)])
+        editor.click("properties/Scale/Y")
+        editor.type("1.25")
+        editor.key("Return")
+        editor.until_ops("import", "select_picture", "delete", "bend", "place")
+        exported, script = self.folder / "exported", self.folder / "session.jsonl"
+        editor.key("ctrl+e")
+        editor.answer(str(exported))
+        until(lambda: (exported / "mlp.json").is_file() or list(exported.glob("*/mlp.json")), "the export")
+        editor.settle()
+        editor.command("save as script")
+        editor.answer(str(script))
+        until(script.is_file, "the script")
+        with script.open("a") as lines:
+            lines.write('{"op": "export", "out": "%s"}\n' % (self.folder / "replayed"))
+        subprocess.run([PROGRAM, "run", script], check=True, capture_output=True)
+        subprocess.run(["diff", "-r", exported, self.folder / "replayed"], check=True)
+
+    def test_recover_after_a_kill(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+a")
+        editor.until_ops("import", "select")
+        editor.kill()
+        editor = self.open(FICUS)  # the question waits while something is read
+        editor.click("dialog/Recover")
+        editor.key("shift+t")  # the tint of what is selected
+        self.assertGreater(self.leaves(), 1000, "the scene is back")
+        editor.key("ctrl+i")
+        until(lambda: editor.ops() == ["import", "select", "select"], "the recovered work, going on")
+
+    def test_what_cannot_be_read_is_said_and_the_rest_is_there(self):
+        bad = self.folder / "bad"
+        bad.mkdir()
+        editor = self.open(bad, FICUS)
+        editor.until_ops("import")
+        self.assertGreater(self.leaves(), 1000)
+        self.assertTrue(any("bad" in text for text in editor.state()["messages"]))
+        editor.key("Escape")
+        self.assertFalse(any("bad" in text for text in editor.state()["messages"]), "read and closed")
+        editor.key("Escape", "Escape", "Escape")
+        self.assertIsNone(editor.process.poll(), "Escape never quits")

@@ -1,0 +1,128 @@
+"""Selecting and deleting."""
+
+from window_case import WindowCase, FICUS, KETTLE
+
+
+class SelectTest(WindowCase):
+    def test_turn_the_view_lasso_leaves_delete_undo_redo(self):
+        editor = self.open_ficus()
+        self.expect_like("opened", 40)
+        all_leaves = self.leaves()
+        editor.drag([editor.in_viewport(0.4, 0.8), editor.in_viewport(0.43, 0.78)], button=2)
+        selected = self.select_branch()
+        self.assertGreater(selected, 100)
+        editor.until_ops("import", "select_picture")
+        edit = editor.last_edit()
+        self.assertGreater(len(edit["polygon"]), 10)
+        self.assertFalse(edit["through"])
+        self.assertEqual(editor.state()["status"], f"Selected {selected} triangles in ficus")
+        self.expect_like("selected", 40)
+        editor.key("Delete")
+        editor.until_ops("import", "select_picture", "delete")
+        self.assertEqual(editor.state()["status"], f"Deleted {selected} triangles of ficus")
+        fewer = self.leaves()
+        self.assertLess(fewer, 0.85 * all_leaves)
+        editor.key("ctrl+z")
+        editor.until_ops("import", "select_picture", "delete", "undo")
+        editor.key("ctrl+shift+z")
+        editor.until_ops("import", "select_picture", "delete", "undo", "redo")
+        self.assertAlmostEqual(self.leaves(), fewer, delta=50)
+        # History's lines say what was done, and never change.
+        editor.click("status/History")
+        editor.click("tabs/history/1")
+        self.assertEqual(editor.state()["steps"], 1)
+
+    def test_tools_work_on_what_is_picked(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        self.assertEqual(editor.state()["picked"], ["kettle"], "import picks what it made")
+        everything = [editor.in_viewport(0.02, 0.02), editor.in_viewport(0.98, 0.98)]
+        editor.key("r", "t")
+        editor.drag(everything)
+        self.assertEqual(editor.state()["scope"], "in kettle")
+        self.assertIn("in kettle", editor.state()["status"])
+        kettle = editor.last_edit()["node"]
+        # The same with nothing picked takes both.
+        editor.key("Escape", "Escape")
+        self.assertEqual(editor.state()["scope"], "in all")
+        editor.key("r")
+        editor.drag(everything)
+        self.assertNotIn("node", editor.last_edit())
+        both = editor.state()["selected"]
+        # Only what is picked is deleted, and only of that is chosen.
+        editor.click("outline/kettle/name")
+        editor.key("ctrl+i")
+        self.assertEqual(editor.last_edit()["node"], kettle)
+        self.assertLess(editor.state()["selected"], both)
+        editor.click("outline/ficus/name")
+        editor.key("Delete")
+        self.assertEqual(editor.last_edit()["op"], "delete")
+        self.assertNotEqual(editor.last_edit()["node"], kettle)
+
+    def test_visible_only_is_remembered_for_each_tool(self):
+        editor = self.open_ficus()
+        editor.key("l")
+        editor.click("options/Visible only")
+        self.select_branch()
+        self.assertTrue(editor.last_edit()["through"])
+        editor.key("r")
+        editor.drag([editor.in_viewport(0.6, 0.25), editor.in_viewport(0.7, 0.4)])
+        self.assertFalse(editor.last_edit()["through"], "each tool has its own")
+        editor.key("l")
+        self.select_branch()
+        self.assertTrue(editor.last_edit()["through"])
+
+    def test_flood_takes_what_touches_or_all_of_a_colour(self):
+        editor = self.open_ficus()
+        editor.key("o")
+        leaf = editor.in_viewport(0.63, 0.3)
+        editor.click(*leaf)
+        touching = editor.state()["selected"]
+        self.assertTrue(editor.last_edit()["contiguous"])
+        editor.click("options/Everywhere")
+        editor.click(*leaf)
+        self.assertFalse(editor.last_edit()["contiguous"])
+        self.assertGreater(editor.state()["selected"], 2 * touching)
+
+    def test_a_box_and_a_ball_select_what_they_hold(self):
+        editor = self.open_ficus()
+        editor.key("u")
+        x, y = editor.where("volume/+Y")
+        editor.drag([(x, y), (x, y + 40)])
+        editor.key("Return")
+        edit = editor.last_edit()
+        self.assertEqual(edit["op"], "select")
+        self.assertEqual(edit["mode"], "set")
+        inside = editor.state()["selected"]
+        self.assertGreater(inside, 50)
+        editor.click("options/Ball")
+        x, y = editor.where("volume/middle")
+        editor.drag([(x, y), (x + 60, y - 120)])
+        editor.click("options/Add")
+        edit = editor.last_edit()
+        self.assertEqual(edit["mode"], "add")
+        self.assertIn("radius", edit["sphere"])
+        self.assertGreater(editor.state()["selected"], inside)
+        editor.click("options/Take away")
+        self.assertEqual(editor.last_edit()["mode"], "remove")
+        # Escape lets go of a side.
+        before = editor.items("volume")
+        x, y = editor.where("volume/+X")
+        editor.drag([(x, y), (x + 80, y)], meanwhile=lambda: editor.key("Escape"))
+        self.assertEqual(editor.items("volume"), before)
+
+    def test_what_is_seen_is_selected_from_near_far_and_flat(self):
+        editor = self.open_ficus()
+        middle = editor.in_viewport(0.5, 0.35)
+        for k, look in enumerate((lambda: [editor.wheel(*middle, away=True) for _ in range(8)],
+                                  lambda: [editor.wheel(*middle, away=False) for _ in range(14)],
+                                  lambda: editor.key("f", "5"))):
+            look()
+            editor.key("r")
+            editor.drag([editor.in_viewport(0.02, 0.02), editor.in_viewport(0.98, 0.98)])
+            editor.until_ops("import", *["select_picture"] * (k + 1))
+            picture = editor.viewport()[150:]
+            coloured = picture.max(axis=2) - picture.min(axis=2) > 60
+            orange = coloured & (picture[..., 0] > picture[..., 1]) & (picture[..., 1] > picture[..., 2])
+            self.assertGreater(orange.sum() / max(1, coloured.sum()), 0.7, editor.last_edit()["camera"])
+            editor.key("v")

@@ -1,0 +1,189 @@
+"""Views, pictures and films of them, and the window itself."""
+
+import subprocess
+
+from screen import until
+from window_case import WindowCase, PROGRAM, green
+
+
+class ViewTest(WindowCase):
+    def test_stored_views_and_turntable(self):
+        editor = self.open_ficus()
+        editor.command("store view")
+        editor.until_ops("import", "view")
+        before = editor.viewport()
+        editor.drag([editor.in_viewport(0.4, 0.8), editor.in_viewport(0.6, 0.6)], button=2)
+        self.assertGreater((abs(editor.viewport() - before).max(axis=2) > 30).sum(), 10000)
+        editor.command("view 1")
+        self.assertLess((abs(editor.viewport() - before).max(axis=2) > 30).sum(), 100)
+        around = self.folder / "around"
+        editor.command("turntable")
+        editor.answer(str(around))
+        until(lambda: len(list(around.glob("*.png"))) == 36, "36 pictures")
+        editor.settle()
+        compared = lambda a, b: subprocess.run([PROGRAM, "compare", around / a, around / b, "--min-psnr", "30"],
+                                                capture_output=True).returncode
+        self.assertEqual(compared("000.png", "009.png"), 3, "a quarter turn shows")
+
+    def test_stored_views_have_pictures_and_are_renamed_and_forgotten(self):
+        editor = self.open_ficus()
+        editor.command("store view")
+        editor.drag([editor.in_viewport(0.4, 0.8), editor.in_viewport(0.6, 0.6)], button=2)
+        editor.click("status/Views")
+        editor.click("tabs/views/Store view")
+        editor.until_ops("import", "view", "view")
+        before = editor.viewport()
+        x, y, width, height = (round(v) for v in editor.state()["items"]["tabs/views/view 1/picture"])
+        picture = editor.picture()[y:y + height, x:x + width]
+        self.assertGreater(green(picture).sum(), 200, "leaves are in it")
+        editor.click("tabs/views/view 1/picture")
+        self.assertGreater((abs(editor.viewport() - before).max(axis=2) > 30).sum(), 5000)
+        editor.double_click(*editor.where("tabs/views/view 1/picture"))
+        editor.key("ctrl+a")
+        editor.type("front")
+        editor.key("Return")
+        editor.until_ops("import", "view", "view", "rename_view")
+        editor.click("tabs/views/view 2/Delete")
+        editor.until_ops("import", "view", "view", "rename_view", "remove_view")
+        self.assertIn("tabs/views/front/picture", editor.state()["items"])
+        self.assertNotIn("tabs/views/view 2/picture", editor.state()["items"])
+
+    def test_axis_knobs_and_menus(self):
+        editor = self.open_ficus()
+        editor.click("axes/+Y")
+        editor.command("store view")
+        editor.until_ops("import", "view")
+        camera = editor.last_edit()["camera"]
+        self.assertGreater(camera["eye"][1] - camera["target"][1], 1)
+        self.assertEqual(camera["eye"][0], camera["target"][0], "exactly from above")
+        self.assertEqual(camera["eye"][2], camera["target"][2])
+        # Escape closes a menu; keys work again then.
+        editor.click("menu/Select")
+        editor.key("Escape")
+        editor.key("ctrl+a")
+        editor.until_ops("import", "view", "select")
+
+    def test_graphics_made_anew_lose_nothing(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+a")
+        editor.until_ops("import", "select")
+        editor.key("shift+t")
+        before = editor.viewport()
+        old = editor.window
+        editor.key("ctrl+p")
+        editor.type("restart graphics")
+        editor.tool("key", "Return")
+        until(lambda: editor.tool("search", "--onlyvisible", "--name", "Rebake").split() not in ([], [old]), "another window")
+        editor.settle()
+        self.assertLess((abs(editor.viewport() - before).max(axis=2) > 30)[:, :480].sum(), 500)
+        editor.window = editor.tool("search", "--onlyvisible", "--name", "Rebake").split()[0]
+        editor.tool("windowfocus", "--sync", editor.window)
+        editor.key("ctrl+i")
+        editor.until_ops("import", "select", "select")
+
+    def test_windows_of_any_size(self):
+        editor = self.open_ficus()
+        for width, height in ((700, 500), (1000, 790), (640, 400)):
+            editor.resize(width, height)
+            self.assertGreater(self.leaves(), 300, f"the plant is seen at {width} x {height}")
+        # What leaves the window while the button is held goes on where the pointer is.
+        editor.resize(900, 600)
+        editor.key("r")
+        x, y, _, _ = editor.state()["items"]["viewport"]
+        editor.drag([(200, 150), (1100, 700)])
+        corner = editor.last_edit()["polygon"][2]
+        self.assertAlmostEqual(corner[0], 1100 - x, delta=3)
+        self.assertAlmostEqual(corner[1], 700 - y, delta=3)
+
+    def test_a_cut_shows_and_selects_what_lies_behind_it(self):
+        editor = self.open_ficus()
+        everything = [editor.in_viewport(0.02, 0.02), editor.in_viewport(0.98, 0.98)]
+        editor.key("r", "t")
+        editor.drag(everything)
+        whole = editor.state()["selected"]
+        before = editor.viewport()
+        editor.key("shift+t", "shift+x")
+        self.assertGreater((abs(editor.viewport() - before).max(axis=2) > 30).sum(), 5000)
+        editor.drag(everything)
+        behind = editor.state()["selected"]
+        self.assertLess(behind, 0.9 * whole)
+        self.assertGreater(behind, 0.1 * whole)
+        editor.key("shift+x")
+        editor.drag(everything)
+        self.assertEqual(editor.state()["selected"], whole)
+
+    def test_the_picture_can_have_the_whole_window(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+space")
+        self.assertEqual(editor.state()["items"]["viewport"], [0, 0, 1280, 800])
+        editor.key("ctrl+space")
+        self.assertGreater(editor.state()["items"]["viewport"][0], 30)
+
+    def test_an_empty_window_leads_on(self):
+        editor = self.open()
+        editor.click("start/samples/ficus")
+        editor.until_ops("import")
+        self.assertGreater(self.leaves(), 1000)
+        editor.command("open")
+        editor.click("dialog/Samples")
+        editor.double_click(*editor.where("dialog/entries/kettle"))
+        editor.until_ops("import", "import")
+
+    def test_costs_are_a_chart_to_choose_from(self):
+        editor = self.open_ficus()
+        editor.command("cost")
+        editor.click("tabs/cost/Measure this view")
+        x, y = editor.where("tabs/cost/chart/16 samples")
+        editor.move(x, y)
+        ring = until(lambda: editor.state()["items"].get("largest error"), "a ring where the error is")
+        left, top, width, height = editor.state()["items"]["viewport"]
+        self.assertTrue(left <= ring[0] <= left + width and top <= ring[1] <= top + height, ring)
+        editor.click(x, y)
+        editor.key("ctrl+p")
+        editor.key("Escape")
+        editor.move(*editor.in_viewport(0.5, 0.5))
+        editor.until(lambda state: "largest error" not in state["items"], "no ring")
+
+    def test_the_sheet_of_keys_holds_keys_back(self):
+        editor = self.open_ficus()
+        self.select_branch()
+        editor.key("F1", "Delete")
+        self.assertEqual(editor.last_edit()["op"], "select_picture")
+        editor.key("F1", "Delete")
+        self.assertEqual(editor.last_edit()["op"], "delete")
+
+    def test_menus_open_in_the_smallest_window(self):
+        editor = self.open_ficus()
+        editor.resize(640, 400)
+        editor.key("1")
+        editor.click("menu/Tool")
+        self.assertEqual(editor.state()["tool"], "Move", "it opens, and nothing in it is taken")
+        self.assertIn("menu/Rectangle", editor.state()["items"])
+
+    def test_a_video_on_a_way_through_stored_views(self):
+        # Counts the pictures in place of encoding them.
+        self.program("ffmpeg", 'for last; do :; done; ls "$(dirname "$last")" > "$last.txt"; mv "$last.txt" "$last"')
+        editor = self.open_ficus()
+        editor.command("store view")
+        editor.drag([editor.in_viewport(0.4, 0.8), editor.in_viewport(0.6, 0.6)], button=2)
+        editor.command("store view")
+        video = self.folder / "way.mp4"
+        editor.command("camera path")
+        editor.click("dialog/Video")
+        editor.click("dialog/pictures")
+        editor.key("ctrl+a")
+        editor.type("5")
+        editor.click("dialog/path")
+        editor.answer(str(video)[:-4])
+        until(video.exists, "the video")
+        self.assertEqual(len([name for name in video.read_text().split() if name.endswith(".png")]), 5)
+        editor.settle()
+        self.assertEqual(list((self.screen.home / "cache" / "rebake").glob("film*")), [], "nothing is left behind")
+        # A program that fails is said, and there is nothing then.
+        self.program("ffmpeg", "exit 7")
+        editor.command("turntable")
+        editor.click("dialog/Video")
+        editor.click("dialog/path")
+        editor.answer(str(self.folder / "none.mp4"))
+        editor.until(lambda state: any("ffmpeg ended with 7" in text for text in state["messages"]), "it is said")
+        self.assertFalse((self.folder / "none.mp4").exists())
