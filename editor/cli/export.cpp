@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,12 +11,17 @@
 #include "editor/commands/export.h"
 #include "editor/commands/session.h"
 #include "editor/fields/codec.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 
 void describe_export(CommandDescription& command) {
   struct Options {
-    std::string folder, out, layout;
+    std::string folder, out, layout, report;
+    bool plain = false;
+    std::string width = "auto", keep = ExportAction().keep;
+    std::optional<double> psnr;
+    double seconds = 0;
     std::string format = ExportAction().format;
     std::string axes = "360";
   };
@@ -25,6 +31,13 @@ void describe_export(CommandDescription& command) {
   command.option("--layout", options->layout, "convert the layout", "split|chunked|unsplit [as read]")
       .one_of(std::vector<std::string>{"split", "chunked", "unsplit"});
   command.option("--format", options->format, "what to write", "mobilenerf|rebake [mobilenerf]");
+  command.flag("--plain", options->plain,
+               "one ordinary folder for any scene: where one decoder cannot show it exactly, one is fitted");
+  command.option("--width", options->width, "plain: neurons of the decoder's layers", "auto|16|24|32|N [auto]");
+  command.option("--keep", options->keep, "plain: what stays bit for bit", "NODE|none|auto [auto]");
+  command.option("--psnr", options->psnr, "plain: what to reach; nothing is fitted further", "dB [40, all is fitted]");
+  command.option("--seconds", options->seconds, "plain: for fitting", "S [as long as it takes]");
+  command.option("--report", options->report, "plain: JSON file for what was measured", "FILE");
   add_axes_option(command, options->axes);
   command.does([options] {
     Session session;
@@ -40,6 +53,18 @@ void describe_export(CommandDescription& command) {
     action.out = options->out;
     action.format = options->format;
     if (!options->layout.empty()) action.layout = Codec<Layout>::read(nlohmann::json(options->layout), session.scene());
+    action.plain = options->plain;
+    if (options->width != "auto") {
+      int neurons = 0;
+      const char* const end = options->width.data() + options->width.size();
+      if (const auto read = std::from_chars(options->width.data(), end, neurons); read.ec != std::errc() || read.ptr != end)
+        throw FieldError("width", "must be auto, or 4 to 256");
+      action.width.neurons = neurons;
+    }
+    action.keep = options->keep;
+    action.psnr = options->psnr;
+    action.seconds = options->seconds;
+    action.report = options->report;
     run(session, action);
     if (replaces) say_line("note: it took the place of the folder that was there");
   });

@@ -1,6 +1,7 @@
 #include "editor/commands/export.h"
 
 #include "editor/commands/describe.h"
+#include "editor/commands/plain_scene.h"
 #include "editor/commands/views.h"
 #include "editor/edits/support.h"
 
@@ -8,10 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <vector>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/formats.h"
 #include "render/compare.h"
@@ -90,11 +93,60 @@ void say_losses(Session& session, const Scene& scene, const ExportAction& action
     });
 }
 
+void export_plain(Session& session, const Scene& scene, const ExportAction& action) {
+  if (action.format != "mobilenerf") throw FieldError("plain", "is for the MobileNeRF format only");
+  // What cannot be written is said before it is computed.
+  session.document.sources().check_folder(action.out);
+  FuseOptions options = fuse_options(scene, action);
+  PlainReport report;
+  const Scene plain = plain_scene(scene, options, report, session.progress);
+  // As it was written: texels that nobody uses are gone.
+  const ExportReport written =
+      export_scene(plain, action.out, {options.layout, session.document.sources()}, session.progress);
+  session.exports.push_back(action.out);
+  for (const std::string& note : written.notes) session.say("note: " + note);
+  if (!report.exact) {
+    try {
+      measure_pictures(session.renderer(), scene, plain, report, session.progress);
+    } catch (const DeviceError& error) {
+      session.say(fmt::format("note: pictures cannot be compared here: {}", error.what()));
+    }
+  }
+  for (const std::string& line : lines_of(report)) session.say(line);
+  if (!report.exact && report.texels.whole.psnr_db < options.psnr_db)
+    session.say(fmt::format("note: that is less than the {:.1f} dB asked for", options.psnr_db));
+  if (!action.report.empty())
+    write_file_atomically(action.report, to_json(report).dump(2) + "\n", session.document.sources());
+  session.say(fmt::format("exported {} as one plain folder", action.out));
+}
+
 }  // namespace
+
+FuseOptions fuse_options(const Scene& scene, const ExportAction& action) {
+  FuseOptions options;
+  options.width = action.width.neurons;
+  options.layout = action.layout.value_or(common_layout(scene));
+  if (action.psnr) {
+    options.psnr_db = *action.psnr;
+    options.until_psnr = true;
+  }
+  options.seconds = action.seconds;
+  if (action.keep == "none") {
+    options.keep = FuseOptions::Keep::none;
+  } else if (action.keep != "auto") {
+    const NodePtr node = find(scene, action.keep);
+    if (!node) throw FieldError("keep", "\"" + action.keep + "\" is no node; a node's name, none or auto");
+    options.keep = FuseOptions::Keep::node;
+    options.keep_node = node->id;
+  }
+  check(options);
+  return options;
+}
 
 void run(Session& session, const ExportAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
   const Scene scene = with_only(session.scene(), action.nodes);
+  if (action.plain) return export_plain(session, scene, action);
   const ExportReport report =
       format_named(action.format)
           .write(scene, action.out, {action.layout, session.document.sources()}, session.progress);
@@ -112,6 +164,14 @@ REBAKE_DESCRIBE_ACTION(
       visit("format", action.format, Need::optional, "mobilenerf: what viewers read; rebake: keeps every node");
       visit("layout", action.layout, Need::optional, "convert to this layout; left out: as read");
       visit("nodes", action.nodes, Need::optional, "only these, with what is inside them; left out: all");
+      visit("plain", action.plain, Need::optional,
+            "one folder for any scene: where one decoder cannot show it exactly, one is fitted");
+      visit("width", action.width, Need::optional, "plain: of the decoder's layers, 4 to 256, or auto");
+      visit("keep", action.keep, Need::optional,
+            "plain: the node that stays bit for bit, none, or auto (the largest, where that is best on the whole)");
+      visit("psnr", action.psnr, Need::optional, "plain: dB to reach; fits no further. Left out: 40, and all is fitted");
+      visit("seconds", action.seconds, Need::optional, "plain: for fitting; 0: as long as it takes");
+      visit("report", action.report, Need::optional, "plain: JSON file for what was measured");
     })
 
 }  // namespace rebake

@@ -59,6 +59,7 @@ REBAKE_CODEC(BrushStroke);
 REBAKE_CODEC(Interval);
 REBAKE_CODEC(NumberRanges);
 REBAKE_CODEC(PixelSize);
+REBAKE_CODEC(FuseWidth);
 REBAKE_CODEC(std::vector<std::string>);
 REBAKE_CODEC(std::vector<int>);
 REBAKE_CODEC(SelectMode);

@@ -271,6 +271,16 @@ PixelSize Codec<PixelSize>::read(const json& value, const Scene& scene) {
 }
 json Codec<PixelSize>::write(const PixelSize& value) { return json::array({value.width, value.height}); }
 
+FieldType Codec<FuseWidth>::type() {
+  return {FieldKind::other, "auto, or a whole number from 4 to 256", "int | str", {}};
+}
+FuseWidth Codec<FuseWidth>::read(const json& value, const Scene& scene) {
+  if (value == "auto") return {};
+  if (!value.is_number_integer()) throw Error("must be auto, or a whole number from 4 to 256");
+  return {Codec<int>::read(value, scene)};
+}
+json Codec<FuseWidth>::write(const FuseWidth& value) { return value.neurons ? json(*value.neurons) : json(); }
+
 FieldType Codec<std::vector<std::string>>::type() { return {FieldKind::other, "list of names", "Sequence[str]", {}}; }
 std::vector<std::string> Codec<std::vector<std::string>>::read(const json& value, const Scene& scene) {
   if (!value.is_array() || value.empty()) throw Error("must be a list of names");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,11 @@ struct NumberRanges {
 };
 struct PixelSize {
   int width = 800, height = 800;
+};
+
+/// Width of a decoder's hidden layers; none: found out.
+struct FuseWidth {
+  std::optional<int> neurons;
 };
 
 enum class SelectMode { set, add, remove, intersect };

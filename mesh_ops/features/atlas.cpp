@@ -16,23 +16,7 @@ namespace rebake {
 
 namespace {
 
-struct Rect {
-  int left = 0, top = 0, right = 0, bottom = 0;  // right and bottom included
-  auto operator<=>(const Rect&) const = default;
-  bool overlaps(const Rect& o) const {
-    return left <= o.right && o.left <= right && top <= o.bottom && o.top <= bottom;
-  }
-  void join(const Rect& o) {
-    left = std::min(left, o.left);
-    top = std::min(top, o.top);
-    right = std::max(right, o.right);
-    bottom = std::max(bottom, o.bottom);
-  }
-  int width() const { return right - left + 1; }
-  int height() const { return bottom - top + 1; }
-};
-
-Rect rect_of(const TextureSet& set, const Face& face) {
+TexelRect rect_of(const TextureSet& set, const Face& face) {
   const int width = set.texels->width(), height = set.texels->height();
   double low_u = 2, high_u = -1, low_v = 2, high_v = -1;
   for (const std::uint32_t vertex : face) {
@@ -46,55 +30,6 @@ Rect rect_of(const TextureSet& set, const Face& face) {
     return std::clamp(static_cast<int>(std::floor(share * size)), 0, size - 1);
   };
   return {texel(low_u, width), texel(1 - high_v, height), texel(high_u, width), texel(1 - low_v, height)};
-}
-
-// Patches of one set: groups of faces whose texel rectangles overlap.
-struct Patches {
-  std::vector<Rect> rects;
-  std::vector<std::size_t> of_face;
-};
-
-Patches find_patches(const TextureSet& set) {
-  const auto& faces = set.soup.faces();
-  std::map<Rect, std::size_t> known;
-  std::vector<Rect> rects;
-  std::vector<std::size_t> rect_of_face;
-  for (const Face& face : faces) {
-    const Rect rect = rect_of(set, face);
-    const auto [it, fresh] = known.try_emplace(rect, rects.size());
-    if (fresh) rects.push_back(rect);
-    rect_of_face.push_back(it->second);
-  }
-  // Only rectangles in the same block of texels can overlap.
-  // A block that very many share is one heap of overlaps: taken as joined, which moves more texels together, but no
-  // texel wrong.
-  constexpr int block = 32;
-  constexpr std::size_t crowded = 64;
-  UnionFind groups(rects.size());
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> in_block;
-  for (std::uint32_t r = 0; r < rects.size(); ++r) {
-    for (int y = rects[r].top / block; y <= rects[r].bottom / block; ++y) {
-      for (int x = rects[r].left / block; x <= rects[r].right / block; ++x) {
-        auto& others = in_block[static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x)];
-        for (const std::uint32_t other : others)
-          if (others.size() > crowded || rects[other].overlaps(rects[r])) groups.join(other, r);
-        if (others.size() <= crowded) others.push_back(r);
-      }
-    }
-  }
-  Patches result;
-  std::unordered_map<std::size_t, std::size_t> patch_of_root;
-  std::vector<std::size_t> patch_of_rect(rects.size());
-  for (std::uint32_t r = 0; r < rects.size(); ++r) {
-    const auto [it, fresh] = patch_of_root.try_emplace(groups.root(r), result.rects.size());
-    if (fresh)
-      result.rects.push_back(rects[r]);
-    else
-      result.rects[it->second].join(rects[r]);
-    patch_of_rect[r] = it->second;
-  }
-  for (const std::size_t r : rect_of_face) result.of_face.push_back(patch_of_rect[r]);
-  return result;
 }
 
 Texel converted(Texel texel, AlphaCode from, AlphaCode to) {
@@ -122,6 +57,49 @@ struct Page {
 
 }  // namespace
 
+TexelPatches texel_patches(const TextureSet& set) {
+  const auto& faces = set.soup.faces();
+  std::map<TexelRect, std::size_t> known;
+  std::vector<TexelRect> rects;
+  std::vector<std::size_t> rect_of_face;
+  for (const Face& face : faces) {
+    const TexelRect rect = rect_of(set, face);
+    const auto [it, fresh] = known.try_emplace(rect, rects.size());
+    if (fresh) rects.push_back(rect);
+    rect_of_face.push_back(it->second);
+  }
+  // Only rectangles in the same block of texels can overlap.
+  // A block that very many share is one heap of overlaps: taken as joined, which moves more texels together, but no
+  // texel wrong.
+  constexpr int block = 32;
+  constexpr std::size_t crowded = 64;
+  UnionFind groups(rects.size());
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> in_block;
+  for (std::uint32_t r = 0; r < rects.size(); ++r) {
+    for (int y = rects[r].top / block; y <= rects[r].bottom / block; ++y) {
+      for (int x = rects[r].left / block; x <= rects[r].right / block; ++x) {
+        auto& others = in_block[static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x)];
+        for (const std::uint32_t other : others)
+          if (others.size() > crowded || rects[other].overlaps(rects[r])) groups.join(other, r);
+        if (others.size() <= crowded) others.push_back(r);
+      }
+    }
+  }
+  TexelPatches result;
+  std::unordered_map<std::size_t, std::size_t> patch_of_root;
+  std::vector<std::size_t> patch_of_rect(rects.size());
+  for (std::uint32_t r = 0; r < rects.size(); ++r) {
+    const auto [it, fresh] = patch_of_root.try_emplace(groups.root(r), result.rects.size());
+    if (fresh)
+      result.rects.push_back(rects[r]);
+    else
+      result.rects[it->second].join(rects[r]);
+    patch_of_rect[r] = it->second;
+  }
+  for (const std::size_t r : rect_of_face) result.of_face.push_back(patch_of_rect[r]);
+  return result;
+}
+
 bool can_pack(const TextureSet& set) {
   for (const Face& face : set.soup.faces())
     for (const std::uint32_t vertex : face) {
@@ -141,15 +119,15 @@ std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<cons
 }
 
 PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code) {
-  std::vector<Patches> patches;
+  std::vector<TexelPatches> patches;
   std::vector<Place> places;
   std::uint64_t area = 0;
   int widest = 1;
   for (std::size_t s = 0; s < sets.size(); ++s) {
     if (!can_pack(sets[s])) throw Error("texels cannot be moved: some UVs lie outside 0 … 1");
-    patches.push_back(find_patches(sets[s]));
+    patches.push_back(texel_patches(sets[s]));
     for (std::size_t p = 0; p < patches[s].rects.size(); ++p) {
-      const Rect& rect = patches[s].rects[p];
+      const TexelRect& rect = patches[s].rects[p];
       if (rect.width() > largest_side || rect.height() > largest_side)
         throw Error(fmt::format("a patch of {}×{} texels does not fit into textures of {}²", rect.width(),
                                 rect.height(), largest_side));
@@ -158,7 +136,7 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
       widest = std::max(widest, rect.width());
     }
   }
-  const auto rect_at = [&](const Place& place) -> const Rect& { return patches[place.set].rects[place.patch]; };
+  const auto rect_at = [&](const Place& place) -> const TexelRect& { return patches[place.set].rects[place.patch]; };
   std::stable_sort(places.begin(), places.end(), [&](const Place& a, const Place& b) {
     return std::pair(rect_at(a).height(), rect_at(a).width()) > std::pair(rect_at(b).height(), rect_at(b).width());
   });
@@ -168,7 +146,7 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
   std::vector<Page> pages(1);
   int x = 0, y = 0, shelf = 0;
   for (Place& place : places) {
-    const Rect& rect = rect_at(place);
+    const TexelRect& rect = rect_at(place);
     if (x + rect.width() > width) {
       x = 0;
       y += shelf;
@@ -196,7 +174,7 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
   for (const Place& place : places) {
     place_of[place.set][place.patch] = place;
     const FeatureTexture& source = *sets[place.set].texels;
-    const Rect& rect = rect_at(place);
+    const TexelRect& rect = rect_at(place);
     for (int row = 0; row < rect.height(); ++row)
       for (int column = 0; column < rect.width(); ++column)
         pixels[place.page][static_cast<std::size_t>(place.y + row) * static_cast<std::size_t>(pages[place.page].width) +
@@ -227,7 +205,7 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
     for (std::size_t v = 0; v < soup.positions().size(); ++v) {
       if (patch_of_vertex[v] == absent) continue;
       const Place& place = place_of[s][patch_of_vertex[v]];
-      const Rect& rect = rect_at(place);
+      const TexelRect& rect = rect_at(place);
       const Page& page = pages[place.page];
       Building& out = building[place.page];
       renumbered[v] = static_cast<std::uint32_t>(out.positions.size());

@@ -8,6 +8,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
+#include "mesh_ops/features/turn_groups.h"
 #include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "mesh_ops/formats/write_baked_folder.h"
@@ -33,50 +34,6 @@ std::vector<Mat3> distinct_turns(const BakedObject& object) {
   return turns;
 }
 
-// Turns that differ by less show the same colours to the last bit.
-constexpr double same_to_the_eye = 1e-9;
-
-// An object's faces by the turn that all their corners have.
-struct TurnGroups {
-  struct Group {
-    Mat3 turn;
-    std::size_t faces = 0;
-  };
-  static constexpr std::uint32_t bent = 0xffffffff;
-  std::vector<Group> groups;
-  std::vector<std::uint32_t> group_of;  ///< a face; bent where its corners are turned differently
-  bool any_bent = false;
-};
-TurnGroups turn_groups(const BakedObject& object) {
-  TurnGroups result;
-  std::uint32_t last = 0;
-  for (const TextureSet& set : object.sets)
-    for (const Face& face : set.soup.faces()) {
-      const auto turn = [&](std::size_t k) {
-        return set.soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.rotations())[face[k]];
-      };
-      const Mat3 first = turn(0);
-      if ((turn(1) - first).norm() > same_to_the_eye || (turn(2) - first).norm() > same_to_the_eye) {
-        result.group_of.push_back(TurnGroups::bent);
-        result.any_bent = true;
-        continue;
-      }
-      const auto fits = [&](std::uint32_t g) { return (result.groups[g].turn - first).norm() <= same_to_the_eye; };
-      if (last >= result.groups.size() || !fits(last)) {
-        for (last = 0; last < result.groups.size() && !fits(last);) ++last;
-        if (last == result.groups.size()) result.groups.push_back({first, 0});
-      }
-      ++result.groups[last].faces;
-      result.group_of.push_back(last);
-    }
-  // Beside bent faces a few that happen to be turned alike are no part of their own.
-  if (result.any_bent)
-    for (std::uint32_t& group : result.group_of)
-      if (group != TurnGroups::bent && result.groups[group].faces * 100 < result.group_of.size())
-        group = TurnGroups::bent;
-  return result;
-}
-
 // What bent faces are shown with: the commonest turn of the others, else their own mean.
 Mat3 stand_in(const BakedObject& object, const TurnGroups& groups) {
   const TurnGroups::Group* commonest = nullptr;
@@ -90,14 +47,6 @@ Mat3 stand_in(const BakedObject& object, const TurnGroups& groups) {
     if (set.soup.rotations() != nullptr)
       for (const Mat3& turn : *set.soup.rotations()) sum += turn;
   return local_rotation(sum).rotation;
-}
-
-// Equal but for the rounding of a folded rotation.
-bool nearly_equal(const Decoder& a, const Decoder& b) {
-  if (a == b) return true;
-  Decoder same = a;
-  same.weights0 = b.weights0;
-  return same == b && (a.weights0 - b.weights0).cwiseAbs().maxCoeff() <= 1e-13 * a.weights0.cwiseAbs().maxCoeff();
 }
 
 // Triangles of one turn, in world space and without turns. The arrays are shared where nothing changes.

@@ -1,0 +1,232 @@
+#include "editor/commands/plain_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "editor/commands/views.h"
+#include "render/compare.h"
+
+namespace rebake {
+
+namespace {
+
+Scene on_background(Scene scene, const Color& background) {
+  scene.background = background;
+  return scene;
+}
+
+// A picture's pixels, each with its three channels alike.
+using Mask = std::vector<bool>;
+
+template <class Wanted>
+Mask pixels(const Image& picture, Wanted wanted) {
+  Mask mask(picture.rgb.size());
+  for (std::size_t k = 0; k < mask.size(); k += 3) mask[k] = mask[k + 1] = mask[k + 2] = wanted(k);
+  return mask;
+}
+
+bool same_pixel(const Image& a, const Image& b, std::size_t k) {
+  const auto at = static_cast<std::ptrdiff_t>(k);
+  return std::equal(a.rgb.begin() + at, a.rgb.begin() + at + 3, b.rgb.begin() + at);
+}
+
+Mask differing(const Image& a, const Image& b) {
+  return pixels(a, [&](std::size_t k) { return !same_pixel(a, b, k); });
+}
+
+// Where not all is background: the same scene on white and on black.
+Mask covered(const Image& on_white, const Image& on_black) {
+  return pixels(on_white, [&](std::size_t k) {
+    return !std::all_of(on_white.rgb.begin() + static_cast<std::ptrdiff_t>(k),
+                        on_white.rgb.begin() + static_cast<std::ptrdiff_t>(k + 3), [](std::uint8_t v) { return v == 255; }) ||
+           !std::all_of(on_black.rgb.begin() + static_cast<std::ptrdiff_t>(k),
+                        on_black.rgb.begin() + static_cast<std::ptrdiff_t>(k + 3), [](std::uint8_t v) { return v == 0; });
+  });
+}
+
+struct Squares {
+  double sum = 0, count = 0;
+  void add(const Image& a, const Image& b, const Mask& mask) {
+    for (std::size_t k = 0; k < mask.size(); ++k) {
+      if (!mask[k]) continue;
+      const double off = (static_cast<double>(a.rgb[k]) - static_cast<double>(b.rgb[k])) / 255;
+      sum += off * off;
+      ++count;
+    }
+  }
+  void add(const Squares& other) {
+    sum += other.sum;
+    count += other.count;
+  }
+  double psnr() const { return sum > 0 ? std::min(100.0, -10 * std::log10(sum / count)) : 100; }
+};
+
+const char* words(FuseTrial::Way way) {
+  switch (way) {
+    case FuseTrial::Way::keep:
+      return "one decoder kept";
+    case FuseTrial::Way::train:
+      return "one decoder trained further";
+    case FuseTrial::Way::scratch:
+      return "a new decoder";
+    case FuseTrial::Way::side_by_side:
+      return "decoders side by side";
+  }
+  return "";
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+}  // namespace
+
+std::vector<View> judging_views(const Scene& scene, int size) {
+  bool forward = true;
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.visible && placed.node->object) forward = forward && placed.node->object->axes == Axes::forward;
+  const Camera front = framing_of(scene, 1);
+  const Vec3 away = front.eye - front.target, up = front.up.normalized(), right = up.cross(away).normalized();
+  constexpr int count = 20;
+  std::vector<View> views;
+  for (int k = 0; k < count; ++k) {
+    constexpr double degrees = std::numbers::pi / 180;
+    const double turn = forward ? (k % 5 - 2) * 6.0 : k * 360.0 / count, lift = forward ? (k / 5 - 1.5) * 6 : (k % 4 - 1) * 14;
+    View view;
+    view.width = view.height = size;
+    view.camera = front;
+    view.camera.eye = front.target + Eigen::AngleAxisd(turn * degrees, up) *
+                                         (Eigen::AngleAxisd(-lift * degrees, right) * away);
+    views.push_back(view);
+  }
+  return views;
+}
+
+void measure_pictures(Renderer& renderer, const Scene& composition, const Scene& fused, PlainReport& report,
+                      const Progress& progress) {
+  constexpr int size = 400;
+  // The published viewers show white, and what is covered shows on black otherwise.
+  const Scene before = on_background(composition, Color::Ones()), after = on_background(fused, Color::Ones()),
+              on_black = on_background(composition, Color::Zero());
+  std::vector<PlacedNode> nodes;
+  for (const PlacedNode& placed : placed_nodes(composition))
+    if (placed.visible && placed.node->object) nodes.push_back(placed);
+  // A node's pixels are those that change without it. Of very many nodes that would take long.
+  constexpr std::size_t most_nodes = 16;
+  if (nodes.size() < 2 || nodes.size() > most_nodes) nodes.clear();
+  std::vector<Squares> of_node(nodes.size());
+  Squares whole;
+  double similar = 0;
+  const std::vector<View> views = judging_views(composition, size);
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    progress.at("comparing pictures", static_cast<double>(v) / static_cast<double>(views.size()));
+    const Image exact = renderer.render(before, views[v]), shown = renderer.render(after, views[v]);
+    Squares here;
+    here.add(exact, shown, covered(exact, renderer.render(on_black, views[v])));
+    whole.add(here);
+    report.whole.worst_psnr_db = std::min(report.whole.worst_psnr_db, here.psnr());
+    similar += compare(exact, shown, 2).ssim / static_cast<double>(views.size());
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const Scene without_it = with_changed(before, nodes[k].node->id, [](Node& node) { node.object = nullptr; });
+      of_node[k].add(exact, shown, differing(exact, renderer.render(without_it, views[v])));
+    }
+  }
+  report.whole.psnr_db = whole.psnr();
+  report.whole.ssim = similar;
+  for (std::size_t k = 0; k < nodes.size(); ++k) report.nodes.push_back({nodes[k].node->name, of_node[k].psnr()});
+  View view = views.front();
+  view.width = view.height = 800;
+  std::vector<double> times_before, times_after;
+  renderer.render(before, view);
+  renderer.render(after, view);
+  for (int k = 0; k < 9; ++k) {
+    times_before.push_back(renderer.time_frame(before, view, {}, false).frame_ms);
+    times_after.push_back(renderer.time_frame(after, view, {}, false).frame_ms);
+  }
+  report.composition_frame_ms = median(times_before);
+  report.frame_ms = median(times_after);
+  report.pictures_measured = true;
+}
+
+std::vector<std::string> lines_of(const PlainReport& report) {
+  std::vector<std::string> lines;
+  if (report.exact) {
+    lines.emplace_back("one decoder shows all of it exactly: nothing had to be fitted");
+    return lines;
+  }
+  const FuseReport& texels = report.texels;
+  const FuseTrial& chosen = texels.trials[texels.chosen];
+  for (std::size_t k = 0; k < texels.trials.size(); ++k) {
+    const FuseTrial& trial = texels.trials[k];
+    lines.push_back(fmt::format("tried width {}, {}: {:.1f} dB on a sample, {:.1f} s{}", trial.width,
+                                words(trial.way),
+                                trial.psnr_db, trial.seconds, k == texels.chosen ? " (taken)" : ""));
+  }
+  lines.push_back(fmt::format("one decoder of width {} for all, {}: {} texels fitted in {:.1f} s{}", chosen.width,
+                              words(chosen.way),
+                              texels.fitted_texels, texels.seconds, texels.in_time ? "" : "; ended by the time given"));
+  for (const FuseReport::Part& part : texels.parts)
+    lines.push_back(part.kept ? fmt::format("{}: {} texels kept bit for bit", part.node, part.errors.texels)
+                              : fmt::format("{}: {} texels, {:.1f} dB, 99 % of them {:.1f} dB or better", part.node,
+                                            part.errors.texels, part.errors.psnr_db, part.errors.worst_psnr_db));
+  if (texels.parts.size() > 1)
+    lines.push_back(fmt::format("all texels: {:.1f} dB, 99 % of them {:.1f} dB or better", texels.whole.psnr_db,
+                                texels.whole.worst_psnr_db));
+  if (!report.pictures_measured) return lines;
+  for (const PlainReport::OfNode& node : report.nodes)
+    lines.push_back(fmt::format("{} in pictures: {:.1f} dB", node.node, node.psnr_db));
+  lines.push_back(fmt::format(
+      "in pictures from 20 sides, where something is seen: {:.1f} dB, {:.1f} dB at the worst, SSIM {:.4f}",
+      report.whole.psnr_db, report.whole.worst_psnr_db, report.whole.ssim));
+  lines.push_back(fmt::format("a frame takes {:.1f} ms, the composition {:.1f} ms", report.frame_ms,
+                              report.composition_frame_ms));
+  return lines;
+}
+
+nlohmann::json to_json(const PlainReport& report) {
+  const auto errors = [](const TexelErrors& e) {
+    return nlohmann::json{{"texels", e.texels}, {"psnr_db", e.psnr_db}, {"worst_psnr_db", e.worst_psnr_db}};
+  };
+  nlohmann::json json{{"exact", report.exact}, {"width", {report.hidden0, report.hidden1}}};
+  if (!report.exact) {
+    const FuseReport& texels = report.texels;
+    json["texels"] = errors(texels.whole);
+    json["fitted_texels"] = texels.fitted_texels;
+    json["seconds"] = texels.seconds;
+    json["ended_by_time"] = !texels.in_time;
+    json["parts"] = nlohmann::json::array();
+    for (const FuseReport::Part& part : texels.parts) {
+      nlohmann::json one = errors(part.errors);
+      one["node"] = part.node;
+      one["kept"] = part.kept;
+      json["parts"].push_back(std::move(one));
+    }
+    json["trials"] = nlohmann::json::array();
+    for (std::size_t k = 0; k < texels.trials.size(); ++k) {
+      const FuseTrial& trial = texels.trials[k];
+      json["trials"].push_back({{"width", trial.width},
+                                {"way", words(trial.way)},
+                                {"psnr_db", trial.psnr_db},
+                                {"seconds", trial.seconds},
+                                {"taken", k == texels.chosen}});
+    }
+  }
+  if (report.pictures_measured) {
+    json["pictures"] = {{"views", 20},
+                        {"psnr_db", report.whole.psnr_db},
+                        {"worst_psnr_db", report.whole.worst_psnr_db},
+                        {"ssim", report.whole.ssim},
+                        {"frame_ms", report.frame_ms},
+                        {"composition_frame_ms", report.composition_frame_ms}};
+    for (const PlainReport::OfNode& node : report.nodes)
+      json["pictures"]["nodes"].push_back({{"node", node.node}, {"psnr_db", node.psnr_db}});
+  }
+  return json;
+}
+
+}  // namespace rebake

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/features/fuse.h"
+#include "render/picture.h"
+
+namespace rebake {
+
+/// How pictures of a fused scene differ from those of what it was made of, over the pixels that it covers.
+struct PictureErrors {
+  double psnr_db = 100;        ///< over all views; 100 at most
+  double worst_psnr_db = 100;  ///< of the worst view
+  double ssim = 1;             ///< mean over views
+};
+
+/// What a plain folder shows, measured.
+struct PlainReport {
+  FuseReport texels;
+  bool exact = false;  ///< one decoder showed all of it already: nothing was fitted
+  int hidden0 = 0, hidden1 = 0;
+  bool pictures_measured = false;  ///< false where there is no OpenGL
+  PictureErrors whole;
+  struct OfNode {
+    std::string node;
+    double psnr_db = 100;  ///< over the pixels that the node shows
+  };
+  std::vector<OfNode> nodes;
+  double frame_ms = 0, composition_frame_ms = 0;  ///< medians, measured in turn
+};
+
+/// Twenty views all around (of forward-facing scenes: from the front), none of which features were fitted to.
+std::vector<View> judging_views(const Scene& scene, int size);
+
+/// Fills in what pictures and frame times say. `composition` and `fused` show the same.
+void measure_pictures(Renderer& renderer, const Scene& composition, const Scene& fused, PlainReport& report,
+                      const Progress& progress);
+
+/// For people, a line each.
+std::vector<std::string> lines_of(const PlainReport& report);
+nlohmann::json to_json(const PlainReport& report);
+
+}  // namespace rebake

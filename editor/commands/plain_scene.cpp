@@ -1,0 +1,57 @@
+#include "editor/commands/plain_scene.h"
+
+#include <fmt/format.h>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/write_baked_folder.h"
+
+namespace rebake {
+
+namespace {
+
+Scene with_one_object(Scene scene, std::shared_ptr<const BakedObject> object) {
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.visible && placed.node->object)
+      scene = with_changed(scene, placed.node->id, [](Node& node) { node.object = nullptr; });
+  Node node;
+  node.name = "scene";
+  node.object = std::move(object);
+  return with_added(scene, node, NodeId::none, scene.roots.size());
+}
+
+}  // namespace
+
+Layout common_layout(const Scene& scene) {
+  std::optional<Layout> layout;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.visible || !placed.node->object) continue;
+    if (layout && *layout != placed.node->object->layout) return Layout::split;
+    layout = placed.node->object->layout;
+  }
+  return layout.value_or(Layout::split);
+}
+
+Scene plain_scene(const Scene& scene, const FuseOptions& options, PlainReport& report, const Progress& progress) {
+  check(options);
+  const int largest = largest_texture_side(options.layout);
+  const Composition composition = composed(scene, largest, progress);
+  if (composition.exact()) {
+    report.exact = true;
+    const std::vector<Node> merged = merged_for_export(scene, options.layout);
+    report.hidden0 = merged.front().object->decoder->hidden0();
+    report.hidden1 = merged.front().object->decoder->hidden1();
+    return with_one_object(scene, merged.front().object);
+  }
+  if (options.layout == Layout::unsplit && composition.pages.size() > 1)
+    throw Error(fmt::format("the texels do not fit into one texture of {}²: use --layout split", largest));
+  const Sightlines sightlines(scene);
+  const FusePlan plan = plan_fuse(composition, sightlines, options, progress);
+  Fused fused = fuse(composition, sightlines, plan, options, progress);
+  report.texels = std::move(fused.report);
+  report.hidden0 = fused.object->decoder->hidden0();
+  report.hidden1 = fused.object->decoder->hidden1();
+  return with_one_object(scene, std::move(fused.object));
+}
+
+}  // namespace rebake

@@ -1,0 +1,262 @@
+#include "mesh_ops/features/composition.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/polar.h"
+#include "mesh_ops/features/turn_groups.h"
+#include "mesh_ops/index/footprint.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr const char* part_attribute = "part";
+
+// Rays that differ by more than this angle's chord (10°) want texels of their own.
+constexpr double turned_apart = 0.25;
+
+// The triangles of one class of a set, in world space.
+TextureSet in_world(const TextureSet& set, const TriangleSet& flags, const Affine& to_world, const Mat3& node_turn,
+                    bool bent, std::uint32_t part) {
+  const Soup some = subset(set.soup, flags, 0, true);
+  auto positions = std::make_shared<std::vector<Vec3>>(some.positions());
+  for (Vec3& p : *positions) p = to_world * p;
+  Attributes vertices;
+  if (bent) {
+    std::vector<Mat3> turns(positions->size(), Mat3::Identity());
+    for (std::size_t v = 0; v < turns.size(); ++v)
+      turns[v] = node_turn * (*some.rotations())[v] * node_turn.transpose();
+    vertices = vertices.with(Soup::rotation, Values<Mat3>::of(std::move(turns)));
+  }
+  const Attributes faces = Attributes().with(
+      part_attribute, Values<std::uint32_t>::of(std::vector<std::uint32_t>(some.triangle_count(), part)));
+  return {Soup(std::move(positions), some.shared_uvs(), some.shared_faces(), std::move(vertices), faces), set.texels};
+}
+
+Mat3 turn_of(const Soup& soup, std::uint32_t vertex) {
+  return soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*soup.rotations())[vertex];
+}
+
+// Sets in which no texel is used by triangles that are turned far apart.
+std::vector<TextureSet> without_clashes(const TextureSet& set) {
+  if (set.soup.rotations() == nullptr) return {set};
+  const auto& faces = set.soup.faces();
+  const TexelPatches patches = texel_patches(set);
+  std::vector<std::vector<Mat3>> turns(patches.rects.size());
+  std::vector<std::size_t> cluster(faces.size());
+  std::size_t most = 1;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    std::vector<Mat3>& known = turns[patches.of_face[f]];
+    const Mat3 mean =
+        (turn_of(set.soup, faces[f][0]) + turn_of(set.soup, faces[f][1]) + turn_of(set.soup, faces[f][2])) / 3;
+    std::size_t k = 0;
+    while (k < known.size() && (known[k] - mean).norm() > turned_apart) ++k;
+    if (k == known.size()) known.push_back(mean);
+    cluster[f] = k;
+    most = std::max(most, known.size());
+  }
+  if (most == 1) return {set};
+  std::vector<TextureSet> result;
+  for (std::size_t k = 0; k < most; ++k) {
+    TriangleSet flags(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) flags[f] = cluster[f] == k ? 1 : 0;
+    result.push_back({subset(set.soup, flags, 0, true), set.texels});
+  }
+  return result;
+}
+
+std::uint32_t part_of(const TextureSet& page, std::size_t face) {
+  const auto* parts = page.soup.face_attributes().find<std::uint32_t>(part_attribute);
+  return parts == nullptr ? 0 : (*parts)[face];
+}
+
+// How the triangles of a teacher are turned on the whole: not at all where some are not bent.
+Mat3 frame_of(const Composition& composition, const std::vector<TextureSet>& sets, std::size_t teacher) {
+  Mat3 sum = Mat3::Zero();
+  for (const TextureSet& set : sets) {
+    const Composition::Part& part = composition.parts[part_of(set, 0)];
+    if (part.teacher != teacher) continue;
+    if (!part.bent) return Mat3::Identity();
+    for (std::uint32_t v = 0; v < set.soup.positions().size(); ++v) sum += turn_of(set.soup, v);
+  }
+  return local_rotation(sum).rotation;
+}
+
+std::uint32_t opaque_texels_in(const FeatureTexture& texels, const TexelRect& rect) {
+  std::uint32_t opaque = 0;
+  for (int y = rect.top; y <= rect.bottom; ++y)
+    for (int x = rect.left; x <= rect.right; ++x) opaque += texels.at(x, y).opaque() ? 1 : 0;
+  return opaque;
+}
+
+void add_blocks(Composition& result, std::uint32_t number) {
+  const TextureSet& page = result.pages[number];
+  const TexelPatches patches = texel_patches(page);
+  std::vector<std::uint32_t> first(patches.rects.size() + 1);
+  for (const std::size_t patch : patches.of_face) ++first[patch + 1];
+  for (std::size_t p = 0; p < patches.rects.size(); ++p) first[p + 1] += first[p];
+  const auto base = static_cast<std::uint32_t>(result.faces.size());
+  result.faces.resize(base + patches.of_face.size());
+  std::vector<std::uint32_t> next = first;
+  for (std::size_t f = 0; f < patches.of_face.size(); ++f)
+    result.faces[base + next[patches.of_face[f]]++] = static_cast<std::uint32_t>(f);
+  const std::size_t before = result.blocks.size();
+  for (std::size_t p = 0; p < patches.rects.size(); ++p) {
+    const TexelRect& rect = patches.rects[p];
+    const std::uint32_t faces_at = base + first[p], faces = first[p + 1] - first[p];
+    const std::uint32_t part = part_of(page, result.faces[faces_at]);
+    constexpr int side = Composition::block_side;
+    for (int top = rect.top; top <= rect.bottom; top += side)
+      for (int left = rect.left; left <= rect.right; left += side)
+        result.blocks.push_back({number,
+                                 part,
+                                 {left, top, std::min(rect.right, left + side - 1), std::min(rect.bottom, top + side - 1)},
+                                 faces_at,
+                                 faces,
+                                 0});
+  }
+  tbb::parallel_for(before, result.blocks.size(), [&](std::size_t b) {
+    result.blocks[b].opaque = opaque_texels_in(*page.texels, result.blocks[b].rect);
+  });
+}
+
+}  // namespace
+
+bool Composition::exact() const {
+  return teachers.size() == 1 && std::none_of(parts.begin(), parts.end(), [](const Part& p) { return p.bent; });
+}
+
+Composition composed(const Scene& scene, int largest_side, const Progress& progress) {
+  Composition result;
+  std::vector<TextureSet> sets;
+  bool all_forward = true;
+  const auto teacher = [&](std::shared_ptr<const Decoder> decoder) {
+    for (std::size_t k = 0; k < result.teachers.size(); ++k)
+      if (nearly_equal(*result.teachers[k], *decoder)) return k;
+    result.teachers.push_back(std::move(decoder));
+    return result.teachers.size() - 1;
+  };
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.visible || !placed.node->object || placed.node->object->triangle_count() == 0) continue;
+    progress.at("taking the scene apart", 0);
+    const BakedObject& object = *placed.node->object;
+    Mat3 node_turn;
+    try {
+      node_turn = orthogonal_factor(placed.to_world.linear());
+    } catch (const std::invalid_argument& error) {
+      throw EditError(fmt::format("node \"{}\": {}", placed.node->name, error.what()));
+    }
+    all_forward = all_forward && object.axes == Axes::forward;
+    const TurnGroups groups = turn_groups(object);
+    std::map<std::uint32_t, std::uint32_t> part_of_group;
+    std::size_t first = 0;
+    for (const TextureSet& set : object.sets) {
+      const std::size_t faces = set.soup.triangle_count();
+      if (faces > 0 && !can_pack(set))
+        throw EditError(
+            fmt::format("node \"{}\": some UVs lie outside 0 … 1, so that its texels cannot be moved into one folder",
+                        placed.node->name));
+      std::map<std::uint32_t, TriangleSet> flags;
+      for (std::size_t f = 0; f < faces; ++f) {
+        TriangleSet& some = flags[groups.group_of[first + f]];
+        some.resize(faces);
+        some[f] = 1;
+      }
+      first += faces;
+      for (const auto& [group, some] : flags) {
+        const bool bent = group == TurnGroups::bent;
+        const auto [it, fresh] = part_of_group.try_emplace(group, static_cast<std::uint32_t>(result.parts.size()));
+        if (fresh) {
+          const Mat3 turn = bent ? node_turn : Mat3(node_turn * groups.groups[group].turn);
+          result.parts.push_back(
+              {placed.node->id, placed.node->name,
+               teacher(std::make_shared<const Decoder>(fold_turn(*object.decoder, turn, object.axes, Axes::forward))),
+               bent});
+        }
+        result.parts[it->second].triangles += count(some);
+        const TextureSet whole = in_world(set, some, placed.to_world, node_turn, bent, it->second);
+        for (TextureSet& apart : without_clashes(whole)) sets.push_back(std::move(apart));
+      }
+    }
+  }
+  result.forward = all_forward;
+  if (sets.empty()) throw EditError("there is nothing to export: no visible node has triangles");
+  for (std::size_t k = 0; k < result.teachers.size(); ++k) result.frames.push_back(frame_of(result, sets, k));
+  progress.at("taking the scene apart", 0.2);
+  result.pages = pack(sets, largest_side, AlphaCode::plain).sets;
+  sets.clear();
+  for (std::uint32_t page = 0; page < result.pages.size(); ++page) {
+    progress.at("taking the scene apart", 0.6 + 0.4 * page / static_cast<double>(result.pages.size()));
+    add_blocks(result, page);
+  }
+  std::erase_if(result.blocks, [](const Composition::Block& block) { return block.opaque == 0; });
+  for (const Composition::Block& block : result.blocks) result.opaque_texels += block.opaque;
+  return result;
+}
+
+std::vector<TexelSite> sites_of(const Composition& composition, const Composition::Block& block) {
+  const TextureSet& page = composition.pages[block.page];
+  const TexelRect& rect = block.rect;
+  const int width = rect.width(), height = rect.height();
+  // For each texel the triangle that its centre lies in, or else the nearest: what a sample finds may lie half a texel
+  // outside of it.
+  constexpr auto none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> face_at(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), none);
+  std::vector<double> outside(face_at.size(), std::numeric_limits<double>::infinity());
+  for (std::uint32_t k = 0; k < block.face_count; ++k) {
+    const std::uint32_t face = composition.faces[block.first_face + k];
+    const std::array<Vec2, 3> corners = texel_corners(page, face);
+    const Vec2 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).array() - 1,
+               high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).array() + 1;
+    const int left = std::max(rect.left, static_cast<int>(std::floor(low.x()))),
+              right = std::min(rect.right, static_cast<int>(std::floor(high.x()))),
+              top = std::max(rect.top, static_cast<int>(std::floor(low.y()))),
+              bottom = std::min(rect.bottom, static_cast<int>(std::floor(high.y())));
+    for (int y = top; y <= bottom; ++y)
+      for (int x = left; x <= right; ++x) {
+        const auto at = static_cast<std::size_t>((y - rect.top) * width + x - rect.left);
+        const Vec3 weights = barycentric(corners, {x + 0.5, y + 0.5});
+        const double beyond = std::max(0.0, -weights.minCoeff());
+        if (beyond < outside[at]) {
+          outside[at] = beyond;
+          face_at[at] = face;
+        }
+      }
+  }
+  std::vector<TexelSite> sites;
+  sites.reserve(block.opaque);
+  const bool bent = composition.parts[block.part].bent;
+  const auto add = [&](int x, int y) {
+    const std::uint32_t number = face_at[static_cast<std::size_t>((y - rect.top) * width + x - rect.left)];
+    if (number == none || !page.texels->at(x, y).opaque()) return;
+    const Face& face = page.soup.faces()[number];
+    Vec3 weights = barycentric(texel_corners(page, number), {x + 0.5, y + 0.5}).cwiseMax(0.0);
+    weights /= weights.sum();
+    const auto& p = page.soup.positions();
+    TexelSite site{x, y, Vec3::Zero(), (p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]).stableNormalized(),
+                   Mat3::Identity()};
+    for (std::size_t k = 0; k < 3; ++k) site.position += weights[static_cast<Eigen::Index>(k)] * p[face[k]];
+    if (bent) {
+      site.turn.setZero();
+      for (std::size_t k = 0; k < 3; ++k)
+        site.turn += weights[static_cast<Eigen::Index>(k)] * turn_of(page.soup, face[k]).transpose();
+    }
+    sites.push_back(site);
+  };
+  for (int y = rect.top; y <= rect.bottom; y += 2)
+    for (int x = rect.left; x <= rect.right; ++x) {
+      add(x, y);
+      if (y < rect.bottom) add(x, y + 1);
+    }
+  return sites;
+}
+
+}  // namespace rebake

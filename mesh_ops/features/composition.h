@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/base/progress.h"
+#include "mesh_ops/features/atlas.h"
+#include "mesh_ops/rays/scene_rays.h"
+#include "mesh_ops/scene/scene.h"
+
+namespace rebake {
+
+/// All that is visible of a scene as one soup in world space, each triangle with what gives its texels their colours.
+struct Composition {
+  /// Triangles whose colours follow from one decoder.
+  struct Part {
+    NodeId node;
+    std::string name;     ///< the node's
+    std::size_t teacher;  ///< number of its decoder
+    bool bent;            ///< turned apart: rays are turned back by the vertices' rotations first
+    std::size_t triangles = 0;
+  };
+  /// A rectangle of texels of one patch, at most `block_side` a side, whose triangles are of one part.
+  struct Block {
+    std::uint32_t page, part;
+    TexelRect rect;
+    std::uint32_t first_face, face_count;  ///< of the patch, among `faces`
+    std::uint32_t opaque;                  ///< texels
+  };
+  static constexpr int block_side = 32;
+
+  std::vector<Part> parts;
+  /// Fed directions of the world; for bent parts those that the vertices' rotations turned back.
+  std::vector<std::shared_ptr<const Decoder>> teachers;
+  /// For each teacher the turn that its triangles have on the whole: the identity unless all of them are bent.
+  std::vector<Mat3> frames;
+  /// Texels as they were, moved; alpha plain, which holds all values exactly.
+  std::vector<TextureSet> pages;
+  std::vector<Block> blocks;         ///< those with opaque texels, page by page
+  std::vector<std::uint32_t> faces;  ///< of the blocks' pages
+  std::uint64_t opaque_texels = 0;
+  bool forward = false;  ///< all of it is forward-facing
+
+  /// Whether one decoder shows all of it without a fit.
+  bool exact() const;
+};
+
+/// Takes a scene apart for one plain folder: where two uses of a texel are turned differently, each gets its own.
+/// Throws EditError where nothing visible has triangles, and for nodes whose texels cannot be moved.
+Composition composed(const Scene& scene, int largest_side, const Progress& progress = {});
+
+/// One opaque texel of a block.
+struct TexelSite {
+  int x, y;
+  Vec3 position, normal;  ///< in the world; the normal is of length 1, or 0 for a triangle without area
+  Mat3 turn;              ///< fed direction = turn · world direction, then normalised
+};
+
+/// The block's opaque texels that triangles come near: two rows at a time, so that a run of four is mostly a square.
+std::vector<TexelSite> sites_of(const Composition& composition, const Composition::Block& block);
+
+}  // namespace rebake

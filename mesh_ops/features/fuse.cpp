@@ -1,0 +1,330 @@
+#include "mesh_ops/features/fuse.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "mesh_ops/base/error.h"
+
+namespace rebake {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+constexpr std::size_t fitted_directions = 24, judged_directions = 8;
+
+double psnr_of(double mean_square) { return mean_square > 0 ? std::min(100.0, -10 * std::log10(mean_square)) : 100; }
+
+// How many texels have which error, by tenths of a decibel.
+struct Histogram {
+  static constexpr std::size_t bins = 1001;
+  std::vector<std::uint64_t> count = std::vector<std::uint64_t>(bins);
+  std::uint64_t texels = 0;
+  double squares = 0;
+  void add(double mean_square) {
+    ++texels;
+    squares += mean_square;
+    ++count[static_cast<std::size_t>(std::clamp(psnr_of(mean_square) * 10, 0.0, bins - 1.0))];
+  }
+  void add_exact(std::uint64_t some) {
+    texels += some;
+    count.back() += some;
+  }
+  void add(const Histogram& other) {
+    texels += other.texels;
+    squares += other.squares;
+    for (std::size_t k = 0; k < bins; ++k) count[k] += other.count[k];
+  }
+  TexelErrors errors() const {
+    TexelErrors result;
+    result.texels = texels;
+    if (texels == 0) return result;
+    result.psnr_db = psnr_of(squares / static_cast<double>(texels));
+    std::uint64_t below = 0;
+    for (std::size_t k = 0; k < bins; ++k)
+      if ((below += count[k]) * 100 > texels) {
+        result.worst_psnr_db = static_cast<double>(k) / 10;
+        break;
+      }
+    return result;
+  }
+};
+
+double weight_of(const std::vector<Sighting>& sightings) {
+  double sum = 0;
+  for (const Sighting& s : sightings) sum += 3 * static_cast<double>(s.weight);
+  return sum;
+}
+
+// Of the sample, as fitting would leave it.
+double judged(const Student& student, const Composition& composition, const TexelSample& sample,
+              const FuseOptions& options, const Progress& progress) {
+  const std::vector<FeatureNetwork> teachers = networks_of(composition);
+  const auto levels = feature_levels(options.bits, AlphaCode::halved);
+  std::vector<double> squares(sample.pieces.size());
+  progress.at("judging", 0);
+  tbb::parallel_for(std::size_t{0}, squares.size(), [&](std::size_t k) {
+    const TexelSample::Piece& piece = sample.pieces[k];
+    const Composition::Part& part = composition.parts[piece.part];
+    if (stays(student, part)) return;
+    std::vector<Lanes> work(workspace_of(student, teachers));
+    const FeatureNetwork& teacher = teachers[part.teacher];
+    const std::vector<Vec3> directions(piece.directions.begin(), piece.directions.begin() + fitted_directions);
+    const auto seen = sightings_of(teacher, piece.group, directions, k, work.data()),
+               held_out = sightings_of(teacher, piece.group, piece.held_out, k, work.data());
+    Lanes features[texel_features], error;
+    first_guess(student, teacher, part, piece.group, seen, features, work.data());
+    network_kernels().fit_texels(
+        student.decoder.view(), seen.data(), seen.size(),
+        {static_cast<std::size_t>(options.iterations), levels.data(), options.search && options.iterations > 0}, features,
+        &error, work.data());
+    network_kernels().fit_texels(student.decoder.view(), held_out.data(), held_out.size(), {}, features, &error,
+                                 work.data());
+    for (std::size_t l = 0; l < piece.group.count; ++l)
+      squares[k] += static_cast<double>(error.at[l]) / weight_of(held_out) / static_cast<double>(piece.group.count);
+  });
+  // A part counts by its texels, whatever its share of the sample.
+  std::vector<double> texels(composition.parts.size()), pieces(texels.size()), sums(texels.size());
+  for (const Composition::Block& block : composition.blocks) texels[block.part] += block.opaque;
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    sums[sample.pieces[k].part] += squares[k];
+    ++pieces[sample.pieces[k].part];
+  }
+  double sum = 0, count = 0;
+  for (std::size_t p = 0; p < texels.size(); ++p) {
+    if (pieces[p] == 0) continue;
+    sum += texels[p] * sums[p] / pieces[p];
+    count += texels[p];
+  }
+  return count > 0 ? psnr_of(sum / count) : 100;
+}
+
+// The teacher of most texels, or the one that a node is to keep.
+std::size_t base_of(const Composition& composition, const FuseOptions& options) {
+  std::vector<std::uint64_t> texels(composition.teachers.size()), allowed(texels.size());
+  bool found = false;
+  for (const Composition::Block& block : composition.blocks) {
+    const Composition::Part& part = composition.parts[block.part];
+    const bool wanted = options.keep != FuseOptions::Keep::node || part.node == options.keep_node;
+    found = found || wanted;
+    if (wanted) texels[part.teacher] += block.opaque + (part.bent ? 0 : 1);
+  }
+  if (!found) throw FieldError("keep", "names a node that shows nothing");
+  return static_cast<std::size_t>(std::max_element(texels.begin(), texels.end()) - texels.begin());
+}
+
+int width_of(const Student& student) {
+  return static_cast<int>(std::max(student.decoder.hidden0, student.decoder.hidden1));
+}
+
+struct FittedBlock {
+  std::vector<TexelSite> sites;
+  std::vector<std::array<std::uint8_t, texel_features>> bytes;
+  std::vector<float> errors;  // mean squared, a texel
+};
+
+FittedBlock fitted(const Composition& composition, const Sightlines& sightlines, const Student& student,
+                   const std::vector<FeatureNetwork>& teachers, std::size_t number, const TexelFit& fit) {
+  const Composition::Block& block = composition.blocks[number];
+  const Composition::Part& part = composition.parts[block.part];
+  const FeatureNetwork& teacher = teachers[part.teacher];
+  const NetworkKernels& kernels = network_kernels();
+  FittedBlock result;
+  result.sites = sites_of(composition, block);
+  const std::vector<TexelGroup> groups = groups_of(composition, block, result.sites);
+  const std::vector<Vec3> directions = sightlines.directions(result.sites, fitted_directions, 2 * number),
+                          others = sightlines.directions(result.sites, judged_directions, 2 * number + 1);
+  std::vector<Lanes> work(workspace_of(student, teachers));
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const TexelGroup& group = groups[g];
+    const auto seen = sightings_of(teacher, group, directions, number + g, work.data());
+    Lanes features[texel_features], error;
+    first_guess(student, teacher, part, group, seen, features, work.data());
+    TexelFit own = fit;
+    if (shown_exactly(student, part)) own.iterations = 0;
+    kernels.fit_texels(student.decoder.view(), seen.data(), seen.size(), own, features, &error, work.data());
+    for (std::size_t l = 0; l < group.count; ++l) {
+      auto& bytes = result.bytes.emplace_back();
+      for (std::size_t c = 0; c < texel_features; ++c)
+        bytes[c] = static_cast<std::uint8_t>(std::lround(255 * features[c].at[l]));
+    }
+    const auto held_out = sightings_of(teacher, group, others, number + g, work.data());
+    kernels.fit_texels(student.decoder.view(), held_out.data(), held_out.size(), {}, features, &error, work.data());
+    for (std::size_t l = 0; l < group.count; ++l)
+      result.errors.push_back(static_cast<float>(static_cast<double>(error.at[l]) / weight_of(held_out)));
+  }
+  return result;
+}
+
+}  // namespace
+
+void check(const FuseOptions& options) {
+  if (options.width && (*options.width < 4 || *options.width > static_cast<int>(widest_layer)))
+    throw FieldError("width", fmt::format("must be auto, or 4 to {}", widest_layer));
+  if (!(options.psnr_db > 0 && options.psnr_db <= 100)) throw FieldError("psnr", "must be above 0 and at most 100");
+  if (!(options.seconds >= 0) || !std::isfinite(options.seconds)) throw FieldError("seconds", "must be 0 or more");
+  if (options.bits < 4 || options.bits > 8) throw FieldError("bits", "must be 4 to 8");
+}
+
+FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines, const FuseOptions& options,
+                   const Progress& progress) {
+  check(options);
+  using Keep = FuseOptions::Keep;
+  const Clock::time_point start = Clock::now();
+  // A third of the time for decoders: features gain more by what is left.
+  const auto late = [&] { return options.seconds > 0 && seconds_since(start) > options.seconds / 3; };
+  const std::size_t base = base_of(composition, options);
+  const TexelSample sample = sampled(composition, sightlines, options.sample, options.training.seed, progress);
+  std::optional<FusePlan> plan;
+  std::vector<FuseTrial> trials;
+  double best = -1;
+  using Way = FuseTrial::Way;
+  const auto consider = [&](Student student, Way way, Clock::time_point begun) {
+    FuseTrial trial{width_of(student), way, 0, 0};
+    trial.psnr_db = judged(student, composition, sample, options, progress);
+    trial.seconds = seconds_since(begun);
+    trials.push_back(trial);
+    if (trial.psnr_db <= best) return;
+    best = trial.psnr_db;
+    plan = {std::move(student), {}, trials.size() - 1};
+  };
+  const auto enough = [&] { return plan && (best >= options.psnr_db || late()); };
+  Clock::time_point begun = Clock::now();
+  const Student kept = keeping(composition, sample, base, options.training, progress);
+  const std::vector<int> widths = options.width ? std::vector<int>{*options.width} : std::vector<int>{16, 24, 32};
+  if (options.keep != Keep::none && (options.keep == Keep::node || width_of(kept) <= widths.back()))
+    consider(kept, Way::keep, begun);
+  if (options.keep != Keep::node) {
+    for (const int width : widths) {
+      if (enough()) break;
+      const auto wide = static_cast<std::size_t>(width);
+      begun = Clock::now();
+      if (width_of(kept) <= width)
+        consider(adapted(kept, composition, sample, wide, options.training, progress), Way::train, begun);
+      if (enough()) break;
+      begun = Clock::now();
+      if (composition.teachers.size() > 1 || !plan)
+        consider(from_scratch(composition, sample, wide, options.training, progress), Way::scratch, begun);
+    }
+    for (std::size_t bent_turns = 1; bent_turns < most_branches; ++bent_turns) {
+      if (enough()) break;
+      begun = Clock::now();
+      Student student = side_by_side(composition, sample, bent_turns);
+      if (options.width && width_of(student) > *options.width) break;
+      consider(std::move(student), Way::side_by_side, begun);
+    }
+  }
+  plan->trials = std::move(trials);
+  return std::move(*plan);
+}
+
+Fused fuse(const Composition& composition, const Sightlines& sightlines, const FusePlan& plan,
+           const FuseOptions& options, const Progress& progress) {
+  check(options);
+  const Clock::time_point start = Clock::now();
+  const Student& student = plan.student;
+  const std::vector<FeatureNetwork> teachers = networks_of(composition);
+  const AlphaCode code = options.layout == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved;
+  const auto levels = feature_levels(options.bits, code);
+  std::vector<std::optional<FeatureTexture::Change>> pages;
+  for (const TextureSet& page : composition.pages) pages.emplace_back(*with_alpha_code(page.texels, code));
+
+  // The blocks to fit, in the order in which they are.
+  std::vector<std::size_t> order;
+  for (std::size_t b = 0; b < composition.blocks.size(); ++b)
+    if (!stays(student, composition.parts[composition.blocks[b].part])) order.push_back(b);
+  FuseReport report;
+  report.trials = plan.trials;
+  report.chosen = plan.chosen;
+  std::vector<std::vector<float>> errors(composition.blocks.size());
+  // False where time ended it.
+  const auto pass = [&](const TexelFit& fit, const char* what, bool may_stop) {
+    constexpr std::size_t at_once = 128;
+    std::vector<FittedBlock> results;
+    for (std::size_t first = 0; first < order.size(); first += at_once) {
+      progress.at(what, static_cast<double>(first) / static_cast<double>(order.size()));
+      if (may_stop && options.seconds > 0 && seconds_since(start) > options.seconds) return false;
+      const std::size_t some = std::min(at_once, order.size() - first);
+      results.assign(some, {});
+      tbb::parallel_for(std::size_t{0}, some, [&](std::size_t k) {
+        results[k] = fitted(composition, sightlines, student, teachers, order[first + k], fit);
+      });
+      for (std::size_t k = 0; k < some; ++k) {
+        FeatureTexture::Change& page = *pages[composition.blocks[order[first + k]].page];
+        for (std::size_t t = 0; t < results[k].sites.size(); ++t) {
+          Texel& texel = page.at(results[k].sites[t].x, results[k].sites[t].y);
+          for (std::size_t c = 0; c < texel_features; ++c) {
+            const std::uint8_t value = results[k].bytes[t][c];
+            (c < 4 ? texel.feat0 : texel.feat1)[c % 4] =
+                c % 4 == 3 && code == AlphaCode::halved ? static_cast<std::uint8_t>(128 + value / 2) : value;
+          }
+        }
+        errors[order[first + k]] = std::move(results[k].errors);
+      }
+    }
+    return true;
+  };
+  if (options.iterations > 0 && (options.seconds > 0 || options.until_psnr)) {
+    // A guess of all first; then the worst, as long as there is need and time.
+    pass({0, levels.data(), false}, "guessing features", false);
+    std::vector<double> mean(errors.size());
+    for (const std::size_t b : order)
+      if (!errors[b].empty())
+        mean[b] = std::accumulate(errors[b].begin(), errors[b].end(), 0.0) / static_cast<double>(errors[b].size());
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return mean[x] > mean[y]; });
+    if (options.until_psnr) std::erase_if(order, [&](std::size_t b) { return psnr_of(mean[b]) >= options.psnr_db; });
+  }
+  report.in_time =
+      pass({static_cast<std::size_t>(options.iterations), levels.data(), options.search && options.iterations > 0},
+           "fitting features", options.iterations > 0);
+
+  Histogram whole;
+  std::vector<Histogram> of_part(composition.parts.size());
+  for (std::size_t b = 0; b < errors.size(); ++b) {
+    const Composition::Block& block = composition.blocks[b];
+    Histogram& histogram = of_part[block.part];
+    for (const float error : errors[b]) histogram.add(static_cast<double>(error));
+    report.fitted_texels += errors[b].size();
+    if (stays(student, composition.parts[block.part])) histogram.add_exact(block.opaque);
+  }
+  // By node: of its bent and its rigid parts what is kept and what is fitted.
+  std::vector<std::pair<NodeId, bool>> keys;
+  std::vector<Histogram> of_key;
+  for (std::size_t p = 0; p < of_part.size(); ++p) {
+    const Composition::Part& part = composition.parts[p];
+    const std::pair key(part.node, stays(student, part));
+    const auto at = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
+    if (at == keys.size()) {
+      keys.push_back(key);
+      of_key.emplace_back();
+      report.parts.push_back({part.name, key.second, {}});
+    }
+    of_key[at].add(of_part[p]);
+    whole.add(of_part[p]);
+  }
+  for (std::size_t k = 0; k < keys.size(); ++k) report.parts[k].errors = of_key[k].errors();
+  report.whole = whole.errors();
+
+  auto object = std::make_shared<BakedObject>();
+  for (std::size_t page = 0; page < pages.size(); ++page) {
+    const Soup& soup = composition.pages[page].soup;
+    object->sets.push_back({Soup(soup.shared_positions(), soup.shared_uvs(), soup.shared_faces()), pages[page]->finish()});
+    pages[page].reset();
+  }
+  object->axes = composition.forward ? Axes::forward : Axes::y_up;
+  object->layout = options.layout;
+  object->decoder = std::make_shared<const Decoder>(
+      student.keeps ? fold_turn(*composition.teachers[student.branches.front().teacher],
+                                student.branches.front().turn.transpose(), Axes::forward, object->axes)
+                    : fold_turn(student.decoder.to_decoder(), Mat3::Identity(), Axes::forward, object->axes));
+  report.seconds = seconds_since(start);
+  return {std::move(object), std::move(report)};
+}
+
+}  // namespace rebake

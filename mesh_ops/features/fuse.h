@@ -1,0 +1,89 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/features/fuse_training.h"
+
+namespace rebake {
+
+struct FuseOptions {
+  /// Of both hidden layers, 4 … 256; nothing: the smallest of 16, 24 and 32 that reaches `psnr_db`, else the best.
+  std::optional<int> width;
+  enum class Keep { automatic, none, node };
+  /// Whose texels and decoder stay bit for bit. `automatic`: those of most texels, where that is better on the whole.
+  Keep keep = Keep::automatic;
+  NodeId keep_node = NodeId::none;
+  double psnr_db = 40;
+  bool until_psnr = false;     ///< texels are fitted, worst first, only while they are below `psnr_db`
+  double seconds = 0;          ///< above 0: as much as can be done in this time; the bytes then depend on it
+  int iterations = 5;          ///< of Gauss–Newton for each texel; 0: features as the fitted map gives them
+  bool search = true;          ///< looks among neighbouring bytes for better ones
+  int bits = 8;                ///< a feature, 4 … 8
+  std::size_t sample = 8192;   ///< texels that decoders are trained on and judged by
+  TrainingOptions training{};
+  Layout layout = Layout::split;
+};
+
+/// What a way to fuse promises: PSNR over held-out directions of the sample.
+struct FuseTrial {
+  int width = 0;             ///< of the wider hidden layer
+  enum class Way {
+    keep,          ///< the decoder of the largest part (or of `keep_node`), whose texels stay bit for bit
+    train,         ///< that decoder, trained further
+    scratch,       ///< a new one
+    side_by_side,  ///< all decoders next to each other in one
+  } way = Way::keep;
+  double psnr_db = 0;
+  double seconds = 0;        ///< of training and judging
+};
+
+/// Errors of texels over held-out directions, as PSNR of display colours.
+struct TexelErrors {
+  std::uint64_t texels = 0;
+  double psnr_db = 100;        ///< of the mean squared error; 100 at most
+  double worst_psnr_db = 100;  ///< what 99 % of texels reach
+};
+
+struct FuseReport {
+  struct Part {
+    std::string node;
+    bool kept = false;  ///< bit for bit
+    TexelErrors errors;
+  };
+  std::vector<Part> parts;  ///< nodes in drawing order, those with kept and fitted texels twice
+  TexelErrors whole;
+  std::vector<FuseTrial> trials;
+  std::size_t chosen = 0;  ///< among trials
+  std::uint64_t fitted_texels = 0;
+  double seconds = 0;
+  bool in_time = true;  ///< false where `seconds` ended it
+};
+
+/// A decoder for a whole composition, and how it was chosen.
+struct FusePlan {
+  Student student;
+  std::vector<FuseTrial> trials;
+  std::size_t chosen = 0;
+};
+
+/// Trains decoders on a sample of the texels and takes what suits best. Deterministic, but for `seconds`. Throws
+/// FieldError for options out of range.
+FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines, const FuseOptions& options,
+                   const Progress& progress = {});
+
+struct Fused {
+  std::shared_ptr<const BakedObject> object;  ///< in world space
+  FuseReport report;
+};
+
+/// One object that shows what a composition shows, as far as one decoder and 8 bytes a texel can: each texel's features
+/// fitted to its colours along the directions from which it is seen. The same bytes at any number of threads.
+Fused fuse(const Composition& composition, const Sightlines& sightlines, const FusePlan& plan,
+           const FuseOptions& options, const Progress& progress = {});
+
+/// Throws FieldError.
+void check(const FuseOptions& options);
+
+}  // namespace rebake

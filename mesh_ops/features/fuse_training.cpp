@@ -1,0 +1,389 @@
+#include "mesh_ops/features/fuse_training.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace rebake {
+
+namespace {
+
+constexpr std::size_t encoder_hidden0 = 64, encoder_hidden1 = 32;
+constexpr std::size_t trained_directions = 48, held_out_directions = 16;
+// Gradients are summed in this many parts, whatever the number of threads, and then in order.
+constexpr std::size_t gradient_parts = 8;
+
+struct Gradients {
+  std::vector<std::vector<Lanes>> parts;
+  explicit Gradients(std::size_t values) : parts(gradient_parts, std::vector<Lanes>(values)) {}
+  void clear() {
+    for (auto& part : parts) std::fill(part.begin(), part.end(), Lanes{});
+  }
+  void mean_into(std::vector<float>& result, double count) const {
+    result.resize(parts[0].size());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      Lanes sum{};
+      for (const auto& part : parts)
+        for (std::size_t l = 0; l < network_lanes; ++l) sum.at[l] += part[i].at[l];
+      float total = 0;
+      for (const float value : sum.at) total += value;
+      result[i] = static_cast<float>(static_cast<double>(total) / count);
+    }
+  }
+};
+
+// Means of four, as sightings mix them, and the other way: what each lane's share of the slopes is.
+void mix(const Lanes& from, std::uint32_t way, Lanes& to) {
+  for (std::size_t l = 0; l < network_lanes; ++l) {
+    const auto other = [&](std::size_t k) { return from.at[(l + k * way) % network_lanes]; };
+    to.at[l] = 0.25F * ((other(0) + other(1)) + (other(2) + other(3)));
+  }
+}
+void unmix(const Lanes& slopes, std::uint32_t way, Lanes& to) {
+  for (std::size_t l = 0; l < network_lanes; ++l) {
+    const auto other = [&](std::size_t k) { return slopes.at[(l + network_lanes * way - k * way) % network_lanes]; };
+    to.at[l] = 0.25F * ((other(0) + other(1)) + (other(2) + other(3)));
+  }
+}
+
+void set_direction(const Vec3& direction, float coverage, Lanes* input) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    std::fill_n(input[axis].at, network_lanes,
+                coverage * static_cast<float>(direction[static_cast<Eigen::Index>(axis)]));
+}
+
+// Everything that a step needs beside the networks.
+struct Lesson {
+  const Composition& composition;
+  const TexelSample& sample;
+  std::vector<FeatureNetwork> teachers = networks_of(composition);
+  std::vector<std::vector<Lanes>> signatures;  // of each piece
+
+  Lesson(const Composition& c, const TexelSample& s) : composition(c), sample(s), signatures(s.pieces.size()) {
+    tbb::parallel_for(std::size_t{0}, signatures.size(), [&](std::size_t k) {
+      std::vector<Lanes> work(workspace());
+      signatures[k].resize(signature_size);
+      signature(teacher_of(k), sample.pieces[k].group, signatures[k].data(), work.data());
+    });
+  }
+  const FeatureNetwork& teacher_of(std::size_t piece) const {
+    return teachers[composition.parts[sample.pieces[piece].part].teacher];
+  }
+  std::size_t workspace() const {
+    std::size_t most = 0;
+    for (const FeatureNetwork& teacher : teachers)
+      most = std::max(most, network_kernels().workspace(teacher.view()));
+    return most;
+  }
+};
+
+// Decoder (unless it is frozen) and encoder together: colours through the features between them.
+void train_together(Student& student, const Lesson& lesson, int steps, bool decoder_moves,
+                    const TrainingOptions& options, const Progress& progress) {
+  const NetworkKernels& kernels = network_kernels();
+  constexpr std::size_t groups_a_step = 64, sightings_a_group = 2;
+  std::vector<std::size_t> pieces;
+  for (std::size_t k = 0; k < lesson.sample.pieces.size(); ++k)
+    if (!stays(student, lesson.composition.parts[lesson.sample.pieces[k].part])) pieces.push_back(k);
+  if (pieces.empty()) return;
+  FeatureNetwork& encoder = *student.encoder;
+  Adam decoder_adam(student.decoder.values.size()), encoder_adam(encoder.values.size());
+  Gradients decoder_gradients(decoder_moves ? student.decoder.values.size() : 0),
+      encoder_gradients(encoder.values.size());
+  std::vector<float> gradient;
+  const std::size_t decoder_work = kernels.workspace(student.decoder.view()),
+                    encoder_work = kernels.workspace(encoder.view()), teacher_work = lesson.workspace();
+  for (int step = 0; step < steps; ++step) {
+    if (step % 50 == 0) progress.at("training", static_cast<double>(step) / steps);
+    decoder_gradients.clear();
+    encoder_gradients.clear();
+    tbb::parallel_for(std::size_t{0}, gradient_parts, [&](std::size_t part) {
+      Dice dice(options.seed + static_cast<std::uint64_t>(step) * gradient_parts + part);
+      std::vector<Lanes> work(decoder_work + encoder_work + teacher_work);
+      Lanes* const at_decoder = work.data();
+      Lanes* const at_encoder = at_decoder + decoder_work;
+      Lanes* const at_teacher = at_encoder + encoder_work;
+      for (std::size_t g = 0; g < groups_a_step / gradient_parts; ++g) {
+        const std::size_t number = pieces[dice.below(pieces.size())];
+        const TexelSample::Piece& piece = lesson.sample.pieces[number];
+        Lanes features[texel_features], feature_slopes[texel_features] = {};
+        kernels.forward(encoder.view(), lesson.signatures[number].data(), features, at_encoder);
+        for (std::size_t k = 0; k < sightings_a_group; ++k) {
+          const Vec3& direction = piece.directions[dice.below(piece.directions.size())];
+          const SightingKind kind = sighting_kind(dice.next() >> 32);
+          Lanes target[3], input[decoder_inputs], output[3], slopes[3], input_slopes[decoder_inputs];
+          teach(lesson.teacher_of(number), piece.group, direction, kind.coverage, kind.mix, target, at_teacher);
+          for (std::size_t c = 0; c < texel_features; ++c) {
+            if (kind.mix == 0)
+              input[c] = features[c];
+            else
+              mix(features[c], kind.mix, input[c]);
+            for (float& value : input[c].at) value *= kind.coverage;
+          }
+          set_direction(direction, kind.coverage, input + texel_features);
+          kernels.forward(student.decoder.view(), input, output, at_decoder);
+          const float weight = kind.coverage * kind.coverage;
+          for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t l = 0; l < network_lanes; ++l)
+              slopes[c].at[l] = weight * (output[c].at[l] - target[c].at[l]);
+          kernels.backward(student.decoder.view(), input, output, slopes,
+                           decoder_moves ? decoder_gradients.parts[part].data() : nullptr, input_slopes, at_decoder);
+          for (std::size_t c = 0; c < texel_features; ++c) {
+            Lanes own = input_slopes[c];
+            if (kind.mix != 0) unmix(input_slopes[c], kind.mix, own);
+            for (std::size_t l = 0; l < network_lanes; ++l) feature_slopes[c].at[l] += kind.coverage * own.at[l];
+          }
+        }
+        kernels.backward(encoder.view(), lesson.signatures[number].data(), features, feature_slopes,
+                         encoder_gradients.parts[part].data(), nullptr, at_encoder);
+      }
+    });
+    const float rate = static_cast<float>(options.rate) * falling_rate(static_cast<double>(step) / steps);
+    constexpr double observations = groups_a_step * sightings_a_group * network_lanes;
+    encoder_gradients.mean_into(gradient, observations);
+    encoder_adam.step(encoder.values, gradient, rate);
+    if (!decoder_moves) continue;
+    decoder_gradients.mean_into(gradient, observations);
+    decoder_adam.step(student.decoder.values, gradient, rate);
+  }
+}
+
+// The decoder alone, on features that follow it by a step of Gauss–Newton whenever they are met; rounded in the second
+// half, so that it learns what is stored.
+void refine(Student& student, const Lesson& lesson, const TrainingOptions& options, const Progress& progress) {
+  const NetworkKernels& kernels = network_kernels();
+  constexpr std::size_t groups_a_step = 16, sightings_a_group = 16;
+  const std::size_t count = lesson.sample.pieces.size();
+  const auto levels = feature_levels(8, AlphaCode::halved);
+  const std::size_t work_size = std::max(workspace_of(student, lesson.teachers), lesson.workspace());
+  std::vector<std::array<Lanes, texel_features>> features(count);
+  const auto sightings = [&](std::size_t number, std::uint64_t seed, std::size_t some, Lanes* work) {
+    const TexelSample::Piece& piece = lesson.sample.pieces[number];
+    Dice dice(seed);
+    std::vector<Vec3> directions;
+    for (std::size_t k = 0; k < some; ++k) directions.push_back(piece.directions[dice.below(piece.directions.size())]);
+    return sightings_of(lesson.teacher_of(number), piece.group, directions, seed % 8, work);
+  };
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    std::vector<Lanes> work(work_size);
+    const TexelSample::Piece& piece = lesson.sample.pieces[k];
+    const auto seen = sightings(k, options.seed + k, 24, work.data());
+    first_guess(student, lesson.teacher_of(k), lesson.composition.parts[piece.part], piece.group, seen,
+                features[k].data(), work.data());
+    Lanes error;
+    kernels.fit_texels(student.decoder.view(), seen.data(), seen.size(), {4, nullptr, false}, features[k].data(),
+                       &error, work.data());
+  });
+  Adam adam(student.decoder.values.size());
+  Gradients gradients(student.decoder.values.size());
+  std::vector<float> gradient;
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::size_t at = count;
+  for (int step = 0; step < options.refining; ++step) {
+    if (step % 20 == 0) progress.at("refining the decoder", static_cast<double>(step) / options.refining);
+    // Each piece as often as any other, never twice in one step.
+    const std::size_t some = std::min(groups_a_step, count);
+    if (at + some > count) {
+      Dice dice(options.seed * 31 + static_cast<std::uint64_t>(step));
+      for (std::size_t k = count; k > 1; --k) std::swap(order[k - 1], order[dice.below(k)]);
+      at = 0;
+    }
+    gradients.clear();
+    tbb::parallel_for(std::size_t{0}, gradient_parts, [&](std::size_t part) {
+      std::vector<Lanes> work(work_size);
+      for (std::size_t g = part; g < some; g += gradient_parts) {
+        const std::size_t number = order[at + g];
+        const auto seen = sightings(number, options.seed + static_cast<std::uint64_t>(step) * 977 + number,
+                                    sightings_a_group, work.data());
+        Lanes* own = features[number].data();
+        Lanes error, shown[texel_features];
+        kernels.fit_texels(student.decoder.view(), seen.data(), seen.size(), {1, nullptr, false}, own, &error,
+                           work.data());
+        std::copy_n(own, texel_features, shown);
+        if (step * 2 > options.refining)
+          kernels.fit_texels(student.decoder.view(), seen.data(), 0, {0, levels.data(), false}, shown, &error,
+                             work.data());
+        for (const Sighting& sighting : seen) {
+          Lanes input[decoder_inputs], output[3], slopes[3];
+          for (std::size_t c = 0; c < texel_features; ++c) {
+            if (sighting.mix == 0)
+              input[c] = shown[c];
+            else
+              mix(shown[c], sighting.mix, input[c]);
+            for (float& value : input[c].at) value *= sighting.coverage;
+          }
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            for (std::size_t l = 0; l < network_lanes; ++l)
+              input[texel_features + axis].at[l] = sighting.coverage * sighting.direction[axis].at[l];
+          kernels.forward(student.decoder.view(), input, output, work.data());
+          for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t l = 0; l < network_lanes; ++l)
+              slopes[c].at[l] = sighting.weight * (output[c].at[l] - sighting.target[c].at[l]);
+          kernels.backward(student.decoder.view(), input, output, slopes, gradients.parts[part].data(), nullptr,
+                           work.data());
+        }
+      }
+    });
+    at += some;
+    gradients.mean_into(gradient, static_cast<double>(some * sightings_a_group * network_lanes));
+    adam.step(student.decoder.values, gradient,
+              0.3F * static_cast<float>(options.rate) * falling_rate(static_cast<double>(step) / options.refining));
+  }
+}
+
+FeatureNetwork new_encoder(std::uint64_t seed) {
+  FeatureNetwork encoder(signature_size, encoder_hidden0, encoder_hidden1, texel_features);
+  randomise(encoder, seed + 17);
+  return encoder;
+}
+
+}  // namespace
+
+TexelSample sampled(const Composition& composition, const Sightlines& sightlines, std::size_t texels,
+                    std::uint64_t seed, const Progress& progress) {
+  const std::size_t wanted = (texels + network_lanes - 1) / network_lanes;
+  std::vector<std::vector<std::uint32_t>> blocks_of_part(composition.parts.size());
+  std::vector<std::uint64_t> texels_of_part(composition.parts.size());
+  for (std::uint32_t b = 0; b < composition.blocks.size(); ++b) {
+    blocks_of_part[composition.blocks[b].part].push_back(b);
+    texels_of_part[composition.blocks[b].part] += composition.blocks[b].opaque;
+  }
+  TexelSample sample;
+  Dice dice(seed);
+  for (std::uint32_t part = 0; part < composition.parts.size(); ++part) {
+    if (texels_of_part[part] == 0) continue;
+    const auto share = static_cast<double>(texels_of_part[part]) / static_cast<double>(composition.opaque_texels);
+    const std::size_t groups =
+        std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(share * static_cast<double>(wanted))));
+    // Evenly along the part's texels, so that none of it is missed.
+    std::uint64_t passed = 0;
+    std::size_t at = 0;
+    const double offset = dice.share();
+    for (std::size_t g = 0; g < groups; ++g) {
+      const auto place = static_cast<std::uint64_t>((static_cast<double>(g) + offset) / static_cast<double>(groups) *
+                                                    static_cast<double>(texels_of_part[part]));
+      while (passed + composition.blocks[blocks_of_part[part][at]].opaque <= place)
+        passed += composition.blocks[blocks_of_part[part][at++]].opaque;
+      TexelSample::Piece piece;
+      piece.part = part;
+      const Composition::Block& block = composition.blocks[blocks_of_part[part][at]];
+      const std::vector<TexelSite> sites = sites_of(composition, block);
+      if (sites.empty()) continue;
+      std::vector<TexelGroup> groups_here = groups_of(composition, block, sites);
+      piece.group = groups_here[dice.below(groups_here.size())];
+      piece.directions = sightlines.directions(sites, trained_directions, dice.next());
+      piece.held_out = sightlines.directions(sites, held_out_directions, dice.next());
+      sample.pieces.push_back(std::move(piece));
+      if (g % 32 == 0) progress.at("looking at texels", static_cast<double>(sample.pieces.size()) / static_cast<double>(wanted + composition.parts.size()));
+    }
+  }
+  return sample;
+}
+
+bool stays(const Student& student, const Composition::Part& part) {
+  return student.keeps && student.branches.front().teacher == part.teacher && !part.bent;
+}
+
+bool shown_exactly(const Student& student, const Composition::Part& part) {
+  return student.exact && !part.bent &&
+         std::any_of(student.branches.begin(), student.branches.end(),
+                     [&](const Student::Branch& branch) { return branch.teacher == part.teacher; });
+}
+
+std::vector<FeatureNetwork> networks_of(const Composition& composition) {
+  std::vector<FeatureNetwork> networks;
+  for (const auto& teacher : composition.teachers) networks.emplace_back(*teacher);
+  return networks;
+}
+
+Student keeping(const Composition& composition, const TexelSample& sample, std::size_t base,
+                const TrainingOptions& options, const Progress& progress) {
+  const Decoder decoder = fold_turn(*composition.teachers[base], composition.frames[base], Axes::forward, Axes::forward);
+  Student student{FeatureNetwork(decoder), new_encoder(options.seed), {{base, composition.frames[base].transpose()}},
+                  true,                    true};
+  train_together(student, Lesson(composition, sample), options.steps / 2, false, options, progress);
+  return student;
+}
+
+Student adapted(const Student& student, const Composition& composition, const TexelSample& sample, std::size_t width,
+                const TrainingOptions& options, const Progress& progress) {
+  Student result = student;
+  result.keeps = result.exact = false;
+  result.decoder = widened(student.decoder, width, options.seed + 5);
+  const Lesson lesson(composition, sample);
+  refine(result, lesson, options, progress);
+  train_together(result, lesson, options.steps / 8, false, options, progress);
+  return result;
+}
+
+Student from_scratch(const Composition& composition, const TexelSample& sample, std::size_t width,
+                     const TrainingOptions& options, const Progress& progress) {
+  Student student{FeatureNetwork(decoder_inputs, width, width, 3), new_encoder(options.seed), {}, false, false};
+  randomise(student.decoder, options.seed + 3);
+  const Lesson lesson(composition, sample);
+  train_together(student, lesson, options.steps, true, options, progress);
+  refine(student, lesson, options, progress);
+  train_together(student, lesson, options.steps / 8, false, options, progress);
+  return student;
+}
+
+std::array<FeatureLevels, texel_features> feature_levels(int bits, AlphaCode code) {
+  std::array<FeatureLevels, texel_features> levels;
+  for (std::size_t c = 0; c < texel_features; ++c) {
+    const bool alpha = c % 4 == 3;
+    const int dropped = std::max(8 - bits, alpha && code == AlphaCode::halved ? 1 : 0), step = 1 << dropped;
+    levels[c] = {static_cast<float>(step - 1) / 255, static_cast<float>(step) / 255, 0,
+                 static_cast<float>(256 / step - 1)};
+    // Red 0 would be transparent.
+    if (c == 0 && dropped == 0) levels[c].lowest = 1;
+  }
+  return levels;
+}
+
+void first_guess(const Student& student, const FeatureNetwork& teacher, const Composition::Part& part,
+                 const TexelGroup& group, const std::vector<Sighting>& sightings, Lanes* features, Lanes* work) {
+  const NetworkKernels& kernels = network_kernels();
+  // All of a group start alike, so that they average well.
+  float least = std::numeric_limits<float>::infinity();
+  const auto consider = [&](const Lanes* guess) {
+    Lanes tried[texel_features], error;
+    std::copy_n(guess, texel_features, tried);
+    kernels.fit_texels(student.decoder.view(), sightings.data(), sightings.size(), {}, tried, &error, work);
+    const float sum = std::accumulate(std::begin(error.at), std::end(error.at), 0.0F);
+    if (!(sum < least)) return;
+    least = sum;
+    std::copy_n(guess, texel_features, features);
+  };
+  Lanes guess[texel_features];
+  if (student.encoder) {
+    Lanes signs[signature_size];
+    signature(teacher, group, signs, work);
+    kernels.forward(student.encoder->view(), signs, guess, work);
+    consider(guess);
+  }
+  for (const Student::Branch& branch : student.branches) {
+    if (student.encoder && branch.teacher != part.teacher) continue;
+    for (std::size_t l = 0; l < network_lanes; ++l) {
+      Eigen::Matrix<double, 8, 1> own;
+      for (std::size_t c = 0; c < texel_features; ++c)
+        own[static_cast<Eigen::Index>(c)] = static_cast<double>(group.features[c].at[l]);
+      const Eigen::Matrix<double, 8, 1> stored = branch.encode * own;
+      for (std::size_t c = 0; c < texel_features; ++c)
+        guess[c].at[l] = static_cast<float>(std::clamp(stored[static_cast<Eigen::Index>(c)], 0.0, 1.0));
+    }
+    consider(guess);
+  }
+}
+
+std::size_t workspace_of(const Student& student, const std::vector<FeatureNetwork>& teachers) {
+  std::size_t most = network_kernels().workspace(student.decoder.view());
+  if (student.encoder) most = std::max(most, network_kernels().workspace(student.encoder->view()));
+  for (const FeatureNetwork& teacher : teachers) most = std::max(most, network_kernels().workspace(teacher.view()));
+  return most;
+}
+
+}  // namespace rebake

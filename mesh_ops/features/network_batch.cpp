@@ -1,0 +1,350 @@
+// Compiled for several kinds of processors (mesh_ops/CMakeLists.txt): GCC's vector types become the widest registers
+// that each has.
+#include "mesh_ops/features/network_batch.h"
+
+#ifndef REBAKE_NETWORK_NAME
+#define REBAKE_NETWORK_NAME network_kernels_baseline
+#endif
+
+#define REBAKE_INLINE [[gnu::always_inline]] inline
+
+namespace rebake {
+
+namespace {
+
+using Vector = float __attribute__((vector_size(64), may_alias));
+using Integers = std::int32_t __attribute__((vector_size(64), may_alias));
+
+constexpr std::size_t lanes = network_lanes, features_count = texel_features, triangle = 36;
+
+REBAKE_INLINE Vector& as_vector(Lanes& lane) { return reinterpret_cast<Vector&>(lane); }
+REBAKE_INLINE const Vector& as_vector(const Lanes& lane) { return reinterpret_cast<const Vector&>(lane); }
+REBAKE_INLINE Vector* as_vectors(Lanes* lane) { return reinterpret_cast<Vector*>(lane); }
+REBAKE_INLINE const Vector* as_vectors(const Lanes* lane) { return reinterpret_cast<const Vector*>(lane); }
+
+REBAKE_INLINE Vector least(Vector a, Vector b) { return a < b ? a : b; }
+REBAKE_INLINE Vector greatest(Vector a, Vector b) { return a > b ? a : b; }
+REBAKE_INLINE Vector all(float value) { return Vector{} + value; }
+
+// The nearest whole number, of numbers below 2²²: those beyond 1.5 · 2²³ have no places behind the point.
+constexpr float shifter = 12582912;
+REBAKE_INLINE Vector rounded(Vector x) { return (x + shifter) - shifter; }
+
+REBAKE_INLINE Vector root(Vector x) {
+  Vector result;
+  for (std::size_t l = 0; l < lanes; ++l) result[l] = __builtin_sqrtf(x[l]);
+  return result;
+}
+
+// Right to 2 units in the last place. Coefficients: Moshier, Cephes Mathematical Library (1989), expf.
+REBAKE_INLINE Vector exponential(Vector x) {
+  x = greatest(least(x, all(87.F)), all(-87.F));
+  const Vector shifted = x * 1.44269504088896341F + shifter, turns = shifted - shifter;
+  const Vector r = (x - turns * 0.693359375F) + turns * 2.12194440e-4F;
+  const Vector p =
+      ((((1.9875691500e-4F * r + 1.3981999507e-3F) * r + 8.3334519073e-3F) * r + 4.1665795894e-2F) * r +
+       1.6666665459e-1F) *
+          r +
+      5.0000001201e-1F;
+  const Vector power = p * (r * r) + r + 1.F;
+  // The lowest bits of `shifted` are the power of two: they are added to the exponent.
+  return __builtin_bit_cast(Vector, __builtin_bit_cast(Integers, power) + (__builtin_bit_cast(Integers, shifted) << 23));
+}
+
+REBAKE_INLINE Vector logistic(Vector x) { return 1.F / (1.F + exponential(-x)); }
+
+// Four neurons at once, so that an input is read once for them.
+void layer(const float* values, std::size_t inputs, std::size_t outputs, const Vector* x, Vector* y) {
+  std::size_t j = 0;
+  for (; j + 4 <= outputs; j += 4) {
+    const float *w0 = values + j * (inputs + 1), *w1 = w0 + inputs + 1, *w2 = w1 + inputs + 1, *w3 = w2 + inputs + 1;
+    Vector s0 = all(w0[0]), s1 = all(w1[0]), s2 = all(w2[0]), s3 = all(w3[0]);
+    for (std::size_t i = 0; i < inputs; ++i) {
+      const Vector v = x[i];
+      s0 += w0[i + 1] * v;
+      s1 += w1[i + 1] * v;
+      s2 += w2[i + 1] * v;
+      s3 += w3[i + 1] * v;
+    }
+    y[j] = s0;
+    y[j + 1] = s1;
+    y[j + 2] = s2;
+    y[j + 3] = s3;
+  }
+  for (; j < outputs; ++j) {
+    const float* w = values + j * (inputs + 1);
+    Vector sum = all(w[0]);
+    for (std::size_t i = 0; i < inputs; ++i) sum += w[i + 1] * x[i];
+    y[j] = sum;
+  }
+}
+
+// Slopes of a layer's inputs from those of its outputs.
+void layer_back(const float* values, std::size_t inputs, std::size_t outputs, const Vector* slopes, Vector* result) {
+  for (std::size_t i = 0; i < inputs; ++i) result[i] = Vector{};
+  std::size_t j = 0;
+  for (; j + 4 <= outputs; j += 4) {
+    const float *w0 = values + j * (inputs + 1) + 1, *w1 = w0 + inputs + 1, *w2 = w1 + inputs + 1,
+                *w3 = w2 + inputs + 1;
+    const Vector s0 = slopes[j], s1 = slopes[j + 1], s2 = slopes[j + 2], s3 = slopes[j + 3];
+    for (std::size_t i = 0; i < inputs; ++i) result[i] += (w0[i] * s0 + w1[i] * s1) + (w2[i] * s2 + w3[i] * s3);
+  }
+  for (; j < outputs; ++j) {
+    const float* w = values + j * (inputs + 1) + 1;
+    for (std::size_t i = 0; i < inputs; ++i) result[i] += w[i] * slopes[j];
+  }
+}
+
+void layer_gradient(std::size_t inputs, std::size_t outputs, const Vector* x, const Vector* slopes, Vector* gradient) {
+  for (std::size_t j = 0; j < outputs; ++j, gradient += inputs + 1) {
+    const Vector slope = slopes[j];
+    gradient[0] += slope;
+    for (std::size_t i = 0; i < inputs; ++i) gradient[i + 1] += slope * x[i];
+  }
+}
+
+// Where activations and slopes lie in the workspace.
+struct Places {
+  Vector *first, *second, *first_slopes, *second_slopes, *output_slopes, *input, *input_slopes;
+  Places(const NetworkView& n, Vector* w)
+      : first(w),
+        second(first + n.hidden0),
+        first_slopes(second + n.hidden1),
+        second_slopes(first_slopes + n.hidden0),
+        output_slopes(second_slopes + n.hidden1),
+        input(output_slopes + n.outputs),
+        input_slopes(input + n.inputs) {}
+};
+
+std::size_t workspace_lanes(const NetworkView& n) { return 2 * (n.hidden0 + n.hidden1 + n.inputs) + n.outputs; }
+const float* second_values(const NetworkView& n) { return n.values + n.hidden0 * (n.inputs + 1); }
+const float* third_values(const NetworkView& n) { return second_values(n) + n.hidden1 * (n.hidden0 + 1); }
+
+REBAKE_INLINE void rectify(Vector* x, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) x[i] = x[i] > 0.F ? x[i] : Vector{};
+}
+
+void evaluate(const NetworkView& n, const Vector* inputs, Vector* outputs, const Places& at) {
+  layer(n.values, n.inputs, n.hidden0, inputs, at.first);
+  rectify(at.first, n.hidden0);
+  layer(second_values(n), n.hidden0, n.hidden1, at.first, at.second);
+  rectify(at.second, n.hidden1);
+  layer(third_values(n), n.hidden1, n.outputs, at.second, outputs);
+  for (std::size_t o = 0; o < n.outputs; ++o) outputs[o] = logistic(outputs[o]);
+}
+
+// From the slopes of the outputs before the logistic function.
+void evaluate_back(const NetworkView& n, const Vector* inputs, const Vector* output_slopes, Vector* gradient,
+                   Vector* input_slopes, const Places& at) {
+  layer_back(third_values(n), n.hidden1, n.outputs, output_slopes, at.second_slopes);
+  for (std::size_t j = 0; j < n.hidden1; ++j)
+    at.second_slopes[j] = at.second[j] > 0.F ? at.second_slopes[j] : Vector{};
+  layer_back(second_values(n), n.hidden0, n.hidden1, at.second_slopes, at.first_slopes);
+  for (std::size_t j = 0; j < n.hidden0; ++j) at.first_slopes[j] = at.first[j] > 0.F ? at.first_slopes[j] : Vector{};
+  if (input_slopes != nullptr) layer_back(n.values, n.inputs, n.hidden0, at.first_slopes, input_slopes);
+  if (gradient == nullptr) return;
+  layer_gradient(n.inputs, n.hidden0, inputs, at.first_slopes, gradient);
+  gradient += second_values(n) - n.values;
+  layer_gradient(n.hidden0, n.hidden1, at.first, at.second_slopes, gradient);
+  gradient += third_values(n) - second_values(n);
+  layer_gradient(n.hidden1, n.outputs, at.second, output_slopes, gradient);
+}
+
+std::size_t workspace(const NetworkView& network) { return workspace_lanes(network); }
+
+void forward(const NetworkView& network, const Lanes* inputs, Lanes* outputs, Lanes* work) {
+  evaluate(network, as_vectors(inputs), as_vectors(outputs), Places(network, as_vectors(work)));
+}
+
+void backward(const NetworkView& network, const Lanes* inputs, const Lanes* outputs, const Lanes* slopes,
+              Lanes* gradient, Lanes* input_slopes, Lanes* work) {
+  const Places at(network, as_vectors(work));
+  for (std::size_t o = 0; o < network.outputs; ++o) {
+    const Vector out = as_vector(outputs[o]);
+    at.output_slopes[o] = as_vector(slopes[o]) * (out * (1.F - out));
+  }
+  evaluate_back(network, as_vectors(inputs), at.output_slopes, as_vectors(gradient), as_vectors(input_slopes), at);
+}
+
+// Means of four texels, for each way to mix them.
+struct Mixed {
+  static constexpr std::uint32_t ways = 4;
+  Vector features[ways][features_count];
+  Mixed(const Vector* own, const Sighting* sightings, std::size_t count) {
+    bool wanted[ways] = {};
+    for (std::size_t k = 0; k < count; ++k)
+      if (sightings[k].mix < ways) wanted[sightings[k].mix] = true;
+    for (std::uint32_t way = 0; way < ways; ++way)
+      for (std::size_t c = 0; wanted[way] && c < features_count; ++c) {
+        features[way][c] = own[c];
+        if (way == 0) continue;
+        for (std::size_t l = 0; l < lanes; ++l) {
+          const float sum = (own[c][l] + own[c][(l + way) % lanes]) +
+                            (own[c][(l + 2 * way) % lanes] + own[c][(l + 3 * way) % lanes]);
+          features[way][c][l] = 0.25F * sum;
+        }
+      }
+  }
+};
+
+// The decoder's inputs for a sighting. `others`: what the texels were when neighbours were averaged; `own`: what they
+// are tried as.
+REBAKE_INLINE void set_inputs(const Sighting& sighting, const Vector* own, const Vector* before, const Mixed& mixed,
+                              Vector* input) {
+  for (std::size_t c = 0; c < features_count; ++c) {
+    Vector value = own[c];
+    if (sighting.mix != 0) value = mixed.features[sighting.mix][c] + 0.25F * (own[c] - before[c]);
+    input[c] = sighting.coverage * value;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    input[features_count + axis] = sighting.coverage * as_vector(sighting.direction[axis]);
+}
+
+Vector error_of(const NetworkView& n, const Sighting* sightings, std::size_t count, const Vector* own,
+                const Vector* before, const Mixed& mixed, const Places& at) {
+  Vector sum{}, out[3];
+  for (std::size_t k = 0; k < count; ++k) {
+    set_inputs(sightings[k], own, before, mixed, at.input);
+    evaluate(n, at.input, out, at);
+    Vector here{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vector off = out[c] - as_vector(sightings[k].target[c]);
+      here += off * off;
+    }
+    sum += sightings[k].weight * here;
+  }
+  return sum;
+}
+
+// The error's quadratic model around the features: error + 2 gᵀ e + eᵀ H e, H's lower triangle row by row.
+struct Model {
+  Vector error, slope[features_count], curvature[triangle];
+};
+
+void linearise(const NetworkView& n, const Sighting* sightings, std::size_t count, const Vector* own,
+               const Mixed& mixed, const Places& at, Model& model) {
+  model.error = Vector{};
+  for (Vector& v : model.slope) v = Vector{};
+  for (Vector& v : model.curvature) v = Vector{};
+  Vector out[3];
+  for (std::size_t k = 0; k < count; ++k) {
+    const Sighting& sighting = sightings[k];
+    set_inputs(sighting, own, own, mixed, at.input);
+    evaluate(n, at.input, out, at);
+    const float scale = sighting.coverage * (sighting.mix == 0 ? 1.F : 0.25F);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vector off = out[c] - as_vector(sighting.target[c]);
+      model.error += sighting.weight * (off * off);
+      for (std::size_t o = 0; o < 3; ++o) at.output_slopes[o] = Vector{};
+      at.output_slopes[c] = scale * (out[c] * (1.F - out[c]));
+      evaluate_back(n, at.input, at.output_slopes, nullptr, at.input_slopes, at);
+      std::size_t place = 0;
+      for (std::size_t i = 0; i < features_count; ++i) {
+        const Vector weighted = sighting.weight * at.input_slopes[i];
+        model.slope[i] += weighted * off;
+        for (std::size_t j = 0; j <= i; ++j) model.curvature[place++] += weighted * at.input_slopes[j];
+      }
+    }
+  }
+}
+
+constexpr std::size_t entry(std::size_t i, std::size_t j) {
+  return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i;
+}
+
+// The step of damped Gauss–Newton (Levenberg 1944, Marquardt 1963). Features at their bounds that would leave them stay.
+void step_of(const Model& model, const Vector* own, Vector damping, Vector* step) {
+  Vector a[triangle], g[features_count], trace{};
+  for (std::size_t i = 0; i < triangle; ++i) a[i] = model.curvature[i];
+  for (std::size_t i = 0; i < features_count; ++i) trace += a[entry(i, i)];
+  for (std::size_t i = 0; i < features_count; ++i) {
+    a[entry(i, i)] += damping * (trace * 0.125F);
+    const Integers stays =
+        ((own[i] <= 0.F) & (model.slope[i] > 0.F)) | ((own[i] >= 1.F) & (model.slope[i] < 0.F));
+    g[i] = stays ? Vector{} : model.slope[i];
+    for (std::size_t j = 0; j < features_count; ++j)
+      if (j != i) a[entry(i, j)] = stays ? Vector{} : a[entry(i, j)];
+  }
+  for (std::size_t i = 0; i < features_count; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      Vector sum = a[entry(i, j)];
+      for (std::size_t k = 0; k < j; ++k) sum -= a[entry(i, k)] * a[entry(j, k)];
+      // Where nothing changes the colour, there is nothing to solve: any pivot gives a step of 0.
+      a[entry(i, j)] = i == j ? root(sum > 0.F ? sum : all(1.F)) : sum / a[entry(j, j)];
+    }
+  for (std::size_t i = 0; i < features_count; ++i) {
+    Vector sum = g[i];
+    for (std::size_t k = 0; k < i; ++k) sum -= a[entry(i, k)] * step[k];
+    step[i] = sum / a[entry(i, i)];
+  }
+  for (std::size_t i = features_count; i-- > 0;) {
+    Vector sum = step[i];
+    for (std::size_t k = i + 1; k < features_count; ++k) sum -= a[entry(k, i)] * step[k];
+    step[i] = sum / a[entry(i, i)];
+  }
+}
+
+REBAKE_INLINE Vector on_level(Vector value, const FeatureLevels& level) {
+  const Vector k = rounded((value - level.first) / level.step);
+  return greatest(least(k, all(level.highest)), all(level.lowest));
+}
+
+// Coordinate descent over levels on the quadratic model, from the nearest ones.
+void search_levels(const Model& model, const FeatureLevels* levels, const Vector* own, Vector* found) {
+  Vector off[features_count];
+  for (std::size_t i = 0; i < features_count; ++i) off[i] = found[i] - own[i];
+  for (int sweep = 0; sweep < 3; ++sweep)
+    for (std::size_t i = 0; i < features_count; ++i) {
+      Vector slope = model.slope[i];
+      for (std::size_t j = 0; j < features_count; ++j) slope += model.curvature[entry(i, j)] * off[j];
+      const Vector curvature = model.curvature[entry(i, i)];
+      const Vector wanted = found[i] - slope / (curvature > 0.F ? curvature : all(1.F));
+      const Vector level = on_level(greatest(least(wanted, all(1.F)), Vector{}), levels[i]);
+      found[i] = curvature > 0.F ? levels[i].first + level * levels[i].step : found[i];
+      off[i] = found[i] - own[i];
+    }
+}
+
+void fit_texels(const NetworkView& decoder, const Sighting* sightings, std::size_t count, const TexelFit& fit,
+                Lanes* features, Lanes* error, Lanes* work) {
+  const Places at(decoder, as_vectors(work));
+  Vector own[features_count], tried[features_count], step[features_count];
+  for (std::size_t c = 0; c < features_count; ++c) own[c] = as_vector(features[c]);
+  Model model;
+  Vector damping = all(1e-3F);
+  for (std::size_t iteration = 0; iteration < fit.iterations; ++iteration) {
+    const Mixed mixed(own, sightings, count);
+    linearise(decoder, sightings, count, own, mixed, at, model);
+    step_of(model, own, damping, step);
+    for (std::size_t c = 0; c < features_count; ++c)
+      tried[c] = greatest(least(own[c] - step[c], all(1.F)), Vector{});
+    const Integers better = error_of(decoder, sightings, count, tried, own, mixed, at) < model.error;
+    for (std::size_t c = 0; c < features_count; ++c) own[c] = better ? tried[c] : own[c];
+    damping = better ? damping * 0.3F : damping * 8.F;
+  }
+  if (fit.levels != nullptr) {
+    for (std::size_t c = 0; c < features_count; ++c)
+      tried[c] = fit.levels[c].first + on_level(own[c], fit.levels[c]) * fit.levels[c].step;
+    if (fit.search) {
+      const Mixed mixed(own, sightings, count);
+      linearise(decoder, sightings, count, own, mixed, at, model);
+      Vector found[features_count];
+      for (std::size_t c = 0; c < features_count; ++c) found[c] = tried[c];
+      search_levels(model, fit.levels, own, found);
+      const Integers better = error_of(decoder, sightings, count, found, own, mixed, at) <
+                              error_of(decoder, sightings, count, tried, own, mixed, at);
+      for (std::size_t c = 0; c < features_count; ++c) tried[c] = better ? found[c] : tried[c];
+    }
+    for (std::size_t c = 0; c < features_count; ++c) own[c] = tried[c];
+  }
+  const Mixed mixed(own, sightings, count);
+  as_vector(*error) = error_of(decoder, sightings, count, own, own, mixed, at);
+  for (std::size_t c = 0; c < features_count; ++c) as_vector(features[c]) = own[c];
+}
+
+}  // namespace
+
+extern const NetworkKernels REBAKE_NETWORK_NAME;
+const NetworkKernels REBAKE_NETWORK_NAME = {workspace, forward, backward, fit_texels};
+
+}  // namespace rebake

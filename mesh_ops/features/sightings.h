@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh_ops/features/composition.h"
+#include "mesh_ops/features/feature_network.h"
+
+namespace rebake {
+
+/// From where a composition's texels can be seen: rays against the scene, as long as nothing opaque is in the way.
+class Sightlines {
+ public:
+  explicit Sightlines(const Scene& scene);
+
+  /// `count` directions, from the eye to the texels, spread over those in which the block is seen: the more often, the
+  /// farther the eye can be and the less slanted the surface looks. Both sides count. All around where it is seen from
+  /// nowhere. Other directions for another `phase`.
+  std::vector<Vec3> directions(const std::vector<TexelSite>& sites, std::size_t count, std::uint64_t phase) const;
+
+ private:
+  SceneRays rays_;
+  double size_;  ///< of the scene
+};
+
+/// Up to 16 texels of a block, neighbours where possible; the last fills the lanes that are left.
+struct TexelGroup {
+  std::size_t count = 0;
+  Lanes features[texel_features];  ///< decoded, of the texels as they were
+  bool turned = false;
+  Lanes turn[9];  ///< row-major, where turned
+};
+std::vector<TexelGroup> groups_of(const Composition& composition, const Composition::Block& block,
+                                  const std::vector<TexelSite>& sites);
+
+/// Display colours (3) of a group along a direction, by the rendering rule: features and directions of four texels
+/// averaged for `mix` (see Sighting), scaled by `coverage`, decoded once. `work` is the kernels' workspace.
+void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& direction, float coverage,
+           std::uint32_t mix, Lanes* colors, Lanes* work);
+
+/// How a sighting looks at texels: half of them alone, a quarter as squares of four, an eighth as runs of four, and an
+/// eighth at edges, where 1 to 3 of 4 samples are covered.
+struct SightingKind {
+  float coverage;
+  std::uint32_t mix;
+};
+SightingKind sighting_kind(std::uint64_t number);
+
+/// A sighting for each direction, of kinds `first`, `first + 1`, …
+std::vector<Sighting> sightings_of(const FeatureNetwork& teacher, const TexelGroup& group,
+                                   const std::vector<Vec3>& directions, std::uint64_t first, Lanes* work);
+
+/// What tells texels apart, whatever decoder they come from: their colours along twelve directions, −1 … 1.
+inline constexpr std::size_t signature_size = 36;
+void signature(const FeatureNetwork& teacher, const TexelGroup& group, Lanes* result, Lanes* work);
+
+}  // namespace rebake

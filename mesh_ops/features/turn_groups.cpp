@@ -1,0 +1,49 @@
+#include "mesh_ops/features/turn_groups.h"
+
+namespace rebake {
+
+namespace {
+
+// Turns that differ by less show the same colours to the last bit.
+constexpr double same_to_the_eye = 1e-9;
+
+}  // namespace
+
+TurnGroups turn_groups(const BakedObject& object) {
+  TurnGroups result;
+  std::uint32_t last = 0;
+  for (const TextureSet& set : object.sets)
+    for (const Face& face : set.soup.faces()) {
+      const auto turn = [&](std::size_t k) {
+        return set.soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.rotations())[face[k]];
+      };
+      const Mat3 first = turn(0);
+      if ((turn(1) - first).norm() > same_to_the_eye || (turn(2) - first).norm() > same_to_the_eye) {
+        result.group_of.push_back(TurnGroups::bent);
+        result.any_bent = true;
+        continue;
+      }
+      const auto fits = [&](std::uint32_t g) { return (result.groups[g].turn - first).norm() <= same_to_the_eye; };
+      if (last >= result.groups.size() || !fits(last)) {
+        for (last = 0; last < result.groups.size() && !fits(last);) ++last;
+        if (last == result.groups.size()) result.groups.push_back({first, 0});
+      }
+      ++result.groups[last].faces;
+      result.group_of.push_back(last);
+    }
+  // Beside bent faces a few that happen to be turned alike are no part of their own.
+  if (result.any_bent)
+    for (std::uint32_t& group : result.group_of)
+      if (group != TurnGroups::bent && result.groups[group].faces * 100 < result.group_of.size())
+        group = TurnGroups::bent;
+  return result;
+}
+
+bool nearly_equal(const Decoder& a, const Decoder& b) {
+  if (a == b) return true;
+  Decoder same = a;
+  same.weights0 = b.weights0;
+  return same == b && (a.weights0 - b.weights0).cwiseAbs().maxCoeff() <= 1e-13 * a.weights0.cwiseAbs().maxCoeff();
+}
+
+}  // namespace rebake
