@@ -109,7 +109,7 @@ std::vector<View> judging_views(const Scene& scene, int size) {
 
 void measure_pictures(Renderer& renderer, const Scene& composition, const Scene& fused, PlainReport& report,
                       const Progress& progress) {
-  constexpr int size = 400;
+  constexpr int size = 800;  // as the published viewers show them
   // The published viewers show white, and what is covered shows on black otherwise.
   const Scene before = on_background(composition, Color::Ones()), after = on_background(fused, Color::Ones()),
               on_black = on_background(composition, Color::Zero());

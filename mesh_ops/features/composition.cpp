@@ -198,6 +198,7 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
     add_blocks(result, page);
   }
   std::erase_if(result.blocks, [](const Composition::Block& block) { return block.opaque == 0; });
+  if (result.blocks.empty()) throw EditError("there is nothing to export: no triangle in view has an opaque texel");
   for (const Composition::Block& block : result.blocks) result.opaque_texels += block.opaque;
   return result;
 }

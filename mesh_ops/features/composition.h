@@ -48,7 +48,7 @@ struct Composition {
 };
 
 /// Takes a scene apart for one plain folder: where two uses of a texel are turned differently, each gets its own.
-/// Throws EditError where nothing visible has triangles, and for nodes whose texels cannot be moved.
+/// Throws EditError where nothing visible shows anything, and for nodes whose texels cannot be moved.
 Composition composed(const Scene& scene, int largest_side, const Progress& progress = {});
 
 /// One opaque texel of a block.

@@ -62,14 +62,28 @@ double weight_of(const std::vector<Sighting>& sightings) {
   return sum;
 }
 
-// Of the sample, as fitting would leave it.
+// Mean squared error of a group's texels over some sightings.
+double error_over(const Student& student, const std::vector<Sighting>& sightings, std::size_t texels, Lanes* features,
+                  Lanes* work) {
+  Lanes error;
+  network_kernels().fit_texels(student.decoder.view(), sightings.data(), sightings.size(), {}, features, &error, work);
+  double sum = 0;
+  for (std::size_t l = 0; l < texels; ++l) sum += static_cast<double>(error.at[l]);
+  return sum / weight_of(sightings) / static_cast<double>(texels);
+}
+
+// PSNR over the sample, as fitting would leave it: of texels alone or as pixels mix them, whichever is worse. A picture
+// shows the one or the other, by its distance.
 double judged(const Student& student, const Composition& composition, const TexelSample& sample,
               const FuseOptions& options, const Progress& progress) {
   const std::vector<FeatureNetwork> teachers = networks_of(composition);
   const auto levels = feature_levels(options.bits, AlphaCode::halved);
-  std::vector<double> squares(sample.pieces.size());
+  struct Errors {
+    double alone = 0, mixed = 0;
+  };
+  std::vector<Errors> errors(sample.pieces.size());
   progress.at("judging", 0);
-  tbb::parallel_for(std::size_t{0}, squares.size(), [&](std::size_t k) {
+  tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t k) {
     const TexelSample::Piece& piece = sample.pieces[k];
     const Composition::Part& part = composition.parts[piece.part];
     if (stays(student, part)) return;
@@ -80,29 +94,35 @@ double judged(const Student& student, const Composition& composition, const Texe
                held_out = sightings_of(teacher, piece.group, piece.held_out, k, work.data());
     Lanes features[texel_features], error;
     first_guess(student, teacher, part, piece.group, seen, features, work.data());
-    network_kernels().fit_texels(
-        student.decoder.view(), seen.data(), seen.size(),
-        {static_cast<std::size_t>(options.iterations), levels.data(), options.search && options.iterations > 0}, features,
-        &error, work.data());
-    network_kernels().fit_texels(student.decoder.view(), held_out.data(), held_out.size(), {}, features, &error,
-                                 work.data());
-    for (std::size_t l = 0; l < piece.group.count; ++l)
-      squares[k] += static_cast<double>(error.at[l]) / weight_of(held_out) / static_cast<double>(piece.group.count);
+    const std::size_t iterations = shown_exactly(student, part) ? 0 : static_cast<std::size_t>(options.iterations);
+    network_kernels().fit_texels(student.decoder.view(), seen.data(), seen.size(),
+                                 {iterations, levels.data(), options.search && options.iterations > 0}, features,
+                                 &error, work.data());
+    std::vector<Sighting> alone, mixed;
+    for (const Sighting& sighting : held_out)
+      (sighting.mix == 0 && sighting.coverage == 1 ? alone : mixed).push_back(sighting);
+    errors[k] = {error_over(student, alone, piece.group.count, features, work.data()),
+                 error_over(student, mixed, piece.group.count, features, work.data())};
   });
   // A part counts by its texels, whatever its share of the sample.
-  std::vector<double> texels(composition.parts.size()), pieces(texels.size()), sums(texels.size());
+  std::vector<double> texels(composition.parts.size()), pieces(texels.size());
+  std::vector<Errors> sums(texels.size());
   for (const Composition::Block& block : composition.blocks) texels[block.part] += block.opaque;
-  for (std::size_t k = 0; k < squares.size(); ++k) {
-    sums[sample.pieces[k].part] += squares[k];
-    ++pieces[sample.pieces[k].part];
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    const std::uint32_t part = sample.pieces[k].part;
+    sums[part].alone += errors[k].alone;
+    sums[part].mixed += errors[k].mixed;
+    ++pieces[part];
   }
-  double sum = 0, count = 0;
+  Errors whole;
+  double count = 0;
   for (std::size_t p = 0; p < texels.size(); ++p) {
     if (pieces[p] == 0) continue;
-    sum += texels[p] * sums[p] / pieces[p];
+    whole.alone += texels[p] * sums[p].alone / pieces[p];
+    whole.mixed += texels[p] * sums[p].mixed / pieces[p];
     count += texels[p];
   }
-  return count > 0 ? psnr_of(sum / count) : 100;
+  return count > 0 ? psnr_of(std::max(whole.alone, whole.mixed) / count) : 100;
 }
 
 // The teacher of most texels, or the one that a node is to keep.
@@ -141,6 +161,8 @@ FittedBlock fitted(const Composition& composition, const Sightlines& sightlines,
   const std::vector<Vec3> directions = sightlines.directions(result.sites, fitted_directions, 2 * number),
                           others = sightlines.directions(result.sites, judged_directions, 2 * number + 1);
   std::vector<Lanes> work(workspace_of(student, teachers));
+  result.bytes.resize(result.sites.size());
+  result.errors.resize(result.sites.size());
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const TexelGroup& group = groups[g];
     const auto seen = sightings_of(teacher, group, directions, number + g, work.data());
@@ -150,14 +172,14 @@ FittedBlock fitted(const Composition& composition, const Sightlines& sightlines,
     if (shown_exactly(student, part)) own.iterations = 0;
     kernels.fit_texels(student.decoder.view(), seen.data(), seen.size(), own, features, &error, work.data());
     for (std::size_t l = 0; l < group.count; ++l) {
-      auto& bytes = result.bytes.emplace_back();
+      auto& bytes = result.bytes[group.site[l]];
       for (std::size_t c = 0; c < texel_features; ++c)
         bytes[c] = static_cast<std::uint8_t>(std::lround(255 * features[c].at[l]));
     }
     const auto held_out = sightings_of(teacher, group, others, number + g, work.data());
     kernels.fit_texels(student.decoder.view(), held_out.data(), held_out.size(), {}, features, &error, work.data());
     for (std::size_t l = 0; l < group.count; ++l)
-      result.errors.push_back(static_cast<float>(static_cast<double>(error.at[l]) / weight_of(held_out)));
+      result.errors[group.site[l]] = static_cast<float>(static_cast<double>(error.at[l]) / weight_of(held_out));
   }
   return result;
 }
@@ -181,47 +203,66 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   const auto late = [&] { return options.seconds > 0 && seconds_since(start) > options.seconds / 3; };
   const std::size_t base = base_of(composition, options);
   const TexelSample sample = sampled(composition, sightlines, options.sample, options.training.seed, progress);
-  std::optional<FusePlan> plan;
-  std::vector<FuseTrial> trials;
-  double best = -1;
+  struct Candidate {
+    Student student;
+    FuseTrial trial;
+  };
+  std::vector<Candidate> candidates;
   using Way = FuseTrial::Way;
   const auto consider = [&](Student student, Way way, Clock::time_point begun) {
     FuseTrial trial{width_of(student), way, 0, 0};
     trial.psnr_db = judged(student, composition, sample, options, progress);
     trial.seconds = seconds_since(begun);
-    trials.push_back(trial);
-    if (trial.psnr_db <= best) return;
-    best = trial.psnr_db;
-    plan = {std::move(student), {}, trials.size() - 1};
+    candidates.push_back({std::move(student), trial});
+    return trial.psnr_db;
   };
-  const auto enough = [&] { return plan && (best >= options.psnr_db || late()); };
+  const auto reaches = [&](const Candidate& c) { return !options.width && c.trial.psnr_db >= options.psnr_db; };
+  const auto any_reaches = [&] { return std::any_of(candidates.begin(), candidates.end(), reaches); };
   Clock::time_point begun = Clock::now();
-  const Student kept = keeping(composition, sample, base, options.training, progress);
   const std::vector<int> widths = options.width ? std::vector<int>{*options.width} : std::vector<int>{16, 24, 32};
+  const Student kept = keeping(composition, sample, base, options.training, progress);
   if (options.keep != Keep::none && (options.keep == Keep::node || width_of(kept) <= widths.back()))
     consider(kept, Way::keep, begun);
-  if (options.keep != Keep::node) {
-    for (const int width : widths) {
-      if (enough()) break;
-      const auto wide = static_cast<std::size_t>(width);
-      begun = Clock::now();
-      if (width_of(kept) <= width)
-        consider(adapted(kept, composition, sample, wide, options.training, progress), Way::train, begun);
-      if (enough()) break;
-      begun = Clock::now();
-      if (composition.teachers.size() > 1 || !plan)
-        consider(from_scratch(composition, sample, wide, options.training, progress), Way::scratch, begun);
-    }
-    for (std::size_t bent_turns = 1; bent_turns < most_branches; ++bent_turns) {
-      if (enough()) break;
+  if (options.keep != Keep::node && !any_reaches()) {
+    // Quickest to make, but wide.
+    for (std::size_t bent_turns = 1; bent_turns < most_branches && !any_reaches() && !late(); ++bent_turns) {
       begun = Clock::now();
       Student student = side_by_side(composition, sample, bent_turns);
+      const std::size_t branches = student.branches.size();
       if (options.width && width_of(student) > *options.width) break;
-      consider(std::move(student), Way::side_by_side, begun);
+      if (bent_turns == 1 || branches > candidates.back().student.branches.size())
+        consider(std::move(student), Way::side_by_side, begun);
+    }
+    // Doubling a width gains about 2 dB: where the narrower one is far off, the next need not be tried.
+    constexpr double hopeless = 6;
+    double last = options.psnr_db;
+    for (const int width : widths) {
+      if (!candidates.empty() && (late() || (any_reaches() && last < options.psnr_db - hopeless))) break;
+      const auto wide = static_cast<std::size_t>(width);
+      last = 0;
+      if (width_of(kept) <= width) {
+        begun = Clock::now();
+        last = consider(adapted(kept, composition, sample, wide, options.training, progress), Way::train, begun);
+      }
+      // Of one teacher's texels none is strange to its decoder.
+      if (composition.teachers.size() > 1 || candidates.empty()) {
+        begun = Clock::now();
+        last = std::max(
+            last, consider(from_scratch(composition, sample, wide, options.training, progress), Way::scratch, begun));
+      }
+      if (!options.width && last >= options.psnr_db) break;
     }
   }
-  plan->trials = std::move(trials);
-  return std::move(*plan);
+  // The narrowest that is good enough, or else the best.
+  const auto better = [&](const Candidate& a, const Candidate& b) {
+    if (reaches(a) != reaches(b)) return reaches(a);
+    if (reaches(a) && a.trial.width != b.trial.width) return a.trial.width < b.trial.width;
+    return a.trial.psnr_db > b.trial.psnr_db;
+  };
+  const auto chosen = std::min_element(candidates.begin(), candidates.end(), better);
+  FusePlan plan{chosen->student, {}, static_cast<std::size_t>(chosen - candidates.begin())};
+  for (const Candidate& candidate : candidates) plan.trials.push_back(candidate.trial);
+  return plan;
 }
 
 Fused fuse(const Composition& composition, const Sightlines& sightlines, const FusePlan& plan,

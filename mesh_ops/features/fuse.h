@@ -21,12 +21,13 @@ struct FuseOptions {
   int iterations = 5;          ///< of Gauss–Newton for each texel; 0: features as the fitted map gives them
   bool search = true;          ///< looks among neighbouring bytes for better ones
   int bits = 8;                ///< a feature, 4 … 8
-  std::size_t sample = 8192;   ///< texels that decoders are trained on and judged by
+  std::size_t sample = 16384; ///< texels that decoders are trained on and judged by
   TrainingOptions training{};
   Layout layout = Layout::split;
 };
 
-/// What a way to fuse promises: PSNR over held-out directions of the sample.
+/// What a way to fuse promises: PSNR over held-out directions of the sample, of texels alone or as pixels mix them,
+/// whichever is worse.
 struct FuseTrial {
   int width = 0;             ///< of the wider hidden layer
   enum class Way {

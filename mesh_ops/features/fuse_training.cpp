@@ -82,7 +82,7 @@ struct Lesson {
 
 // Decoder (unless it is frozen) and encoder together: colours through the features between them.
 void train_together(Student& student, const Lesson& lesson, int steps, bool decoder_moves,
-                    const TrainingOptions& options, const Progress& progress) {
+                    double rate, const TrainingOptions& options, const Progress& progress) {
   const NetworkKernels& kernels = network_kernels();
   constexpr std::size_t groups_a_step = 64, sightings_a_group = 2;
   std::vector<std::size_t> pieces;
@@ -141,97 +141,13 @@ void train_together(Student& student, const Lesson& lesson, int steps, bool deco
                          encoder_gradients.parts[part].data(), nullptr, at_encoder);
       }
     });
-    const float rate = static_cast<float>(options.rate) * falling_rate(static_cast<double>(step) / steps);
+    const float step_rate = static_cast<float>(rate) * falling_rate(static_cast<double>(step) / steps);
     constexpr double observations = groups_a_step * sightings_a_group * network_lanes;
     encoder_gradients.mean_into(gradient, observations);
-    encoder_adam.step(encoder.values, gradient, rate);
+    encoder_adam.step(encoder.values, gradient, step_rate);
     if (!decoder_moves) continue;
     decoder_gradients.mean_into(gradient, observations);
-    decoder_adam.step(student.decoder.values, gradient, rate);
-  }
-}
-
-// The decoder alone, on features that follow it by a step of Gauss–Newton whenever they are met; rounded in the second
-// half, so that it learns what is stored.
-void refine(Student& student, const Lesson& lesson, const TrainingOptions& options, const Progress& progress) {
-  const NetworkKernels& kernels = network_kernels();
-  constexpr std::size_t groups_a_step = 16, sightings_a_group = 16;
-  const std::size_t count = lesson.sample.pieces.size();
-  const auto levels = feature_levels(8, AlphaCode::halved);
-  const std::size_t work_size = std::max(workspace_of(student, lesson.teachers), lesson.workspace());
-  std::vector<std::array<Lanes, texel_features>> features(count);
-  const auto sightings = [&](std::size_t number, std::uint64_t seed, std::size_t some, Lanes* work) {
-    const TexelSample::Piece& piece = lesson.sample.pieces[number];
-    Dice dice(seed);
-    std::vector<Vec3> directions;
-    for (std::size_t k = 0; k < some; ++k) directions.push_back(piece.directions[dice.below(piece.directions.size())]);
-    return sightings_of(lesson.teacher_of(number), piece.group, directions, seed % 8, work);
-  };
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
-    std::vector<Lanes> work(work_size);
-    const TexelSample::Piece& piece = lesson.sample.pieces[k];
-    const auto seen = sightings(k, options.seed + k, 24, work.data());
-    first_guess(student, lesson.teacher_of(k), lesson.composition.parts[piece.part], piece.group, seen,
-                features[k].data(), work.data());
-    Lanes error;
-    kernels.fit_texels(student.decoder.view(), seen.data(), seen.size(), {4, nullptr, false}, features[k].data(),
-                       &error, work.data());
-  });
-  Adam adam(student.decoder.values.size());
-  Gradients gradients(student.decoder.values.size());
-  std::vector<float> gradient;
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::size_t at = count;
-  for (int step = 0; step < options.refining; ++step) {
-    if (step % 20 == 0) progress.at("refining the decoder", static_cast<double>(step) / options.refining);
-    // Each piece as often as any other, never twice in one step.
-    const std::size_t some = std::min(groups_a_step, count);
-    if (at + some > count) {
-      Dice dice(options.seed * 31 + static_cast<std::uint64_t>(step));
-      for (std::size_t k = count; k > 1; --k) std::swap(order[k - 1], order[dice.below(k)]);
-      at = 0;
-    }
-    gradients.clear();
-    tbb::parallel_for(std::size_t{0}, gradient_parts, [&](std::size_t part) {
-      std::vector<Lanes> work(work_size);
-      for (std::size_t g = part; g < some; g += gradient_parts) {
-        const std::size_t number = order[at + g];
-        const auto seen = sightings(number, options.seed + static_cast<std::uint64_t>(step) * 977 + number,
-                                    sightings_a_group, work.data());
-        Lanes* own = features[number].data();
-        Lanes error, shown[texel_features];
-        kernels.fit_texels(student.decoder.view(), seen.data(), seen.size(), {1, nullptr, false}, own, &error,
-                           work.data());
-        std::copy_n(own, texel_features, shown);
-        if (step * 2 > options.refining)
-          kernels.fit_texels(student.decoder.view(), seen.data(), 0, {0, levels.data(), false}, shown, &error,
-                             work.data());
-        for (const Sighting& sighting : seen) {
-          Lanes input[decoder_inputs], output[3], slopes[3];
-          for (std::size_t c = 0; c < texel_features; ++c) {
-            if (sighting.mix == 0)
-              input[c] = shown[c];
-            else
-              mix(shown[c], sighting.mix, input[c]);
-            for (float& value : input[c].at) value *= sighting.coverage;
-          }
-          for (std::size_t axis = 0; axis < 3; ++axis)
-            for (std::size_t l = 0; l < network_lanes; ++l)
-              input[texel_features + axis].at[l] = sighting.coverage * sighting.direction[axis].at[l];
-          kernels.forward(student.decoder.view(), input, output, work.data());
-          for (std::size_t c = 0; c < 3; ++c)
-            for (std::size_t l = 0; l < network_lanes; ++l)
-              slopes[c].at[l] = sighting.weight * (output[c].at[l] - sighting.target[c].at[l]);
-          kernels.backward(student.decoder.view(), input, output, slopes, gradients.parts[part].data(), nullptr,
-                           work.data());
-        }
-      }
-    });
-    at += some;
-    gradients.mean_into(gradient, static_cast<double>(some * sightings_a_group * network_lanes));
-    adam.step(student.decoder.values, gradient,
-              0.3F * static_cast<float>(options.rate) * falling_rate(static_cast<double>(step) / options.refining));
+    decoder_adam.step(student.decoder.values, gradient, step_rate);
   }
 }
 
@@ -305,7 +221,7 @@ Student keeping(const Composition& composition, const TexelSample& sample, std::
   const Decoder decoder = fold_turn(*composition.teachers[base], composition.frames[base], Axes::forward, Axes::forward);
   Student student{FeatureNetwork(decoder), new_encoder(options.seed), {{base, composition.frames[base].transpose()}},
                   true,                    true};
-  train_together(student, Lesson(composition, sample), options.steps / 2, false, options, progress);
+  train_together(student, Lesson(composition, sample), options.steps / 2, false, options.rate / 4, options, progress);
   return student;
 }
 
@@ -314,9 +230,8 @@ Student adapted(const Student& student, const Composition& composition, const Te
   Student result = student;
   result.keeps = result.exact = false;
   result.decoder = widened(student.decoder, width, options.seed + 5);
-  const Lesson lesson(composition, sample);
-  refine(result, lesson, options, progress);
-  train_together(result, lesson, options.steps / 8, false, options, progress);
+  // Gently, so that what it can already is not lost.
+  train_together(result, Lesson(composition, sample), options.steps, true, options.rate / 2, options, progress);
   return result;
 }
 
@@ -324,10 +239,7 @@ Student from_scratch(const Composition& composition, const TexelSample& sample, 
                      const TrainingOptions& options, const Progress& progress) {
   Student student{FeatureNetwork(decoder_inputs, width, width, 3), new_encoder(options.seed), {}, false, false};
   randomise(student.decoder, options.seed + 3);
-  const Lesson lesson(composition, sample);
-  train_together(student, lesson, options.steps, true, options, progress);
-  refine(student, lesson, options, progress);
-  train_together(student, lesson, options.steps / 8, false, options, progress);
+  train_together(student, Lesson(composition, sample), options.steps, true, options.rate, options, progress);
   return student;
 }
 
@@ -371,7 +283,7 @@ void first_guess(const Student& student, const FeatureNetwork& teacher, const Co
       Eigen::Matrix<double, 8, 1> own;
       for (std::size_t c = 0; c < texel_features; ++c)
         own[static_cast<Eigen::Index>(c)] = static_cast<double>(group.features[c].at[l]);
-      const Eigen::Matrix<double, 8, 1> stored = branch.encode * own;
+      const Eigen::Matrix<double, 8, 1> stored = branch.encode * own + branch.offset;
       for (std::size_t c = 0; c < texel_features; ++c)
         guess[c].at[l] = static_cast<float>(std::clamp(stored[static_cast<Eigen::Index>(c)], 0.0, 1.0));
     }

@@ -29,8 +29,9 @@ struct Student {
   struct Branch {
     std::size_t teacher;
     Mat3 turn;  ///< fed direction = turn · world direction
-    /// Features as the student stores them from those of the teacher.
+    /// Features as the student stores them from those of the teacher: encode · features + offset.
     Eigen::Matrix<double, 8, 8> encode = Eigen::Matrix<double, 8, 8>::Identity();
+    Eigen::Matrix<double, 8, 1> offset = Eigen::Matrix<double, 8, 1>::Zero();
   };
   std::vector<Branch> branches;
   bool keeps = false;  ///< the decoder is its one branch's own, and the texels of that stay bit for bit
@@ -43,9 +44,8 @@ bool stays(const Student& student, const Composition::Part& part);
 bool shown_exactly(const Student& student, const Composition::Part& part);
 
 struct TrainingOptions {
-  int steps = 8000;         ///< of Adam on decoder and encoder together
-  int refining = 2000;      ///< steps of the decoder, features following by Gauss–Newton
-  double rate = 0.005;      ///< of Adam at the start
+  int steps = 8000;    ///< of Adam on decoder and encoder together; more gains little
+  double rate = 0.02;  ///< of Adam at the start, for a new decoder
   std::uint64_t seed = 1;
 };
 
@@ -56,8 +56,8 @@ std::vector<FeatureNetwork> networks_of(const Composition& composition);
 Student keeping(const Composition& composition, const TexelSample& sample, std::size_t base,
                 const TrainingOptions& options, const Progress& progress);
 /// Teachers side by side in one decoder: each keeps its own neurons, and the plane of the two features that matter least
-/// is cut into sectors, one for each, by which all others are switched off. Linear in the features, so that what pixels
-/// average (texels, coverage) stays right. Bent parts get branches for `bent_turns` turns each.
+/// is cut into sectors, one for each, by which all others are switched off. Averages of texels stay right, and partly
+/// covered pixels nearly: both keep to the sector. Bent parts get branches for `bent_turns` turns each.
 Student side_by_side(const Composition& composition, const TexelSample& sample, std::size_t bent_turns);
 /// Most branches that find room in the plane.
 inline constexpr std::size_t most_branches = 4;

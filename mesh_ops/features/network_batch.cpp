@@ -168,7 +168,7 @@ void backward(const NetworkView& network, const Lanes* inputs, const Lanes* outp
 
 // Means of four texels, for each way to mix them.
 struct Mixed {
-  static constexpr std::uint32_t ways = 4;
+  static constexpr std::uint32_t ways = 5;
   Vector features[ways][features_count];
   Mixed(const Vector* own, const Sighting* sightings, std::size_t count) {
     bool wanted[ways] = {};
@@ -320,7 +320,7 @@ void fit_texels(const NetworkView& decoder, const Sighting* sightings, std::size
       tried[c] = greatest(least(own[c] - step[c], all(1.F)), Vector{});
     const Integers better = error_of(decoder, sightings, count, tried, own, mixed, at) < model.error;
     for (std::size_t c = 0; c < features_count; ++c) own[c] = better ? tried[c] : own[c];
-    damping = better ? damping * 0.3F : damping * 8.F;
+    damping = greatest(better ? damping * 0.3F : damping * 8.F, all(1e-4F));
   }
   if (fit.levels != nullptr) {
     for (std::size_t c = 0; c < features_count; ++c)

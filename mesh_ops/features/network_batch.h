@@ -31,7 +31,8 @@ struct Sighting {
   Lanes target[3];     ///< display colours 0 … 1
   float coverage;      ///< share of a pixel that they cover: the rule scales features and direction by it
   float weight;        ///< of the squared error
-  /// 0: each texel alone. Else the mean of four, as pixels average them: lane l with l + mix, l + 2 mix and l + 3 mix.
+  /// 0: each texel alone. Else (1 … 4) the mean of four, as pixels average them: lane l with l + mix, l + 2 mix and
+  /// l + 3 mix.
   std::uint32_t mix;
 };
 

@@ -9,7 +9,6 @@ namespace rebake {
 
 namespace {
 
-using Encoding = Eigen::Matrix<double, 8, 8>;
 using Branch = Student::Branch;
 
 // The two features by which colours change least, over the sample and its teachers.
@@ -114,6 +113,16 @@ Vec2 border(std::size_t j, std::size_t n) {
   return {std::min(1.0, 2 - along), std::min(1.0, along)};
 }
 
+// The least determinant of two borders beside each other.
+double narrowest(std::size_t n) {
+  double least = 1;
+  for (std::size_t j = 0; j < n; ++j) {
+    const Vec2 a = border(j, n), b = border(j + 1, n);
+    least = std::min(least, a.x() * b.y() - a.y() * b.x());
+  }
+  return least;
+}
+
 // How far a layer's sums can be from 0 when its inputs are at most `largest`.
 Eigen::VectorXd reach(const Eigen::MatrixXd& weights, const Eigen::VectorXd& bias, const Eigen::VectorXd& largest) {
   return weights.cwiseAbs().transpose() * largest + bias.cwiseAbs();
@@ -127,8 +136,8 @@ Student side_by_side(const Composition& composition, const TexelSample& sample, 
   std::vector<Branch>& branches = student.branches;
   const auto [c, e] = least_features(composition, sample);
   const std::size_t n = branches.size();
-  // A share of all features' mean is added to both, so that no texel lies on a border.
-  constexpr double padding = 0.15;
+  // Every texel lies so far inside its sector that rounding to bytes cannot bring it near a border.
+  const double inside = 5.0 / 255 / narrowest(n);
   std::vector<Decoder> decoders;
   Eigen::Index first = static_cast<Eigen::Index>(2 * (n - 1)), second = static_cast<Eigen::Index>(n - 1);
   const Eigen::Index gates = first, constants = second;
@@ -137,21 +146,18 @@ Student side_by_side(const Composition& composition, const TexelSample& sample, 
     Branch& branch = branches[k];
     if (n > 1) {
       const Vec2 r1 = border(k, n), r2 = border(k + 1, n);
-      Encoding padded = Encoding::Identity();
-      for (const Eigen::Index feature : {c, e}) {
-        padded.row(feature) /= 1 + padding;
-        padded.row(feature).array() += padding / (1 + padding) / 8;
-      }
-      Encoding sector = Encoding::Identity();
-      sector(c, c) = 0.5 * r1.x();
-      sector(c, e) = 0.5 * r2.x();
-      sector(e, c) = 0.5 * r1.y();
-      sector(e, e) = 0.5 * r2.y();
-      branch.encode = sector * padded;
+      branch.encode(c, c) = (0.5 - inside) * r1.x();
+      branch.encode(c, e) = (0.5 - inside) * r2.x();
+      branch.encode(e, c) = (0.5 - inside) * r1.y();
+      branch.encode(e, e) = (0.5 - inside) * r2.y();
+      branch.offset[c] = inside * (r1.x() + r2.x());
+      branch.offset[e] = inside * (r1.y() + r2.y());
     }
     Decoder decoder =
         fold_turn(*composition.teachers[branch.teacher], branch.turn.transpose(), Axes::forward, Axes::forward);
+    // It is fed encode⁻¹ · (features − offset).
     decoder.weights0.topRows<8>() = branch.encode.inverse().transpose() * decoder.weights0.topRows<8>();
+    decoder.bias0 -= decoder.weights0.topRows<8>().transpose() * branch.offset;
     const Eigen::VectorXd inner = reach(decoder.weights0, decoder.bias0, Eigen::VectorXd::Ones(decoder_inputs));
     most = std::max(most, reach(decoder.weights1, decoder.bias1, inner).maxCoeff());
     first += decoder.hidden0();
@@ -165,8 +171,8 @@ Student side_by_side(const Composition& composition, const TexelSample& sample, 
   all.bias1 = Eigen::VectorXd::Zero(second);
   all.weights2 = Eigen::MatrixXd::Zero(second, 3);
   all.bias2 = decoders.front().bias2;
-  // How far a texel of mean feature 0.05 is inside its sector, at least, must silence all others.
-  const double gain = std::sqrt(most / (0.5 * padding / (1 + padding) * 0.05 / static_cast<double>(n)));
+  // What lies 2/255 inside its sector, a quarter covered, must silence all others.
+  const double gain = std::sqrt(most / (0.25 * 2 / 255));
   for (std::size_t j = 1; j < n; ++j) {
     const Vec2 ray = border(j, n);
     const auto below = static_cast<Eigen::Index>(2 * (j - 1)), above = below + 1;

@@ -108,13 +108,18 @@ std::vector<Vec3> Sightlines::directions(const std::vector<TexelSite>& sites, st
 std::vector<TexelGroup> groups_of(const Composition& composition, const Composition::Block& block,
                                   const std::vector<TexelSite>& sites) {
   const FeatureTexture& texels = *composition.pages[block.page].texels;
-  std::vector<TexelGroup> groups((sites.size() + network_lanes - 1) / network_lanes);
-  for (std::size_t g = 0; g < groups.size(); ++g) {
+  const std::size_t runs = (sites.size() + 3) / 4, count = (runs + 3) / 4;
+  std::vector<TexelGroup> groups(count);
+  for (std::size_t g = 0; g < count; ++g) {
     TexelGroup& group = groups[g];
-    group.count = std::min(network_lanes, sites.size() - g * network_lanes);
     group.turned = composition.parts[block.part].bent;
+    for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t t = 4 * (g + k * count); t < std::min(sites.size(), 4 * (g + k * count) + 4); ++t)
+        group.site[group.count++] = static_cast<std::uint32_t>(t);
+    std::fill(group.site.begin() + static_cast<std::ptrdiff_t>(group.count), group.site.end(),
+              group.site[group.count - 1]);
     for (std::size_t l = 0; l < network_lanes; ++l) {
-      const TexelSite& site = sites[g * network_lanes + std::min(l, group.count - 1)];
+      const TexelSite& site = sites[group.site[l]];
       const auto features = decode_features(texels.at(site.x, site.y), texels.alpha_code());
       for (std::size_t c = 0; c < texel_features; ++c) group.features[c].at[l] = static_cast<float>(features[c]);
       for (std::size_t k = 0; k < 9; ++k)
@@ -158,10 +163,11 @@ void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& d
 SightingKind sighting_kind(std::uint64_t number) {
   switch (number % 8) {
     case 1:
+    case 3:
     case 5:
       return {1, 1};
-    case 3:
-      return {1, 2};
+    case 6:
+      return {1, 4};
     case 7:
       return {0.25F * static_cast<float>(1 + number / 8 % 3), 0};
     default:

@@ -22,9 +22,11 @@ class Sightlines {
   double size_;  ///< of the scene
 };
 
-/// Up to 16 texels of a block, neighbours where possible; the last fills the lanes that are left.
+/// Up to 16 texels of a block: four runs of four neighbours, far from each other, so that lanes l … l + 3 are mostly
+/// near and l, l + 4, l + 8, l + 12 far apart. The last texel fills the lanes that are left.
 struct TexelGroup {
   std::size_t count = 0;
+  std::array<std::uint32_t, network_lanes> site{};  ///< of each lane, among the block's
   Lanes features[texel_features];  ///< decoded, of the texels as they were
   bool turned = false;
   Lanes turn[9];  ///< row-major, where turned
@@ -37,8 +39,8 @@ std::vector<TexelGroup> groups_of(const Composition& composition, const Composit
 void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& direction, float coverage,
            std::uint32_t mix, Lanes* colors, Lanes* work);
 
-/// How a sighting looks at texels: half of them alone, a quarter as squares of four, an eighth as runs of four, and an
-/// eighth at edges, where 1 to 3 of 4 samples are covered.
+/// How a sighting looks at texels: half of them alone, an eighth as four neighbours, a quarter as four that are far apart
+/// (as small pictures do), and an eighth at edges, where 1 to 3 of 4 samples are covered.
 struct SightingKind {
   float coverage;
   std::uint32_t mix;

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/feature_png.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
 
@@ -149,6 +150,51 @@ std::shared_ptr<const BakedObject> mic_object() {
   object->decoder =
       std::make_shared<const Decoder>(read_mlp_json(read_file(folder / "mlp.json"), folder / "mlp.json").decoder);
   object->layout = Layout::chunked;
+  return object;
+}
+
+std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int quads) {
+  const fs::path folder = fs::path(REBAKE_SHARED) / "data" / "morpheus" / name;
+  if (!fs::exists(folder / "mlp.json")) return nullptr;
+  const fs::path feat0 = folder / "shape0.pngfeat0.png", feat1 = folder / "shape0.pngfeat1.png";
+  const FeatureTexture read =
+      read_feature_pngs(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved);
+  auto object = std::make_shared<BakedObject>();
+  Decoder decoder = read_mlp_json(read_file(folder / "mlp.json"), folder / "mlp.json").decoder;
+  // It was trained on (d + 1) / 2.
+  decoder.bias0 += 0.5 * decoder.weights0.bottomRows<3>().colwise().sum().transpose();
+  decoder.weights0.bottomRows<3>() *= 0.5;
+  object->decoder = std::make_shared<const Decoder>(decoder);
+  constexpr int cell = 17;
+  std::vector<Vec3> positions;
+  std::vector<Vec2> uvs;
+  std::vector<Face> faces;
+  const auto point = [&](int column, int row) -> Vec3 {
+    const double theta = std::numbers::pi * (0.02 + 0.96 * row / quads), phi = 2 * std::numbers::pi * column / quads;
+    const double radius = 1 + 0.08 * std::sin(5 * phi) * std::sin(4 * theta);
+    return radius * Vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
+  };
+  for (int row = 0; row < quads; ++row)
+    for (int column = 0; column < quads; ++column) {
+      const auto first = static_cast<std::uint32_t>(positions.size());
+      for (int corner = 0; corner < 4; ++corner) {
+        positions.push_back(point(column + corner % 2, row + corner / 2));
+        uvs.emplace_back((column * cell + 0.5 + corner % 2 * (cell - 1)) / read.width(),
+                         1 - (row * cell + 0.5 + corner / 2 * (cell - 1)) / read.height());
+      }
+      faces.push_back({first, first + 1, first + 3});
+      faces.push_back({first, first + 3, first + 2});
+    }
+  // Some alphas are 127, which no split folder holds.
+  object->sets.push_back({Soup(positions, uvs, faces), std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(
+                                                           read.width(), read.height(), AlphaCode::halved,
+                                                           [&](int y, Texel* row) {
+                                                             for (int x = 0; x < read.width(); ++x) {
+                                                               row[x] = read.at(x, y);
+                                                               for (auto* feat : {&row[x].feat0, &row[x].feat1})
+                                                                 (*feat)[3] = std::max<std::uint8_t>((*feat)[3], 128);
+                                                             }
+                                                           }))});
   return object;
 }
 
