@@ -57,7 +57,8 @@ void describe_export(CommandDescription& command) {
     if (options->width != "auto") {
       int neurons = 0;
       const char* const end = options->width.data() + options->width.size();
-      if (const auto read = std::from_chars(options->width.data(), end, neurons); read.ec != std::errc() || read.ptr != end)
+      if (const auto read = std::from_chars(options->width.data(), end, neurons);
+          read.ec != std::errc() || read.ptr != end)
         throw FieldError("width", "must be auto, or 4 to 256");
       action.width.neurons = neurons;
     }

@@ -169,7 +169,8 @@ REBAKE_DESCRIBE_ACTION(
       visit("width", action.width, Need::optional, "plain: of the decoder's layers, 4 to 256, or auto");
       visit("keep", action.keep, Need::optional,
             "plain: the node that stays bit for bit, none, or auto (the largest, where that is best on the whole)");
-      visit("psnr", action.psnr, Need::optional, "plain: dB to reach; fits no further. Left out: 40, and all is fitted");
+      visit("psnr", action.psnr, Need::optional,
+            "plain: dB to reach; fits no further. Left out: 40, and all is fitted");
       visit("seconds", action.seconds, Need::optional, "plain: for fitting; 0: as long as it takes");
       visit("report", action.report, Need::optional, "plain: JSON file for what was measured");
     })

@@ -16,10 +16,10 @@ struct ExportAction {
   std::vector<NodeRef> nodes;  ///< only these and what is inside them; empty: all
   bool plain = false;          ///< one folder whatever it takes: fits one decoder to all of it
   FuseWidth width;
-  std::string keep = "auto";    ///< of a plain folder: a node that stays bit for bit, none, or auto
-  std::optional<double> psnr;   ///< dB that a plain folder is to reach
-  double seconds = 0;           ///< that fitting may take; 0: as long as it takes
-  std::string report;           ///< file for what was measured, as JSON; empty: none
+  std::string keep = "auto";   ///< of a plain folder: a node that stays bit for bit, none, or auto
+  std::optional<double> psnr;  ///< dB that a plain folder is to reach
+  double seconds = 0;          ///< that fitting may take; 0: as long as it takes
+  std::string report;          ///< file for what was measured, as JSON; empty: none
 };
 template <>
 const ActionType& action_type<ExportAction>();

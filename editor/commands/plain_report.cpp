@@ -42,9 +42,11 @@ Mask differing(const Image& a, const Image& b) {
 Mask covered(const Image& on_white, const Image& on_black) {
   return pixels(on_white, [&](std::size_t k) {
     return !std::all_of(on_white.rgb.begin() + static_cast<std::ptrdiff_t>(k),
-                        on_white.rgb.begin() + static_cast<std::ptrdiff_t>(k + 3), [](std::uint8_t v) { return v == 255; }) ||
+                        on_white.rgb.begin() + static_cast<std::ptrdiff_t>(k + 3),
+                        [](std::uint8_t v) { return v == 255; }) ||
            !std::all_of(on_black.rgb.begin() + static_cast<std::ptrdiff_t>(k),
-                        on_black.rgb.begin() + static_cast<std::ptrdiff_t>(k + 3), [](std::uint8_t v) { return v == 0; });
+                        on_black.rgb.begin() + static_cast<std::ptrdiff_t>(k + 3),
+                        [](std::uint8_t v) { return v == 0; });
   });
 }
 
@@ -96,20 +98,20 @@ std::vector<View> judging_views(const Scene& scene, int size) {
   std::vector<View> views;
   for (int k = 0; k < count; ++k) {
     constexpr double degrees = std::numbers::pi / 180;
-    const double turn = forward ? (k % 5 - 2) * 6.0 : k * 360.0 / count, lift = forward ? (k / 5 - 1.5) * 6 : (k % 4 - 1) * 14;
+    const double turn = forward ? (k % 5 - 2) * 6.0 : k * 360.0 / count,
+                 lift = forward ? (k / 5 - 1.5) * 6 : (k % 4 - 1) * 14;
     View view;
     view.width = view.height = size;
     view.camera = front;
-    view.camera.eye = front.target + Eigen::AngleAxisd(turn * degrees, up) *
-                                         (Eigen::AngleAxisd(-lift * degrees, right) * away);
+    view.camera.eye =
+        front.target + Eigen::AngleAxisd(turn * degrees, up) * (Eigen::AngleAxisd(-lift * degrees, right) * away);
     views.push_back(view);
   }
   return views;
 }
 
 void measure_pictures(Renderer& renderer, const Scene& composition, const Scene& fused, PlainReport& report,
-                      const Progress& progress) {
-  constexpr int size = 800;  // as the published viewers show them
+                      const Progress& progress, int size) {
   // The published viewers show white, and what is covered shows on black otherwise.
   const Scene before = on_background(composition, Color::Ones()), after = on_background(fused, Color::Ones()),
               on_black = on_background(composition, Color::Zero());
@@ -139,8 +141,7 @@ void measure_pictures(Renderer& renderer, const Scene& composition, const Scene&
   report.whole.psnr_db = whole.psnr();
   report.whole.ssim = similar;
   for (std::size_t k = 0; k < nodes.size(); ++k) report.nodes.push_back({nodes[k].node->name, of_node[k].psnr()});
-  View view = views.front();
-  view.width = view.height = 800;
+  const View& view = views.front();
   std::vector<double> times_before, times_after;
   renderer.render(before, view);
   renderer.render(after, view);
@@ -163,13 +164,12 @@ std::vector<std::string> lines_of(const PlainReport& report) {
   const FuseTrial& chosen = texels.trials[texels.chosen];
   for (std::size_t k = 0; k < texels.trials.size(); ++k) {
     const FuseTrial& trial = texels.trials[k];
-    lines.push_back(fmt::format("tried width {}, {}: {:.1f} dB on a sample, {:.1f} s{}", trial.width,
-                                words(trial.way),
+    lines.push_back(fmt::format("tried width {}, {}: {:.1f} dB on a sample, {:.1f} s{}", trial.width, words(trial.way),
                                 trial.psnr_db, trial.seconds, k == texels.chosen ? " (taken)" : ""));
   }
   lines.push_back(fmt::format("one decoder of width {} for all, {}: {} texels fitted in {:.1f} s{}", chosen.width,
-                              words(chosen.way),
-                              texels.fitted_texels, texels.seconds, texels.in_time ? "" : "; ended by the time given"));
+                              words(chosen.way), texels.fitted_texels, texels.seconds,
+                              texels.in_time ? "" : "; ended by the time given"));
   for (const FuseReport::Part& part : texels.parts)
     lines.push_back(part.kept ? fmt::format("{}: {} texels kept bit for bit", part.node, part.errors.texels)
                               : fmt::format("{}: {} texels, {:.1f} dB, 99 % of them {:.1f} dB or better", part.node,
@@ -180,11 +180,11 @@ std::vector<std::string> lines_of(const PlainReport& report) {
   if (!report.pictures_measured) return lines;
   for (const PlainReport::OfNode& node : report.nodes)
     lines.push_back(fmt::format("{} in pictures: {:.1f} dB", node.node, node.psnr_db));
-  lines.push_back(fmt::format(
-      "in pictures from 20 sides, where something is seen: {:.1f} dB, {:.1f} dB at the worst, SSIM {:.4f}",
-      report.whole.psnr_db, report.whole.worst_psnr_db, report.whole.ssim));
-  lines.push_back(fmt::format("a frame takes {:.1f} ms, the composition {:.1f} ms", report.frame_ms,
-                              report.composition_frame_ms));
+  lines.push_back(
+      fmt::format("in pictures from 20 sides, where something is seen: {:.1f} dB, {:.1f} dB at the worst, SSIM {:.4f}",
+                  report.whole.psnr_db, report.whole.worst_psnr_db, report.whole.ssim));
+  lines.push_back(
+      fmt::format("a frame takes {:.1f} ms, the composition {:.1f} ms", report.frame_ms, report.composition_frame_ms));
   return lines;
 }
 

@@ -34,9 +34,10 @@ struct PlainReport {
 /// Twenty views all around (of forward-facing scenes: from the front), none of which features were fitted to.
 std::vector<View> judging_views(const Scene& scene, int size);
 
-/// Fills in what pictures and frame times say. `composition` and `fused` show the same.
+/// Fills in what pictures of `size` pixels a side (as the published viewers') and frame times say. `composition` and
+/// `fused` show the same.
 void measure_pictures(Renderer& renderer, const Scene& composition, const Scene& fused, PlainReport& report,
-                      const Progress& progress);
+                      const Progress& progress, int size = 800);
 
 /// For people, a line each.
 std::vector<std::string> lines_of(const PlainReport& report);

@@ -8,6 +8,7 @@
 
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "editor/commands/export.h"
 #include "editor/commands/save.h"
@@ -369,17 +370,40 @@ PYBIND11_MODULE(rebake, module) {
       py::arg("path"), "Writes a project (.rebake), or a scene folder that keeps every node.");
   type.def(
       "export",
-      [](PyDocument& document, const std::filesystem::path& path, const py::object& layout, const std::string& format) {
-        std::optional<Layout> wanted;
-        if (!layout.is_none()) wanted = Codec<Layout>::read(to_json(layout), {});
+      [](PyDocument& document, const std::filesystem::path& path, const py::object& layout, const std::string& format,
+         bool plain, const py::object& width, const std::string& keep, std::optional<double> psnr, double seconds,
+         const std::filesystem::path& report) {
+        ExportAction action;
+        action.out = path.string();
+        action.format = format;
+        if (!layout.is_none()) action.layout = Codec<Layout>::read(to_json(layout), {});
+        action.plain = plain;
+        action.width = Codec<FuseWidth>::read(to_json(width), {});
+        action.keep = keep;
+        action.psnr = psnr;
+        action.seconds = seconds;
+        action.report = report.string();
         std::vector<std::string> notes;
         document.work([&](Session& session) {
-          const ExportOptions options{wanted, session.document.sources()};
-          notes = format_named(format).write(session.scene(), path, options, session.progress).notes;
+          if (!plain) {
+            const ExportOptions options{action.layout, session.document.sources()};
+            notes = format_named(format).write(session.scene(), path, options, session.progress).notes;
+            return;
+          }
+          const auto say = std::exchange(session.say, [&notes](const std::string& line) { notes.push_back(line); });
+          try {
+            run(session, action);
+          } catch (...) {
+            session.say = say;
+            throw;
+          }
+          session.say = say;
         });
         return notes;
       },
-      py::arg("path"), py::arg("layout") = py::none(), py::arg("format") = "mobilenerf",
+      py::arg("path"), py::arg("layout") = py::none(), py::arg("format") = "mobilenerf", py::arg("plain") = false,
+      py::arg("width") = "auto", py::arg("keep") = "auto", py::arg("psnr") = py::none(), py::arg("seconds") = 0,
+      py::arg("report") = "",
       "Writes the MobileNeRF format or another; returns what the result cannot hold or was converted.");
   type.def("render", &render_picture, py::arg("width") = 800, py::arg("height") = 800, py::arg("samples") = 4,
            py::arg("camera") = py::none(), py::arg("view") = "", "A picture, height × width × 3.");

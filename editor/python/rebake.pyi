@@ -87,8 +87,11 @@ class Document:
     def save(self, path: str | PathLike[str]) -> None:
         """Writes a project (.rebake), or a scene folder that keeps every node."""
     def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None,
-               format: Literal["mobilenerf", "rebake"] = "mobilenerf") -> list[str]:
-        """Writes the MobileNeRF format or another; returns what the result cannot hold or was converted."""
+               format: Literal["mobilenerf", "rebake"] = "mobilenerf", plain: bool = False,
+               width: int | Literal["auto"] = "auto", keep: str = "auto", psnr: float | None = None,
+               seconds: float = 0, report: str | PathLike[str] = "") -> list[str]:
+        """Writes the MobileNeRF format or another; returns what the result cannot hold or was converted, and with
+        plain (one folder for any scene) what was measured."""
     def render(self, width: int = 800, height: int = 800, samples: int = 4, camera: Camera | None = None,
                view: str = "") -> NDArray[np.uint8]:
         """A picture, height × width × 3; without camera and view, one that frames the scene."""

@@ -116,12 +116,13 @@ void add_blocks(Composition& result, std::uint32_t number) {
     constexpr int side = Composition::block_side;
     for (int top = rect.top; top <= rect.bottom; top += side)
       for (int left = rect.left; left <= rect.right; left += side)
-        result.blocks.push_back({number,
-                                 part,
-                                 {left, top, std::min(rect.right, left + side - 1), std::min(rect.bottom, top + side - 1)},
-                                 faces_at,
-                                 faces,
-                                 0});
+        result.blocks.push_back(
+            {number,
+             part,
+             {left, top, std::min(rect.right, left + side - 1), std::min(rect.bottom, top + side - 1)},
+             faces_at,
+             faces,
+             0});
   }
   tbb::parallel_for(before, result.blocks.size(), [&](std::size_t b) {
     result.blocks[b].opaque = opaque_texels_in(*page.texels, result.blocks[b].rect);

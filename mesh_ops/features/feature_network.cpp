@@ -11,7 +11,9 @@ namespace rebake {
 namespace {
 
 // What the levels of the x86-64 psABI add; the few features not asked for come with these.
-bool has_v3() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2"); }
+bool has_v3() {
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+}
 bool has_v4() {
   return has_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
          __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
@@ -78,8 +80,9 @@ Decoder FeatureNetwork::to_decoder() const {
 void randomise(FeatureNetwork& network, std::uint64_t seed) {
   Dice dice(seed);
   float* value = network.values.data();
-  for (const auto& [from, to] : {std::pair(network.inputs, network.hidden0), std::pair(network.hidden0, network.hidden1),
-                                 std::pair(network.hidden1, network.outputs)})
+  for (const auto& [from, to] :
+       {std::pair(network.inputs, network.hidden0), std::pair(network.hidden0, network.hidden1),
+        std::pair(network.hidden1, network.outputs)})
     for (std::size_t j = 0; j < to; ++j) {
       *value++ = 0;
       for (std::size_t i = 0; i < from; ++i)

@@ -30,8 +30,8 @@ struct FeatureNetwork {
 /// Random weights of the spread that keeps ReLUs alive (He et al. 2015), uniform; biases 0.
 void randomise(FeatureNetwork& network, std::uint64_t seed);
 
-/// The same function with layers of at least `width` neurons. New ones do nothing yet: random weights lead to them, none
-/// away from them.
+/// The same function with layers of at least `width` neurons. New ones do nothing yet: random weights lead to them,
+/// none away from them.
 FeatureNetwork widened(const FeatureNetwork& network, std::size_t width, std::uint64_t seed);
 
 /// Adam (Kingma & Ba 2015), β₁ = 0.9, β₂ = 0.99.

@@ -195,8 +195,8 @@ class Fitter {
             for (std::size_t c = 0; c < 3; ++c)
               input[8 + c].at[l] = problem_.fed_directions[seen][c], target[c].at[l] = problem_.colors[seen][c];
           }
-          errors[b] +=
-              static_cast<double>(evaluate(input, target, nullptr, nullptr, work.data())) * static_cast<double>(n) / lanes;
+          errors[b] += static_cast<double>(evaluate(input, target, nullptr, nullptr, work.data())) *
+                       static_cast<double>(n) / lanes;
         }
     });
     return std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(problem_.colors.size() * 3);

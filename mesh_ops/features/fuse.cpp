@@ -216,7 +216,7 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
     candidates.push_back({std::move(student), trial});
     return trial.psnr_db;
   };
-  const auto reaches = [&](const Candidate& c) { return !options.width && c.trial.psnr_db >= options.psnr_db; };
+  const auto reaches = [&](const Candidate& c) { return c.trial.psnr_db >= options.psnr_db; };
   const auto any_reaches = [&] { return std::any_of(candidates.begin(), candidates.end(), reaches); };
   Clock::time_point begun = Clock::now();
   const std::vector<int> widths = options.width ? std::vector<int>{*options.width} : std::vector<int>{16, 24, 32};
@@ -237,7 +237,8 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
     constexpr double hopeless = 6;
     double last = options.psnr_db;
     for (const int width : widths) {
-      if (!candidates.empty() && (late() || (any_reaches() && last < options.psnr_db - hopeless))) break;
+      const bool narrower_may_do = !options.width && last >= options.psnr_db - hopeless;
+      if (!candidates.empty() && (late() || (any_reaches() && !narrower_may_do))) break;
       const auto wide = static_cast<std::size_t>(width);
       last = 0;
       if (width_of(kept) <= width) {
@@ -250,11 +251,12 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
         last = std::max(
             last, consider(from_scratch(composition, sample, wide, options.training, progress), Way::scratch, begun));
       }
-      if (!options.width && last >= options.psnr_db) break;
+      if (last >= options.psnr_db) break;
     }
   }
   // The narrowest that is good enough, or else the best.
   const auto better = [&](const Candidate& a, const Candidate& b) {
+    if (options.width) return a.trial.psnr_db > b.trial.psnr_db;
     if (reaches(a) != reaches(b)) return reaches(a);
     if (reaches(a) && a.trial.width != b.trial.width) return a.trial.width < b.trial.width;
     return a.trial.psnr_db > b.trial.psnr_db;
@@ -355,7 +357,8 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
   auto object = std::make_shared<BakedObject>();
   for (std::size_t page = 0; page < pages.size(); ++page) {
     const Soup& soup = composition.pages[page].soup;
-    object->sets.push_back({Soup(soup.shared_positions(), soup.shared_uvs(), soup.shared_faces()), pages[page]->finish()});
+    object->sets.push_back(
+        {Soup(soup.shared_positions(), soup.shared_uvs(), soup.shared_faces()), pages[page]->finish()});
     pages[page].reset();
   }
   object->axes = composition.forward ? Axes::forward : Axes::y_up;

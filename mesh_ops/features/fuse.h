@@ -21,7 +21,7 @@ struct FuseOptions {
   int iterations = 5;          ///< of Gauss–Newton for each texel; 0: features as the fitted map gives them
   bool search = true;          ///< looks among neighbouring bytes for better ones
   int bits = 8;                ///< a feature, 4 … 8
-  std::size_t sample = 16384; ///< texels that decoders are trained on and judged by
+  std::size_t sample = 16384;  ///< texels that decoders are trained on and judged by
   TrainingOptions training{};
   Layout layout = Layout::split;
 };
@@ -29,7 +29,7 @@ struct FuseOptions {
 /// What a way to fuse promises: PSNR over held-out directions of the sample, of texels alone or as pixels mix them,
 /// whichever is worse.
 struct FuseTrial {
-  int width = 0;             ///< of the wider hidden layer
+  int width = 0;  ///< of the wider hidden layer
   enum class Way {
     keep,          ///< the decoder of the largest part (or of `keep_node`), whose texels stay bit for bit
     train,         ///< that decoder, trained further
@@ -37,7 +37,7 @@ struct FuseTrial {
     side_by_side,  ///< all decoders next to each other in one
   } way = Way::keep;
   double psnr_db = 0;
-  double seconds = 0;        ///< of training and judging
+  double seconds = 0;  ///< of training and judging
 };
 
 /// Errors of texels over held-out directions, as PSNR of display colours.

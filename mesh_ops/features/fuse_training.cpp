@@ -74,15 +74,14 @@ struct Lesson {
   }
   std::size_t workspace() const {
     std::size_t most = 0;
-    for (const FeatureNetwork& teacher : teachers)
-      most = std::max(most, network_kernels().workspace(teacher.view()));
+    for (const FeatureNetwork& teacher : teachers) most = std::max(most, network_kernels().workspace(teacher.view()));
     return most;
   }
 };
 
 // Decoder (unless it is frozen) and encoder together: colours through the features between them.
-void train_together(Student& student, const Lesson& lesson, int steps, bool decoder_moves,
-                    double rate, const TrainingOptions& options, const Progress& progress) {
+void train_together(Student& student, const Lesson& lesson, int steps, bool decoder_moves, double rate,
+                    const TrainingOptions& options, const Progress& progress) {
   const NetworkKernels& kernels = network_kernels();
   constexpr std::size_t groups_a_step = 64, sightings_a_group = 2;
   std::vector<std::size_t> pieces;
@@ -194,7 +193,9 @@ TexelSample sampled(const Composition& composition, const Sightlines& sightlines
       piece.directions = sightlines.directions(sites, trained_directions, dice.next());
       piece.held_out = sightlines.directions(sites, held_out_directions, dice.next());
       sample.pieces.push_back(std::move(piece));
-      if (g % 32 == 0) progress.at("looking at texels", static_cast<double>(sample.pieces.size()) / static_cast<double>(wanted + composition.parts.size()));
+      if (g % 32 == 0)
+        progress.at("looking at texels",
+                    static_cast<double>(sample.pieces.size()) / static_cast<double>(wanted + composition.parts.size()));
     }
   }
   return sample;
@@ -218,9 +219,10 @@ std::vector<FeatureNetwork> networks_of(const Composition& composition) {
 
 Student keeping(const Composition& composition, const TexelSample& sample, std::size_t base,
                 const TrainingOptions& options, const Progress& progress) {
-  const Decoder decoder = fold_turn(*composition.teachers[base], composition.frames[base], Axes::forward, Axes::forward);
-  Student student{FeatureNetwork(decoder), new_encoder(options.seed), {{base, composition.frames[base].transpose()}},
-                  true,                    true};
+  const Decoder decoder =
+      fold_turn(*composition.teachers[base], composition.frames[base], Axes::forward, Axes::forward);
+  Student student{
+      FeatureNetwork(decoder), new_encoder(options.seed), {{base, composition.frames[base].transpose()}}, true, true};
   train_together(student, Lesson(composition, sample), options.steps / 2, false, options.rate / 4, options, progress);
   return student;
 }

@@ -55,9 +55,9 @@ std::vector<FeatureNetwork> networks_of(const Composition& composition);
 /// A base's decoder as it is; the encoder learns to use it.
 Student keeping(const Composition& composition, const TexelSample& sample, std::size_t base,
                 const TrainingOptions& options, const Progress& progress);
-/// Teachers side by side in one decoder: each keeps its own neurons, and the plane of the two features that matter least
-/// is cut into sectors, one for each, by which all others are switched off. Averages of texels stay right, and partly
-/// covered pixels nearly: both keep to the sector. Bent parts get branches for `bent_turns` turns each.
+/// Teachers side by side in one decoder: each keeps its own neurons, and the plane of the two features that matter
+/// least is cut into sectors, one for each, by which all others are switched off. Averages of texels stay right, and
+/// partly covered pixels nearly: both keep to the sector. Bent parts get branches for `bent_turns` turns each.
 Student side_by_side(const Composition& composition, const TexelSample& sample, std::size_t bent_turns);
 /// Most branches that find room in the plane.
 inline constexpr std::size_t most_branches = 4;

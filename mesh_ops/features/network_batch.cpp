@@ -41,14 +41,14 @@ REBAKE_INLINE Vector exponential(Vector x) {
   x = greatest(least(x, all(87.F)), all(-87.F));
   const Vector shifted = x * 1.44269504088896341F + shifter, turns = shifted - shifter;
   const Vector r = (x - turns * 0.693359375F) + turns * 2.12194440e-4F;
-  const Vector p =
-      ((((1.9875691500e-4F * r + 1.3981999507e-3F) * r + 8.3334519073e-3F) * r + 4.1665795894e-2F) * r +
-       1.6666665459e-1F) *
-          r +
-      5.0000001201e-1F;
+  const Vector p = ((((1.9875691500e-4F * r + 1.3981999507e-3F) * r + 8.3334519073e-3F) * r + 4.1665795894e-2F) * r +
+                    1.6666665459e-1F) *
+                       r +
+                   5.0000001201e-1F;
   const Vector power = p * (r * r) + r + 1.F;
   // The lowest bits of `shifted` are the power of two: they are added to the exponent.
-  return __builtin_bit_cast(Vector, __builtin_bit_cast(Integers, power) + (__builtin_bit_cast(Integers, shifted) << 23));
+  return __builtin_bit_cast(Vector,
+                            __builtin_bit_cast(Integers, power) + (__builtin_bit_cast(Integers, shifted) << 23));
 }
 
 REBAKE_INLINE Vector logistic(Vector x) { return 1.F / (1.F + exponential(-x)); }
@@ -137,8 +137,7 @@ void evaluate(const NetworkView& n, const Vector* inputs, Vector* outputs, const
 void evaluate_back(const NetworkView& n, const Vector* inputs, const Vector* output_slopes, Vector* gradient,
                    Vector* input_slopes, const Places& at) {
   layer_back(third_values(n), n.hidden1, n.outputs, output_slopes, at.second_slopes);
-  for (std::size_t j = 0; j < n.hidden1; ++j)
-    at.second_slopes[j] = at.second[j] > 0.F ? at.second_slopes[j] : Vector{};
+  for (std::size_t j = 0; j < n.hidden1; ++j) at.second_slopes[j] = at.second[j] > 0.F ? at.second_slopes[j] : Vector{};
   layer_back(second_values(n), n.hidden0, n.hidden1, at.second_slopes, at.first_slopes);
   for (std::size_t j = 0; j < n.hidden0; ++j) at.first_slopes[j] = at.first[j] > 0.F ? at.first_slopes[j] : Vector{};
   if (input_slopes != nullptr) layer_back(n.values, n.inputs, n.hidden0, at.first_slopes, input_slopes);
@@ -179,8 +178,8 @@ struct Mixed {
         features[way][c] = own[c];
         if (way == 0) continue;
         for (std::size_t l = 0; l < lanes; ++l) {
-          const float sum = (own[c][l] + own[c][(l + way) % lanes]) +
-                            (own[c][(l + 2 * way) % lanes] + own[c][(l + 3 * way) % lanes]);
+          const float sum =
+              (own[c][l] + own[c][(l + way) % lanes]) + (own[c][(l + 2 * way) % lanes] + own[c][(l + 3 * way) % lanes]);
           features[way][c][l] = 0.25F * sum;
         }
       }
@@ -248,19 +247,17 @@ void linearise(const NetworkView& n, const Sighting* sightings, std::size_t coun
   }
 }
 
-constexpr std::size_t entry(std::size_t i, std::size_t j) {
-  return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i;
-}
+constexpr std::size_t entry(std::size_t i, std::size_t j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
 
-// The step of damped Gauss–Newton (Levenberg 1944, Marquardt 1963). Features at their bounds that would leave them stay.
+// The step of damped Gauss–Newton (Levenberg 1944, Marquardt 1963). Features at their bounds that would leave them
+// stay.
 void step_of(const Model& model, const Vector* own, Vector damping, Vector* step) {
   Vector a[triangle], g[features_count], trace{};
   for (std::size_t i = 0; i < triangle; ++i) a[i] = model.curvature[i];
   for (std::size_t i = 0; i < features_count; ++i) trace += a[entry(i, i)];
   for (std::size_t i = 0; i < features_count; ++i) {
     a[entry(i, i)] += damping * (trace * 0.125F);
-    const Integers stays =
-        ((own[i] <= 0.F) & (model.slope[i] > 0.F)) | ((own[i] >= 1.F) & (model.slope[i] < 0.F));
+    const Integers stays = ((own[i] <= 0.F) & (model.slope[i] > 0.F)) | ((own[i] >= 1.F) & (model.slope[i] < 0.F));
     g[i] = stays ? Vector{} : model.slope[i];
     for (std::size_t j = 0; j < features_count; ++j)
       if (j != i) a[entry(i, j)] = stays ? Vector{} : a[entry(i, j)];
@@ -316,8 +313,7 @@ void fit_texels(const NetworkView& decoder, const Sighting* sightings, std::size
     const Mixed mixed(own, sightings, count);
     linearise(decoder, sightings, count, own, mixed, at, model);
     step_of(model, own, damping, step);
-    for (std::size_t c = 0; c < features_count; ++c)
-      tried[c] = greatest(least(own[c] - step[c], all(1.F)), Vector{});
+    for (std::size_t c = 0; c < features_count; ++c) tried[c] = greatest(least(own[c] - step[c], all(1.F)), Vector{});
     const Integers better = error_of(decoder, sightings, count, tried, own, mixed, at) < model.error;
     for (std::size_t c = 0; c < features_count; ++c) own[c] = better ? tried[c] : own[c];
     damping = greatest(better ? damping * 0.3F : damping * 8.F, all(1e-4F));

@@ -79,8 +79,7 @@ std::vector<Mat3> typical_turns(const Composition& composition, const TexelSampl
 }
 
 // The teachers, most texels first, each with the turns of its bent texels behind it.
-std::vector<Branch> chosen_branches(const Composition& composition, const TexelSample& sample,
-                                    std::size_t bent_turns) {
+std::vector<Branch> chosen_branches(const Composition& composition, const TexelSample& sample, std::size_t bent_turns) {
   struct Wanted {
     std::uint64_t rigid = 0, bent = 0;
   };

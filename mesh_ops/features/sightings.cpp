@@ -145,7 +145,8 @@ void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& d
       // Corners that are turned by half a turn against each other have no direction between them: 0 then.
       d = (turn * direction).stableNormalized();
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) fed[axis].at[l] = static_cast<float>(d[static_cast<Eigen::Index>(axis)]);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      fed[axis].at[l] = static_cast<float>(d[static_cast<Eigen::Index>(axis)]);
   }
   for (Lanes& lane : input) {
     if (mix != 0) {

@@ -27,7 +27,7 @@ class Sightlines {
 struct TexelGroup {
   std::size_t count = 0;
   std::array<std::uint32_t, network_lanes> site{};  ///< of each lane, among the block's
-  Lanes features[texel_features];  ///< decoded, of the texels as they were
+  Lanes features[texel_features];                   ///< decoded, of the texels as they were
   bool turned = false;
   Lanes turn[9];  ///< row-major, where turned
 };
@@ -39,8 +39,8 @@ std::vector<TexelGroup> groups_of(const Composition& composition, const Composit
 void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& direction, float coverage,
            std::uint32_t mix, Lanes* colors, Lanes* work);
 
-/// How a sighting looks at texels: half of them alone, an eighth as four neighbours, a quarter as four that are far apart
-/// (as small pictures do), and an eighth at edges, where 1 to 3 of 4 samples are covered.
+/// How a sighting looks at texels: half of them alone, an eighth as four neighbours, a quarter as four that are far
+/// apart (as small pictures do), and an eighth at edges, where 1 to 3 of 4 samples are covered.
 struct SightingKind {
   float coverage;
   std::uint32_t mix;

@@ -124,7 +124,8 @@ TEST(NetworkKernels, FindFeaturesThatShowTheColours) {
   const auto levels = feature_levels(8, AlphaCode::halved);
   fit({}, features, before);
   features = fit({12, nullptr, false}, features, fitted);
-  const auto near = fit({0, levels.data(), false}, features, rounded), best = fit({0, levels.data(), true}, features, searched);
+  const auto near = fit({0, levels.data(), false}, features, rounded),
+             best = fit({0, levels.data(), true}, features, searched);
   float sums[2] = {};
   for (std::size_t l = 0; l < network_lanes; ++l) {
     sums[0] += before.at[l];
@@ -224,7 +225,8 @@ TEST(Fuse, KeepsTheTexelsOfAKeptNodeBitForBit) {
   const Result result = fused(scene, options);
   EXPECT_TRUE(*result.fused.object->decoder == *object->decoder);
   const auto plain = result.composition.pages[0].texels;
-  const FeatureTexture halved = *with_alpha_code(plain, AlphaCode::halved), &after = *result.fused.object->sets[0].texels;
+  const FeatureTexture halved = *with_alpha_code(plain, AlphaCode::halved),
+                       &after = *result.fused.object->sets[0].texels;
   std::size_t kept = 0, changed = 0;
   for (const Composition::Block& block : result.composition.blocks)
     for (const TexelSite& site : sites_of(result.composition, block)) {
@@ -307,7 +309,9 @@ TEST_P(FuseHardCases, OneTexelAndNone) {
   one->sets[0].texels = only(*texels, -1, -1);
   EXPECT_THROW(composed(with({}, one), 4096), EditError);
   // Beside something, it takes no part.
-  EXPECT_EQ(fused(with(with({}, made_object(small(1))), one, moved(2.5)), options).fused.report.parts.back().errors.texels, 0U);
+  EXPECT_EQ(
+      fused(with(with({}, made_object(small(1))), one, moved(2.5)), options).fused.report.parts.back().errors.texels,
+      0U);
 }
 
 TEST(Fuse, BendsAreFittedTriangleByTriangle) {

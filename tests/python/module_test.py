@@ -1,5 +1,6 @@
 """The Python module: the same edits, the same journal, the same errors as the program."""
 import inspect
+import json
 import os
 import signal
 import subprocess
@@ -103,6 +104,16 @@ class Module(unittest.TestCase):
             check=True, stderr=subprocess.DEVNULL,
         )
         self.assertEqual(files(self.at / "module"), files(self.at / "program"))
+
+    def test_one_plain_folder(self):
+        self.document.duplicate(node="ficus", translate=[2, 0, 0])
+        self.document.transform(node="ficus.2", rotate={"axis": [0, 1, 0], "degrees": 90})
+        said = self.document.export(self.at / "plain", plain=True, width=40, report=self.at / "report.json")
+        self.assertTrue(any("texels" in line for line in said), said)
+        self.assertFalse((self.at / "plain" / "scene.json").exists())
+        self.assertGreater(json.loads((self.at / "report.json").read_text())["texels"]["psnr_db"], 45)
+        with self.assertRaisesRegex(rebake.FieldError, "4 to 256"):
+            self.document.export(self.at / "plain", plain=True, width=3)
 
     def test_history_journal_and_project(self):
         self.document.keep_journal(self.at / "j")

@@ -157,8 +157,7 @@ std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int 
   const fs::path folder = fs::path(REBAKE_SHARED) / "data" / "morpheus" / name;
   if (!fs::exists(folder / "mlp.json")) return nullptr;
   const fs::path feat0 = folder / "shape0.pngfeat0.png", feat1 = folder / "shape0.pngfeat1.png";
-  const FeatureTexture read =
-      read_feature_pngs(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved);
+  const FeatureTexture read = read_feature_pngs(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved);
   auto object = std::make_shared<BakedObject>();
   Decoder decoder = read_mlp_json(read_file(folder / "mlp.json"), folder / "mlp.json").decoder;
   // It was trained on (d + 1) / 2.
@@ -186,15 +185,15 @@ std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int 
       faces.push_back({first, first + 3, first + 2});
     }
   // Some alphas are 127, which no split folder holds.
-  object->sets.push_back({Soup(positions, uvs, faces), std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(
-                                                           read.width(), read.height(), AlphaCode::halved,
-                                                           [&](int y, Texel* row) {
-                                                             for (int x = 0; x < read.width(); ++x) {
-                                                               row[x] = read.at(x, y);
-                                                               for (auto* feat : {&row[x].feat0, &row[x].feat1})
-                                                                 (*feat)[3] = std::max<std::uint8_t>((*feat)[3], 128);
-                                                             }
-                                                           }))});
+  object->sets.push_back(
+      {Soup(positions, uvs, faces), std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(
+                                        read.width(), read.height(), AlphaCode::halved, [&](int y, Texel* row) {
+                                          for (int x = 0; x < read.width(); ++x) {
+                                            row[x] = read.at(x, y);
+                                            for (auto* feat : {&row[x].feat0, &row[x].feat1})
+                                              (*feat)[3] = std::max<std::uint8_t>((*feat)[3], 128);
+                                          }
+                                        }))});
   return object;
 }
 

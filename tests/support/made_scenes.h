@@ -32,8 +32,8 @@ Scene scene_of(std::shared_ptr<const BakedObject> object, const std::string& nam
 /// The real mic from shared/data with made-up features; nothing where shared/ is absent.
 std::shared_ptr<const BakedObject> mic_object();
 
-/// Real features and a real decoder (shared/data/morpheus, 1024² texels) on a bumpy sphere made on the fly; nothing where
-/// shared/ is absent. `quads` a side of the texture's 60 are used.
+/// Real features and a real decoder (shared/data/morpheus, 1024² texels) on a bumpy sphere made on the fly; nothing
+/// where shared/ is absent. `quads` a side of the texture's 60 are used.
 std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int quads = 60);
 
 /// The object nine times side by side, a texture set each: the real mic so tiled has 741,789 triangles, about as many
