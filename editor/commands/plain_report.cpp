@@ -67,7 +67,14 @@ struct Squares {
   double psnr() const { return sum > 0 ? std::min(100.0, -10 * std::log10(sum / count)) : 100; }
 };
 
-const char* words(FuseTrial::Way way) {
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+}  // namespace
+
+const char* words_of(FuseTrial::Way way) {
   switch (way) {
     case FuseTrial::Way::keep:
       return "one decoder kept";
@@ -80,13 +87,6 @@ const char* words(FuseTrial::Way way) {
   }
   return "";
 }
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
-}  // namespace
 
 std::vector<View> judging_views(const Scene& scene, int size) {
   bool forward = true;
@@ -164,11 +164,12 @@ std::vector<std::string> lines_of(const PlainReport& report) {
   const FuseTrial& chosen = texels.trials[texels.chosen];
   for (std::size_t k = 0; k < texels.trials.size(); ++k) {
     const FuseTrial& trial = texels.trials[k];
-    lines.push_back(fmt::format("tried width {}, {}: {:.1f} dB on a sample, {:.1f} s{}", trial.width, words(trial.way),
-                                trial.psnr_db, trial.seconds, k == texels.chosen ? " (taken)" : ""));
+    lines.push_back(fmt::format("tried width {}, {}: {:.1f} dB on a sample, {:.1f} s{}", trial.width,
+                                words_of(trial.way), trial.psnr_db, trial.seconds,
+                                k == texels.chosen ? " (taken)" : ""));
   }
   lines.push_back(fmt::format("one decoder of width {} for all, {}: {} texels fitted in {:.1f} s{}", chosen.width,
-                              words(chosen.way), texels.fitted_texels, texels.seconds,
+                              words_of(chosen.way), texels.fitted_texels, texels.seconds,
                               texels.in_time ? "" : "; ended by the time given"));
   for (const FuseReport::Part& part : texels.parts)
     lines.push_back(part.kept ? fmt::format("{}: {} texels kept bit for bit", part.node, part.errors.texels)
@@ -210,7 +211,7 @@ nlohmann::json to_json(const PlainReport& report) {
     for (std::size_t k = 0; k < texels.trials.size(); ++k) {
       const FuseTrial& trial = texels.trials[k];
       json["trials"].push_back({{"width", trial.width},
-                                {"way", words(trial.way)},
+                                {"way", words_of(trial.way)},
                                 {"psnr_db", trial.psnr_db},
                                 {"seconds", trial.seconds},
                                 {"taken", k == texels.chosen}});

@@ -39,6 +39,8 @@ std::vector<View> judging_views(const Scene& scene, int size);
 void measure_pictures(Renderer& renderer, const Scene& composition, const Scene& fused, PlainReport& report,
                       const Progress& progress, int size = 800);
 
+/// What a way is, for people.
+const char* words_of(FuseTrial::Way way);
 /// For people, a line each.
 std::vector<std::string> lines_of(const PlainReport& report);
 nlohmann::json to_json(const PlainReport& report);

@@ -32,22 +32,35 @@ Layout common_layout(const Scene& scene) {
   return layout.value_or(Layout::split);
 }
 
+PlainParts::PlainParts(const Scene& scene, Layout layout, const Progress& progress)
+    : composition(composed(scene, largest_texture_side(layout), progress)), sightlines(scene) {
+  if (layout == Layout::unsplit && composition.pages.size() > 1)
+    throw Error(
+        fmt::format("the texels do not fit into one texture of {}²: use --layout split", largest_texture_side(layout)));
+}
+
+const FusePlan& PlainParts::make_plan(const FuseOptions& options, const Progress& progress) {
+  return plan.emplace(plan_fuse(composition, sightlines, options, progress));
+}
+
+Scene PlainParts::scene(const Scene& original, std::size_t candidate, const FuseOptions& options,
+                        const Progress& progress) {
+  plan->chosen = candidate;
+  return with_one_object(original, fuse(composition, sightlines, *plan, options, progress).object);
+}
+
 Scene plain_scene(const Scene& scene, const FuseOptions& options, PlainReport& report, const Progress& progress) {
   check(options);
-  const int largest = largest_texture_side(options.layout);
-  const Composition composition = composed(scene, largest, progress);
-  if (composition.exact()) {
+  PlainParts parts(scene, options.layout, progress);
+  if (parts.composition.exact()) {
     report.exact = true;
     const std::vector<Node> merged = merged_for_export(scene, options.layout);
     report.hidden0 = merged.front().object->decoder->hidden0();
     report.hidden1 = merged.front().object->decoder->hidden1();
     return with_one_object(scene, merged.front().object);
   }
-  if (options.layout == Layout::unsplit && composition.pages.size() > 1)
-    throw Error(fmt::format("the texels do not fit into one texture of {}²: use --layout split", largest));
-  const Sightlines sightlines(scene);
-  const FusePlan plan = plan_fuse(composition, sightlines, options, progress);
-  Fused fused = fuse(composition, sightlines, plan, options, progress);
+  const FusePlan& plan = parts.make_plan(options, progress);
+  Fused fused = fuse(parts.composition, parts.sightlines, plan, options, progress);
   report.texels = std::move(fused.report);
   report.hidden0 = fused.object->decoder->hidden0();
   report.hidden1 = fused.object->decoder->hidden1();

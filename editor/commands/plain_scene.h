@@ -9,6 +9,19 @@ namespace rebake {
 /// they are. Fills in what `report` says of texels.
 Scene plain_scene(const Scene& scene, const FuseOptions& options, PlainReport& report, const Progress& progress);
 
+/// What making it needs, to be kept while several ways are tried. Throws as composed() does, and Error where an unsplit
+/// folder is too small.
+struct PlainParts {
+  PlainParts(const Scene& scene, Layout layout, const Progress& progress);
+  const FusePlan& make_plan(const FuseOptions& options, const Progress& progress);
+  /// The scene as one of the plan's candidates makes it.
+  Scene scene(const Scene& original, std::size_t candidate, const FuseOptions& options, const Progress& progress);
+
+  Composition composition;
+  Sightlines sightlines;
+  std::optional<FusePlan> plan;
+};
+
 /// The layout that all visible objects have, else split.
 Layout common_layout(const Scene& scene);
 

@@ -101,29 +101,24 @@ double median_milliseconds(int repeats, const std::function<void()>& run) {
   return times[times.size() / 2];
 }
 
-void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
-                 const SourceGuard& guard) {
-  guard.check_file(folder / study.name);
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw FileError(folder, "cannot be created: " + error.message());
-  std::string csv = fmt::format("choice,{}\n", fmt::join(table.columns, ","));
+namespace {
+
+// BASE.svg and BASE.png: the column `x` against the table's `y`.
+void write_plot(const Study& study, const StudyTable& table, std::size_t x, const std::string& base,
+                const SourceGuard& guard) {
   std::string data, points;
   for (std::size_t k = 0; k < table.rows.size(); ++k) {
     const StudyTable::Row& row = table.rows[k];
-    csv += fmt::format("\"{}\",{:.6g}\n", row.choice, fmt::join(row.values, ","));
     // A logarithm has no zero: what is exact is drawn at the bottom.
     const auto drawn = [](double value, bool log) { return log ? std::max(value, 1e-17) : value; };
-    data += fmt::format("{} {}\n", drawn(row.values[table.x], table.log_x), drawn(row.values[table.y], table.log_y));
+    data += fmt::format("{} {}\n", drawn(row.values[x], table.log_x), drawn(row.values[table.y], table.log_y));
     points += fmt::format("{}$rows every ::{}::{} using 1:2 with points pt {} ps 1.4 title \"{}\"", k == 0 ? "" : ", ",
                           k, k, 4 + k, row.choice);
   }
-  const std::string base = (folder / study.name).string();
-  write_file_atomically(base + ".csv", csv, guard);
-  std::string plot = fmt::format(
+  const std::string plot = fmt::format(
       "$rows << EOD\n{}EOD\nset title \"{}\"\nset xlabel \"{}\"\nset ylabel \"{}\"\n{}{}"
       "set grid\nset key outside right top\nset offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n",
-      data, study.help, table.columns[table.x], table.columns[table.y],
+      data, study.help, table.columns[x], table.columns[table.y],
       table.log_x ? "set logscale x\nset format x '10^{%L}'\n" : "",
       table.log_y ? "set logscale y\nset format y '10^{%L}'\n" : "");
   // Its output is written here, so that no name of a file reaches gnuplot.
@@ -131,6 +126,23 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
        {std::pair{"svg size 860,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 860,440", "png"}})
     write_file_atomically(base + "." + extension,
                           plotted(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)), guard);
+}
+
+}  // namespace
+
+void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
+                 const SourceGuard& guard) {
+  guard.check_file(folder / study.name);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw FileError(folder, "cannot be created: " + error.message());
+  std::string csv = fmt::format("choice,{}\n", fmt::join(table.columns, ","));
+  for (const StudyTable::Row& row : table.rows)
+    csv += fmt::format("\"{}\",{:.6g}\n", row.choice, fmt::join(row.values, ","));
+  const std::string base = (folder / study.name).string();
+  write_file_atomically(base + ".csv", csv, guard);
+  write_plot(study, table, table.x, base, guard);
+  if (table.second_x) write_plot(study, table, *table.second_x, base + "-2", guard);
 }
 
 }  // namespace rebake

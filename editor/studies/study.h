@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct StudyTable {
   /// their logarithms.
   std::size_t x = 0, y = 1;
   bool log_x = false, log_y = false;
+  std::optional<std::size_t> second_x = std::nullopt;  ///< plotted too, as NAME-2
 };
 
 /// What a study is made on.
@@ -46,6 +48,7 @@ StudyTable study_decoder(const StudyInput& input);
 StudyTable study_cage(const StudyInput& input);
 StudyTable study_rotation(const StudyInput& input);
 StudyTable study_wrap(const StudyInput& input);
+StudyTable study_fuse(const StudyInput& input);
 
 /// The one table of studies.
 inline constexpr Study study_table[] = {
@@ -55,6 +58,7 @@ inline constexpr Study study_table[] = {
     {"cage", "cage coordinates, their precision and resolution", study_cage},
     {"rotation", "local rotations, against exact gradients and SVD", study_rotation},
     {"wrap", "coarseness of the wrap around what shows something", study_wrap},
+    {"fuse", "one decoder for several: how it is made, its width, bits a feature", study_fuse},
 };
 
 /// Table of a study of pictures: milliseconds a frame (the median), PSNR, the largest difference of a channel in 1/255,
@@ -68,8 +72,8 @@ StudyTable::Row measured(const StudyInput& input, const std::string& choice, con
 /// Median milliseconds of `repeats` runs.
 double median_milliseconds(int repeats, const std::function<void()>& run);
 
-/// Writes NAME.csv, NAME.svg and NAME.png (plots need gnuplot; throws Error without it).
-/// `guard` says where nothing may be written.
+/// Writes NAME.csv, NAME.svg and NAME.png, and NAME-2 where there is a second plot (plots need gnuplot; throws Error
+/// without it). `guard` says where nothing may be written.
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
                  const SourceGuard& guard);
 

@@ -203,20 +203,19 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   const auto late = [&] { return options.seconds > 0 && seconds_since(start) > options.seconds / 3; };
   const std::size_t base = base_of(composition, options);
   const TexelSample sample = sampled(composition, sightlines, options.sample, options.training.seed, progress);
-  struct Candidate {
-    Student student;
-    FuseTrial trial;
-  };
-  std::vector<Candidate> candidates;
+  std::vector<FuseCandidate> candidates;
   using Way = FuseTrial::Way;
   const auto consider = [&](Student student, Way way, Clock::time_point begun) {
-    FuseTrial trial{width_of(student), way, 0, 0};
+    FuseTrial trial{width_of(student), way, 0, 0, 0};
+    const Clock::time_point trained = Clock::now();
     trial.psnr_db = judged(student, composition, sample, options, progress);
+    trial.fit_seconds = seconds_since(trained) / static_cast<double>(sample.pieces.size() * network_lanes) *
+                        static_cast<double>(composition.opaque_texels);
     trial.seconds = seconds_since(begun);
     candidates.push_back({std::move(student), trial});
     return trial.psnr_db;
   };
-  const auto reaches = [&](const Candidate& c) { return c.trial.psnr_db >= options.psnr_db; };
+  const auto reaches = [&](const FuseCandidate& c) { return c.trial.psnr_db >= options.psnr_db; };
   const auto any_reaches = [&] { return std::any_of(candidates.begin(), candidates.end(), reaches); };
   Clock::time_point begun = Clock::now();
   const std::vector<int> widths = options.width ? std::vector<int>{*options.width} : std::vector<int>{16, 24, 32};
@@ -255,23 +254,25 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
     }
   }
   // The narrowest that is good enough, or else the best.
-  const auto better = [&](const Candidate& a, const Candidate& b) {
+  const auto better = [&](const FuseCandidate& a, const FuseCandidate& b) {
     if (options.width) return a.trial.psnr_db > b.trial.psnr_db;
     if (reaches(a) != reaches(b)) return reaches(a);
     if (reaches(a) && a.trial.width != b.trial.width) return a.trial.width < b.trial.width;
     return a.trial.psnr_db > b.trial.psnr_db;
   };
   const auto chosen = std::min_element(candidates.begin(), candidates.end(), better);
-  FusePlan plan{chosen->student, {}, static_cast<std::size_t>(chosen - candidates.begin())};
-  for (const Candidate& candidate : candidates) plan.trials.push_back(candidate.trial);
-  return plan;
+  const auto number = static_cast<std::size_t>(chosen - candidates.begin());
+  NodeId owner = options.keep_node;
+  for (const Composition::Part& part : composition.parts)
+    if (owner == NodeId::none && part.teacher == base && !part.bent) owner = part.node;
+  return {std::move(candidates), number, owner};
 }
 
 Fused fuse(const Composition& composition, const Sightlines& sightlines, const FusePlan& plan,
            const FuseOptions& options, const Progress& progress) {
   check(options);
   const Clock::time_point start = Clock::now();
-  const Student& student = plan.student;
+  const Student& student = plan.candidates[plan.chosen].student;
   const std::vector<FeatureNetwork> teachers = networks_of(composition);
   const AlphaCode code = options.layout == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved;
   const auto levels = feature_levels(options.bits, code);
@@ -283,7 +284,7 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
   for (std::size_t b = 0; b < composition.blocks.size(); ++b)
     if (!stays(student, composition.parts[composition.blocks[b].part])) order.push_back(b);
   FuseReport report;
-  report.trials = plan.trials;
+  for (const FuseCandidate& candidate : plan.candidates) report.trials.push_back(candidate.trial);
   report.chosen = plan.chosen;
   std::vector<std::vector<float>> errors(composition.blocks.size());
   // False where time ended it.

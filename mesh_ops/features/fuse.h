@@ -37,7 +37,8 @@ struct FuseTrial {
     side_by_side,  ///< all decoders next to each other in one
   } way = Way::keep;
   double psnr_db = 0;
-  double seconds = 0;  ///< of training and judging
+  double seconds = 0;      ///< of training and judging
+  double fit_seconds = 0;  ///< that fitting all texels takes, about
 };
 
 /// Errors of texels over held-out directions, as PSNR of display colours.
@@ -55,18 +56,22 @@ struct FuseReport {
   };
   std::vector<Part> parts;  ///< nodes in drawing order, those with kept and fitted texels twice
   TexelErrors whole;
-  std::vector<FuseTrial> trials;
-  std::size_t chosen = 0;  ///< among trials
+  std::vector<FuseTrial> trials;  ///< in the plan's order
+  std::size_t chosen = 0;         ///< among trials
   std::uint64_t fitted_texels = 0;
   double seconds = 0;
   bool in_time = true;  ///< false where `seconds` ended it
 };
 
-/// A decoder for a whole composition, and how it was chosen.
-struct FusePlan {
+/// A decoder for a whole composition, with what it promises.
+struct FuseCandidate {
   Student student;
-  std::vector<FuseTrial> trials;
+  FuseTrial trial;
+};
+struct FusePlan {
+  std::vector<FuseCandidate> candidates;
   std::size_t chosen = 0;
+  NodeId base = NodeId::none;  ///< whose decoder and texels a candidate that keeps some keeps
 };
 
 /// Trains decoders on a sample of the texels and takes what suits best. Deterministic, but for `seconds`. Throws

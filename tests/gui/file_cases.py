@@ -111,6 +111,31 @@ class FileTest(WindowCase):
         editor.click("dialog/Export")
         until(out.is_dir, "the export")
 
+    def test_one_plain_folder(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        editor.key("ctrl+e")
+        editor.click("dialog/One plain folder")
+        editor.click("dialog/Compare...")
+        # Escape leaves the comparison only.
+        editor.key("Escape")
+        self.assertTrue(editor.state()["asks"], "the export's own dialog stays")
+        editor.click("dialog/Compare...")
+        until(lambda: "dialog/plain/wipe" in editor.state()["items"], "the comparison", 90)
+        until(lambda: editor.state()["settled"], "the preview", 90)
+        before = editor.picture()
+        x, y = editor.where("dialog/plain/wipe")
+        editor.drag([(x, y), (x - 200, y)])
+        self.assertGreater(int((editor.picture() != before).sum()), 500, "the wipe follows")
+        editor.click("dialog/plain/way 0")
+        editor.click("dialog/plain/Use this")
+        out = self.folder / "plain"
+        editor.click("dialog/path")
+        editor.answer(str(out))
+        until(lambda: (out / "mlp.json").is_file(), "the export", 90)
+        editor.settle()
+        self.assertFalse((out / "scene.json").exists())
+
     def test_only_what_is_picked_is_exported(self):
         editor = self.open(FICUS, KETTLE)
         editor.until_ops("import", "import")

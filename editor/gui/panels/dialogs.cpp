@@ -197,6 +197,8 @@ bool Dialogs::escape(Desk& desk) {
     desk.project.relinking.reset();
   else if (!desk.project.recoverable.empty())
     desk.project.recoverable.clear();
+  else if (files_.leaves_comparing(desk))
+    return true;
   else if (desk.asking.path != PathQuestion::none)
     desk.asking.path = PathQuestion::none;
   else

@@ -88,7 +88,7 @@ std::vector<Bookmark> bookmarks(const Settings& settings) {
 }
 
 // What the format cannot keep of this scene.
-std::vector<std::string> losses(const Scene& scene) {
+std::vector<std::string> losses(const Scene& scene, bool plain) {
   std::vector<std::string> lines;
   std::size_t objects = 0, hidden = 0, turned = 0;
   for (const PlacedNode& placed : placed_nodes(scene)) {
@@ -96,15 +96,16 @@ std::vector<std::string> losses(const Scene& scene) {
     placed.visible ? ++objects : ++hidden;
     if (placed.visible && placed.node->object->any_rotations()) ++turned;
   }
-  if (objects > 1)
+  if (plain) lines.emplace_back("one decoder is fitted to all of it; the messages say what that costs in dB");
+  if (objects > 1 && !plain)
     lines.push_back(
         fmt::format("{} objects: one folder holds one decoder; those that do not fit together become a "
-                    "scene folder (scene.json)",
+                    "scene folder (scene.json), which only Rebake opens",
                     objects));
   if (hidden > 0)
     lines.push_back(hidden == 1 ? std::string("1 hidden object is left out")
                                 : fmt::format("{} hidden objects are left out", hidden));
-  if (turned > 0)
+  if (turned > 0 && !plain)
     lines.push_back(
         fmt::format("{} bent: the plain format keeps places, not turned view directions; the messages "
                     "say what that costs in dB",
@@ -169,7 +170,7 @@ void FileDialog::carry_out(Desk& desk, const fs::path& path) {
       desk.project.save_scene(path);
       break;
     case PathQuestion::export_folder:
-      desk.project.export_to(path, wanted_nodes(desk));
+      desk.project.export_to(path, wanted_nodes(desk), plain_ ? std::optional(preview_.choice()) : std::nullopt);
       break;
     case PathQuestion::screenshot:
       desk.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
@@ -288,6 +289,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
                                    ImGuiInputTextFlags_CallbackHistory,
                                on_key, this);
   announce::item("path");
+  const bool exports = desk.asking.path == PathQuestion::export_folder;
   const bool opens = desk.asking.path == PathQuestion::open, film = makes_film(desk.asking.path);
   if (list_.chosen().size() > 1 && !list_.chosen().contains(path_)) list_.choose_none();
   const fs::path typed(path_);
@@ -300,9 +302,10 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
                              desk.active_tops().size() < desk.scene().roots.size();
   only_picked_ = only_picked_ && offers_picked;
   const std::vector<std::string> lost = desk.asking.path == PathQuestion::export_folder
-                                            ? losses(with_only(desk.scene(), wanted_nodes(desk)))
+                                            ? losses(with_only(desk.scene(), wanted_nodes(desk)), plain_)
                                             : std::vector<std::string>{};
-  float below = ImGui::GetFrameHeightWithSpacing() * (1.0F + (pictures ? 1.0F : 0.0F) + (offers_picked ? 1.0F : 0.0F)) +
+  float below = ImGui::GetFrameHeightWithSpacing() *
+                    (1.0F + (pictures ? 1.0F : 0.0F) + (offers_picked ? 1.0F : 0.0F) + (exports ? 1.0F : 0.0F)) +
                 ImGui::GetTextLineHeightWithSpacing();
   for (const std::string& line : lost)
     below += ImGui::CalcTextSize(("•  " + line).c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y +
@@ -335,6 +338,17 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
     ui::toggle("Only the picked nodes", only_picked_);
     ImGui::SameLine();
     ImGui::TextDisabled("%s", desk.scope_words().c_str());
+  }
+  if (exports) {
+    ui::toggle("One plain folder", plain_);
+    ui::tip("One plain folder", "",
+            "That any MobileNeRF viewer shows: several decoders, turned and bent parts in one.");
+    if (plain_) {
+      ImGui::SameLine();
+      if (ui::button("Compare...")) preview_.begin(desk, wanted_nodes(desk));
+      ui::tip("Compare...", "", "What each width of the decoder costs and shows, before anything is written.");
+      ui::hint(preview_.words());
+    }
   }
   for (const std::string& line : lost) ui::muted("•  " + line);
   if (pictures) {
@@ -412,6 +426,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
       done = false;
       refocuses_ = true;
     }
+  preview_.draw(desk);
   if (cancelled) desk.project.saved_then = nullptr;
   if (done || cancelled) {
     desk.asking.path = PathQuestion::none;

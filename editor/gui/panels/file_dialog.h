@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "editor/gui/panels/folder_list.h"
+#include "editor/gui/panels/plain_preview.h"
 #include "editor/gui/window/desk.h"
 #include "editor/gui/window/desktop.h"
 
@@ -19,6 +20,8 @@ class FileDialog {
   /// Where one is asked for.
   void draw(Desk& desk, Thumbnails& thumbnails);
 
+  /// Goes back from comparing plain folders to the path; false where nobody compares.
+  bool leaves_comparing(Desk& desk) { return preview_.leave(desk); }
   /// Whether another program's answer is waited for.
   bool waits() const { return desktop_ != nullptr; }
 
@@ -40,6 +43,8 @@ class FileDialog {
   int width_ = 0, height_ = 0;                  ///< of pictures, in pixels
   int pictures_ = 36;                           ///< of a film
   bool video_ = false;
+  bool plain_ = false;  ///< of an export: one folder for all
+  PlainPreview preview_;
 };
 
 }  // namespace rebake

@@ -198,12 +198,19 @@ void Project::save_scene(const fs::path& folder) {
   });
 }
 
-void Project::export_to(const fs::path& folder, const std::vector<NodeRef>& nodes) {
-  worker_.start("export", [folder, nodes](Session& session) {
+void Project::export_to(const fs::path& folder, const std::vector<NodeRef>& nodes,
+                        const std::optional<PlainChoice>& plain) {
+  worker_.start("export", [folder, nodes, plain](Session& session) {
     ExportAction action;
     action.out = folder.string();
     action.nodes = nodes;
+    if (plain) {
+      action.plain = true;
+      action.width = plain->width;
+      action.keep = plain->keep;
+    }
     run(session, action);
+    session.drop_renderer();  // its copy of the scene on the GPU, where losses were measured
   });
 }
 

@@ -57,8 +57,14 @@ class Project {
   void relink(bool go_on_without);
   void save(const std::filesystem::path& file);
   void save_scene(const std::filesystem::path& folder);
-  /// Only `nodes`, where there are some.
-  void export_to(const std::filesystem::path& folder, const std::vector<NodeRef>& nodes = {});
+  /// How one plain folder is wanted, as ExportAction says.
+  struct PlainChoice {
+    FuseWidth width;
+    std::string keep = "auto";
+  };
+  /// Only `nodes`, where there are some; as one plain folder where that is wanted.
+  void export_to(const std::filesystem::path& folder, const std::vector<NodeRef>& nodes = {},
+                 const std::optional<PlainChoice>& plain = {});
   void save_script(const std::filesystem::path& file);
   void run_script(const std::filesystem::path& file);
   /// Whether there is something that no file holds: neither the project nor the sources.

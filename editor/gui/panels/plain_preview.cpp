@@ -1,0 +1,271 @@
+#include "editor/gui/panels/plain_preview.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "editor/commands/plain_scene.h"
+#include "editor/edits/support.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/fonts.h"
+#include "editor/gui/ui/widgets.h"
+#include "mesh_ops/base/error.h"
+#include "render/compare.h"
+
+namespace rebake {
+
+// Filled by the worker's jobs, one after the other, and read by the window when they are done.
+struct PlainPreview::Measured {
+  Scene scene;
+  View view;
+  std::optional<PlainParts> parts;
+  bool exact = false;  ///< there is nothing to fit
+  std::vector<NodeRef> nodes;
+  struct Row {
+    FuseTrial trial;
+    std::optional<Image> picture;
+    double psnr_db = 0, frame_ms = 0;  ///< of that picture
+  };
+  std::vector<Row> rows;
+  std::size_t chosen = 0;
+  Image reference;
+  double reference_ms = 0;
+};
+
+namespace {
+
+constexpr int timed_frames = 5;  // the median counts
+
+// Fewer texels and steps than an export takes: a few seconds, whatever the scene.
+FuseOptions quick_options(const Scene& scene) {
+  FuseOptions options;
+  options.layout = common_layout(scene);
+  options.sample = 4096;
+  options.training.steps = 2000;
+  return options;
+}
+
+double frame_ms(Renderer& renderer, const Scene& scene, const View& view) {
+  std::vector<double> times;
+  renderer.render(scene, view);
+  for (int k = 0; k < timed_frames; ++k) times.push_back(renderer.time_frame(scene, view, {}, false).frame_ms);
+  std::nth_element(times.begin(), times.begin() + timed_frames / 2, times.end());
+  return times[timed_frames / 2];
+}
+
+}  // namespace
+
+void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
+  open_ = true;
+  nodes_ = std::move(nodes);
+  measured_ = nullptr;
+  exact_.reset();
+  plain_.reset();
+  problem_.clear();
+  auto measured = std::make_shared<Measured>();
+  constexpr double widest = 520;
+  const double scale = std::min(1.0, widest / std::max(desk.view.width, desk.view.height));
+  measured->view = {desk.view.camera, std::max(1, static_cast<int>(desk.view.width * scale)),
+                    std::max(1, static_cast<int>(desk.view.height * scale)), 4};
+  measured->nodes = nodes_;
+  wanted_ = std::make_shared<std::atomic<bool>>(true);
+  desk.jobs.worker.start(
+      "compare plain folders",
+      [measured](Session& session) {
+        measured->scene = with_only(session.scene(), measured->nodes);
+        measured->scene.background = Color::Ones();
+        const FuseOptions options = quick_options(measured->scene);
+        measured->parts.emplace(measured->scene, options.layout, session.progress);
+        Renderer& renderer = session.renderer();
+        measured->reference = renderer.render(measured->scene, measured->view);
+        measured->reference_ms = frame_ms(renderer, measured->scene, measured->view);
+        measured->exact = measured->parts->composition.exact();
+        session.drop_renderer();  // a second copy of the scene on the GPU
+        if (measured->exact) return;
+        const FusePlan& plan = measured->parts->make_plan(options, session.progress);
+        for (const FuseCandidate& candidate : plan.candidates) measured->rows.push_back({candidate.trial, {}, 0, 0});
+        measured->chosen = plan.chosen;
+      },
+      [this, &desk, measured, wanted = wanted_] {
+        if (!*wanted) return;
+        measured_ = measured;
+        exact_.emplace(measured->reference);
+        if (!measured->exact) show(desk, measured->chosen);
+      },
+      [this, wanted = wanted_] {
+        if (*wanted) problem_ = "It was stopped, or could not be done: the messages say why.";
+      });
+}
+
+// A guess of all texels is soon made, and shows what the rest would refine.
+void PlainPreview::show(Desk& desk, std::size_t row) {
+  row_ = row;
+  const auto measured = measured_;
+  if (measured->rows[row].picture) {
+    plain_.emplace(*measured->rows[row].picture);
+    shown_ = row;
+    return;
+  }
+  desk.jobs.worker.start(
+      "preview plain folder",
+      [measured, row](Session& session) {
+        FuseOptions options = quick_options(measured->scene);
+        options.iterations = 1;
+        const Scene plain = measured->parts->scene(measured->scene, row, options, session.progress);
+        Renderer& renderer = session.renderer();
+        Measured::Row& into = measured->rows[row];
+        into.picture = renderer.render(plain, measured->view);
+        into.psnr_db = std::min(100.0, compare(*into.picture, measured->reference, 2).psnr_db);
+        into.frame_ms = frame_ms(renderer, plain, measured->view);
+        session.drop_renderer();
+      },
+      [this, measured, row, wanted = wanted_] {
+        if (!*wanted || measured_ != measured || row_ != row) return;
+        plain_.emplace(*measured->rows[row].picture);
+        shown_ = row;
+      });
+}
+
+void PlainPreview::draw_table(Desk& desk) {
+  if (!ImGui::BeginTable("ways", 5, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_BordersInnerH)) return;
+  ImGui::TableSetupColumn("decoder", 0, 3.2F);
+  ImGui::TableSetupColumn("width");
+  ImGui::TableSetupColumn("dB");
+  ImGui::TableSetupColumn("ms a frame", 0, 1.6F);
+  ImGui::TableSetupColumn("seconds", 0, 1.2F);
+  ImGui::TableHeadersRow();
+  for (std::size_t k = 0; k < measured_->rows.size(); ++k) {
+    const Measured::Row& row = measured_->rows[k];
+    ImGui::PushID(static_cast<int>(k));
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    const std::string name = words_of(row.trial.way);
+    if (ImGui::Selectable(name.c_str(), row_ == k, ImGuiSelectableFlags_SpanAllColumns) && row_ != k) show(desk, k);
+    announce::item(fmt::format("way {}", k));
+    ui::tip(name, "",
+            k == measured_->chosen ? "What an export takes by itself. Click to compare it." : "Click to compare it.");
+    ImGui::TableNextColumn();
+    ImGui::Text("%d", row.trial.width);
+    ImGui::TableNextColumn();
+    ImGui::Text("%.1f", row.trial.psnr_db);
+    ImGui::TableNextColumn();
+    row.picture ? ImGui::Text("%.1f", row.frame_ms) : ImGui::TextDisabled("–");
+    ImGui::TableNextColumn();
+    // An export trains four times as long.
+    ImGui::Text("%.0f", std::ceil(4 * row.trial.seconds + row.trial.fit_seconds));
+    ImGui::PopID();
+  }
+  ImGui::EndTable();
+}
+
+void PlainPreview::draw_wipe(float width) {
+  const float height = width * static_cast<float>(measured_->view.height) / static_cast<float>(measured_->view.width);
+  const ImVec2 at = ImGui::GetCursorScreenPos(), end{at.x + width, at.y + height};
+  ImGui::InvisibleButton("wipe", {width, height});
+  announce::item("wipe");
+  if (ImGui::IsItemActive()) split_ = std::clamp((ImGui::GetIO().MousePos.x - at.x) / width, 0.0F, 1.0F);
+  if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto picture = [](const PictureTexture& texture) {
+    return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.name()));
+  };
+  list.AddImage(picture(*exact_), at, end);
+  const float x = at.x + split_ * width;
+  if (plain_) list.AddImage(picture(*plain_), {x, at.y}, end, {split_, 0}, {1, 1});
+  list.AddLine({x, at.y}, {x, end.y}, color32(theme().accent), px(2));
+  list.AddCircleFilled({x, (at.y + end.y) / 2}, px(7), color32(theme().accent));
+  const auto caption = [&](const std::string& text, bool right) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str()), pad{px(6), px(3)};
+    const ImVec2 corner{right ? end.x - size.x - 3 * pad.x : at.x + pad.x, at.y + px(6)};
+    list.AddRectFilled(corner, {corner.x + size.x + 2 * pad.x, corner.y + size.y + 2 * pad.y},
+                       color32(theme().panel, 0.85F), px(space::rounding));
+    list.AddText({corner.x + pad.x, corner.y + pad.y}, color32(theme().text), text.c_str());
+  };
+  caption("as it is", false);
+  caption(plain_ ? fmt::format("plain folder: {:.1f} dB", measured_->rows[shown_].psnr_db) : "plain folder ...", true);
+}
+
+bool PlainPreview::leave(Desk& desk) {
+  if (!open_) return false;
+  open_ = false;
+  *wanted_ = false;
+  if (!measured_ && problem_.empty()) desk.jobs.worker.cancel();
+  measured_ = nullptr;
+  exact_.reset();
+  plain_.reset();
+  return true;
+}
+
+std::string PlainPreview::words() const {
+  if (!choice_.width.neurons) return "the narrowest decoder that reaches 40 dB";
+  return fmt::format("a decoder of width {}{}", *choice_.width.neurons,
+                     choice_.keep == "auto" || choice_.keep == "none" ? "" : ", " + choice_.keep + " bit for bit");
+}
+
+bool PlainPreview::draw(Desk& desk) {
+  if (!open_ && !ImGui::IsPopupOpen("###plain")) return false;
+  if (open_ && !ImGui::IsPopupOpen("###plain")) ImGui::OpenPopup("###plain");
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const ImVec2 size{std::min(px(620), screen.x - px(20)), std::min(px(760), screen.y - px(20))};
+  ImGui::SetNextWindowSize(size);
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(18), px(16)});
+  const bool begun = ImGui::BeginPopupModal("One plain folder###plain", nullptr,
+                                            ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar();
+  if (!begun) return false;
+  if (!open_) {
+    ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+    return false;
+  }
+  const announce::Part part("plain");
+  ImGui::PushFont(fonts().heading);
+  ImGui::TextUnformatted("One plain folder");
+  ImGui::PopFont();
+  bool chosen = false;
+  const float buttons = ImGui::GetFrameHeightWithSpacing() + px(8);
+  ImGui::BeginChild("content", {0, -buttons});
+  if (!problem_.empty()) {
+    ui::wrapped(problem_, theme().danger);
+  } else if (!measured_) {
+    const Worker::Status status = desk.jobs.worker.status();
+    ui::muted("Measured on some of the texels; this takes a few seconds.");
+    ImGui::ProgressBar(static_cast<float>(status.share), {-1, 0}, status.what.c_str());
+  } else if (measured_->exact) {
+    ui::muted("One decoder shows all of it exactly: nothing has to be fitted.");
+    announce::item("exact");
+  } else {
+    ui::muted("One decoder is to show what several do. Drag across the picture to compare.");
+    const float most = ImGui::GetContentRegionAvail().y -
+                       ImGui::GetTextLineHeightWithSpacing() * (static_cast<float>(measured_->rows.size()) + 4);
+    const float aspect = static_cast<float>(measured_->view.width) / static_cast<float>(measured_->view.height);
+    draw_wipe(std::clamp(most * aspect, px(160), ImGui::GetContentRegionAvail().x));
+    draw_table(desk);
+    ui::muted(fmt::format("A frame of the composition takes {:.1f} ms. dB: over a sample of texels and directions.",
+                          measured_->reference_ms));
+  }
+  ImGui::EndChild();
+  const float width = px(120);
+  ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * width - ImGui::GetStyle().ItemSpacing.x);
+  const bool cancelled = ui::button("Cancel", {width, 0});
+  ImGui::SameLine();
+  const bool can = measured_ && !measured_->exact;
+  ImGui::BeginDisabled(!can);
+  if (ui::primary_button("Use this", {width, 0})) {
+    const FuseTrial& trial = measured_->rows[row_].trial;
+    choice_.width.neurons = trial.width;
+    const NodePtr base = find(measured_->scene, measured_->parts->plan->base);
+    choice_.keep = trial.way == FuseTrial::Way::keep && base ? base->name : "none";
+    chosen = true;
+  }
+  ImGui::EndDisabled();
+  if (cancelled || chosen) leave(desk);
+  ImGui::EndPopup();
+  return chosen;
+}
+
+}  // namespace rebake
