@@ -19,7 +19,7 @@ void describe_export(CommandDescription& command) {
   struct Options {
     std::string folder, out, layout, report;
     bool plain = false;
-    std::string width = "auto", keep = ExportAction().keep;
+    std::string width = "auto", way, keep = ExportAction().keep;
     std::optional<double> psnr;
     double seconds = 0;
     std::string format = ExportAction().format;
@@ -33,7 +33,10 @@ void describe_export(CommandDescription& command) {
   command.option("--format", options->format, "what to write", "mobilenerf|rebake [mobilenerf]");
   command.flag("--plain", options->plain,
                "one ordinary folder for any scene: where one decoder cannot show it exactly, one is fitted");
-  command.option("--width", options->width, "plain: neurons of the decoder's layers", "auto|16|24|32|N [auto]");
+  command.option("--width", options->width, "plain: neurons of the decoder's layers, at most",
+                 "auto|16|24|32|N [auto]");
+  command.option("--way", options->way, "plain: how the decoder is made", "keep|train|new|side_by_side [the best]")
+      .one_of(std::vector<std::string>{"keep", "train", "new", "side_by_side"});
   command.option("--keep", options->keep, "plain: what stays bit for bit", "NODE|none|auto [auto]");
   command.option("--psnr", options->psnr, "plain: what to reach; nothing is fitted further", "dB [40, all is fitted]");
   command.option("--seconds", options->seconds, "plain: for fitting", "S [as long as it takes]");
@@ -62,6 +65,7 @@ void describe_export(CommandDescription& command) {
         throw FieldError("width", "must be auto, or 4 to 256");
       action.width.neurons = neurons;
     }
+    if (!options->way.empty()) action.way = Codec<FuseWay>::read(nlohmann::json(options->way), session.scene());
     action.keep = options->keep;
     action.psnr = options->psnr;
     action.seconds = options->seconds;

@@ -95,12 +95,17 @@ void say_losses(Session& session, const Scene& scene, const ExportAction& action
 
 void export_plain(Session& session, const Scene& scene, const ExportAction& action) {
   if (action.format != "mobilenerf") throw FieldError("plain", "is for the MobileNeRF format only");
+  const FuseOptions options = fuse_options(scene, action);
   // What cannot be written is said before it is computed.
-  session.document.sources().check_folder(action.out);
-  FuseOptions options = fuse_options(scene, action);
+  check_can_export(action.out, session.document.sources());
+  if (!action.report.empty()) {
+    session.document.sources().check_file(action.report);
+    const std::filesystem::path folder = absolute_path(action.report).parent_path();
+    if (!std::filesystem::is_directory(folder)) throw FieldError("report", "there is no folder " + folder.string());
+    if (std::filesystem::is_directory(action.report)) throw FieldError("report", "is a folder; name a file");
+  }
   PlainReport report;
   const Scene plain = plain_scene(scene, options, report, session.progress);
-  // As it was written: texels that nobody uses are gone.
   const ExportReport written =
       export_scene(plain, action.out, {options.layout, session.document.sources()}, session.progress);
   session.exports.push_back(action.out);
@@ -113,8 +118,10 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
     }
   }
   for (const std::string& line : lines_of(report)) session.say(line);
-  if (!report.exact && report.texels.whole.psnr_db < options.psnr_db)
-    session.say(fmt::format("note: that is less than the {:.1f} dB asked for", options.psnr_db));
+  const bool seen_less = report.pictures_measured && report.whole.psnr_db < options.psnr_db;
+  if (!report.exact && (report.texels.whole.psnr_db < options.psnr_db || seen_less))
+    session.say(fmt::format("note: {} reach less than the {:.1f} dB asked for", seen_less ? "pictures" : "texels",
+                            options.psnr_db));
   if (!action.report.empty())
     write_file_atomically(action.report, to_json(report).dump(2) + "\n", session.document.sources());
   session.say(fmt::format("exported {} as one plain folder", action.out));
@@ -122,9 +129,22 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
 
 }  // namespace
 
+void check_not_plain(const ExportAction& action) {
+  const auto refuse = [](bool given, const char* field) {
+    if (given) throw FieldError(field, "is for one plain folder: say plain too");
+  };
+  refuse(action.width.neurons.has_value(), "width");
+  refuse(action.way.has_value(), "way");
+  refuse(action.keep != "auto", "keep");
+  refuse(action.psnr.has_value(), "psnr");
+  refuse(action.seconds != 0, "seconds");
+  refuse(!action.report.empty(), "report");
+}
+
 FuseOptions fuse_options(const Scene& scene, const ExportAction& action) {
   FuseOptions options;
   options.width = action.width.neurons;
+  options.way = action.way;
   options.layout = action.layout.value_or(common_layout(scene));
   if (action.psnr) {
     options.psnr_db = *action.psnr;
@@ -147,6 +167,7 @@ void run(Session& session, const ExportAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
   const Scene scene = with_only(session.scene(), action.nodes);
   if (action.plain) return export_plain(session, scene, action);
+  check_not_plain(action);
   const ExportReport report =
       format_named(action.format)
           .write(scene, action.out, {action.layout, session.document.sources()}, session.progress);
@@ -166,7 +187,9 @@ REBAKE_DESCRIBE_ACTION(
       visit("nodes", action.nodes, Need::optional, "only these, with what is inside them; left out: all");
       visit("plain", action.plain, Need::optional,
             "one folder for any scene: where one decoder cannot show it exactly, one is fitted");
-      visit("width", action.width, Need::optional, "plain: of the decoder's layers, 4 to 256, or auto");
+      visit("width", action.width, Need::optional, "plain: of the decoder's layers at most, 4 to 256, or auto");
+      visit("way", action.way, Need::optional,
+            "plain: keep one decoder, train it further, train a new one, or put all side by side; left out: the best");
       visit("keep", action.keep, Need::optional,
             "plain: the node that stays bit for bit, none, or auto (the largest, where that is best on the whole)");
       visit("psnr", action.psnr, Need::optional,

@@ -16,6 +16,7 @@ struct ExportAction {
   std::vector<NodeRef> nodes;  ///< only these and what is inside them; empty: all
   bool plain = false;          ///< one folder whatever it takes: fits one decoder to all of it
   FuseWidth width;
+  std::optional<FuseWay> way;  ///< nothing: whichever is best
   std::string keep = "auto";   ///< of a plain folder: a node that stays bit for bit, none, or auto
   std::optional<double> psnr;  ///< dB that a plain folder is to reach
   double seconds = 0;          ///< that fitting may take; 0: as long as it takes
@@ -26,6 +27,9 @@ const ActionType& action_type<ExportAction>();
 
 /// How the action fits a plain folder. Throws FieldError.
 FuseOptions fuse_options(const Scene& scene, const ExportAction& action);
+
+/// Throws FieldError where fields are given that only a plain folder has.
+void check_not_plain(const ExportAction& action);
 
 void run(Session& session, const ExportAction& action);
 

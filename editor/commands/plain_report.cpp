@@ -74,15 +74,15 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-const char* words_of(FuseTrial::Way way) {
+const char* words_of(FuseWay way) {
   switch (way) {
-    case FuseTrial::Way::keep:
+    case FuseWay::keep:
       return "one decoder kept";
-    case FuseTrial::Way::train:
+    case FuseWay::train:
       return "one decoder trained further";
-    case FuseTrial::Way::scratch:
+    case FuseWay::scratch:
       return "a new decoder";
-    case FuseTrial::Way::side_by_side:
+    case FuseWay::side_by_side:
       return "decoders side by side";
   }
   return "";

@@ -40,7 +40,7 @@ void measure_pictures(Renderer& renderer, const Scene& composition, const Scene&
                       const Progress& progress, int size = 800);
 
 /// What a way is, for people.
-const char* words_of(FuseTrial::Way way);
+const char* words_of(FuseWay way);
 /// For people, a line each.
 std::vector<std::string> lines_of(const PlainReport& report);
 nlohmann::json to_json(const PlainReport& report);

@@ -54,7 +54,8 @@ Scene plain_scene(const Scene& scene, const FuseOptions& options, PlainReport& r
   PlainParts parts(scene, options.layout, progress);
   if (parts.composition.exact()) {
     report.exact = true;
-    const std::vector<Node> merged = merged_for_export(scene, options.layout);
+    const std::vector<Node> merged = merged_for_export(without_bends(scene), options.layout);
+    if (merged.size() != 1) throw Error("what one decoder shows could not be put together");
     report.hidden0 = merged.front().object->decoder->hidden0();
     report.hidden1 = merged.front().object->decoder->hidden1();
     return with_one_object(scene, merged.front().object);

@@ -281,6 +281,20 @@ FuseWidth Codec<FuseWidth>::read(const json& value, const Scene& scene) {
 }
 json Codec<FuseWidth>::write(const FuseWidth& value) { return value.neurons ? json(*value.neurons) : json(); }
 
+FieldType Codec<FuseWay>::type() { return choice_type({"keep", "train", "new", "side_by_side"}); }
+FuseWay Codec<FuseWay>::read(const json& value, const Scene&) {
+  return word<FuseWay>(value, {{"keep", FuseWay::keep},
+                               {"train", FuseWay::train},
+                               {"new", FuseWay::scratch},
+                               {"side_by_side", FuseWay::side_by_side}});
+}
+json Codec<FuseWay>::write(const FuseWay& value) {
+  return value == FuseWay::keep      ? "keep"
+         : value == FuseWay::train   ? "train"
+         : value == FuseWay::scratch ? "new"
+                                     : "side_by_side";
+}
+
 FieldType Codec<std::vector<std::string>>::type() { return {FieldKind::other, "list of names", "Sequence[str]", {}}; }
 std::vector<std::string> Codec<std::vector<std::string>>::read(const json& value, const Scene& scene) {
   if (!value.is_array() || value.empty()) throw Error("must be a list of names");

@@ -371,14 +371,15 @@ PYBIND11_MODULE(rebake, module) {
   type.def(
       "export",
       [](PyDocument& document, const std::filesystem::path& path, const py::object& layout, const std::string& format,
-         bool plain, const py::object& width, const std::string& keep, std::optional<double> psnr, double seconds,
-         const std::filesystem::path& report) {
+         bool plain, const py::object& width, const py::object& way, const std::string& keep,
+         std::optional<double> psnr, double seconds, const std::filesystem::path& report) {
         ExportAction action;
         action.out = path.string();
         action.format = format;
         if (!layout.is_none()) action.layout = Codec<Layout>::read(to_json(layout), {});
         action.plain = plain;
         action.width = Codec<FuseWidth>::read(to_json(width), {});
+        if (!way.is_none()) action.way = Codec<FuseWay>::read(to_json(way), {});
         action.keep = keep;
         action.psnr = psnr;
         action.seconds = seconds;
@@ -386,6 +387,7 @@ PYBIND11_MODULE(rebake, module) {
         std::vector<std::string> notes;
         document.work([&](Session& session) {
           if (!plain) {
+            check_not_plain(action);
             const ExportOptions options{action.layout, session.document.sources()};
             notes = format_named(format).write(session.scene(), path, options, session.progress).notes;
             return;
@@ -402,8 +404,8 @@ PYBIND11_MODULE(rebake, module) {
         return notes;
       },
       py::arg("path"), py::arg("layout") = py::none(), py::arg("format") = "mobilenerf", py::arg("plain") = false,
-      py::arg("width") = "auto", py::arg("keep") = "auto", py::arg("psnr") = py::none(), py::arg("seconds") = 0,
-      py::arg("report") = "",
+      py::arg("width") = "auto", py::arg("way") = py::none(), py::arg("keep") = "auto", py::arg("psnr") = py::none(),
+      py::arg("seconds") = 0, py::arg("report") = "",
       "Writes the MobileNeRF format or another; returns what the result cannot hold or was converted.");
   type.def("render", &render_picture, py::arg("width") = 800, py::arg("height") = 800, py::arg("samples") = 4,
            py::arg("camera") = py::none(), py::arg("view") = "", "A picture, height × width × 3.");

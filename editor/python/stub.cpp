@@ -131,8 +131,9 @@ class Document:
         """Writes a project (.rebake), or a scene folder that keeps every node."""
     def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None,
                format: Literal["mobilenerf", "rebake"] = "mobilenerf", plain: bool = False,
-               width: int | Literal["auto"] = "auto", keep: str = "auto", psnr: float | None = None,
-               seconds: float = 0, report: str | PathLike[str] = "") -> list[str]:
+               width: int | Literal["auto"] = "auto",
+               way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto",
+               psnr: float | None = None, seconds: float = 0, report: str | PathLike[str] = "") -> list[str]:
         """Writes the MobileNeRF format or another; returns what the result cannot hold or was converted, and with
         plain (one folder for any scene) what was measured."""
     def render(self, width: int = 800, height: int = 800, samples: int = 4, camera: Camera | None = None,

@@ -34,8 +34,8 @@ Scene not_exact(const Scene& scene) {
 }  // namespace
 
 StudyTable study_fuse(const StudyInput& input) {
-  const Scene scene = composed(input.scene, 4096).exact() ? not_exact(input.scene) : input.scene;
   const FuseOptions standard;
+  const Scene scene = composed(input.scene, 4096).exact() ? not_exact(input.scene) : input.scene;
   PlainParts parts(scene, standard.layout, input.progress);
   const Composition& composition = parts.composition;
   const TexelSample sample =
@@ -59,7 +59,7 @@ StudyTable study_fuse(const StudyInput& input) {
     return Trained{std::move(student), std::chrono::duration<double>(Clock::now() - start).count()};
   };
   const auto add = [&](const std::string& name, const Trained& way, const FuseOptions& options) {
-    FusePlan plan{{{way.student, {}}}, 0, NodeId::none};
+    const FusePlan plan{{{way.student, {}}}, 0, std::nullopt};
     PlainReport report;
     const Fused fused = fuse(composition, parts.sightlines, plan, options, input.progress);
     Scene plain;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
@@ -90,6 +91,17 @@ Mat3 frame_of(const Composition& composition, const std::vector<TextureSet>& set
   return local_rotation(sum).rotation;
 }
 
+// Texels that a sample on a face can find, within a rectangle: their centres lie at most a texel outside.
+TexelRect near_texels(const std::array<Vec2, 3>& corners, const TexelRect& within) {
+  const Vec2 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).array() - 1,
+             high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).array() + 1;
+  const auto texel = [](double at, int least, int most) {
+    return std::clamp(static_cast<int>(std::floor(at)), least, most);
+  };
+  return {texel(low.x(), within.left, within.right), texel(low.y(), within.top, within.bottom),
+          texel(high.x(), within.left, within.right), texel(high.y(), within.top, within.bottom)};
+}
+
 std::uint32_t opaque_texels_in(const FeatureTexture& texels, const TexelRect& rect) {
   std::uint32_t opaque = 0;
   for (int y = rect.top; y <= rect.bottom; ++y)
@@ -100,32 +112,49 @@ std::uint32_t opaque_texels_in(const FeatureTexture& texels, const TexelRect& re
 void add_blocks(Composition& result, std::uint32_t number) {
   const TextureSet& page = result.pages[number];
   const TexelPatches patches = texel_patches(page);
-  std::vector<std::uint32_t> first(patches.rects.size() + 1);
-  for (const std::size_t patch : patches.of_face) ++first[patch + 1];
-  for (std::size_t p = 0; p < patches.rects.size(); ++p) first[p + 1] += first[p];
-  const auto base = static_cast<std::uint32_t>(result.faces.size());
-  result.faces.resize(base + patches.of_face.size());
-  std::vector<std::uint32_t> next = first;
-  for (std::size_t f = 0; f < patches.of_face.size(); ++f)
-    result.faces[base + next[patches.of_face[f]]++] = static_cast<std::uint32_t>(f);
+  constexpr int side = Composition::block_side;
+  const auto columns = [](const TexelRect& rect) { return (rect.width() + side - 1) / side; };
   const std::size_t before = result.blocks.size();
-  for (std::size_t p = 0; p < patches.rects.size(); ++p) {
-    const TexelRect& rect = patches.rects[p];
-    const std::uint32_t faces_at = base + first[p], faces = first[p + 1] - first[p];
-    const std::uint32_t part = part_of(page, result.faces[faces_at]);
-    constexpr int side = Composition::block_side;
+  std::vector<std::size_t> first_block;  // of a patch, row by row
+  for (const TexelRect& rect : patches.rects) {
+    first_block.push_back(result.blocks.size());
     for (int top = rect.top; top <= rect.bottom; top += side)
       for (int left = rect.left; left <= rect.right; left += side)
         result.blocks.push_back(
             {number,
-             part,
+             0,
              {left, top, std::min(rect.right, left + side - 1), std::min(rect.bottom, top + side - 1)},
-             faces_at,
-             faces,
+             0,
+             0,
              0});
   }
+  // The blocks that a face comes near: counted first, then listed.
+  const auto for_each_block = [&](std::size_t face, auto&& visit) {
+    const std::size_t patch = patches.of_face[face];
+    const TexelRect& rect = patches.rects[patch];
+    const TexelRect near = near_texels(texel_corners(page, face), rect);
+    for (int row = (near.top - rect.top) / side; row <= (near.bottom - rect.top) / side; ++row)
+      for (int column = (near.left - rect.left) / side; column <= (near.right - rect.left) / side; ++column)
+        visit(result.blocks[first_block[patch] + static_cast<std::size_t>(row * columns(rect) + column)]);
+  };
+  const std::size_t faces = page.soup.triangle_count();
+  for (std::size_t f = 0; f < faces; ++f) for_each_block(f, [](Composition::Block& block) { ++block.face_count; });
+  auto place = static_cast<std::uint32_t>(result.faces.size());
+  for (std::size_t b = before; b < result.blocks.size(); ++b) {
+    result.blocks[b].first_face = place;
+    place += result.blocks[b].face_count;
+    result.blocks[b].face_count = 0;
+  }
+  result.faces.resize(place);
+  for (std::size_t f = 0; f < faces; ++f)
+    for_each_block(f, [&](Composition::Block& block) {
+      if (block.face_count == 0) block.part = part_of(page, f);
+      result.faces[block.first_face + block.face_count++] = static_cast<std::uint32_t>(f);
+    });
   tbb::parallel_for(before, result.blocks.size(), [&](std::size_t b) {
-    result.blocks[b].opaque = opaque_texels_in(*page.texels, result.blocks[b].rect);
+    // What no face comes near is never seen.
+    if (result.blocks[b].face_count > 0)
+      result.blocks[b].opaque = opaque_texels_in(*page.texels, result.blocks[b].rect);
   });
 }
 
@@ -137,14 +166,22 @@ bool Composition::exact() const {
 
 Composition composed(const Scene& scene, int largest_side, const Progress& progress) {
   Composition result;
-  std::vector<TextureSet> sets;
-  bool all_forward = true;
+  result.forward = true;
   const auto teacher = [&](std::shared_ptr<const Decoder> decoder) {
     for (std::size_t k = 0; k < result.teachers.size(); ++k)
       if (nearly_equal(*result.teachers[k], *decoder)) return k;
     result.teachers.push_back(std::move(decoder));
     return result.teachers.size() - 1;
   };
+  // Triangles of one set that belong to one part.
+  struct Piece {
+    TextureSet set;
+    TriangleSet flags;
+    Affine to_world;
+    Mat3 node_turn;
+    std::uint32_t part;
+  };
+  std::vector<Piece> pieces;
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.visible || !placed.node->object || placed.node->object->triangle_count() == 0) continue;
     progress.at("taking the scene apart", 0);
@@ -155,16 +192,12 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
     } catch (const std::invalid_argument& error) {
       throw EditError(fmt::format("node \"{}\": {}", placed.node->name, error.what()));
     }
-    all_forward = all_forward && object.axes == Axes::forward;
+    result.forward = result.forward && object.axes == Axes::forward;
     const TurnGroups groups = turn_groups(object);
     std::map<std::uint32_t, std::uint32_t> part_of_group;
     std::size_t first = 0;
     for (const TextureSet& set : object.sets) {
       const std::size_t faces = set.soup.triangle_count();
-      if (faces > 0 && !can_pack(set))
-        throw EditError(
-            fmt::format("node \"{}\": some UVs lie outside 0 … 1, so that its texels cannot be moved into one folder",
-                        placed.node->name));
       std::map<std::uint32_t, TriangleSet> flags;
       for (std::size_t f = 0; f < faces; ++f) {
         TriangleSet& some = flags[groups.group_of[first + f]];
@@ -172,7 +205,7 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
         some[f] = 1;
       }
       first += faces;
-      for (const auto& [group, some] : flags) {
+      for (auto& [group, some] : flags) {
         const bool bent = group == TurnGroups::bent;
         const auto [it, fresh] = part_of_group.try_emplace(group, static_cast<std::uint32_t>(result.parts.size()));
         if (fresh) {
@@ -183,13 +216,35 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
                bent});
         }
         result.parts[it->second].triangles += count(some);
-        const TextureSet whole = in_world(set, some, placed.to_world, node_turn, bent, it->second);
-        for (TextureSet& apart : without_clashes(whole)) sets.push_back(std::move(apart));
+        pieces.push_back({set, std::move(some), placed.to_world, node_turn, it->second});
       }
     }
   }
-  result.forward = all_forward;
-  if (sets.empty()) throw EditError("there is nothing to export: no visible node has triangles");
+  if (pieces.empty()) throw EditError("there is nothing to export: no visible node has triangles");
+  if (std::none_of(pieces.begin(), pieces.end(), [](const Piece& p) { return p.set.texels->opaque_count() > 0; }))
+    throw EditError("there is nothing to export: no triangle in view has an opaque texel");
+  if (result.exact()) return result;
+
+  std::vector<TextureSet> sets;
+  std::map<std::pair<const FeatureTexture*, std::size_t>, std::size_t> shared;
+  for (const Piece& piece : pieces) {
+    const Composition::Part& part = result.parts[piece.part];
+    if (!can_pack(piece.set))
+      throw EditError(fmt::format(
+          "node \"{}\": some UVs lie outside 0 … 1, so that its texels cannot be moved into one folder", part.name));
+    const TextureSet whole = in_world(piece.set, piece.flags, piece.to_world, piece.node_turn, part.bent, piece.part);
+    if (!part.bent) {
+      // Copies that one decoder shows alike go on sharing their texels.
+      const auto [it, fresh] = shared.try_emplace({whole.texels.get(), part.teacher}, sets.size());
+      if (fresh)
+        sets.push_back(whole);
+      else
+        sets[it->second].soup = united(sets[it->second].soup, whole.soup);
+    } else {
+      for (TextureSet& apart : without_clashes(whole)) sets.push_back(std::move(apart));
+    }
+  }
+  pieces.clear();
   for (std::size_t k = 0; k < result.teachers.size(); ++k) result.frames.push_back(frame_of(result, sets, k));
   progress.at("taking the scene apart", 0.2);
   result.pages = pack(sets, largest_side, AlphaCode::plain).sets;
@@ -216,14 +271,9 @@ std::vector<TexelSite> sites_of(const Composition& composition, const Compositio
   for (std::uint32_t k = 0; k < block.face_count; ++k) {
     const std::uint32_t face = composition.faces[block.first_face + k];
     const std::array<Vec2, 3> corners = texel_corners(page, face);
-    const Vec2 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).array() - 1,
-               high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).array() + 1;
-    const int left = std::max(rect.left, static_cast<int>(std::floor(low.x()))),
-              right = std::min(rect.right, static_cast<int>(std::floor(high.x()))),
-              top = std::max(rect.top, static_cast<int>(std::floor(low.y()))),
-              bottom = std::min(rect.bottom, static_cast<int>(std::floor(high.y())));
-    for (int y = top; y <= bottom; ++y)
-      for (int x = left; x <= right; ++x) {
+    const TexelRect near = near_texels(corners, rect);
+    for (int y = near.top; y <= near.bottom; ++y)
+      for (int x = near.left; x <= near.right; ++x) {
         const auto at = static_cast<std::size_t>((y - rect.top) * width + x - rect.left);
         const Vec3 weights = barycentric(corners, {x + 0.5, y + 0.5});
         const double beyond = std::max(0.0, -weights.minCoeff());

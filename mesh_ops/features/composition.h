@@ -26,7 +26,7 @@ struct Composition {
   struct Block {
     std::uint32_t page, part;
     TexelRect rect;
-    std::uint32_t first_face, face_count;  ///< of the patch, among `faces`
+    std::uint32_t first_face, face_count;  ///< those that come near it, among `faces`
     std::uint32_t opaque;                  ///< texels
   };
   static constexpr int block_side = 32;
@@ -47,7 +47,8 @@ struct Composition {
   bool exact() const;
 };
 
-/// Takes a scene apart for one plain folder: where two uses of a texel are turned differently, each gets its own.
+/// Takes a scene apart for one plain folder: where two uses of a texel are turned differently, each gets its own; where
+/// they are not, they share it, and it counts as the first one's. Of an exact one there are parts and teachers only.
 /// Throws EditError where nothing visible shows anything, and for nodes whose texels cannot be moved.
 Composition composed(const Scene& scene, int largest_side, const Progress& progress = {});
 

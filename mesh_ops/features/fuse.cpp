@@ -125,18 +125,21 @@ double judged(const Student& student, const Composition& composition, const Texe
   return count > 0 ? psnr_of(std::max(whole.alone, whole.mixed) / count) : 100;
 }
 
-// The teacher of most texels, or the one that a node is to keep.
+// The teacher of most texels, or of most of those that a node shows rigidly.
 std::size_t base_of(const Composition& composition, const FuseOptions& options) {
-  std::vector<std::uint64_t> texels(composition.teachers.size()), allowed(texels.size());
-  bool found = false;
-  for (const Composition::Block& block : composition.blocks) {
-    const Composition::Part& part = composition.parts[block.part];
-    const bool wanted = options.keep != FuseOptions::Keep::node || part.node == options.keep_node;
-    found = found || wanted;
-    if (wanted) texels[part.teacher] += block.opaque + (part.bent ? 0 : 1);
-  }
-  if (!found) throw FieldError("keep", "names a node that shows nothing");
-  return static_cast<std::size_t>(std::max_element(texels.begin(), texels.end()) - texels.begin());
+  std::vector<std::uint64_t> texels(composition.teachers.size());
+  const bool one = options.keep == FuseOptions::Keep::node;
+  // Texels that copies share count as the first one's: so what a node shows is told by its triangles.
+  if (one)
+    for (const Composition::Part& part : composition.parts)
+      if (part.node == options.keep_node && !part.bent) texels[part.teacher] += part.triangles;
+  if (!one)
+    for (const Composition::Block& block : composition.blocks)
+      texels[composition.parts[block.part].teacher] += block.opaque;
+  const auto most = std::max_element(texels.begin(), texels.end());
+  if (*most == 0)
+    throw FieldError("keep", "must name an object that is seen and not bent as a whole, or be none or auto");
+  return static_cast<std::size_t>(most - texels.begin());
 }
 
 int width_of(const Student& student) {
@@ -199,73 +202,110 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   check(options);
   using Keep = FuseOptions::Keep;
   const Clock::time_point start = Clock::now();
-  // A third of the time for decoders: features gain more by what is left.
-  const auto late = [&] { return options.seconds > 0 && seconds_since(start) > options.seconds / 3; };
+  const auto after = [&](double seconds) {
+    return start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  };
+  FusePlan plan;
+  TrainingOptions training = options.training;
+  if (options.seconds > 0) {
+    plan.until = after(options.seconds);
+    // A third of the time for decoders: features gain more by what is left.
+    training.until = after(options.seconds / 3);
+  }
+  const auto late = [&] { return training.until && Clock::now() > *training.until; };
   const std::size_t base = base_of(composition, options);
-  const TexelSample sample = sampled(composition, sightlines, options.sample, options.training.seed, progress);
-  std::vector<FuseCandidate> candidates;
-  using Way = FuseTrial::Way;
-  const auto consider = [&](Student student, Way way, Clock::time_point begun) {
+  const int base_width = std::max(composition.teachers[base]->hidden0(), composition.teachers[base]->hidden1());
+  const auto wants = [&](FuseWay way) {
+    if (options.keep == Keep::node && way != FuseWay::keep) return false;
+    if (options.keep == Keep::none && way == FuseWay::keep) return false;
+    return !options.way || *options.way == way;
+  };
+  if (!wants(FuseWay::keep) && !wants(FuseWay::train) && !wants(FuseWay::scratch) && !wants(FuseWay::side_by_side))
+    throw FieldError("keep", "does not go with this way");
+  const bool must_keep = options.keep == Keep::node || options.way == FuseWay::keep;
+  if (must_keep && options.width && *options.width < base_width)
+    throw FieldError("width",
+                     fmt::format("is {}, but the decoder that is to be kept has {}", *options.width, base_width));
+  const TexelSample sample = sampled(composition, sightlines, options.sample, training.seed, progress);
+
+  std::vector<FuseCandidate>& candidates = plan.candidates;
+  const auto consider = [&](Student student, FuseWay way, Clock::time_point begun) {
     FuseTrial trial{width_of(student), way, 0, 0, 0};
     const Clock::time_point trained = Clock::now();
+    const auto fitted = std::count_if(sample.pieces.begin(), sample.pieces.end(), [&](const TexelSample::Piece& piece) {
+      return !stays(student, composition.parts[piece.part]);
+    });
+    double texels = 0;
+    for (const Composition::Block& block : composition.blocks)
+      if (!stays(student, composition.parts[block.part])) texels += block.opaque;
     trial.psnr_db = judged(student, composition, sample, options, progress);
-    trial.fit_seconds = seconds_since(trained) / static_cast<double>(sample.pieces.size() * network_lanes) *
-                        static_cast<double>(composition.opaque_texels);
+    if (fitted > 0) trial.fit_seconds = seconds_since(trained) / static_cast<double>(fitted) / network_lanes * texels;
     trial.seconds = seconds_since(begun);
     candidates.push_back({std::move(student), trial});
     return trial.psnr_db;
   };
   const auto reaches = [&](const FuseCandidate& c) { return c.trial.psnr_db >= options.psnr_db; };
   const auto any_reaches = [&] { return std::any_of(candidates.begin(), candidates.end(), reaches); };
-  Clock::time_point begun = Clock::now();
-  const std::vector<int> widths = options.width ? std::vector<int>{*options.width} : std::vector<int>{16, 24, 32};
-  const Student kept = keeping(composition, sample, base, options.training, progress);
-  if (options.keep != Keep::none && (options.keep == Keep::node || width_of(kept) <= widths.back()))
-    consider(kept, Way::keep, begun);
-  if (options.keep != Keep::node && !any_reaches()) {
-    // Quickest to make, but wide.
-    for (std::size_t bent_turns = 1; bent_turns < most_branches && !any_reaches() && !late(); ++bent_turns) {
-      begun = Clock::now();
+  // Quickest to make, so first; more turns of bent parts only where they are needed.
+  const auto beside = [&](std::size_t first, std::size_t last) {
+    for (std::size_t bent_turns = first; bent_turns <= last && wants(FuseWay::side_by_side) && !any_reaches();
+         ++bent_turns) {
+      const Clock::time_point begun = Clock::now();
       Student student = side_by_side(composition, sample, bent_turns);
+      const int width = width_of(student);
+      if (options.width && width > *options.width) {
+        if (options.way == FuseWay::side_by_side && candidates.empty())
+          throw FieldError("width", fmt::format("is {}, but side by side the decoders have {}", *options.width, width));
+        return;
+      }
       const std::size_t branches = student.branches.size();
-      if (options.width && width_of(student) > *options.width) break;
-      if (bent_turns == 1 || branches > candidates.back().student.branches.size())
-        consider(std::move(student), Way::side_by_side, begun);
+      if (bent_turns == 1 || candidates.empty() || branches > candidates.back().student.branches.size())
+        consider(std::move(student), FuseWay::side_by_side, begun);
     }
-    // Doubling a width gains about 2 dB: where the narrower one is far off, the next need not be tried.
-    constexpr double hopeless = 6;
-    double last = options.psnr_db;
-    for (const int width : widths) {
-      const bool narrower_may_do = !options.width && last >= options.psnr_db - hopeless;
-      if (!candidates.empty() && (late() || (any_reaches() && !narrower_may_do))) break;
-      const auto wide = static_cast<std::size_t>(width);
-      last = 0;
-      if (width_of(kept) <= width) {
-        begun = Clock::now();
-        last = consider(adapted(kept, composition, sample, wide, options.training, progress), Way::train, begun);
-      }
-      // Of one teacher's texels none is strange to its decoder.
-      if (composition.teachers.size() > 1 || candidates.empty()) {
-        begun = Clock::now();
-        last = std::max(
-            last, consider(from_scratch(composition, sample, wide, options.training, progress), Way::scratch, begun));
-      }
-      if (last >= options.psnr_db) break;
+  };
+  beside(1, 1);
+  Clock::time_point begun = Clock::now();
+  std::optional<Student> kept;
+  if ((wants(FuseWay::keep) || wants(FuseWay::train)) && (candidates.empty() || !late()))
+    kept = keeping(composition, sample, base, training, progress);
+  if (kept && wants(FuseWay::keep) && (!options.width || base_width <= *options.width))
+    consider(*kept, FuseWay::keep, begun);
+  const bool kept_is_enough =
+      !candidates.empty() && candidates.back().trial.way == FuseWay::keep && reaches(candidates.back());
+  beside(2, most_branches - 1);
+  // Doubling a width gains about 2 dB: where the narrower one is far off, the next need not be tried.
+  constexpr double hopeless = 6;
+  double last = options.psnr_db;
+  for (const int width : options.width ? std::vector<int>{*options.width} : std::vector<int>{16, 24, 32}) {
+    const bool narrower_may_do = !options.width && !kept_is_enough && last >= options.psnr_db - hopeless;
+    if (!candidates.empty() && (late() || (any_reaches() && !narrower_may_do))) break;
+    const auto wide = static_cast<std::size_t>(width);
+    last = 0;
+    if (kept && wants(FuseWay::train) && base_width <= width) {
+      begun = Clock::now();
+      last = consider(adapted(*kept, composition, sample, wide, training, progress), FuseWay::train, begun);
     }
+    // Of one teacher's texels none is strange to its decoder.
+    if (wants(FuseWay::scratch) && (composition.teachers.size() > 1 || candidates.empty() || options.way)) {
+      begun = Clock::now();
+      last = std::max(last,
+                      consider(from_scratch(composition, sample, wide, training, progress), FuseWay::scratch, begun));
+    }
+    if (last >= options.psnr_db) break;
   }
+  if (candidates.empty())
+    throw FieldError("width", fmt::format("is {}, but the decoder to be trained has {}", *options.width, base_width));
   // The narrowest that is good enough, or else the best.
   const auto better = [&](const FuseCandidate& a, const FuseCandidate& b) {
-    if (options.width) return a.trial.psnr_db > b.trial.psnr_db;
-    if (reaches(a) != reaches(b)) return reaches(a);
-    if (reaches(a) && a.trial.width != b.trial.width) return a.trial.width < b.trial.width;
+    if (!options.width) {
+      if (reaches(a) != reaches(b)) return reaches(a);
+      if (reaches(a) && a.trial.width != b.trial.width) return a.trial.width < b.trial.width;
+    }
     return a.trial.psnr_db > b.trial.psnr_db;
   };
-  const auto chosen = std::min_element(candidates.begin(), candidates.end(), better);
-  const auto number = static_cast<std::size_t>(chosen - candidates.begin());
-  NodeId owner = options.keep_node;
-  for (const Composition::Part& part : composition.parts)
-    if (owner == NodeId::none && part.teacher == base && !part.bent) owner = part.node;
-  return {std::move(candidates), number, owner};
+  plan.chosen =
+      static_cast<std::size_t>(std::min_element(candidates.begin(), candidates.end(), better) - candidates.begin());
+  return plan;
 }
 
 Fused fuse(const Composition& composition, const Sightlines& sightlines, const FusePlan& plan,
@@ -293,7 +333,7 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
     std::vector<FittedBlock> results;
     for (std::size_t first = 0; first < order.size(); first += at_once) {
       progress.at(what, static_cast<double>(first) / static_cast<double>(order.size()));
-      if (may_stop && options.seconds > 0 && seconds_since(start) > options.seconds) return false;
+      if (may_stop && plan.until && Clock::now() > *plan.until) return false;
       const std::size_t some = std::min(at_once, order.size() - first);
       results.assign(some, {});
       tbb::parallel_for(std::size_t{0}, some, [&](std::size_t k) {
@@ -314,7 +354,7 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
     }
     return true;
   };
-  if (options.iterations > 0 && (options.seconds > 0 || options.until_psnr)) {
+  if (options.iterations > 0 && (plan.until || options.until_psnr)) {
     // A guess of all first; then the worst, as long as there is need and time.
     pass({0, levels.data(), false}, "guessing features", false);
     std::vector<double> mean(errors.size());

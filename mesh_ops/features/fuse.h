@@ -1,23 +1,28 @@
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "mesh_ops/features/fuse_training.h"
+#include "mesh_ops/features/fuse_way.h"
 
 namespace rebake {
 
 struct FuseOptions {
-  /// Of both hidden layers, 4 … 256; nothing: the smallest of 16, 24 and 32 that reaches `psnr_db`, else the best.
+  /// Of the hidden layers at most, 4 … 256; nothing: the smallest of 16, 24 and 32 that reaches `psnr_db`, else the
+  /// best.
   std::optional<int> width;
   enum class Keep { automatic, none, node };
   /// Whose texels and decoder stay bit for bit. `automatic`: those of most texels, where that is better on the whole.
   Keep keep = Keep::automatic;
   NodeId keep_node = NodeId::none;
+  std::optional<FuseWay> way;  ///< nothing: whichever is best
   double psnr_db = 40;
-  bool until_psnr = false;     ///< texels are fitted, worst first, only while they are below `psnr_db`
-  double seconds = 0;          ///< above 0: as much as can be done in this time; the bytes then depend on it
+  bool until_psnr = false;  ///< texels are fitted, worst first, only while they are below `psnr_db`
+  /// Above 0: as much as can be done in this time, but at least a guess of all texels; the bytes then depend on it.
+  double seconds = 0;
   int iterations = 5;          ///< of Gauss–Newton for each texel; 0: features as the fitted map gives them
   bool search = true;          ///< looks among neighbouring bytes for better ones
   int bits = 8;                ///< a feature, 4 … 8
@@ -30,12 +35,7 @@ struct FuseOptions {
 /// whichever is worse.
 struct FuseTrial {
   int width = 0;  ///< of the wider hidden layer
-  enum class Way {
-    keep,          ///< the decoder of the largest part (or of `keep_node`), whose texels stay bit for bit
-    train,         ///< that decoder, trained further
-    scratch,       ///< a new one
-    side_by_side,  ///< all decoders next to each other in one
-  } way = Way::keep;
+  FuseWay way = FuseWay::keep;
   double psnr_db = 0;
   double seconds = 0;      ///< of training and judging
   double fit_seconds = 0;  ///< that fitting all texels takes, about
@@ -71,11 +71,12 @@ struct FuseCandidate {
 struct FusePlan {
   std::vector<FuseCandidate> candidates;
   std::size_t chosen = 0;
-  NodeId base = NodeId::none;  ///< whose decoder and texels a candidate that keeps some keeps
+  /// When fitting ends at the latest, where the options say so.
+  std::optional<std::chrono::steady_clock::time_point> until;
 };
 
 /// Trains decoders on a sample of the texels and takes what suits best. Deterministic, but for `seconds`. Throws
-/// FieldError for options out of range.
+/// FieldError for options out of range or at odds with each other.
 FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines, const FuseOptions& options,
                    const Progress& progress = {});
 

@@ -97,6 +97,7 @@ void train_together(Student& student, const Lesson& lesson, int steps, bool deco
                     encoder_work = kernels.workspace(encoder.view()), teacher_work = lesson.workspace();
   for (int step = 0; step < steps; ++step) {
     if (step % 50 == 0) progress.at("training", static_cast<double>(step) / steps);
+    if (step % 50 == 0 && options.until && std::chrono::steady_clock::now() > *options.until) break;
     decoder_gradients.clear();
     encoder_gradients.clear();
     tbb::parallel_for(std::size_t{0}, gradient_parts, [&](std::size_t part) {

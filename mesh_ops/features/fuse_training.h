@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <optional>
 
 #include "mesh_ops/features/sightings.h"
@@ -47,6 +48,8 @@ struct TrainingOptions {
   int steps = 8000;    ///< of Adam on decoder and encoder together; more gains little
   double rate = 0.02;  ///< of Adam at the start, for a new decoder
   std::uint64_t seed = 1;
+  /// When training ends at the latest, with what has been learnt.
+  std::optional<std::chrono::steady_clock::time_point> until = std::nullopt;
 };
 
 /// The teachers as networks.

@@ -103,6 +103,8 @@ std::vector<Branch> chosen_branches(const Composition& composition, const TexelS
     for (const Mat3& turn : typical_turns(composition, sample, k, known, bent_turns))
       if (branches.size() < most_branches) branches.push_back({k, turn});
   }
+  // Of bent texels none of which was sampled.
+  if (branches.empty()) branches.push_back({order.front(), composition.frames[order.front()].transpose()});
   return branches;
 }
 

@@ -213,4 +213,8 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
   return report;
 }
 
+void check_can_export(const std::filesystem::path& folder, const SourceGuard& sources) {
+  const AtomicFolder never_written(folder, sources, refuse_foreign_content);
+}
+
 }  // namespace rebake

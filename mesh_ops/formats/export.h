@@ -39,4 +39,7 @@ Scene without_bends(const Scene& scene, std::vector<std::string>* bent = nullptr
 ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options,
                           const Progress& progress = {});
 
+/// Throws as export_scene does where a folder could not be written, and writes nothing.
+void check_can_export(const std::filesystem::path& folder, const SourceGuard& sources);
+
 }  // namespace rebake

@@ -216,6 +216,14 @@ TEST(Fuse, LeavesOneDecoderInOneOrientationAlone) {
   EXPECT_FALSE(composed(with(with({}, object), object, moved(3) * turn), 4096).exact());
 }
 
+TEST(Fuse, CopiesShareTheirTexels) {
+  const auto object = made_object(small(1));
+  const Scene copies = with(with(with({}, object), object, moved(3)), made_object(small(2)), moved(6));
+  const Scene once = with(with({}, object), made_object(small(2)), moved(6));
+  EXPECT_EQ(composed(copies, 4096).opaque_texels, composed(once, 4096).opaque_texels);
+  expect_sound(fused(copies));
+}
+
 TEST(Fuse, KeepsTheTexelsOfAKeptNodeBitForBit) {
   const auto object = made_object(small(1));
   const Scene scene = with(with({}, object), made_object(small(2)), moved(2.5));
@@ -328,8 +336,7 @@ TEST(Fuse, BendsAreFittedTriangleByTriangle) {
   const Result result = fused(with({}, bent), options);
   ASSERT_TRUE(result.composition.parts[0].bent);
   expect_sound(result);
-  options.keep = FuseOptions::Keep::node;
-  options.keep_node = result.composition.parts[0].node;
+  options.way = FuseWay::keep;
   options.iterations = 0;
   options.width.reset();
   const double as_they_were = fused(with({}, bent), options).fused.report.whole.psnr_db;
@@ -349,6 +356,12 @@ TEST(Fuse, RefusesWhatCannotBe) {
   options.keep_node = NodeId{77};
   EXPECT_THROW(fused(scene, options), FieldError);
   EXPECT_THROW(composed({}, 4096), EditError);
+  options.keep_node = scene.roots[0]->id;
+  options.width = 8;  // than which its decoder is wider
+  EXPECT_THROW(fused(scene, options), FieldError);
+  options.width.reset();
+  options.way = FuseWay::scratch;  // keeps nothing
+  EXPECT_THROW(fused(scene, options), FieldError);
 }
 
 TEST(Fuse, StopsWhenAskedTo) {
@@ -367,6 +380,10 @@ TEST(Fuse, EndsInTheTimeGiven) {
   const Result result = fused(scene, options);
   EXPECT_FALSE(result.fused.report.in_time);
   expect_sound(result);
+  // What takes no time is tried all the same.
+  options.width.reset();
+  EXPECT_GT(fused(scene, options).fused.report.whole.psnr_db, 35);
+  options.width = 16;
   // What is good enough is not fitted further.
   options.seconds = 0;
   options.until_psnr = true;

@@ -129,6 +129,7 @@ void FileDialog::begin(const Desk& desk) {
   replacing_.clear();
   list_.look_at({}, "", true);
   video_ = false;
+  preview_.forget();
   width_ = desk.view.width;
   height_ = desk.view.height;
   std::error_code gone;

@@ -4,7 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <atomic>
+#include <utility>
 
 #include "editor/commands/plain_scene.h"
 #include "editor/edits/support.h"
@@ -36,6 +36,7 @@ struct PlainPreview::Measured {
 
 namespace {
 
+constexpr const char* failed = "It was stopped, or could not be done: the messages say why.";
 constexpr int timed_frames = 5;  // the median counts
 
 // Fewer texels and steps than an export takes: a few seconds, whatever the scene.
@@ -70,7 +71,8 @@ void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
   measured->view = {desk.view.camera, std::max(1, static_cast<int>(desk.view.width * scale)),
                     std::max(1, static_cast<int>(desk.view.height * scale)), 4};
   measured->nodes = nodes_;
-  wanted_ = std::make_shared<std::atomic<bool>>(true);
+  wanted_ = std::make_shared<bool>(true);
+  working_ = true;
   desk.jobs.worker.start(
       "compare plain folders",
       [measured](Session& session) {
@@ -90,12 +92,15 @@ void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
       },
       [this, &desk, measured, wanted = wanted_] {
         if (!*wanted) return;
+        working_ = false;
         measured_ = measured;
         exact_.emplace(measured->reference);
         if (!measured->exact) show(desk, measured->chosen);
       },
       [this, wanted = wanted_] {
-        if (*wanted) problem_ = "It was stopped, or could not be done: the messages say why.";
+        if (!*wanted) return;
+        working_ = false;
+        problem_ = failed;
       });
 }
 
@@ -108,23 +113,33 @@ void PlainPreview::show(Desk& desk, std::size_t row) {
     shown_ = row;
     return;
   }
+  // The window reads the rows meanwhile: what is new waits for it.
+  auto seen = std::make_shared<Measured::Row>(measured->rows[row]);
+  working_ = true;
   desk.jobs.worker.start(
       "preview plain folder",
-      [measured, row](Session& session) {
+      [measured, seen, row](Session& session) {
         FuseOptions options = quick_options(measured->scene);
         options.iterations = 1;
         const Scene plain = measured->parts->scene(measured->scene, row, options, session.progress);
         Renderer& renderer = session.renderer();
-        Measured::Row& into = measured->rows[row];
-        into.picture = renderer.render(plain, measured->view);
-        into.psnr_db = std::min(100.0, compare(*into.picture, measured->reference, 2).psnr_db);
-        into.frame_ms = frame_ms(renderer, plain, measured->view);
+        seen->picture = renderer.render(plain, measured->view);
+        seen->psnr_db = std::min(100.0, compare(*seen->picture, measured->reference, 2).psnr_db);
+        seen->frame_ms = frame_ms(renderer, plain, measured->view);
         session.drop_renderer();
       },
-      [this, measured, row, wanted = wanted_] {
-        if (!*wanted || measured_ != measured || row_ != row) return;
-        plain_.emplace(*measured->rows[row].picture);
+      [this, measured, seen, row, wanted = wanted_] {
+        if (!*wanted) return;
+        working_ = false;
+        measured->rows[row] = *seen;
+        if (row_ != row) return;
+        plain_.emplace(*seen->picture);
         shown_ = row;
+      },
+      [this, wanted = wanted_] {
+        if (!*wanted) return;
+        working_ = false;
+        problem_ = failed;
       });
 }
 
@@ -191,7 +206,7 @@ bool PlainPreview::leave(Desk& desk) {
   if (!open_) return false;
   open_ = false;
   *wanted_ = false;
-  if (!measured_ && problem_.empty()) desk.jobs.worker.cancel();
+  if (std::exchange(working_, false)) desk.jobs.worker.cancel();
   measured_ = nullptr;
   exact_.reset();
   plain_.reset();
@@ -199,9 +214,8 @@ bool PlainPreview::leave(Desk& desk) {
 }
 
 std::string PlainPreview::words() const {
-  if (!choice_.width.neurons) return "the narrowest decoder that reaches 40 dB";
-  return fmt::format("a decoder of width {}{}", *choice_.width.neurons,
-                     choice_.keep == "auto" || choice_.keep == "none" ? "" : ", " + choice_.keep + " bit for bit");
+  if (!choice_.way) return "the narrowest decoder that reaches 40 dB";
+  return fmt::format("{}, width {}", words_of(*choice_.way), *choice_.width.neurons);
 }
 
 bool PlainPreview::draw(Desk& desk) {
@@ -257,9 +271,7 @@ bool PlainPreview::draw(Desk& desk) {
   ImGui::BeginDisabled(!can);
   if (ui::primary_button("Use this", {width, 0})) {
     const FuseTrial& trial = measured_->rows[row_].trial;
-    choice_.width.neurons = trial.width;
-    const NodePtr base = find(measured_->scene, measured_->parts->plan->base);
-    choice_.keep = trial.way == FuseTrial::Way::keep && base ? base->name : "none";
+    choice_ = {{trial.width}, trial.way};
     chosen = true;
   }
   ImGui::EndDisabled();

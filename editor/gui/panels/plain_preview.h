@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +19,8 @@ class PlainPreview {
   bool draw(Desk& desk);
   /// Closes the dialog with the next frame; false where it is not open.
   bool leave(Desk& desk);
+  /// Nothing is chosen any more.
+  void forget() { choice_ = {}; }
   const Project::PlainChoice& choice() const { return choice_; }
   /// What was chosen, for people.
   std::string words() const;
@@ -30,11 +31,11 @@ class PlainPreview {
   void draw_table(Desk& desk);
   void draw_wipe(float width);
 
-  bool open_ = false;
+  bool open_ = false, working_ = false;  ///< working: a job of its own waits or runs
   std::vector<NodeRef> nodes_;
-  std::shared_ptr<Measured> measured_;         ///< null until the worker is done
-  std::shared_ptr<std::atomic<bool>> wanted_;  ///< false once nobody waits for the answer any more
-  std::size_t row_ = 0, shown_ = 0;            ///< looked at, and of which the picture is
+  std::shared_ptr<Measured> measured_;  ///< null until the worker is done
+  std::shared_ptr<bool> wanted_;        ///< false once nobody waits for the answer any more
+  std::size_t row_ = 0, shown_ = 0;     ///< looked at, and of which the picture is
   std::optional<PictureTexture> exact_, plain_;
   float split_ = 0.5F;  ///< of the picture: exact at its left
   Project::PlainChoice choice_;

@@ -207,7 +207,7 @@ void Project::export_to(const fs::path& folder, const std::vector<NodeRef>& node
     if (plain) {
       action.plain = true;
       action.width = plain->width;
-      action.keep = plain->keep;
+      action.way = plain->way;
     }
     run(session, action);
     session.drop_renderer();  // its copy of the scene on the GPU, where losses were measured

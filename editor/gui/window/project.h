@@ -60,7 +60,7 @@ class Project {
   /// How one plain folder is wanted, as ExportAction says.
   struct PlainChoice {
     FuseWidth width;
-    std::string keep = "auto";
+    std::optional<FuseWay> way;
   };
   /// Only `nodes`, where there are some; as one plain folder where that is wanted.
   void export_to(const std::filesystem::path& folder, const std::vector<NodeRef>& nodes = {},
