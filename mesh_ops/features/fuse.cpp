@@ -47,11 +47,10 @@ struct Histogram {
     if (texels == 0) return result;
     result.psnr_db = psnr_of(squares / static_cast<double>(texels));
     std::uint64_t below = 0;
-    for (std::size_t k = 0; k < bins; ++k)
-      if ((below += count[k]) * 100 > texels) {
-        result.worst_psnr_db = static_cast<double>(k) / 10;
-        break;
-      }
+    for (std::size_t k = 0; k < bins && below * 100 <= texels; ++k) {
+      below += count[k];
+      result.worst_psnr_db = static_cast<double>(k) / 10;
+    }
     return result;
   }
 };

@@ -25,11 +25,11 @@ class Sightlines {
 /// Up to 16 texels of a block: four runs of four neighbours, far from each other, so that lanes l … l + 3 are mostly
 /// near and l, l + 4, l + 8, l + 12 far apart. The last texel fills the lanes that are left.
 struct TexelGroup {
+  Lanes features[texel_features];  ///< decoded, of the texels as they were
+  Lanes turn[9];                   ///< row-major, where turned
   std::size_t count = 0;
   std::array<std::uint32_t, network_lanes> site{};  ///< of each lane, among the block's
-  Lanes features[texel_features];                   ///< decoded, of the texels as they were
   bool turned = false;
-  Lanes turn[9];  ///< row-major, where turned
 };
 std::vector<TexelGroup> groups_of(const Composition& composition, const Composition::Block& block,
                                   const std::vector<TexelSite>& sites);

@@ -11,6 +11,7 @@
 #include "editor/gui/window/messages.h"
 #include "editor/gui/window/settings.h"
 #include "editor/gui/window/worker.h"
+#include "mesh_ops/features/fuse_way.h"
 
 namespace rebake {
 
