@@ -98,8 +98,9 @@ std::vector<View> judging_views(const Scene& scene, int size) {
   std::vector<View> views;
   for (int k = 0; k < count; ++k) {
     constexpr double degrees = std::numbers::pi / 180;
+    const int row = k / 5;
     const double turn = forward ? (k % 5 - 2) * 6.0 : k * 360.0 / count,
-                 lift = forward ? (k / 5 - 1.5) * 6 : (k % 4 - 1) * 14;
+                 lift = forward ? (row - 1.5) * 6 : (k % 4 - 1) * 14;
     View view;
     view.width = view.height = size;
     view.camera = front;

@@ -250,9 +250,9 @@ std::array<FeatureLevels, texel_features> feature_levels(int bits, AlphaCode cod
   std::array<FeatureLevels, texel_features> levels;
   for (std::size_t c = 0; c < texel_features; ++c) {
     const bool alpha = c % 4 == 3;
-    const int dropped = std::max(8 - bits, alpha && code == AlphaCode::halved ? 1 : 0), step = 1 << dropped;
-    levels[c] = {static_cast<float>(step - 1) / 255, static_cast<float>(step) / 255, 0,
-                 static_cast<float>(256 / step - 1)};
+    const int dropped = std::max(8 - bits, alpha && code == AlphaCode::halved ? 1 : 0), step = 1 << dropped,
+              highest = 256 / step - 1;
+    levels[c] = {static_cast<float>(step - 1) / 255, static_cast<float>(step) / 255, 0, static_cast<float>(highest)};
     // Red 0 would be transparent.
     if (c == 0 && dropped == 0) levels[c].lowest = 1;
   }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -18,6 +19,7 @@
 #include "render/compare.h"
 #include "tests/support/document_fixture.h"
 #include "tests/support/made_scenes.h"
+#include "tests/support/power_loss.h"
 
 namespace rebake::test {
 namespace {
@@ -200,6 +202,14 @@ TEST_F(PlainExport, StoppedOrRefusedLeavesWhatWasThere) {
   action_.keep = "none";
   EXPECT_THROW(run(session_, action_), Cancelled);
   session_.progress = {};
+  {
+    // A disk that is full while the result is written.
+    PowerLoss calls;
+    calls.fail_at(8, ENOSPC);
+    const ReplacedFileCalls full(calls);
+    action_.keep = "auto";
+    EXPECT_THROW(run(session_, action_), FileError);
+  }
   const auto refuses = [&](const char* fields) {
     nlohmann::json line = nlohmann::json::parse(fields);
     line["op"] = "export";
