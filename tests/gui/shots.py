@@ -5,7 +5,7 @@ import pathlib
 import subprocess
 import sys
 
-from screen import Editor, Screen
+from screen import Editor, Screen, until
 
 PROGRAM, OUT = sys.argv[1], pathlib.Path(sys.argv[2])
 SAMPLES = pathlib.Path(__file__).resolve().parents[2] / "samples" / "scenes"
