@@ -4,29 +4,15 @@
 #include <numbers>
 
 #include "mesh_ops/base/elementary.h"
+#include "mesh_ops/base/processor.h"
 
 namespace rebake {
-
-#ifdef REBAKE_WIDE_VECTORS
-namespace {
-
-// What the levels of the x86-64 psABI add; the few features not asked for come with these.
-bool has_v3() {
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-}
-bool has_v4() {
-  return has_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-         __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-}
-
-}  // namespace
-#endif
 
 std::vector<const NetworkKernels*> all_network_kernels() {
   std::vector<const NetworkKernels*> kernels;
 #ifdef REBAKE_WIDE_VECTORS
-  if (has_v4()) kernels.push_back(&network_kernels_v4);
-  if (has_v3()) kernels.push_back(&network_kernels_v3);
+  if (processor_has_v4()) kernels.push_back(&network_kernels_v4);
+  if (processor_has_v3()) kernels.push_back(&network_kernels_v3);
 #endif
   kernels.push_back(&network_kernels_baseline);
   return kernels;
