@@ -13,7 +13,7 @@ namespace rebake {
 /// How the renderer does what can be done in several ways. All ways give the same picture, but for rounding.
 struct RenderOptions {
   enum class Weights {
-    automatic,  ///< constants for up to 4 decoders of at most 4096 weights together, else buffer
+    automatic,  ///< constants for up to 4 decoders of at most 4096 weights (but 0) together, else buffer
     constants,  ///< decoder weights are literals in the shader: fastest, a new decoder costs a compilation
     buffer,     ///< decoder weights are fetched: any number and width of decoders with one shader
   };
