@@ -120,8 +120,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
   for (const std::string& line : lines_of(report)) session.say(line);
   const bool seen_less = report.pictures_measured && report.whole.psnr_db < options.psnr_db;
   if (!report.exact && (report.texels.whole.psnr_db < options.psnr_db || seen_less))
-    session.say(fmt::format("note: {} reach less than the {:.1f} dB asked for", seen_less ? "pictures" : "texels",
-                            options.psnr_db));
+    session.say(fmt::format("note: {} reach less than {:.1f} dB", seen_less ? "pictures" : "texels", options.psnr_db));
   if (!action.report.empty())
     write_file_atomically(action.report, to_json(report).dump(2) + "\n", session.document.sources());
   session.say(fmt::format("exported {} as one plain folder", action.out));

@@ -33,20 +33,21 @@ Layout common_layout(const Scene& scene) {
 }
 
 PlainParts::PlainParts(const Scene& scene, Layout layout, const Progress& progress)
-    : composition(composed(scene, largest_texture_side(layout), progress)), sightlines(scene) {
+    : composition(composed(scene, largest_texture_side(layout), progress)) {
   if (layout == Layout::unsplit && composition.pages.size() > 1)
     throw Error(
         fmt::format("the texels do not fit into one texture of {}²: use --layout split", largest_texture_side(layout)));
+  if (!composition.exact()) sightlines.emplace(scene);
 }
 
 const FusePlan& PlainParts::make_plan(const FuseOptions& options, const Progress& progress) {
-  return plan.emplace(plan_fuse(composition, sightlines, options, progress));
+  return plan.emplace(plan_fuse(composition, *sightlines, options, progress));
 }
 
 Scene PlainParts::scene(const Scene& original, std::size_t candidate, const FuseOptions& options,
                         const Progress& progress) {
   plan->chosen = candidate;
-  return with_one_object(original, fuse(composition, sightlines, *plan, options, progress).object);
+  return with_one_object(original, fuse(composition, *sightlines, *plan, options, progress).object);
 }
 
 Scene plain_scene(const Scene& scene, const FuseOptions& options, PlainReport& report, const Progress& progress) {
@@ -61,7 +62,7 @@ Scene plain_scene(const Scene& scene, const FuseOptions& options, PlainReport& r
     return with_one_object(scene, merged.front().object);
   }
   const FusePlan& plan = parts.make_plan(options, progress);
-  Fused fused = fuse(parts.composition, parts.sightlines, plan, options, progress);
+  Fused fused = fuse(parts.composition, *parts.sightlines, plan, options, progress);
   report.texels = std::move(fused.report);
   report.hidden0 = fused.object->decoder->hidden0();
   report.hidden1 = fused.object->decoder->hidden1();

@@ -18,7 +18,7 @@ struct PlainParts {
   Scene scene(const Scene& original, std::size_t candidate, const FuseOptions& options, const Progress& progress);
 
   Composition composition;
-  Sightlines sightlines;
+  std::optional<Sightlines> sightlines;  ///< where something has to be fitted
   std::optional<FusePlan> plan;
 };
 

@@ -39,7 +39,7 @@ StudyTable study_fuse(const StudyInput& input) {
   PlainParts parts(scene, standard.layout, input.progress);
   const Composition& composition = parts.composition;
   const TexelSample sample =
-      sampled(composition, parts.sightlines, standard.sample, standard.training.seed, input.progress);
+      sampled(composition, *parts.sightlines, standard.sample, standard.training.seed, input.progress);
   StudyTable table{{"seconds", "PSNR dB in pictures", "milliseconds a frame", "worst picture dB", "texels dB",
                     "99 % of texels dB", "width"},
                    {},
@@ -61,7 +61,7 @@ StudyTable study_fuse(const StudyInput& input) {
   const auto add = [&](const std::string& name, const Trained& way, const FuseOptions& options) {
     const FusePlan plan{{{way.student, {}}}, 0, std::nullopt};
     PlainReport report;
-    const Fused fused = fuse(composition, parts.sightlines, plan, options, input.progress);
+    const Fused fused = fuse(composition, *parts.sightlines, plan, options, input.progress);
     Scene plain;
     Node node;
     node.name = "scene";

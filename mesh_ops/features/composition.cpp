@@ -215,7 +215,9 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
                teacher(std::make_shared<const Decoder>(fold_turn(*object.decoder, turn, object.axes, Axes::forward))),
                bent});
         }
-        result.parts[it->second].triangles += count(some);
+        Composition::Part& part = result.parts[it->second];
+        part.triangles += count(some);
+        part.plain_alpha = part.plain_alpha || set.texels->alpha_code() == AlphaCode::plain;
         pieces.push_back({set, std::move(some), placed.to_world, node_turn, it->second});
       }
     }

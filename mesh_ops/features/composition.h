@@ -21,6 +21,7 @@ struct Composition {
     std::size_t teacher;  ///< number of its decoder
     bool bent;            ///< turned apart: rays are turned back by the vertices' rotations first
     std::size_t triangles = 0;
+    bool plain_alpha = false;  ///< some of its texels have all bits of features 3 and 7
   };
   /// A rectangle of texels of one patch, at most `block_side` a side, whose triangles are of one part.
   struct Block {

@@ -275,7 +275,12 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   // Doubling a width gains about 2 dB: where the narrower one is far off, the next need not be tried.
   constexpr double hopeless = 6;
   double last = options.psnr_db;
-  for (const int width : options.width ? std::vector<int>{*options.width} : std::vector<int>{16, 24, 32}) {
+  std::vector<int> widths{16, 24, 32};
+  if (options.width)
+    widths = {*options.width};
+  else if (options.way == FuseWay::train && base_width > widths.back())
+    widths = {base_width};
+  for (const int width : widths) {
     const bool narrower_may_do = !options.width && !kept_is_enough && last >= options.psnr_db - hopeless;
     if (!candidates.empty() && (late() || (any_reaches() && !narrower_may_do))) break;
     const auto wide = static_cast<std::size_t>(width);
@@ -318,10 +323,14 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
   std::vector<std::optional<FeatureTexture::Change>> pages;
   for (const TextureSet& page : composition.pages) pages.emplace_back(*with_alpha_code(page.texels, code));
 
+  // Halving alphas that were plain takes their lowest bit: such texels are rounded anew, and measured.
+  const auto kept = [&](const Composition::Part& part) {
+    return stays(student, part) && !(part.plain_alpha && code == AlphaCode::halved);
+  };
   // The blocks to fit, in the order in which they are.
   std::vector<std::size_t> order;
   for (std::size_t b = 0; b < composition.blocks.size(); ++b)
-    if (!stays(student, composition.parts[composition.blocks[b].part])) order.push_back(b);
+    if (!kept(composition.parts[composition.blocks[b].part])) order.push_back(b);
   FuseReport report;
   for (const FuseCandidate& candidate : plan.candidates) report.trials.push_back(candidate.trial);
   report.chosen = plan.chosen;
@@ -374,14 +383,14 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
     Histogram& histogram = of_part[block.part];
     for (const float error : errors[b]) histogram.add(static_cast<double>(error));
     report.fitted_texels += errors[b].size();
-    if (stays(student, composition.parts[block.part])) histogram.add_exact(block.opaque);
+    if (kept(composition.parts[block.part])) histogram.add_exact(block.opaque);
   }
   // By node: of its bent and its rigid parts what is kept and what is fitted.
   std::vector<std::pair<NodeId, bool>> keys;
   std::vector<Histogram> of_key;
   for (std::size_t p = 0; p < of_part.size(); ++p) {
     const Composition::Part& part = composition.parts[p];
-    const std::pair key(part.node, stays(student, part));
+    const std::pair key(part.node, kept(part));
     const auto at = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
     if (at == keys.size()) {
       keys.push_back(key);

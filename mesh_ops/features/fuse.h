@@ -11,8 +11,8 @@
 namespace rebake {
 
 struct FuseOptions {
-  /// Of the hidden layers at most, 4 … 256; nothing: the smallest of 16, 24 and 32 that reaches `psnr_db`, else the
-  /// best.
+  /// Of the hidden layers at most, 4 … 256; nothing: the narrowest that reaches `psnr_db`, else the best.
+  /// Trained are 16, 24 and 32, as long as there is hope; others are as wide as what they are made of.
   std::optional<int> width;
   enum class Keep { automatic, none, node };
   /// Whose texels and decoder stay bit for bit. `automatic`: those of most texels, where that is better on the whole.

@@ -35,13 +35,7 @@ struct Gradients {
   }
 };
 
-// Means of four, as sightings mix them, and the other way: what each lane's share of the slopes is.
-void mix(const Lanes& from, std::uint32_t way, Lanes& to) {
-  for (std::size_t l = 0; l < network_lanes; ++l) {
-    const auto other = [&](std::size_t k) { return from.at[(l + k * way) % network_lanes]; };
-    to.at[l] = 0.25F * ((other(0) + other(1)) + (other(2) + other(3)));
-  }
-}
+// What each lane's share of the slopes of means is.
 void unmix(const Lanes& slopes, std::uint32_t way, Lanes& to) {
   for (std::size_t l = 0; l < network_lanes; ++l) {
     const auto other = [&](std::size_t k) { return slopes.at[(l + network_lanes * way - k * way) % network_lanes]; };
@@ -117,10 +111,7 @@ void train_together(Student& student, const Lesson& lesson, int steps, bool deco
           Lanes target[3], input[decoder_inputs], output[3], slopes[3], input_slopes[decoder_inputs];
           teach(lesson.teacher_of(number), piece.group, direction, kind.coverage, kind.mix, target, at_teacher);
           for (std::size_t c = 0; c < texel_features; ++c) {
-            if (kind.mix == 0)
-              input[c] = features[c];
-            else
-              mix(features[c], kind.mix, input[c]);
+            input[c] = mixed(features[c], kind.mix);
             for (float& value : input[c].at) value *= kind.coverage;
           }
           set_direction(direction, kind.coverage, input + texel_features);

@@ -130,6 +130,16 @@ std::vector<TexelGroup> groups_of(const Composition& composition, const Composit
   return groups;
 }
 
+Lanes mixed(const Lanes& own, std::uint32_t mix) {
+  if (mix == 0) return own;
+  Lanes mean;
+  for (std::size_t l = 0; l < network_lanes; ++l) {
+    const auto other = [&](std::size_t k) { return own.at[(l + k * mix) % network_lanes]; };
+    mean.at[l] = 0.25F * ((other(0) + other(1)) + (other(2) + other(3)));
+  }
+  return mean;
+}
+
 void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& direction, float coverage,
            std::uint32_t mix, Lanes* colors, Lanes* work) {
   Lanes input[decoder_inputs];
@@ -149,13 +159,7 @@ void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& d
       fed[axis].at[l] = static_cast<float>(d[static_cast<Eigen::Index>(axis)]);
   }
   for (Lanes& lane : input) {
-    if (mix != 0) {
-      const Lanes own = lane;
-      for (std::size_t l = 0; l < network_lanes; ++l) {
-        const auto other = [&](std::size_t k) { return own.at[(l + k * mix) % network_lanes]; };
-        lane.at[l] = 0.25F * ((other(0) + other(1)) + (other(2) + other(3)));
-      }
-    }
+    lane = mixed(lane, mix);
     for (float& value : lane.at) value *= coverage;
   }
   network_kernels().forward(teacher.view(), input, colors, work);

@@ -34,13 +34,16 @@ struct TexelGroup {
 std::vector<TexelGroup> groups_of(const Composition& composition, const Composition::Block& block,
                                   const std::vector<TexelSite>& sites);
 
+/// Means of four lanes as Sighting::mix says; 0: as they are.
+Lanes mixed(const Lanes& own, std::uint32_t mix);
+
 /// Display colours (3) of a group along a direction, by the rendering rule: features and directions of four texels
 /// averaged for `mix` (see Sighting), scaled by `coverage`, decoded once. `work` is the kernels' workspace.
 void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& direction, float coverage,
            std::uint32_t mix, Lanes* colors, Lanes* work);
 
-/// How a sighting looks at texels: half of them alone, an eighth as four neighbours, a quarter as four that are far
-/// apart (as small pictures do), and an eighth at edges, where 1 to 3 of 4 samples are covered.
+/// How a sighting looks at texels: three of eight alone, three as four neighbours, one as four that are far apart (as
+/// small pictures do), and one at edges, where 1 to 3 of 4 samples are covered.
 struct SightingKind {
   float coverage;
   std::uint32_t mix;

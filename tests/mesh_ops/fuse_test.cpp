@@ -251,6 +251,31 @@ TEST(Fuse, KeepsTheTexelsOfAKeptNodeBitForBit) {
   EXPECT_EQ(result.fused.report.parts[0].errors.psnr_db, 100);
 }
 
+TEST(Fuse, SaysThatHalvedAlphasAreNotKept) {
+  MadeObject plain = small(1);
+  plain.code = AlphaCode::plain;
+  const Scene scene = with(with({}, made_object(plain)), made_object(small(2)), moved(2.5));
+  FuseOptions options;
+  options.keep = FuseOptions::Keep::node;
+  options.keep_node = scene.roots[0]->id;
+  const FuseReport halved = fused(scene, options).fused.report;
+  EXPECT_FALSE(halved.parts[0].kept);
+  EXPECT_GT(halved.parts[0].errors.psnr_db, 45);
+  EXPECT_LT(halved.parts[0].errors.psnr_db, 100);
+  options.layout = Layout::unsplit;
+  EXPECT_TRUE(fused(scene, options).fused.report.parts[0].kept);
+}
+
+TEST(Fuse, TrainsADecoderOfAnyWidthFurther) {
+  auto wide = std::make_shared<BakedObject>(*made_object(small(2)));
+  wide->decoder = std::make_shared<const Decoder>(made_decoder(4, 40, 30));
+  FuseOptions options;
+  options.way = FuseWay::train;
+  EXPECT_EQ(fused(with(with({}, wide), wide, moved(3) * Eigen::AngleAxisd(1, Vec3::UnitX())), options)
+                .fused.object->decoder->hidden0(),
+            40);
+}
+
 // Each teacher beside an ordinary one, at a width that is trained and at one where both fit side by side.
 class FuseHardCases : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Fuse, FuseHardCases, ::testing::Values(16, 80));
