@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "editor/commands/views.h"
 #include "render/compare.h"
@@ -73,6 +74,13 @@ double median(std::vector<double> values) {
 }
 
 }  // namespace
+
+double median_frame_ms(Renderer& renderer, const Scene& scene, const View& view, int frames) {
+  renderer.render(scene, view);
+  std::vector<double> times;
+  for (int k = 0; k < frames; ++k) times.push_back(renderer.time_frame(scene, view, {}, false).frame_ms);
+  return median(std::move(times));
+}
 
 const char* words_of(FuseWay way) {
   switch (way) {

@@ -39,6 +39,9 @@ std::vector<View> judging_views(const Scene& scene, int size);
 void measure_pictures(Renderer& renderer, const Scene& composition, const Scene& fused, PlainReport& report,
                       const Progress& progress, int size = 800);
 
+/// Median of so many frames, after one that is not counted.
+double median_frame_ms(Renderer& renderer, const Scene& scene, const View& view, int frames);
+
 /// What a way is, for people.
 const char* words_of(FuseWay way);
 /// For people, a line each.

@@ -69,15 +69,12 @@ StudyTable study_fuse(const StudyInput& input) {
     plain = with_added(plain, std::move(node), NodeId::none, 0);
     constexpr int size = 400;
     measure_pictures(input.renderer(), scene, plain, report, input.progress, size);
-    std::vector<double> frames;
-    for (int k = 0; k < input.frames; ++k)
-      frames.push_back(input.renderer().time_frame(plain, input.view, {}, false).frame_ms);
-    std::nth_element(frames.begin(), frames.begin() + input.frames / 2, frames.end());
+    const double frame_ms = median_frame_ms(input.renderer(), plain, input.view, input.frames);
     const std::size_t width = std::max(way.student.decoder.hidden0, way.student.decoder.hidden1);
-    table.rows.push_back({name,
-                          {way.seconds + fused.report.seconds, report.whole.psnr_db,
-                           frames[static_cast<std::size_t>(input.frames / 2)], report.whole.worst_psnr_db,
-                           fused.report.whole.psnr_db, fused.report.whole.worst_psnr_db, static_cast<double>(width)}});
+    table.rows.push_back(
+        {name,
+         {way.seconds + fused.report.seconds, report.whole.psnr_db, frame_ms, report.whole.worst_psnr_db,
+          fused.report.whole.psnr_db, fused.report.whole.worst_psnr_db, static_cast<double>(width)}});
   };
 
   // The teacher of most texels.

@@ -48,14 +48,6 @@ FuseOptions quick_options(const Scene& scene) {
   return options;
 }
 
-double frame_ms(Renderer& renderer, const Scene& scene, const View& view) {
-  std::vector<double> times;
-  renderer.render(scene, view);
-  for (int k = 0; k < timed_frames; ++k) times.push_back(renderer.time_frame(scene, view, {}, false).frame_ms);
-  std::nth_element(times.begin(), times.begin() + timed_frames / 2, times.end());
-  return times[timed_frames / 2];
-}
-
 }  // namespace
 
 void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
@@ -82,7 +74,7 @@ void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
         measured->parts.emplace(measured->scene, options.layout, session.progress);
         Renderer& renderer = session.renderer();
         measured->reference = renderer.render(measured->scene, measured->view);
-        measured->reference_ms = frame_ms(renderer, measured->scene, measured->view);
+        measured->reference_ms = median_frame_ms(renderer, measured->scene, measured->view, timed_frames);
         measured->exact = measured->parts->composition.exact();
         session.drop_renderer();  // a second copy of the scene on the GPU
         if (measured->exact) return;
@@ -125,7 +117,7 @@ void PlainPreview::show(Desk& desk, std::size_t row) {
         Renderer& renderer = session.renderer();
         seen->picture = renderer.render(plain, measured->view);
         seen->psnr_db = std::min(100.0, compare(*seen->picture, measured->reference, 2).psnr_db);
-        seen->frame_ms = frame_ms(renderer, plain, measured->view);
+        seen->frame_ms = median_frame_ms(renderer, plain, measured->view, timed_frames);
         session.drop_renderer();
       },
       [this, measured, seen, row, wanted = wanted_] {
