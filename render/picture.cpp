@@ -45,15 +45,16 @@ class Renderer::Impl {
   Impl& operator=(const Impl&) = delete;
 
   FrameTimes draw(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass,
-                  const Guides* guides = nullptr, std::vector<PlannedPass>* passes = nullptr) {
+                  const Lighting* lighting, const Guides* guides = nullptr,
+                  std::vector<PlannedPass>* passes = nullptr) {
     const gl::Current current(*context_);
     const Clock::time_point start = Clock::now();
-    const FramePlan frame_plan = plan(scene, view, options, guides);
+    const FramePlan frame_plan = plan(scene, view, options, guides, lighting);
     if (passes != nullptr) *passes = frame_plan.passes;
     shown_ = view;
     if (frame_plan.frames.size() > 65535)
       throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
-    gpu_->update(scene);
+    gpu_->update(scene, lighting);
     state_.targets.fit(frame_plan);
     if (!frame_plan.runs(effects::selection)) state_.selected.clear();
     glBindFramebuffer(GL_FRAMEBUFFER, picture_buffer());
@@ -116,19 +117,20 @@ Renderer::~Renderer() = default;
 
 void Renderer::prepare(const Scene& scene) { impl_->prepare(scene); }
 
-Image Renderer::render(const Scene& scene, const View& view, const RenderOptions& options) {
-  impl_->draw(scene, view, options, false);
+Image Renderer::render(const Scene& scene, const View& view, const RenderOptions& options, const Lighting* lighting) {
+  impl_->draw(scene, view, options, false, lighting);
   return impl_->read_back();
 }
 
-FrameTimes Renderer::time_frame(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass) {
-  return impl_->draw(scene, view, options, each_pass);
+FrameTimes Renderer::time_frame(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass,
+                                const Lighting* lighting) {
+  return impl_->draw(scene, view, options, each_pass, lighting);
 }
 
 Renderer::Shown Renderer::show(const Scene& scene, const View& view, const RenderOptions& options, const Guides& guides,
-                               bool each_pass) {
+                               bool each_pass, const Lighting* lighting) {
   Shown shown;
-  shown.times = impl_->draw(scene, view, options, each_pass, &guides, &shown.passes);
+  shown.times = impl_->draw(scene, view, options, each_pass, lighting, &guides, &shown.passes);
   shown.texture = impl_->texture();
   return shown;
 }

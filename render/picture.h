@@ -32,14 +32,17 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  Image render(const Scene& scene, const View& view, const RenderOptions& options = {});
+  /// With `lighting`, colours change as it says.
+  Image render(const Scene& scene, const View& view, const RenderOptions& options = {},
+               const Lighting* lighting = nullptr);
 
   /// Works out what the next picture of a scene will upload, so that it takes less time. From any thread.
   void prepare(const Scene& scene);
 
   /// Draws a frame and leaves it on the GPU. With `each_pass`, waits for each pass and fills pass_ms; else the frame as
   /// a whole.
-  FrameTimes time_frame(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass);
+  FrameTimes time_frame(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass,
+                        const Lighting* lighting = nullptr);
 
   /// Draws with `guides` over the picture and leaves it on the GPU, to be shown by its texture: RGBA8 of the view's
   /// size, bottom row first, until the next picture is drawn. `times.pass_ms` is filled with `each_pass`.
@@ -48,7 +51,8 @@ class Renderer {
     FrameTimes times;
     std::vector<PlannedPass> passes;
   };
-  Shown show(const Scene& scene, const View& view, const RenderOptions& options, const Guides& guides, bool each_pass);
+  Shown show(const Scene& scene, const View& view, const RenderOptions& options, const Guides& guides, bool each_pass,
+             const Lighting* lighting = nullptr);
   /// The picture shown last.
   Image shown_image();
 

@@ -13,6 +13,12 @@ in vec2 at_texel;
 #if TURNED_MESH
 in vec3 turned_ray;
 #endif
+#if LIT_MESH
+#include "relight.glsl"
+uniform sampler2D light_gain;
+uniform sampler2D light_offset;
+in vec2 at_light;
+#endif
 layout(location = 0) out vec4 picture;
 
 void main() {
@@ -27,5 +33,11 @@ void main() {
 #else
   vec3 ray = camera_to_fed * normalize(vec3(gl_FragCoord.xy * ray_scale + ray_offset, -1.0));
 #endif
-  picture = vec4(decode(decoder, low, high, ray), 1.0);
+  vec3 color = decode(decoder, low, high, ray);
+#if LIT_MESH > 1
+  color = relit(color, texture(light_gain, at_light).rgb, texture(light_offset, at_light).rgb);
+#elif LIT_MESH
+  color = relit(color, texture(light_gain, at_light).rgb, vec3(0.0));
+#endif
+  picture = vec4(color, 1.0);
 }

@@ -12,6 +12,17 @@ layout(location = RAY_TARGET) out vec4 sample_ray;
 #if TURNED_MESH
 in vec3 turned_ray;
 #endif
+#if WRITES_LIGHT
+layout(location = GAIN_TARGET) out vec4 sample_gain;
+#endif
+#if WRITES_LIGHT > 1
+layout(location = OFFSET_TARGET) out vec4 sample_offset;
+#endif
+#if LIT_MESH
+uniform sampler2D light_gain;
+uniform sampler2D light_offset;
+in vec2 at_light;
+#endif
 
 void main() {
   uvec2 texel = texelFetch(features, clamp(ivec2(floor(at_texel)), ivec2(0), last_texel), 0).rg;
@@ -19,6 +30,20 @@ void main() {
   sample_features = texel;
 #if WRITES_FRAME
   sample_frame = frame;
+#endif
+#if WRITES_LIGHT
+#if LIT_MESH
+  sample_gain = texture(light_gain, at_light);
+#else
+  sample_gain = vec4(1.0);
+#endif
+#endif
+#if WRITES_LIGHT > 1
+#if LIT_MESH > 1
+  sample_offset = texture(light_offset, at_light);
+#else
+  sample_offset = vec4(0.0);
+#endif
 #endif
 #if WRITES_RAY
 #if TURNED_MESH

@@ -8,12 +8,20 @@ uniform mat3 camera_to_object;  // directions, orthogonal
 uniform mat3 object_to_fed;     // the axes of the decoder
 out vec3 turned_ray;
 #endif
+#if LIT_MESH
+layout(location = 5) in vec2 light_place;  // in nodes of the light map
+uniform vec2 light_size;
+out vec2 at_light;
+#endif
 uniform mat4 object_to_clip;
 out vec2 at_texel;
 
 void main() {
   gl_Position = object_to_clip * vec4(position, 1.0);
   at_texel = texel;
+#if LIT_MESH
+  at_light = light_place / light_size;
+#endif
 #if TURNED_MESH
   // Unnormalised, so that interpolation over the triangle is exact where all three turns agree.
   vec3 ray = camera_to_object * (parallel_rays ? vec3(0.0, 0.0, -1.0) : (object_to_camera * vec4(position, 1.0)).xyz);

@@ -14,12 +14,32 @@ uniform vec2 alpha_code;
 #if WRITES_RAY
 uniform sampler2D rays;
 #endif
+#if WRITES_LIGHT
+#include "relight.glsl"
+uniform sampler2D light_gain;
+uniform sampler2D light_offset;
+#endif
 uniform vec2 ray_scale;   // camera-space ray of a sample = (sample + 0.5) * ray_scale + ray_offset, z = -1
 uniform vec2 ray_offset;
 uniform vec3 background;
 out vec4 picture;
 
 const float samples = float(SIDE * SIDE);
+
+// What light does, averaged over covered samples.
+#if WRITES_LIGHT
+struct LightSum {
+  vec3 gain;
+  vec3 offset;
+};
+void add_light(inout LightSum sum, ivec2 at) {
+  sum.gain += texelFetch(light_gain, at, 0).rgb;
+#if WRITES_LIGHT > 1
+  sum.offset += texelFetch(light_offset, at, 0).rgb;
+#endif
+}
+vec3 relit_by(LightSum sum, float count, vec3 color) { return relit(color, sum.gain / count, sum.offset / count); }
+#endif
 
 vec3 fed_ray(ivec2 at, mat3 to_fed) {
 #if WRITES_RAY
@@ -33,10 +53,16 @@ vec3 fed_ray(ivec2 at, mat3 to_fed) {
 Sums sums = Sums(uvec4(0u), 0u);
 vec3 ray = vec3(0.0);       // sum over the covered samples
 vec2 position = vec2(0.0);  // the same, in samples from the pixel's first
+#if WRITES_LIGHT
+LightSum light = LightSum(vec3(0.0), vec3(0.0));
+#endif
 
 void add_sample(ivec2 base, ivec2 offset, uvec2 texel) {
   if (texel.r == 0u) return;
   add(sums, texel);
+#if WRITES_LIGHT
+  add_light(light, base + offset);
+#endif
 #if WRITES_RAY
   ray += fed_ray(base + offset, camera_to_fed);
 #elif RAY_PER_SAMPLE
@@ -87,7 +113,11 @@ void main() {
   ray = camera_to_fed * ray;
 #endif
   float coverage = float(sums.count) / samples;
-  picture = vec4(decode(0, low, high, ray / samples) * coverage + (1.0 - coverage) * background, 1.0);
+  vec3 color = decode(0, low, high, ray / samples);
+#if WRITES_LIGHT
+  color = relit_by(light, float(sums.count), color);
+#endif
+  picture = vec4(color * coverage + (1.0 - coverage) * background, 1.0);
 }
 #else
 // Each decoder averages its own samples, all others counting as uncovered, and is evaluated once.
@@ -100,6 +130,9 @@ void main() {
     Sums halved = Sums(uvec4(0u), 0u);
     Sums plain = Sums(uvec4(0u), 0u);
     vec3 ray = vec3(0.0);
+#if WRITES_LIGHT
+    LightSum light = LightSum(vec3(0.0), vec3(0.0));
+#endif
     for (int y = 0; y < SIDE; ++y) {
       for (int x = 0; x < SIDE; ++x) {
         ivec2 at = base + ivec2(x, y);
@@ -109,6 +142,9 @@ void main() {
         vec4 info = texelFetch(frame_table, frame + 3);
         if (int(info.x) != k) continue;
         if (info.y == 2.0) add(halved, texel); else add(plain, texel);
+#if WRITES_LIGHT
+        add_light(light, at);
+#endif
         ray += fed_ray(at, mat3(texelFetch(frame_table, frame).xyz, texelFetch(frame_table, frame + 1).xyz,
                                 texelFetch(frame_table, frame + 2).xyz));
       }
@@ -119,7 +155,11 @@ void main() {
     average(halved, samples, vec2(2.0, -1.0), low, high);
     average(plain, samples, vec2(1.0, 0.0), plain_low, plain_high);
     float share = float(count) / samples;
-    color += share * decode(k, low + plain_low, high + plain_high, ray / samples);
+    vec3 own = decode(k, low + plain_low, high + plain_high, ray / samples);
+#if WRITES_LIGHT
+    own = relit_by(light, float(count), own);
+#endif
+    color += share * own;
     coverage += share;
   }
   if (coverage == 0.0) discard;

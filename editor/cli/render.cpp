@@ -8,8 +8,10 @@
 #include "editor/cli/commands.h"
 #include "editor/cli/options.h"
 #include "editor/cli/terminal.h"
+#include "editor/commands/lit.h"
 #include "editor/commands/views.h"
 #include "mesh_ops/base/error.h"
+#include "render/compare.h"
 #include "render/picture.h"
 
 namespace rebake {
@@ -23,7 +25,7 @@ struct Rendering {
   std::string out;
   std::string axes = "360";
   ViewOptions view;
-  bool plan = false, json = false;
+  bool plan = false, json = false, audit = false;
   int time = 0;
 };
 
@@ -34,15 +36,17 @@ json spread(std::vector<double> values) {
   return {{"min", values.front()}, {"median", median}, {"max", values.back()}};
 }
 
-json measure(Renderer& renderer, const Scene& scene, const View& view, const RenderOptions& options, int frames) {
+json measure(Renderer& renderer, const Scene& scene, const View& view, const RenderOptions& options,
+             const Lighting& lighting, int frames) {
   std::vector<double> frame_ms;
   std::map<std::string, std::vector<double>> pass_ms;
   // The first frames compile shaders; whole frames and passes are timed apart, since waiting after each pass costs
   // time.
-  for (const bool each_pass : {false, true}) renderer.time_frame(scene, view, options, each_pass);
+  for (const bool each_pass : {false, true}) renderer.time_frame(scene, view, options, each_pass, &lighting);
   for (int i = 0; i < frames; ++i) {
-    frame_ms.push_back(renderer.time_frame(scene, view, options, false).frame_ms);
-    for (const auto& [name, ms] : renderer.time_frame(scene, view, options, true).pass_ms) pass_ms[name].push_back(ms);
+    frame_ms.push_back(renderer.time_frame(scene, view, options, false, &lighting).frame_ms);
+    for (const auto& [name, ms] : renderer.time_frame(scene, view, options, true, &lighting).pass_ms)
+      pass_ms[name].push_back(ms);
   }
   json passes = json::object();
   for (const auto& [name, values] : pass_ms) passes[name] = spread(values);
@@ -68,32 +72,52 @@ void print_times(const json& times) {
              times.at("peak_gpu_bytes").get<double>() / 1e6);
 }
 
+// Draws with all light that may change something, and compares.
+json audited(const Scene& scene, const View& view, const RenderOptions& how, const Lighting& lighting, bool quiet) {
+  const Lighting everything = lit(scene, progress_bar(), true);
+  Renderer renderer;
+  const Difference difference =
+      compare(renderer.render(scene, view, how, &lighting), renderer.render(scene, view, how, &everything), 0);
+  // Both pictures are rounded.
+  const double allowed = lighting.left_out * 255 + 1;
+  if (!quiet)
+    fmt::print("audit: what was left out changes pixels by at most {} of 255; its bounds allow {:.2f}\n",
+               difference.largest, allowed);
+  if (difference.largest > allowed)
+    throw Error(
+        fmt::format("the audit failed: pixel {}, {} is {} of 255 off, and the bounds of what was left out allow {:.2f}",
+                    difference.x, difference.y, difference.largest, allowed));
+  return {{"largest", difference.largest}, {"allowed", allowed}};
+}
+
 void render(const Rendering& options) {
-  if (options.out.empty() && !options.plan && options.time == 0)
-    throw FieldError("-o", "is missing: name a PNG to write (or give --plan or --time)");
+  if (options.out.empty() && !options.plan && !options.audit && options.time == 0)
+    throw FieldError("-o", "is missing: name a PNG to write (or give --plan, --audit or --time)");
   if (!options.out.empty() && std::filesystem::path(options.out).extension() == ".jpg")
     throw FieldError("-o", "pictures are written as PNG; name a .png file");
   auto [scene, sources] = read_all(options.folders, options.axes, progress_bar());
   options.view.set_background(scene);
   const View view = options.view.view(scene);
   const RenderOptions how = options.view.render_options();
+  const Lighting lighting = lit(scene, progress_bar());
   json report = json::object();
   if (options.plan) {
-    const FramePlan frame = plan(scene, view, how);
+    const FramePlan frame = plan(scene, view, how, nullptr, &lighting);
     if (!options.json) fmt::print("{}", describe(frame));
     report["plan"] = json::array();
     for (const PlannedPass& pass : frame.passes)
       report["plan"].push_back({{"pass", pass.name}, {"runs", pass.runs}, {"why", pass.why}});
   }
+  if (options.audit) report["audit"] = audited(scene, view, how, lighting, options.json);
   if (!options.out.empty() || options.time > 0) {
     Renderer renderer;
     if (!options.out.empty()) {
-      const Image picture = renderer.render(scene, view, how);
+      const Image picture = renderer.render(scene, view, how, &lighting);
       write_png(picture, options.out, sources);
       if (const auto why = why_blank(scene, view, picture)) fmt::print(stderr, "note: {}\n", *why);
     }
     if (options.time > 0) {
-      const json times = measure(renderer, scene, view, how, options.time);
+      const json times = measure(renderer, scene, view, how, lighting, options.time);
       if (!options.json) print_times(times);
       report.update(times);
     }
@@ -110,6 +134,8 @@ void describe_render(CommandDescription& command) {
   options->view.add_to(command);
   add_axes_option(command, options->axes);
   command.flag("--plan", options->plan, "print which passes run, which do not, and why");
+  command.flag("--audit", options->audit,
+               "also work out the light that was left out, and fail where a pixel is further off than its bounds say");
   command.option("--time", options->time, "time this many frames", "N").between(1, 100000);
   command.flag("--json", options->json, "plan and times as JSON");
   command.does([options] { render(*options); });

@@ -1,6 +1,7 @@
 #include "editor/commands/render.h"
 
 #include "editor/commands/describe.h"
+#include "editor/commands/lit.h"
 #include "editor/commands/views.h"
 #include "editor/edits/support.h"
 
@@ -13,9 +14,13 @@ namespace rebake {
 void run(Session& session, const RenderAction& action) {
   const Scene scene = with_only(session.scene(), action.nodes);
   const View view = chosen_view(scene, action.camera, action.view, action.width, action.height, action.samples);
-  const Image picture = session.renderer().render(scene, view);
+  // What is not shown still shades.
+  const Lighting lighting = lit(session.scene(), session.progress);
+  const Image picture = session.renderer().render(scene, view, {}, &lighting);
   write_png(picture, action.out, session.document.sources());
   session.say(fmt::format("rendered {}", action.out));
+  for (const LightDecision& decision : lighting.decisions)
+    session.say(fmt::format("light: {} {}: {}", decision.runs ? "runs" : "left out", decision.name, decision.why));
   if (const auto why = why_blank(scene, view, picture)) session.say(*why);
 }
 

@@ -58,6 +58,7 @@ std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vec
   if (sets.empty()) return nullptr;
   auto result = std::make_shared<BakedObject>(object);
   result->sets = std::move(sets);
+  keep_bodies(*result, object);
   return result;
 }
 

@@ -22,6 +22,7 @@
   X(RenameView) \
   X(RemoveView) \
   X(Background) \
+  X(LightEdit) \
   X(Transform) \
   X(Place) \
   X(Drop) \

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "editor/commands/export.h"
+#include "editor/commands/lit.h"
 #include "editor/commands/save.h"
 #include "editor/commands/save_project.h"
 #include "editor/commands/session.h"
@@ -136,8 +137,9 @@ py::array render_picture(PyDocument& document, int width, int height, int sample
   document.work([&](Session& session) {
     const std::optional<Camera> given =
         wanted.is_null() ? std::nullopt : std::optional(Codec<Camera>::read(wanted, session.scene()));
-    image = session.renderer().render(session.scene(),
-                                      chosen_view(session.scene(), given, view_name, width, height, samples));
+    const Lighting lighting = lit(session.scene());
+    image = session.renderer().render(
+        session.scene(), chosen_view(session.scene(), given, view_name, width, height, samples), {}, &lighting);
   });
   return py::array_t<std::uint8_t>({image.height, image.width, 3}, image.rgb.data());
 }

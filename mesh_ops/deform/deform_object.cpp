@@ -30,6 +30,7 @@ DeformedObject deformed(const BakedObject& object, const Affine& to_world, const
   const DeformedPlaces moved = deform_places(object, *corners, to_world, flags, places, falloff, deformation);
   const Affine to_object = to_world.inverse();
   auto made = std::make_shared<BakedObject>(object);
+  keep_bodies(*made, object);
   std::size_t first = 0;
   for (TextureSet& set : made->sets) {
     const std::size_t total = set.soup.triangle_count();

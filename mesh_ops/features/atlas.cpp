@@ -16,22 +16,6 @@ namespace rebake {
 
 namespace {
 
-TexelRect rect_of(const TextureSet& set, const Face& face) {
-  const int width = set.texels->width(), height = set.texels->height();
-  double low_u = 2, high_u = -1, low_v = 2, high_v = -1;
-  for (const std::uint32_t vertex : face) {
-    const Vec2& uv = set.soup.uvs()[vertex];
-    low_u = std::min(low_u, uv.x());
-    high_u = std::max(high_u, uv.x());
-    low_v = std::min(low_v, uv.y());
-    high_v = std::max(high_v, uv.y());
-  }
-  const auto texel = [](double share, int size) {
-    return std::clamp(static_cast<int>(std::floor(share * size)), 0, size - 1);
-  };
-  return {texel(low_u, width), texel(1 - high_v, height), texel(high_u, width), texel(1 - low_v, height)};
-}
-
 Texel converted(Texel texel, AlphaCode from, AlphaCode to) {
   if (from == to) return texel;
   for (std::uint8_t* alpha : {&texel.feat0[3], &texel.feat1[3]}) {
@@ -56,49 +40,6 @@ struct Page {
 };
 
 }  // namespace
-
-TexelPatches texel_patches(const TextureSet& set) {
-  const auto& faces = set.soup.faces();
-  std::map<TexelRect, std::size_t> known;
-  std::vector<TexelRect> rects;
-  std::vector<std::size_t> rect_of_face;
-  for (const Face& face : faces) {
-    const TexelRect rect = rect_of(set, face);
-    const auto [it, fresh] = known.try_emplace(rect, rects.size());
-    if (fresh) rects.push_back(rect);
-    rect_of_face.push_back(it->second);
-  }
-  // Only rectangles in the same block of texels can overlap.
-  // A block that very many share is one heap of overlaps: taken as joined, which moves more texels together, but no
-  // texel wrong.
-  constexpr int block = 32;
-  constexpr std::size_t crowded = 64;
-  UnionFind groups(rects.size());
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> in_block;
-  for (std::uint32_t r = 0; r < rects.size(); ++r) {
-    for (int y = rects[r].top / block; y <= rects[r].bottom / block; ++y) {
-      for (int x = rects[r].left / block; x <= rects[r].right / block; ++x) {
-        auto& others = in_block[static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x)];
-        for (const std::uint32_t other : others)
-          if (others.size() > crowded || rects[other].overlaps(rects[r])) groups.join(other, r);
-        if (others.size() <= crowded) others.push_back(r);
-      }
-    }
-  }
-  TexelPatches result;
-  std::unordered_map<std::size_t, std::size_t> patch_of_root;
-  std::vector<std::size_t> patch_of_rect(rects.size());
-  for (std::uint32_t r = 0; r < rects.size(); ++r) {
-    const auto [it, fresh] = patch_of_root.try_emplace(groups.root(r), result.rects.size());
-    if (fresh)
-      result.rects.push_back(rects[r]);
-    else
-      result.rects[it->second].join(rects[r]);
-    patch_of_rect[r] = it->second;
-  }
-  for (const std::size_t r : rect_of_face) result.of_face.push_back(patch_of_rect[r]);
-  return result;
-}
 
 bool can_pack(const TextureSet& set) {
   for (const Face& face : set.soup.faces())

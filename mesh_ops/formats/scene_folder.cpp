@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -42,6 +43,59 @@ json node_json(const Node& node, const std::map<const BakedObject*, std::string>
   return out;
 }
 
+// Words for SceneLight::Source.
+constexpr std::array<const char*, 3> source_words{"estimated", "uniform", "sky"};
+
+json color_json(const Vec3& color) { return {color.x(), color.y(), color.z()}; }
+
+json light_json(const SceneLight& light) {
+  return {{"self", light.self},
+          {"cast", light.cast},
+          {"removed", light.removed},
+          {"match", light.match},
+          {"budget", light.budget},
+          {"rays", light.rays},
+          {"source", source_words[static_cast<std::size_t>(light.source)]},
+          {"zenith", color_json(light.zenith)},
+          {"ground", color_json(light.ground)},
+          {"bounce", color_json(light.bounce)},
+          {"sun",
+           {{"direction", color_json(light.sun.direction)},
+            {"radius", light.sun.radius},
+            {"irradiance", color_json(light.sun.irradiance)}}}};
+}
+
+// Numbers out of range become ones that are in it: a damaged file's light is a look, not the work.
+SceneLight read_light(const json& value) {
+  SceneLight light;
+  light.self = value.at("self").get<bool>();
+  light.cast = value.at("cast").get<bool>();
+  light.removed = value.at("removed").get<bool>();
+  light.match = value.at("match").get<bool>();
+  light.budget = std::clamp(value.at("budget").get<double>(), 0.0, 1.0);
+  light.rays = std::clamp(value.at("rays").get<int>(), 16, 16384);
+  const auto word = value.at("source").get<std::string>();
+  const auto found = std::find(source_words.begin(), source_words.end(), word);
+  if (found == source_words.end()) throw FieldError("light", "has the unknown source \"" + word + "\"");
+  light.source = static_cast<SceneLight::Source>(found - source_words.begin());
+  const auto color = [](const json& list) {
+    Vec3 result;
+    for (std::size_t c = 0; c < 3; ++c)
+      result[static_cast<Eigen::Index>(c)] = std::clamp(list.at(c).get<double>(), 0.0, 1e6);
+    return result;
+  };
+  light.zenith = color(value.at("zenith"));
+  light.ground = color(value.at("ground"));
+  light.bounce = color(value.at("bounce"));
+  const json& sun = value.at("sun");
+  for (std::size_t c = 0; c < 3; ++c)
+    light.sun.direction[static_cast<Eigen::Index>(c)] = sun.at("direction").at(c).get<double>();
+  if (!(light.sun.direction.stableNorm() > 0)) throw FieldError("light", "has a sun without a direction");
+  light.sun.radius = std::clamp(sun.at("radius").get<double>(), 1e-4, 0.8);
+  light.sun.irradiance = color(sun.at("irradiance"));
+  return light;
+}
+
 class SceneReader {
  public:
   SceneReader(fs::path folder, const Progress& progress)
@@ -66,6 +120,7 @@ class SceneReader {
               std::clamp(root.at("background").at(c).get<double>(), 0.0, 1.0);
       if (root.contains("views"))
         for (const auto& [view, camera] : root.at("views").items()) scene.views[view] = read_camera_json(camera);
+      if (root.contains("light")) scene.light = std::make_shared<const SceneLight>(read_light(root.at("light")));
       for (const json& node : root.at("nodes"))
         scene = with_added(scene, read_node(node, 0), NodeId::none, scene.roots.size());
       return scene;
@@ -142,6 +197,7 @@ std::string write_scene_json(const Scene& scene, const std::map<const BakedObjec
                {"background", {scene.background.x(), scene.background.y(), scene.background.z()}},
                {"views", json::object()},
                {"nodes", json::array()}};
+  if (scene.light) root["light"] = light_json(*scene.light);
   for (const auto& [name, camera] : scene.views) root["views"][name] = camera_json(camera);
   for (const NodePtr& node : scene.roots) root["nodes"].push_back(node_json(*node, folder_of));
   return root.dump(1) + '\n';

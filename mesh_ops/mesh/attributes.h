@@ -40,6 +40,8 @@ class Values final : public Attribute {
   static T neutral() {
     if constexpr (std::is_same_v<T, Mat3>)
       return Mat3::Identity();
+    else if constexpr (requires { T::Zero(); })
+      return T::Zero();
     else
       return T{};
   }

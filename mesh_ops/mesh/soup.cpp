@@ -51,6 +51,12 @@ Soup Soup::with_face_attributes(Attributes attributes) const {
   return result;
 }
 
+Soup Soup::with_displacement(Attributes::Shared displaced) const {
+  Soup result(positions_, uvs_, faces_, vertex_attributes_.with(displacement, std::move(displaced)), face_attributes_);
+  result.lineage_ = lineage_;
+  return result;
+}
+
 std::uint64_t Soup::memory() const {
   std::uint64_t bytes = positions_->size() * sizeof(Vec3) + uvs_->size() * sizeof(Vec2) + faces_->size() * sizeof(Face);
   for (const auto* attributes : {&vertex_attributes_, &face_attributes_})
@@ -138,6 +144,11 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
   std::vector<Mat3> rotations =
       soup.rotations() != nullptr ? *soup.rotations() : std::vector<Mat3>(positions->size(), Mat3::Identity());
 
+  const auto* displaced_before = soup.vertex_attributes().find<Eigen::Vector3f>(Soup::displacement);
+  std::vector<Eigen::Vector3f> displacements =
+      displaced_before != nullptr ? *displaced_before
+                                  : std::vector<Eigen::Vector3f>(positions->size(), Eigen::Vector3f::Zero());
+
   bool any_position = false, any_rotation = false;
   std::vector<std::uint32_t> changed_vertex(soup.positions().size(), unused), old_vertex(soup.positions().size());
   std::iota(old_vertex.begin(), old_vertex.end(), 0U);
@@ -151,15 +162,18 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
     if (!moves && !rotates) continue;
     any_position = any_position || moves;
     any_rotation = any_rotation || rotates;
+    const Eigen::Vector3f displacement = displacements[v] + (position - soup.positions()[v]).cast<float>();
     if (by_others[v] != 0) {
       changed_vertex[v] = static_cast<std::uint32_t>(positions->size());
       old_vertex.push_back(v);
       positions->push_back(position);
       uvs->push_back(soup.uvs()[v]);
       rotations.push_back(rotation);
+      displacements.push_back(displacement);
     } else {
       (*positions)[v] = position;
       rotations[v] = rotation;
+      displacements[v] = displacement;
     }
   }
   if (!any_position && !any_rotation) return soup;
@@ -172,7 +186,9 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
   const Attributes attributes = split ? soup.vertex_attributes().picked(old_vertex) : soup.vertex_attributes();
   return Soup(any_position || split ? Soup::Positions(positions) : soup.shared_positions(),
               split ? Soup::Uvs(uvs) : soup.shared_uvs(), split ? Soup::Faces(faces) : soup.shared_faces(),
-              attributes.with(Soup::rotation, Values<Mat3>::of(std::move(rotations))), soup.face_attributes());
+              attributes.with(Soup::rotation, Values<Mat3>::of(std::move(rotations)))
+                  .with(Soup::displacement, Values<Eigen::Vector3f>::of(std::move(displacements))),
+              soup.face_attributes());
 }
 
 Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,

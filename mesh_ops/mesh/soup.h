@@ -23,6 +23,9 @@ class Soup {
   /// The vertex attribute that is the rotation field: by which orthogonal matrix an edit turned each vertex against its
   /// object (Mat3).
   static constexpr const char* rotation = "rotation";
+  /// The vertex attribute that says how far edits moved each vertex from where it was when its light was baked
+  /// (Eigen::Vector3f, object space).
+  static constexpr const char* displacement = "displacement";
 
   /// Positions in object space, UVs with v up, one of each a vertex. Faces must be in range, and attributes as many as
   /// vertices and faces (std::invalid_argument).
@@ -38,6 +41,8 @@ class Soup {
   const Attributes& face_attributes() const { return face_attributes_; }
   /// With other attributes of the faces.
   Soup with_face_attributes(Attributes attributes) const;
+  /// With another displacement of the vertices; null for none.
+  Soup with_displacement(Attributes::Shared displaced) const;
 
   const Positions& shared_positions() const { return positions_; }
   const Uvs& shared_uvs() const { return uvs_; }

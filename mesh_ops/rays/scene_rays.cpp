@@ -1,6 +1,7 @@
 #include "mesh_ops/rays/scene_rays.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace rebake {
 
@@ -44,6 +45,13 @@ bool SceneRays::blocked(const Vec3& from, const Vec3& to) const {
     const double distance = way.norm();
     constexpr double rounding = 1e-5;  // of the object's size, ten times the tree's
     return distance > 0 && placed.tree->blocked(start, way, 0, 1 - rounding * std::max(1.0, placed.size / distance));
+  });
+}
+
+bool SceneRays::shaded(const Vec3& from, const Vec3& direction) const {
+  return std::any_of(placed_.begin(), placed_.end(), [&](const Placed& placed) {
+    return placed.tree->blocked(placed.to_object * from, placed.to_object.linear() * direction, 0,
+                                std::numeric_limits<double>::infinity());
   });
 }
 

@@ -39,6 +39,8 @@ class SceneRays {
   void nearest(Bundle& rays, double near) const;
   /// Whether anything opaque lies between two points; not at `to` itself, within the trees' rounding.
   bool blocked(const Vec3& from, const Vec3& to) const;
+  /// Whether anything opaque lies along the direction, however far.
+  bool shaded(const Vec3& from, const Vec3& direction) const;
 
  private:
   struct Placed {

@@ -45,6 +45,25 @@ std::uint64_t BakedObject::memory() const {
   return total;
 }
 
+std::vector<BakedBody> bodies_of(const BakedObject& object) {
+  if (!object.bodies.empty()) return object.bodies;
+  return {{std::make_shared<const BakedObject>(object), Affine::Identity()}};
+}
+
+void keep_bodies(BakedObject& made, const BakedObject& of) {
+  if (made.bodies.empty()) made.bodies = bodies_of(of);
+}
+
+bool same_body(const BakedBody& a, const BakedBody& b) {
+  const auto same_set = [](const TextureSet& x, const TextureSet& y) {
+    return x.texels == y.texels && x.soup.shared_positions() == y.soup.shared_positions() &&
+           x.soup.shared_uvs() == y.soup.shared_uvs() && x.soup.shared_faces() == y.soup.shared_faces();
+  };
+  return a.to_object.matrix() == b.to_object.matrix() &&
+         (a.object == b.object || std::equal(a.object->sets.begin(), a.object->sets.end(), b.object->sets.begin(),
+                                             b.object->sets.end(), same_set));
+}
+
 std::size_t count(const TriangleSet& triangles) {
   return static_cast<std::size_t>(std::count_if(triangles.begin(), triangles.end(), [](auto f) { return f != 0; }));
 }

@@ -49,6 +49,13 @@ struct Origin {
 /// A flag for each triangle of an object, numbered through its sets in order.
 using TriangleSet = std::vector<std::uint8_t>;
 
+struct BakedObject;
+/// What an object was when its light was baked, edits undone: what it shaded itself with.
+struct BakedBody {
+  std::shared_ptr<const BakedObject> object;
+  Affine to_object = Affine::Identity();  ///< from its own space into that of the object made of it
+};
+
 /// One baked scene: texture sets that share a decoder. Immutable once made; nodes share it.
 struct BakedObject {
   std::vector<TextureSet> sets;
@@ -56,6 +63,10 @@ struct BakedObject {
   Axes axes = Axes::y_up;
   Layout layout = Layout::split;
   std::shared_ptr<const Origin> origin;  ///< null for objects that were not read from a folder
+  /// What it was made of by edits that move, remove or erase triangles; empty: it is as its light was baked.
+  std::vector<BakedBody> bodies;
+  /// The face attribute with the number of a face's body (std::uint16_t).
+  static constexpr const char* body = "body";
 
   std::size_t triangle_count() const;
   std::size_t vertex_count() const;
@@ -64,6 +75,13 @@ struct BakedObject {
   bool any_rotations() const;
   std::uint64_t memory() const;
 };
+
+/// The object's bodies; of one that is as its light was baked, itself.
+std::vector<BakedBody> bodies_of(const BakedObject& object);
+/// To be called of what is made of an object by moving, removing or erasing triangles: it knows its bodies then.
+void keep_bodies(BakedObject& made, const BakedObject& of);
+/// The same triangles at the same places.
+bool same_body(const BakedBody& a, const BakedBody& b);
 
 std::size_t count(const TriangleSet& triangles);
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh_ops/scene/camera.h"
+#include "mesh_ops/scene/light.h"
 #include "mesh_ops/scene/object.h"
 
 namespace rebake {
@@ -38,6 +39,7 @@ struct Scene {
   Color background{1, 1, 1};
   std::map<std::string, Camera> views;
   std::uint64_t next_id = 1;
+  std::shared_ptr<const SceneLight> light;  ///< null: colours stay as they were baked
 };
 
 /// A node as it stands in the world.

@@ -100,6 +100,24 @@ GpuTexture upload(const std::shared_ptr<const FeatureTexture>& source) {
   return result;
 }
 
+gl::Texture upload(const LightChart& chart, const std::vector<Eigen::Vector3f>& values) {
+  gl::Texture texture = gl::make_texture(GL_RGBA16F, chart.width, chart.height, 8);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, chart.width, chart.height, GL_RGB, GL_FLOAT, values.data());
+  return texture;
+}
+
+GpuLight upload(const std::shared_ptr<const LightMap>& map) {
+  GpuLight light;
+  light.source = map;
+  light.places = gl::make_buffer(GL_ARRAY_BUFFER, map->chart->places.data(),
+                                 map->chart->places.size() * sizeof(map->chart->places[0]));
+  light.gain = upload(*map->chart, map->gain);
+  if (!map->offset.empty()) light.offset = upload(*map->chart, map->offset);
+  return light;
+}
+
 }  // namespace
 
 PreparedMesh prepared(const TextureSet& set, ShownFaces shown) {
@@ -167,7 +185,21 @@ void GpuScene::prepare(const Scene& scene) {
   }
 }
 
-void GpuScene::update(const Scene& scene) {
+void GpuScene::update_light(const Lighting* lighting) {
+  std::set<const LightMap*> wanted;
+  if (lighting != nullptr)
+    for (const auto& [node, maps] : lighting->maps)
+      for (const auto& map : maps)
+        if (map) wanted.insert(map.get());
+  std::erase_if(lights_, [&](const auto& entry) { return !wanted.contains(entry.first); });
+  if (lighting == nullptr) return;
+  for (const auto& [node, maps] : lighting->maps)
+    for (const auto& map : maps)
+      if (map && !lights_.contains(map.get())) lights_.emplace(map.get(), upload(map));
+}
+
+void GpuScene::update(const Scene& scene, const Lighting* lighting) {
+  update_light(lighting);
   std::set<MeshKey> held_meshes;
   for (const auto& [key, mesh] : meshes_) held_meshes.insert(key);
   std::set<TextureKey> held_textures;

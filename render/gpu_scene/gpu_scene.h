@@ -5,6 +5,7 @@
 #include <mutex>
 #include <vector>
 
+#include "mesh_ops/light/lighting.h"
 #include "render/gl/objects.h"
 #include "render/gpu_scene/resources.h"
 
@@ -55,22 +56,32 @@ struct GpuTexture {
   gl::Texture texture;
 };
 
+/// A light map on the GPU.
+struct GpuLight {
+  std::shared_ptr<const LightMap> source;
+  gl::Buffer places;
+  gl::Texture gain, offset;  ///< no offset where there is none
+};
+
 /// Owns what is on the GPU for the current scene.
 class GpuScene {
  public:
   /// Uploads what is missing and releases what `scene` no longer holds.
-  void update(const Scene& scene);
+  void update(const Scene& scene, const Lighting* lighting = nullptr);
   /// Works out what update() will upload, from any thread; it takes what there is of it.
   void prepare(const Scene& scene);
 
   const GpuMesh& mesh(const TextureSet& set) const { return meshes_.at(mesh_key(set)); }
   const GpuTexture& texture(const TextureSet& set) const { return textures_.at(set.texels.get()); }
+  const GpuLight& light(const std::shared_ptr<const LightMap>& map) const { return lights_.at(map.get()); }
 
  private:
+  void update_light(const Lighting* lighting);
   PreparedMesh take_prepared(const TextureSet& set);
 
   std::map<MeshKey, GpuMesh> meshes_;
   std::map<TextureKey, GpuTexture> textures_;
+  std::map<const LightMap*, GpuLight> lights_;
   // Shared with prepare():
   std::mutex mutex_;
   struct Held {

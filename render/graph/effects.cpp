@@ -11,6 +11,8 @@ constexpr const Effect* table[] = {
     &effects::supersampling,
     &effects::node_frames,
     &effects::turned_rays,
+    &effects::light,
+    &effects::light_offset,
     &effects::decoder_compositing,
     &effects::ray_per_sample,
     &effects::resolve,

@@ -10,14 +10,16 @@ namespace rebake {
 
 /// Buffers of a frame that effects pass on to each other.
 enum class Target {
-  picture,   ///< RGBA8, a pixel
-  features,  ///< RG32UI, a sample's 8 feature bytes
-  frames,    ///< R16UI, a sample's index into FramePlan::frames
-  rays,      ///< RGBA32F, a sample's fed direction where its triangle was turned, else 0
-  depth,     ///< a sample's depth
-  mask,      ///< R8, a pixel's selected triangles, then those of outlined nodes
+  picture,       ///< RGBA8, a pixel
+  features,      ///< RG32UI, a sample's 8 feature bytes
+  frames,        ///< R16UI, a sample's index into FramePlan::frames
+  rays,          ///< RGBA32F, a sample's fed direction where its triangle was turned, else 0
+  depth,         ///< a sample's depth
+  light_gain,    ///< RGBA16F, a sample's factor of linear light
+  light_offset,  ///< RGBA16F, what is added to it
+  mask,          ///< R8, a pixel's selected triangles, then those of outlined nodes
 };
-inline constexpr std::size_t target_count = 6;
+inline constexpr std::size_t target_count = 8;
 
 struct Effect;
 struct PassInput;
@@ -56,8 +58,8 @@ struct Effect {
 };
 
 namespace effects {
-extern const Effect geometry, supersampling, node_frames, turned_rays, decoder_compositing, ray_per_sample, resolve,
-    forward, culling, hidden_objects, inspect, selection, outline, guides;
+extern const Effect geometry, supersampling, node_frames, turned_rays, light, light_offset, decoder_compositing,
+    ray_per_sample, resolve, forward, culling, hidden_objects, inspect, selection, outline, guides;
 }
 
 /// All of them, in the order in which they are said and run.

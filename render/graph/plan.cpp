@@ -96,7 +96,8 @@ bool FramePlan::runs(const Effect& effect) const {
   return std::any_of(passes.begin(), passes.end(), [&](const PlannedPass& p) { return p.effect == &effect && p.runs; });
 }
 
-FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options, const Guides* guides) {
+FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options, const Guides* guides,
+               const Lighting* lighting) {
   check(view);
   if (options.shading == RenderOptions::Shading::forward && view.samples != 1)
     throw FieldError("shading",
@@ -140,7 +141,10 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
       result.triangles += set.soup.triangle_count();
       if (set.soup.rotations() != nullptr) ++turned;
       result.draws.push_back(
-          {placed.node->id, set, *frame, to_camera, object.axes, placed.node->selection, first_triangle});
+          {placed.node->id, set, *frame, to_camera, object.axes, placed.node->selection, first_triangle,
+           lighting != nullptr
+               ? lighting->map_of(placed.node->id, static_cast<std::size_t>(&set - &object.sets[0]), set)
+               : nullptr});
     }
     if (!any_in_view) ++culled;
   }
@@ -157,6 +161,9 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
                                  : RenderOptions::Shading::deferred;
   if (guides != nullptr) result.guides = *guides;
   plan_passes(result, {result, turned, culled, hidden}, guides != nullptr);
+  if (lighting != nullptr)
+    for (const LightDecision& decision : lighting->decisions)
+      result.passes.push_back({nullptr, decision.name, decision.runs, decision.why});
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh_ops/light/lighting.h"
 #include "mesh_ops/scene/scene.h"
 #include "render/graph/guides.h"
 #include "render/graph/view.h"
@@ -47,13 +48,14 @@ struct Draw {
   Axes axes = Axes::y_up;
   std::shared_ptr<const TriangleSet> selection;  ///< of the whole object; null when nothing is selected
   std::size_t first_triangle = 0;                ///< the set's, in the object's numbering
+  std::shared_ptr<const LightMap> light;         ///< null where no light changes it
 };
 
 struct Effect;
 
 /// A pass or an optional part of one, and why it runs or not.
 struct PlannedPass {
-  const Effect* effect;
+  const Effect* effect;  ///< null for what was worked out before the frame: light
   std::string name;
   bool runs = false;
   std::string why;
@@ -81,9 +83,11 @@ struct FramePlan {
   bool runs(const Effect& effect) const;
 };
 
-/// Pure. `guides`: what an editor wants over the picture, null for the picture alone. Throws FieldError for a view or
+/// Pure. `guides`: what an editor wants over the picture, null for the picture alone. `lighting`: what light does to
+/// its colours, null for nothing. Throws FieldError for a view or
 /// option that cannot be carried out, EditError for a node whose transform is singular.
-FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options = {}, const Guides* guides = nullptr);
+FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options = {}, const Guides* guides = nullptr,
+               const Lighting* lighting = nullptr);
 
 /// One line a pass, e.g. "left out  node frames     one decoder and orientation in view".
 std::string describe(const FramePlan& plan);

@@ -19,6 +19,8 @@ constexpr std::array<Format, target_count> formats{{{GL_RGBA8, 4, false},
                                                     {GL_R16UI, 2, true},
                                                     {GL_RGBA32F, 16, true},
                                                     {GL_DEPTH_COMPONENT32F, 4, true},
+                                                    {GL_RGBA16F, 8, true},
+                                                    {GL_RGBA16F, 8, true},
                                                     {GL_R8, 1, false}}};
 
 std::bitset<target_count> written_by(const FramePlan& plan) {

@@ -16,7 +16,8 @@ void execute(const PassInput& input) {
     const NodeFrame& frame = plan.frames[draw.frame];
     const gl::Program& shader =
         program(input.state, "geometry.vert", "forward.frag",
-                fmt::format("#define TURNED_MESH {}\n", draw.set.soup.rotations() != nullptr ? 1 : 0) + decoder);
+                fmt::format("#define TURNED_MESH {}\n", draw.set.soup.rotations() != nullptr ? 1 : 0) +
+                    light_preamble(draw) + decoder);
     glUseProgram(shader.name());
     set_uniform(shader, "camera_to_fed", to_glm(camera_to_fed(plan, frame)));
     set_uniform(shader, "alpha_code", alpha_factors(frame.alpha_code));

@@ -12,6 +12,9 @@ void execute(const PassInput& input) {
   std::vector<Target> colors{Target::features};
   if (has_frames) colors.push_back(Target::frames);
   if (has_rays) colors.push_back(Target::rays);
+  const int light = light_level(input.plan), gain_target = static_cast<int>(colors.size());
+  if (light > 0) colors.push_back(Target::light_gain);
+  if (light > 1) colors.push_back(Target::light_offset);
   input.draw_to(colors, true);
   begin_geometry(input.plan, input.plan.view.side());
   const GLuint nothing[4] = {};
@@ -27,7 +30,10 @@ void execute(const PassInput& input) {
                 fmt::format("#define TURNED_MESH {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n#define "
                             "FRAME_TARGET {}\n#define RAY_TARGET {}\n",
                             draw.set.soup.rotations() != nullptr ? 1 : 0, has_frames ? 1 : 0, has_rays ? 1 : 0,
-                            frame_target, ray_target));
+                            frame_target, ray_target) +
+                    light_preamble(draw) +
+                    fmt::format("#define WRITES_LIGHT {}\n#define GAIN_TARGET {}\n#define OFFSET_TARGET {}\n", light,
+                                gain_target, gain_target + 1));
     glUseProgram(shader.name());
     set_uniform(shader, "frame", static_cast<unsigned>(draw.frame));
     draw_set(input, draw, shader);
@@ -65,6 +71,8 @@ std::optional<Decision> decide_turned_rays(const FrameFacts& facts) {
 constexpr Use writes[] = {{Target::features},
                           {Target::frames, &effects::node_frames},
                           {Target::rays, &effects::turned_rays},
+                          {Target::light_gain, &effects::light},
+                          {Target::light_offset, &effects::light_offset},
                           {Target::depth}};
 
 }  // namespace

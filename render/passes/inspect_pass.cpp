@@ -23,9 +23,9 @@ void execute(const PassInput& input) {
   const Guides& guides = input.plan.guides;
   input.draw_to({Target::picture}, true);
   begin_geometry(input.plan, 1);
-  const gl::Program& shader =
-      program(input.state, "geometry.vert", "inspect.frag",
-              fmt::format("#define TURNED_MESH 0\n#define INSPECT {}\n", static_cast<int>(guides.inspect)));
+  const gl::Program& shader = program(
+      input.state, "geometry.vert", "inspect.frag",
+      fmt::format("#define TURNED_MESH 0\n#define LIT_MESH 0\n#define INSPECT {}\n", static_cast<int>(guides.inspect)));
   glUseProgram(shader.name());
   set_uniform(shader, "channel", guides.channel);
   if (guides.inspect == Guides::Inspect::wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);

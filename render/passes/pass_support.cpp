@@ -159,6 +159,14 @@ void set_uniform(const gl::Program& program, const char* name, const glm::mat4& 
   glUniformMatrix4fv(location(program, name), 1, GL_FALSE, glm::value_ptr(value));
 }
 
+int light_level(const FramePlan& plan) {
+  return plan.runs(effects::light_offset) ? 2 : plan.runs(effects::light) ? 1 : 0;
+}
+
+std::string light_preamble(const Draw& draw) {
+  return fmt::format("#define LIT_MESH {}\n", !draw.light ? 0 : draw.light->offset.empty() ? 1 : 2);
+}
+
 void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Program& program) {
   const GpuMesh& mesh = input.gpu.mesh(draw.set);
   const GpuTexture& texture = input.gpu.texture(draw.set);
@@ -184,6 +192,19 @@ void draw_set(const PassInput& input, const Draw& draw, const gl::Program& progr
   set_mesh_uniforms(input, draw, program);
   const GpuMesh& mesh = input.gpu.mesh(draw.set);
   glBindVertexArray(mesh.array.name());
+  if (draw.light) {
+    const GpuLight& light = input.gpu.light(draw.light);
+    glBindBuffer(GL_ARRAY_BUFFER, light.places.name());
+    glEnableVertexAttribArray(5);
+    glVertexAttribPointer(5, 2, GL_FLOAT, GL_FALSE, 2 * sizeof(float), nullptr);
+    set_uniform(program, "light_size", glm::vec2(draw.light->chart->width, draw.light->chart->height));
+    glActiveTexture(GL_TEXTURE6);
+    glBindTexture(GL_TEXTURE_2D, light.gain.name());
+    set_uniform(program, "light_gain", 6);
+    glActiveTexture(GL_TEXTURE7);
+    glBindTexture(GL_TEXTURE_2D, light.offset.name());
+    set_uniform(program, "light_offset", 7);
+  }
   const Eigen::Matrix4d cull = projection(input.plan.view) * draw.to_camera.matrix();
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
@@ -204,6 +225,7 @@ void draw_set(const PassInput& input, const Draw& draw, const gl::Program& progr
   if (!counts.empty())
     glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
                         static_cast<GLsizei>(counts.size()));
+  if (draw.light) glDisableVertexAttribArray(5);
 }
 
 void begin_geometry(const FramePlan& plan, int side) {
@@ -271,7 +293,8 @@ const gl::Program& begin_mask(const PassInput& input) {
   glClearBufferfv(GL_COLOR, 0, nothing);
   glEnable(GL_BLEND);
   glBlendEquation(GL_MAX);
-  const gl::Program& mask = program(input.state, "geometry.vert", "selection_mask.frag", "#define TURNED_MESH 0\n");
+  const gl::Program& mask =
+      program(input.state, "geometry.vert", "selection_mask.frag", "#define TURNED_MESH 0\n#define LIT_MESH 0\n");
   glUseProgram(mask.name());
   bind_scene_depth(input, mask);
   return mask;

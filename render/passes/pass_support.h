@@ -33,6 +33,11 @@ void set_uniform(const gl::Program& program, const char* name, const glm::ivec2&
 void set_uniform(const gl::Program& program, const char* name, const glm::mat3& value);
 void set_uniform(const gl::Program& program, const char* name, const glm::mat4& value);
 
+/// 0: no light changes; 1: by factors; 2: something is added too.
+int light_level(const FramePlan& plan);
+/// What shaders need to know of a draw's light map.
+std::string light_preamble(const Draw& draw);
+
 /// Sets what geometry.vert needs of a set and binds its texture.
 void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Program& program);
 /// The same, and draws the clusters in view.

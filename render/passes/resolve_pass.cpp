@@ -36,12 +36,12 @@ void execute(const PassInput& input) {
   glScissor(plan.covered.left, plan.view.height - plan.covered.bottom, plan.covered.right - plan.covered.left,
             plan.covered.bottom - plan.covered.top);
 
-  const gl::Program& shader =
-      program(input.state, "fullscreen.vert", "resolve.frag",
-              fmt::format("#define SIDE {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n"
-                          "#define RAY_PER_SAMPLE {}\n",
-                          side, has_frames ? 1 : 0, has_rays ? 1 : 0, plan.runs(effects::ray_per_sample) ? 1 : 0) +
-                  decoder_preamble(input));
+  const gl::Program& shader = program(input.state, "fullscreen.vert", "resolve.frag",
+                                      fmt::format("#define SIDE {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n"
+                                                  "#define RAY_PER_SAMPLE {}\n#define WRITES_LIGHT {}\n",
+                                                  side, has_frames ? 1 : 0, has_rays ? 1 : 0,
+                                                  plan.runs(effects::ray_per_sample) ? 1 : 0, light_level(plan)) +
+                                          decoder_preamble(input));
   glUseProgram(shader.name());
   bind(0, GL_TEXTURE_2D, input.read(Target::features));
   set_uniform(shader, "features", 0);
@@ -63,6 +63,14 @@ void execute(const PassInput& input) {
   if (has_rays) {
     bind(3, GL_TEXTURE_2D, input.read(Target::rays));
     set_uniform(shader, "rays", 3);
+  }
+  if (plan.runs(effects::light)) {
+    bind(6, GL_TEXTURE_2D, input.read(Target::light_gain));
+    set_uniform(shader, "light_gain", 6);
+  }
+  if (plan.runs(effects::light_offset)) {
+    bind(7, GL_TEXTURE_2D, input.read(Target::light_offset));
+    set_uniform(shader, "light_offset", 7);
   }
   bind_decoders(input, shader);
   set_ray_uniforms(shader, plan.view, side);
@@ -107,8 +115,11 @@ std::optional<Decision> decide_ray_per_sample(const FrameFacts& facts) {
                                      pixel, pixel * pixel / 4)};
 }
 
-constexpr Use reads[] = {
-    {Target::features}, {Target::frames, &effects::node_frames}, {Target::rays, &effects::turned_rays}};
+constexpr Use reads[] = {{Target::features},
+                         {Target::frames, &effects::node_frames},
+                         {Target::rays, &effects::turned_rays},
+                         {Target::light_gain, &effects::light},
+                         {Target::light_offset, &effects::light_offset}};
 constexpr Use writes[] = {{Target::picture}};
 
 }  // namespace

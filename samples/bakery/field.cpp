@@ -139,9 +139,10 @@ class RadianceField::Impl {
         for (int i = 0; i <= grid.columns; ++i) {
           const double u = static_cast<double>(i) / grid.columns, v = static_cast<double>(j) / grid.rows;
           const Vec3 p = grid.patch->point(u, v), n = grid.normal(u, v);
-          Light light = gather(p, n);
+          const double clearance = grid.patch->clearance > 0 ? grid.patch->clearance : offset_;
+          Light light = gather(p, n, clearance);
           if (grid.patch->thin) {
-            const Light other = gather(p, -n);
+            const Light other = gather(p, -n, clearance);
             light.irradiance = 0.6 * light.irradiance + 0.4 * other.irradiance;
             light.sun = std::max(light.sun, other.sun);
           }
@@ -176,6 +177,7 @@ class RadianceField::Impl {
   }
 
   const Grid& grid(std::size_t k) const { return grids_[k]; }
+  double clearance() const { return offset_; }
 
   bool occluded(const Vec3& from, const Vec3& direction, double distance) const {
     RTCIntersectContext context;
@@ -197,7 +199,7 @@ class RadianceField::Impl {
     return !occluded(eye, way / distance, distance - 3 * offset_);
   }
 
-  Image trace(const Camera& camera, int width, int height) const {
+  Image trace(const Camera& camera, int width, int height, const Shade& shade) const {
     constexpr int side = 8;
     Image image{width, height,
                 std::vector<std::uint8_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3)};
@@ -227,7 +229,7 @@ class RadianceField::Impl {
           }
           const PatchUv at = uv_of(grids_[query.hit.geomID], query.hit.primID, static_cast<double>(query.hit.u),
                                    static_cast<double>(query.hit.v));
-          sum += color(query.hit.geomID, std::clamp(at.u, 0.0, 1.0), std::clamp(at.v, 0.0, 1.0), d);
+          sum += shade(query.hit.geomID, std::clamp(at.u, 0.0, 1.0), std::clamp(at.v, 0.0, 1.0), d);
         }
         for (int c = 0; c < 3; ++c)
           image.rgb[static_cast<std::size_t>((y * width + x) * 3 + c)] =
@@ -238,10 +240,10 @@ class RadianceField::Impl {
   }
 
  private:
-  Light gather(const Vec3& p, const Vec3& n) const {
+  Light gather(const Vec3& p, const Vec3& n, double clearance) const {
     Light light;
     const Mat3 frame = basis(n);
-    const Vec3 from = p + offset_ * n;
+    const Vec3 from = p + clearance * n;
     for (int k = 0; k < sky_rays; ++k) {
       // Cosine-weighted Fibonacci points of the hemisphere.
       const double r2 = (k + 0.5) / sky_rays, phi = 2 * pi * std::fmod(k * 0.6180339887498949, 1.0), r = std::sqrt(r2);
@@ -282,11 +284,20 @@ std::array<double, 2> RadianceField::openness(std::size_t patch, double u, doubl
   const Light light = impl_->grid(patch).at(u, v);
   return {light.open, light.sun};
 }
+Vec3 RadianceField::irradiance(std::size_t patch, double u, double v) const {
+  return impl_->grid(patch).at(u, v).irradiance;
+}
 bool RadianceField::visible(const Vec3& eye, std::size_t patch, double u, double v) const {
   return impl_->visible(eye, patch, u, v);
 }
+double RadianceField::clearance() const { return impl_->clearance(); }
 Image RadianceField::trace(const Camera& camera, int width, int height) const {
-  return impl_->trace(camera, width, height);
+  return impl_->trace(camera, width, height, [this](std::size_t patch, double u, double v, const Vec3& direction) {
+    return color(patch, u, v, direction);
+  });
+}
+Image RadianceField::trace(const Camera& camera, int width, int height, const Shade& color) const {
+  return impl_->trace(camera, width, height, color);
 }
 
 }  // namespace rebake::bakery

@@ -26,10 +26,17 @@ class RadianceField {
   Vec3 normal(std::size_t patch, double u, double v) const;
   /// Share of sky and sun that reach the point.
   std::array<double, 2> openness(std::size_t patch, double u, double v) const;
+  /// How far above surfaces rays for their light start, where the patch does not say.
+  double clearance() const;
+  /// Irradiance over π.
+  Vec3 irradiance(std::size_t patch, double u, double v) const;
   /// False when something opaque lies between the eye and the point.
   bool visible(const Vec3& eye, std::size_t patch, double u, double v) const;
   /// A picture with 64 rays a pixel, composited over white in display colours as the format's rule does.
   Image trace(const Camera& camera, int width, int height) const;
+  /// The same surfaces with other display colours: `color(patch, u, v, direction)`.
+  using Shade = std::function<Color(std::size_t patch, double u, double v, const Vec3& direction)>;
+  Image trace(const Camera& camera, int width, int height, const Shade& color) const;
 
  private:
   class Impl;

@@ -47,6 +47,18 @@ double noise(const Vec3& p) {
   return sum;
 }
 
+Model warped(const Model& model, const std::function<Vec3(std::size_t, const Vec3&)>& warp) {
+  Model result = model;
+  for (std::size_t k = 0; k < result.patches.size(); ++k) {
+    Patch& patch = result.patches[k];
+    const auto point = patch.point;
+    const auto albedo = patch.albedo;
+    patch.point = [=](double u, double v) -> Vec3 { return warp(k, point(u, v)); };
+    patch.albedo = [=](double u, double v, const Vec3&) -> Vec3 { return albedo(u, v, point(u, v)); };
+  }
+  return result;
+}
+
 std::function<Camera(double, double)> around(const Vec3& target, double distance, double lowest, double highest) {
   return [=](double s, double t) {
     const double elevation = (lowest + (highest - lowest) * t) * pi / 180, azimuth = 2 * pi * s;

@@ -19,6 +19,7 @@ struct Patch {
   double reflectance = 0;  ///< at normal incidence; 0: matte
   double sharpness = 20;   ///< exponent of the highlight
   bool thin = false;       ///< seen and lit from both sides, such as a leaf
+  double clearance = 0;    ///< how far above it rays for its light start; 0: a share of the model's size
 };
 
 /// What a sample is baked from.
@@ -46,6 +47,9 @@ double noise(const Vec3& p);
 
 /// Cameras around `target` at `distance`, between two elevations in degrees.
 std::function<Camera(double, double)> around(const Vec3& target, double distance, double lowest, double highest);
+
+/// The model's surfaces elsewhere: `warp(patch, point)`; colours stay with them.
+Model warped(const Model& model, const std::function<Vec3(std::size_t patch, const Vec3& point)>& warp);
 
 Model ficus();
 Model kettle();

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace rebake {
@@ -21,9 +22,44 @@ std::vector<TextureSet> sets_in_frame(const PlacedNode& placed, const PlacedNode
   checked_turn(motion);
   const Mat3 turn =
       orthogonal_factor(frame.to_world.linear()).transpose() * orthogonal_factor(placed.to_world.linear());
-  for (TextureSet& set : sets)
+  const Eigen::Matrix3f linear = motion.linear().cast<float>();
+  for (TextureSet& set : sets) {
+    const Attributes::Shared displaced = set.soup.vertex_attributes().shared(Soup::displacement);
     set.soup = move_faces(set.soup, std::vector<std::uint8_t>(set.soup.triangle_count(), 1), 0, motion, turn);
+    // The frame is another one; nothing went away from where it was baked.
+    if (displaced) {
+      std::vector<Eigen::Vector3f> turned = dynamic_cast<const Values<Eigen::Vector3f>&>(*displaced).get();
+      for (Eigen::Vector3f& d : turned) d = linear * d;
+      set.soup = set.soup.with_displacement(Values<Eigen::Vector3f>::of(std::move(turned)));
+    } else {
+      set.soup = set.soup.with_displacement(nullptr);
+    }
+  }
   return sets;
+}
+
+// Adds a node's bodies, in the frame of another, to those of what it joins; faces tell theirs by number where there are
+// several.
+void join_bodies(std::vector<BakedBody>& bodies, const PlacedNode& placed, const PlacedNode& frame,
+                 std::vector<TextureSet>& sets) {
+  const bool moves = placed.to_world.matrix() != frame.to_world.matrix();
+  std::vector<std::uint16_t> numbers;
+  for (BakedBody body : bodies_of(*placed.node->object)) {
+    if (moves) body.to_object = frame.to_world.inverse() * placed.to_world * body.to_object;
+    auto found = std::find_if(bodies.begin(), bodies.end(), [&](const BakedBody& b) { return same_body(b, body); });
+    if (found == bodies.end()) found = bodies.insert(found, body);
+    numbers.push_back(static_cast<std::uint16_t>(found - bodies.begin()));
+  }
+  if (bodies.size() > std::numeric_limits<std::uint16_t>::max())
+    throw EditError("more than 65535 objects would become one; group them instead");
+  for (TextureSet& set : sets) {
+    const auto* own = set.soup.face_attributes().find<std::uint16_t>(BakedObject::body);
+    std::vector<std::uint16_t> joined(set.soup.triangle_count());
+    for (std::size_t f = 0; f < joined.size(); ++f) joined[f] = numbers[own != nullptr ? (*own)[f] : 0];
+    const Attributes attributes =
+        set.soup.face_attributes().with(BakedObject::body, Values<std::uint16_t>::of(std::move(joined)));
+    if (attributes != set.soup.face_attributes()) set.soup = set.soup.with_face_attributes(attributes);
+  }
 }
 
 // Where a set's texels come among those that the object was read with.
@@ -70,9 +106,12 @@ Scene apply(const Scene& scene, const Merge& edit) {
   std::map<const FeatureTexture*, std::shared_ptr<const FeatureTexture>> converted;
   auto merged = std::make_shared<BakedObject>(*first.node->object);
   merged->sets.clear();
+  merged->bodies.clear();
   for (const PlacedNode& part : parts) {
     if (part.node->object->origin != merged->origin) merged->origin = nullptr;
-    for (TextureSet& set : sets_in_frame(part, first)) {
+    std::vector<TextureSet> sets = sets_in_frame(part, first);
+    join_bodies(merged->bodies, part, first, sets);
+    for (TextureSet& set : sets) {
       if (any_plain && set.texels->alpha_code() != AlphaCode::plain) {
         auto& plain = converted[set.texels.get()];
         if (!plain) plain = with_alpha_code(set.texels, AlphaCode::plain);

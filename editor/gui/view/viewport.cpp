@@ -27,7 +27,9 @@ Scene on_ground(const Scene& scene, const Desk& desk) {
   return result;
 }
 
-bool same_scene(const Scene& a, const Scene& b) { return a.roots == b.roots && a.background == b.background; }
+bool same_scene(const Scene& a, const Scene& b) {
+  return a.roots == b.roots && a.background == b.background && a.light == b.light;
+}
 bool same_view(const View& a, const View& b) {
   return a.camera == b.camera && a.width == b.width && a.height == b.height && a.samples == b.samples;
 }

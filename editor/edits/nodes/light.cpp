@@ -1,0 +1,93 @@
+#include "editor/edits/nodes/light.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "editor/edits/describe.h"
+
+namespace rebake {
+
+namespace {
+
+void check_light(const Vec3& color, const char* field) {
+  if (!color.allFinite() || (color.array() < 0).any()) throw FieldError(field, "must be finite and not negative");
+}
+
+// Sets which effects are wanted; false where light is to stay as it was baked.
+bool choose_effects(const std::vector<std::string>& words, SceneLight& light) {
+  if (words == std::vector<std::string>{"none"}) return false;
+  light.self = light.cast = light.removed = light.match = false;
+  for (const std::string& word : words) {
+    if (word == "auto")
+      light.self = light.cast = light.removed = true;
+    else if (word == "self")
+      light.self = true;
+    else if (word == "cast")
+      light.cast = true;
+    else if (word == "removed")
+      light.removed = true;
+    else if (word == "match")
+      light.match = true;
+    else
+      throw FieldError("effects", "\"" + word + "\" is none: use auto, self, cast, removed, match, or none alone");
+  }
+  if (words.empty()) throw FieldError("effects", "must name at least one: auto, self, cast, removed, match, or none");
+  return true;
+}
+
+}  // namespace
+
+Scene apply(const Scene& scene, const LightEdit& edit) {
+  Scene result = scene;
+  auto light = std::make_shared<SceneLight>(edit.light);
+  if (!choose_effects(edit.effects, *light)) {
+    result.light = nullptr;
+    return result;
+  }
+  if (!(edit.budget >= 0 && edit.budget <= 255)) throw FieldError("budget", "must lie between 0 and 255");
+  if (light->rays < 16 || light->rays > 16384) throw FieldError("rays", "must lie between 16 and 16384");
+  light->budget = edit.budget / 255;
+  check_light(light->zenith, "zenith");
+  check_light(light->ground, "ground");
+  check_light(light->sun.irradiance, "sun_color");
+  check_light(light->bounce, "bounce");
+  if (!light->sun.direction.allFinite() || !(light->sun.direction.stableNorm() > 0))
+    throw FieldError("sun", "must be a direction");
+  if (!(edit.sun_degrees > 0 && edit.sun_degrees <= 45))
+    throw FieldError("sun_degrees", "must be above 0 and at most 45");
+  light->sun.radius = edit.sun_degrees * std::numbers::pi / 180;
+  light->sun.direction.stableNormalize();
+  if (edit.source == "estimated")
+    light->source = SceneLight::Source::estimated;
+  else if (edit.source == "uniform")
+    light->source = SceneLight::Source::uniform;
+  else if (edit.source == "sky")
+    light->source = SceneLight::Source::sky;
+  else
+    throw FieldError("source", "\"" + edit.source + "\" is none: use estimated, uniform or sky");
+  result.light = std::move(light);
+  return result;
+}
+
+REBAKE_DESCRIBE_EDIT(
+    LightEdit, "Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone.",
+    (auto& edit, auto& visit) {
+      visit("effects", edit.effects, Need::optional,
+            "auto: self, cast and removed, each where it would be seen; or some of them, and match: all objects in one "
+            "light; none: colours stay as baked");
+      visit("source", edit.source, Need::optional,
+            "of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground "
+            "and a sun, about the objects' own upright axis");
+      visit("zenith", edit.light.zenith, Need::optional, "linear radiance from above, red, green and blue");
+      visit("ground", edit.light.ground, Need::optional, "the same from below");
+      visit("sun", edit.light.sun.direction, Need::optional, "direction towards it");
+      visit("sun_color", edit.light.sun.irradiance, Need::optional,
+            "linear, what it sends back from a white surface that faces it; 0, 0, 0: none");
+      visit("sun_degrees", edit.sun_degrees, Need::optional, "its radius as seen, which softens shadows",
+            Unit::degrees);
+      visit("bounce", edit.light.bounce, Need::optional, "linear radiance of surfaces that hide the sky");
+      visit("budget", edit.budget, Need::optional, "how far colours may be off for what is left out, of 255");
+      visit("rays", edit.light.rays, Need::optional, "from each point, 16 to 16384: 4 % off at 64, 1.3 % at 256");
+    })
+
+}  // namespace rebake

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "editor/edits/support.h"
+
+namespace rebake {
+
+/// Says what light does in the scene: which effects follow its edits, and where the light comes from.
+struct LightEdit {
+  static constexpr const char* op = "light";
+  std::vector<std::string> effects{"auto"};
+  std::string source = "estimated";
+  double sun_degrees = 5;
+  double budget = 1;  ///< of 255
+  SceneLight light;   ///< the rest
+};
+template <>
+const EditType& edit_type<LightEdit>();
+
+Scene apply(const Scene& scene, const LightEdit& edit);
+
+}  // namespace rebake

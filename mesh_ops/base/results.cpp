@@ -1,0 +1,15 @@
+#include "mesh_ops/base/results.h"
+
+#include "mesh_ops/base/hash.h"
+
+namespace rebake {
+
+std::string result_key(const std::string& kind, std::string_view bytes) {
+  // Two hashes: of one, 2^32 results would hold two that share it.
+  std::string salted = kind;
+  salted += '\0';
+  salted += bytes;
+  return kind + "-" + hash_text(content_hash(bytes)) + hash_text(content_hash(salted));
+}
+
+}  // namespace rebake

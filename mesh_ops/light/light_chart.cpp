@@ -1,0 +1,118 @@
+#include "mesh_ops/light/light_chart.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh_ops/index/footprint.h"
+#include "mesh_ops/index/texel_patches.h"
+
+namespace rebake {
+
+namespace {
+
+struct Patch {
+  TexelRect rect;
+  int columns, rows;      // nodes
+  int left = 0, top = 0;  // in the light texture
+  std::vector<std::uint32_t> faces;
+
+  double step_x() const { return static_cast<double>(rect.width()) / std::max(1, columns - 1); }
+  double step_y() const { return static_cast<double>(rect.height()) / std::max(1, rows - 1); }
+};
+
+// Rows of patches, one below the other.
+void place(std::vector<Patch>& patches, LightChart& chart) {
+  std::uint64_t area = 0;
+  int widest = 1;
+  for (const Patch& patch : patches) {
+    area += static_cast<std::uint64_t>(patch.columns) * static_cast<std::uint64_t>(patch.rows);
+    widest = std::max(widest, patch.columns);
+  }
+  chart.width = std::max(widest, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(area)))));
+  int x = 0, y = 0, tallest = 0;
+  for (Patch& patch : patches) {
+    if (x + patch.columns > chart.width) {
+      x = 0;
+      y += tallest;
+      tallest = 0;
+    }
+    patch.left = x;
+    patch.top = y;
+    x += patch.columns;
+    tallest = std::max(tallest, patch.rows);
+  }
+  chart.height = std::max(1, y + tallest);
+}
+
+// Weights of the corners at the triangle's point that is nearest in weights.
+Vec3 nearest_weights(const std::array<Vec2, 3>& corners, const Vec2& at, double& outside) {
+  Vec3 w = barycentric(corners, at);
+  outside = std::max(0.0, -w.minCoeff());
+  w = w.cwiseMax(0.0);
+  return w / w.sum();
+}
+
+bool any_opaque(const FeatureTexture& texels, const TexelRect& rect, double x, double y, double reach_x,
+                double reach_y) {
+  const int left = std::max(rect.left, static_cast<int>(std::floor(x - reach_x))),
+            right = std::min(rect.right, static_cast<int>(std::ceil(x + reach_x))),
+            top = std::max(rect.top, static_cast<int>(std::floor(y - reach_y))),
+            bottom = std::min(rect.bottom, static_cast<int>(std::ceil(y + reach_y)));
+  for (int row = top; row <= bottom; ++row)
+    for (int column = left; column <= right; ++column)
+      if (texels.at(column, row).opaque()) return true;
+  return false;
+}
+
+}  // namespace
+
+LightChart light_chart(const TextureSet& set, double spacing) {
+  const TexelPatches found = texel_patches(set);
+  std::vector<Patch> patches;
+  for (const TexelRect& rect : found.rects) {
+    const auto nodes = [&](int texels) { return std::max(2, 1 + static_cast<int>(std::ceil((texels - 1) / spacing))); };
+    patches.push_back({rect, nodes(rect.width()), nodes(rect.height()), 0, 0, {}});
+  }
+  for (std::uint32_t f = 0; f < found.of_face.size(); ++f) patches[found.of_face[f]].faces.push_back(f);
+
+  LightChart chart;
+  chart.uvs = set.soup.shared_uvs();
+  place(patches, chart);
+  chart.places.resize(set.soup.positions().size(), Eigen::Vector2f::Zero());
+  chart.node_of.assign(static_cast<std::size_t>(chart.width) * static_cast<std::size_t>(chart.height),
+                       LightChart::none);
+  for (const Patch& patch : patches) {
+    std::vector<std::array<Vec2, 3>> corners;
+    for (const std::uint32_t f : patch.faces) {
+      corners.push_back(texel_corners(set, f));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2& t = corners.back()[k];
+        chart.places[set.soup.faces()[f][k]] = {
+            static_cast<float>(patch.left + 0.5 + (t.x() - patch.rect.left) / patch.step_x()),
+            static_cast<float>(patch.top + 0.5 + (t.y() - patch.rect.top) / patch.step_y())};
+      }
+    }
+    for (int row = 0; row < patch.rows; ++row)
+      for (int column = 0; column < patch.columns; ++column) {
+        const Vec2 at(patch.rect.left + column * patch.step_x(), patch.rect.top + row * patch.step_y());
+        if (!any_opaque(*set.texels, patch.rect, at.x(), at.y(), patch.step_x(), patch.step_y())) continue;
+        double least = std::numeric_limits<double>::infinity();
+        LightChart::Node node{static_cast<std::uint32_t>((patch.top + row) * chart.width + patch.left + column), 0, {}};
+        for (std::size_t k = 0; k < corners.size() && least > 0; ++k) {
+          double outside = 0;
+          const Vec3 weights = nearest_weights(corners[k], at, outside);
+          if (!(outside < least)) continue;
+          least = outside;
+          node.face = patch.faces[k];
+          node.weights = weights.cast<float>();
+        }
+        if (least == std::numeric_limits<double>::infinity()) continue;
+        chart.node_of[node.texel] = static_cast<std::uint32_t>(chart.nodes.size());
+        chart.nodes.push_back(node);
+      }
+  }
+  return chart;
+}
+
+}  // namespace rebake

@@ -1,0 +1,397 @@
+#include "mesh_ops/light/light_estimate.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "mesh_ops/index/numbering.h"
+
+namespace rebake {
+
+namespace {
+
+using std::numbers::pi;
+constexpr double golden = 0.6180339887498949;
+
+std::vector<Vec3> sphere_points(int count) {
+  std::vector<Vec3> points;
+  for (int k = 0; k < count; ++k) {
+    const double y = 1 - 2 * (k + 0.5) / count, r = std::sqrt(1 - y * y), phi = 2 * pi * std::fmod(k * golden, 1.0);
+    points.emplace_back(r * std::cos(phi), y, r * std::sin(phi));
+  }
+  return points;
+}
+
+// Lobes around directions, which sum to 1 everywhere.
+class Lobes {
+ public:
+  explicit Lobes(int count) : centers_(sphere_points(count)), sharpness_(count / 4.0) {}
+  std::size_t size() const { return centers_.size(); }
+  const Vec3& center(std::size_t k) const { return centers_[k]; }
+  void weights(const Vec3& d, std::vector<double>& out) const {
+    out.resize(size());
+    double sum = 0;
+    for (std::size_t k = 0; k < size(); ++k) sum += out[k] = std::exp(sharpness_ * (d.dot(centers_[k]) - 1));
+    for (double& w : out) w /= sum;
+  }
+
+ private:
+  std::vector<Vec3> centers_;
+  double sharpness_;
+};
+
+struct Sample {
+  std::uint32_t site;
+  double facing = 0.5;
+  std::uint32_t cluster = 0;
+  Eigen::VectorXd column;  // what a lobe of radiance 1 gives it; last: what hides the sky
+};
+
+// Least |A x − b|² with x ≥ 0, given AᵀA and Aᵀb, by coordinate descent (Franc, Hlaváč and Navara 2005).
+Eigen::VectorXd non_negative(const Eigen::MatrixXd& squares, const Eigen::VectorXd& right, Eigen::VectorXd x) {
+  Eigen::VectorXd slope = squares * x - right;
+  for (int sweep = 0; sweep < 400; ++sweep) {
+    double most = 0;
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      if (!(squares(k, k) > 0)) continue;
+      const double next = std::max(0.0, x[k] - slope[k] / squares(k, k)), step = next - x[k];
+      if (step == 0) continue;
+      slope += step * squares.col(k);
+      x[k] = next;
+      most = std::max(most, std::abs(step));
+    }
+    if (most < 1e-7 * std::max(1e-12, x.maxCoeff())) break;
+  }
+  return x;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// Surfaces that may share an albedo: of much the same chromaticity, so wide that a warm sun and a blue sky do not tell
+// lit from shaded ones. The most common chromaticity takes what is near it, then the most common of the rest.
+void cluster(std::vector<Sample>& samples, const std::vector<Radiance>& colors) {
+  constexpr double cell = 0.15, radius = 0.3;
+  std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells;
+  for (std::uint32_t i = 0; i < samples.size(); ++i) {
+    const Radiance c = colors[samples[i].site].cwiseMax(1e-4);
+    cells[{static_cast<int>(std::lround(std::log(c[0] / c[1]) / cell)),
+           static_cast<int>(std::lround(std::log(c[2] / c[1]) / cell))}]
+        .push_back(i);
+  }
+  for (std::uint32_t number = 0; !cells.empty(); ++number) {
+    const auto center = std::max_element(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
+                          return a.second.size() < b.second.size();
+                        })->first;
+    std::erase_if(cells, [&](const auto& entry) {
+      if (std::hypot(entry.first.first - center.first, entry.first.second - center.second) * cell > radius)
+        return false;
+      for (const std::uint32_t i : entry.second) samples[i].cluster = number;
+      return true;
+    });
+  }
+}
+
+// How much neighbouring lobes hold to each other, against what a usual lobe weighs.
+constexpr double smooth = 3;
+
+class Fit {
+ public:
+  Fit(const std::vector<Sample>& samples, const std::vector<Radiance>& colors, const Lobes& lobes)
+      : samples_(samples), colors_(colors) {
+    // Each lobe against the mean of its six nearest.
+    const auto n = static_cast<Eigen::Index>(lobes.size());
+    Eigen::MatrixXd differences = Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      std::vector<std::pair<double, Eigen::Index>> near;
+      for (Eigen::Index j = 0; j < n; ++j)
+        if (j != k)
+          near.emplace_back(-lobes.center(static_cast<std::size_t>(k)).dot(lobes.center(static_cast<std::size_t>(j))),
+                            j);
+      constexpr std::ptrdiff_t neighbours = 6;
+      std::partial_sort(near.begin(), near.begin() + std::min<std::ptrdiff_t>(neighbours, n - 1), near.end());
+      for (std::size_t j = 0; j < std::min<std::size_t>(neighbours, near.size()); ++j)
+        differences(k, near[j].second) -= 1.0 / neighbours;
+    }
+    smoothness_ = differences.transpose() * differences;
+    std::uint32_t clusters = 0;
+    for (const Sample& sample : samples) clusters = std::max(clusters, sample.cluster + 1);
+    albedo_.assign(clusters, Radiance::Constant(0.5));
+    weight_.assign(samples.size(), 1);
+  }
+
+  // Light and albedos in turn; `suns`: a further column each.
+  void run(const std::vector<Eigen::VectorXd>& suns, int rounds) {
+    suns_ = suns;
+    const Eigen::Index n = samples_.front().column.size() + static_cast<Eigen::Index>(suns.size());
+    for (auto& x : x_) x.conservativeResizeLike(Eigen::VectorXd::Zero(n));
+    for (int round = 0; round < rounds; ++round) {
+      for (int c = 0; c < 3; ++c) solve(c);
+      reweigh();
+      albedos();
+    }
+  }
+  Radiance light(Eigen::Index k) const { return {x_[0][k], x_[1][k], x_[2][k]}; }
+
+  // Weighted squared error of the colours' sum.
+  double error() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) sum += weight_[i] * residual(i).squaredNorm();
+    return sum;
+  }
+  // The same when one more sun may shine, all else refitted; albedos stay.
+  double error_with(const Eigen::VectorXd& sun) {
+    Fit other = *this;
+    other.run_light(sun);
+    return other.error();
+  }
+  double explained() const {
+    // Against one radiance a cluster.
+    std::vector<Radiance> mean(albedo_.size(), Radiance::Zero());
+    std::vector<double> count(albedo_.size(), 0);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      mean[samples_[i].cluster] += weight_[i] * colors_[samples_[i].site];
+      count[samples_[i].cluster] += weight_[i];
+    }
+    double all = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const std::uint32_t k = samples_[i].cluster;
+      all += weight_[i] * (colors_[samples_[i].site] - mean[k] / count[k]).squaredNorm();
+    }
+    return all > 0 ? std::clamp(1 - error() / all, 0.0, 1.0) : 0;
+  }
+
+ private:
+  Eigen::VectorXd row(std::size_t i) const {
+    const Eigen::VectorXd& own = samples_[i].column;
+    Eigen::VectorXd r(own.size() + static_cast<Eigen::Index>(suns_.size()));
+    r.head(own.size()) = own;
+    for (std::size_t s = 0; s < suns_.size(); ++s)
+      r[own.size() + static_cast<Eigen::Index>(s)] = suns_[s][static_cast<Eigen::Index>(i)];
+    return r;
+  }
+  void solve(int c) {
+    const Eigen::Index n = x_[0].size();
+    Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const double a = albedo_[samples_[i].cluster][c], w = weight_[i];
+      const Eigen::VectorXd r = row(i);
+      squares.selfadjointView<Eigen::Lower>().rankUpdate(r, w * a * a);
+      right += w * a * colors_[samples_[i].site][c] * r;
+    }
+    squares.triangularView<Eigen::StrictlyUpper>() = squares.transpose();
+    const double usual = squares.diagonal().head(smoothness_.rows()).mean();
+    squares.topLeftCorner(smoothness_.rows(), smoothness_.rows()) += smooth * usual * smoothness_;
+    squares.diagonal().array() += 1e-3 * usual;
+    x_[c] = non_negative(squares, right, x_[c]);
+  }
+  void run_light(const Eigen::VectorXd& sun) {
+    suns_.push_back(sun);
+    for (int c = 0; c < 3; ++c) {
+      x_[c].conservativeResizeLike(Eigen::VectorXd::Zero(x_[c].size() + 1));
+      solve(c);
+    }
+  }
+  Radiance predicted(std::size_t i) const {
+    const Eigen::VectorXd r = row(i);
+    return Radiance(r.dot(x_[0]), r.dot(x_[1]), r.dot(x_[2])).cwiseProduct(albedo_[samples_[i].cluster]);
+  }
+  Radiance residual(std::size_t i) const { return colors_[samples_[i].site] - predicted(i); }
+  // Errors count relative to what is expected, since albedos vary by factors; beyond the usual less (Huber): what lies
+  // far off is a highlight, or of another albedo.
+  void reweigh() {
+    std::vector<double> expected, sizes;
+    double mean = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      expected.push_back(predicted(i).norm());
+      mean += expected.back() / static_cast<double>(samples_.size());
+    }
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      expected[i] += 0.2 * mean;
+      sizes.push_back(residual(i).norm() / expected[i]);
+    }
+    const double usual = std::max(1e-12, 1.5 * median(sizes));
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      weight_[i] = std::min(1.0, usual / std::max(usual, sizes[i])) * mean * mean / (expected[i] * expected[i]);
+  }
+  void albedos() {
+    std::vector<Radiance> top(albedo_.size(), Radiance::Zero()), bottom = top;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const std::uint32_t k = samples_[i].cluster;
+      const Radiance light = predicted(i).cwiseQuotient(albedo_[k]);
+      top[k] += weight_[i] * light.cwiseProduct(colors_[samples_[i].site]);
+      bottom[k] += weight_[i] * light.cwiseProduct(light);
+    }
+    Radiance sum = Radiance::Zero();
+    double count = 0;
+    for (std::size_t k = 0; k < albedo_.size(); ++k)
+      for (int c = 0; c < 3; ++c)
+        if (bottom[k][c] > 0) albedo_[k][c] = std::max(1e-4, top[k][c] / bottom[k][c]);
+    for (const Sample& sample : samples_) {
+      sum += albedo_[sample.cluster];
+      count += 1;
+    }
+    // Scale is free: albedos are ½ on the whole.
+    const Radiance scale = (sum / count * 2).cwiseInverse();
+    for (Radiance& a : albedo_) a = a.cwiseProduct(scale);
+    for (int c = 0; c < 3; ++c) x_[c] /= scale[c];
+  }
+
+  const std::vector<Sample>& samples_;
+  const std::vector<Radiance>& colors_;
+  std::vector<Eigen::VectorXd> suns_;
+  std::array<Eigen::VectorXd, 3> x_{Eigen::VectorXd::Zero(0), Eigen::VectorXd::Zero(0), Eigen::VectorXd::Zero(0)};
+  std::vector<Radiance> albedo_;
+  std::vector<double> weight_;
+  Eigen::MatrixXd smoothness_;
+};
+
+// What a sun of irradiance 1 gives each sample.
+Eigen::VectorXd sun_column(const std::vector<Sample>& samples, const LightSites& sites, const SceneRays& body,
+                           const Vec3& direction, double radius, int rays = 6) {
+  Eigen::VectorXd column = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(samples.size()));
+  const Vec3 u = direction.unitOrthogonal(), v = direction.cross(u);
+  const double r = std::tan(radius);
+  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+    const LightSite& site = sites.baked[samples[i].site];
+    const double turn = 2 * pi * static_cast<double>(mixed(i, 3, 5) >> 11) * 0x1p-53;
+    for (int side = 0; side < 2; ++side) {
+      const double share = side == 0 ? samples[i].facing : 1 - samples[i].facing;
+      const Vec3 normal = side == 0 ? site.normal : Vec3(-site.normal);
+      if (share == 0 || normal.dot(direction) <= -r) continue;
+      const Vec3 from = site.position + site.offset * normal;
+      for (int k = 0; k < rays; ++k) {
+        const double away = r * std::sqrt((k + 0.5) / rays), phi = 2 * pi * std::fmod(k * golden, 1.0) + turn;
+        const Vec3 d = (direction + away * (std::cos(phi) * u + std::sin(phi) * v)).normalized();
+        const double above = normal.dot(d);
+        if (above > 0 && !body.shaded(from, d)) column[static_cast<Eigen::Index>(i)] += share * above / rays;
+      }
+    }
+  });
+  return column;
+}
+
+struct FoundSun {
+  Vec3 direction;
+  double radius = 0.09;
+  Eigen::VectorXd column;
+  double error = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+LightEstimate estimated_light(const LightSites& sites, const std::vector<Radiance>& colors, const SceneRays& body,
+                              const EstimateOptions& options, const Progress& progress) {
+  LightEstimate result;
+  // Spread over all of them.
+  std::vector<Sample> samples;
+  std::vector<std::uint32_t> usable;
+  for (std::uint32_t i = 0; i < sites.size(); ++i)
+    if (sites.baked[i].normal.squaredNorm() > 0.5 && colors[i].sum() > 0) usable.push_back(i);
+  const std::size_t count = std::min(options.sites, usable.size());
+  if (count < 8) return result;
+  for (std::size_t k = 0; k < count; ++k)
+    samples.push_back(
+        {usable[(k * usable.size() + mixed(k, 1, 2) % usable.size()) / count % usable.size()], 0.5, 0, {}});
+  cluster(samples, colors);
+
+  const Lobes lobes(options.lobes);
+  const auto lobe_count = static_cast<Eigen::Index>(lobes.size());
+  std::vector<std::array<Eigen::VectorXd, 2>> sides(samples.size());
+  std::atomic<std::size_t> done = 0;
+  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+    if (i % 64 == 0)
+      progress.at("estimating light", 0.6 * static_cast<double>(done += 64) / static_cast<double>(count + 64));
+    const LightSite& site = sites.baked[samples[i].site];
+    const Vec3 across = site.normal.cross(site.tangent);
+    const double turn = 2 * pi * static_cast<double>(mixed(i, 9, 1) >> 11) * 0x1p-53;
+    std::vector<double> weights;
+    for (std::size_t side = 0; side < 2; ++side) {
+      Eigen::VectorXd& column = sides[i][side];
+      column = Eigen::VectorXd::Zero(lobe_count + 1);
+      const Vec3 normal = side == 0 ? site.normal : Vec3(-site.normal), from = site.position + site.offset * normal;
+      for (int k = 0; k < options.rays; ++k) {
+        const double r = std::sqrt((k + 0.5) / options.rays), phi = 2 * pi * std::fmod(k * golden, 1.0) + turn;
+        const Vec3 d = r * std::cos(phi) * site.tangent + r * std::sin(phi) * across + std::sqrt(1 - r * r) * normal;
+        if (body.shaded(from, d)) {
+          column[lobe_count] += 1.0 / options.rays;
+          continue;
+        }
+        lobes.weights(d, weights);
+        for (Eigen::Index j = 0; j < lobe_count; ++j) column[j] += weights[static_cast<std::size_t>(j)] / options.rays;
+      }
+    }
+  });
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double front = 1 - sides[i][0][lobe_count], back = 1 - sides[i][1][lobe_count];
+    constexpr double closed = 0.03;
+    const double least = std::max(closed, 0.1 * std::max(front, back));
+    samples[i].facing = (front > least) == (back > least) ? 0.5 : front > least ? 1 : 0;
+    samples[i].column = samples[i].facing * sides[i][0] + (1 - samples[i].facing) * sides[i][1];
+  }
+  Fit fit(samples, colors, lobes);
+  fit.run({}, 12);
+  progress.at("estimating light", 0.7);
+
+  std::optional<FoundSun> sun;
+  if (options.sun) {
+    Eigen::Index brightest = 0;
+    for (Eigen::Index k = 1; k < lobe_count; ++k)
+      if (fit.light(k).sum() > fit.light(brightest).sum()) brightest = k;
+    FoundSun best;
+    best.direction = lobes.center(static_cast<std::size_t>(brightest));
+    const double without = fit.error();
+    for (const double step : {0.16, 0.06, 0.025}) {
+      const Vec3 center = best.direction, u = center.unitOrthogonal(), v = center.cross(u);
+      const int reach = step == 0.16 ? 3 : 2;
+      for (int a = -reach; a <= reach; ++a)
+        for (int b = -reach; b <= reach; ++b) {
+          if (step != 0.16 && a == 0 && b == 0) continue;
+          FoundSun other;
+          other.direction = (center + step * (a * u + b * v)).normalized();
+          other.column = sun_column(samples, sites, body, other.direction, other.radius);
+          other.error = fit.error_with(other.column);
+          if (other.error < best.error) best = other;
+        }
+      progress.at("estimating light", 0.8);
+    }
+    for (const double radius : {0.02, 0.2}) {
+      FoundSun other = best;
+      other.radius = radius;
+      other.column = sun_column(samples, sites, body, other.direction, radius);
+      other.error = fit.error_with(other.column);
+      if (other.error < best.error) best = other;
+    }
+    // It must be worth it: lobes alone explain soft light as well.
+    if (best.error < 0.97 * without) sun = best;
+  }
+  if (sun) fit.run({sun_column(samples, sites, body, sun->direction, sun->radius, 48)}, 12);
+  result.confidence = fit.explained();
+  result.light.sky = SkyMap(32, [&](const Vec3& d) -> Radiance {
+    std::vector<double> weights;
+    lobes.weights(d, weights);
+    Radiance sum = Radiance::Zero();
+    for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * fit.light(static_cast<Eigen::Index>(k));
+    return sum;
+  });
+  result.light.bounce = fit.light(lobe_count);
+  if (sun) {
+    result.sun = true;
+    result.light.suns.push_back({sun->direction, sun->radius, fit.light(lobe_count + 1)});
+  }
+  progress.at("estimating light", 1);
+  return result;
+}
+
+}  // namespace rebake

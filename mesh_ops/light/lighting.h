@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/base/results.h"
+#include "mesh_ops/light/relighting.h"
+#include "mesh_ops/scene/scene.h"
+
+namespace rebake {
+
+/// Whether an effect of light was worked out, and why.
+struct LightDecision {
+  std::string name;  ///< such as "cast shadow kettle→ficus"
+  bool runs = false;
+  double bound = 0;    ///< of what it changes, in display colours 0 … 1
+  double seconds = 0;  ///< that it took, or that leaving it out saves, about
+  std::string why;
+};
+
+/// What light does to a scene's colours: a map for each texture set of the nodes where it changes any.
+struct Lighting {
+  std::map<NodeId, std::vector<std::shared_ptr<const LightMap>>> maps;
+  std::vector<LightDecision> decisions;
+  double left_out = 0;  ///< the sum of bounds of what was left out
+
+  /// Of a node's texture set; null where nothing changes, and where its vertices are others by now.
+  std::shared_ptr<const LightMap> map_of(NodeId node, std::size_t number, const TextureSet& set) const;
+};
+
+struct LightingOptions {
+  int rays = 0;        ///< 0: as the scene says
+  double spacing = 4;  ///< of light's nodes, in texels; wider where an object would have more than `most_nodes`
+  std::size_t most_nodes = 400000;
+  bool everything = false;     ///< also what is not called for: to audit
+  Results* results = nullptr;  ///< where traced light is kept; null for nowhere
+};
+
+/// The light that a scene calls for (Scene::light; nothing where that is null): decides by bounds, estimates what it
+/// needs, traces before and after. Deterministic. Throws EditError for a node that is flattened.
+Lighting lighting_of(const Scene& scene, const LightingOptions& options = {}, const Progress& progress = {});
+
+}  // namespace rebake

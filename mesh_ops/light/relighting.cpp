@@ -1,0 +1,167 @@
+#include "mesh_ops/light/relighting.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh_ops/index/footprint.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr double dark_share = 0.3;
+
+}  // namespace
+
+namespace {
+
+// How far a part's colours are from one albedo under such light: the median departure of log(colour / light).
+double unevenness(const std::vector<std::uint32_t>& part, const std::vector<SiteLight>& baked,
+                  const std::vector<Radiance>& colors, double facing) {
+  std::vector<double> logs;
+  for (const std::uint32_t i : part) {
+    const double light = (facing * baked[i].irradiance[0] + (1 - facing) * baked[i].irradiance[1]).sum();
+    if (light > 0 && colors[i].sum() > 0) logs.push_back(std::log(colors[i].sum() / light));
+  }
+  if (logs.size() < 8) return 0;
+  const auto middle = [](std::vector<double>& values) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  const double center = middle(logs);
+  for (double& value : logs) value = std::abs(value - center);
+  return middle(logs);
+}
+
+}  // namespace
+
+std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLight>& baked,
+                             const std::vector<Radiance>& colors) {
+  const std::size_t count = sites.part.empty() ? 0 : *std::max_element(sites.part.begin(), sites.part.end()) + 1;
+  std::vector<std::vector<std::uint32_t>> parts(count);
+  for (std::uint32_t i = 0; i < sites.size(); ++i) parts[sites.part[i]].push_back(i);
+  std::vector<float> facing(sites.size());
+  for (const std::vector<std::uint32_t>& part : parts) {
+    if (part.empty()) continue;
+    // A side shows unless most of it is closed: the inside of what has one is, but for cracks and rims.
+    // What is open a tenth as far as the other side counts as closed too: a pot's wall is seen through its missing
+    // bottom.
+    constexpr float closed = 0.03F, much = 0.1F;
+    std::array<float, 2> common{};
+    for (std::size_t side = 0; side < 2; ++side) {
+      std::vector<float> values;
+      for (const std::uint32_t i : part) values.push_back(baked[i].open[side]);
+      const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 2 / 5);
+      std::nth_element(values.begin(), at, values.end());
+      common[side] = *at;
+    }
+    const float least_open = std::max(closed, much * std::max(common[0], common[1]));
+    float best = 0.5F;
+    if ((common[0] > least_open) != (common[1] > least_open)) {
+      best = common[0] > least_open ? 1.0F : 0.0F;
+    } else {
+      // Both may show: colours tell, if they do so clearly.
+      constexpr double clearly = 0.8;
+      double least = clearly * unevenness(part, baked, colors, 0.5);
+      for (const float other : {1.0F, 0.0F})
+        if (const double uneven = unevenness(part, baked, colors, static_cast<double>(other)); uneven < least) {
+          least = uneven;
+          best = other;
+        }
+    }
+    for (const std::uint32_t i : part) facing[i] = best;
+  }
+  return facing;
+}
+
+std::vector<Radiance> site_colors(const BakedObject& object,
+                                  const std::vector<std::shared_ptr<const LightChart>>& charts, const LightSites& sites,
+                                  const std::vector<float>& facing) {
+  std::vector<Radiance> colors(sites.size(), Radiance::Zero());
+  const Mat3 axes = axes_matrix(object.axes);
+  for (std::size_t s = 0; s < charts.size(); ++s) {
+    const TextureSet& set = object.sets[s];
+    const std::size_t first = sites.first[s];
+    tbb::parallel_for(first, sites.first[s + 1], [&](std::size_t i) {
+      const LightChart::Node& node = charts[s]->nodes[i - first];
+      const auto corners = texel_corners(set, node.face);
+      const Vec2 at = node.weights[0] * corners[0] + node.weights[1] * corners[1] + node.weights[2] * corners[2];
+      const LightSite& site = sites.baked[i];
+      const Vec3 across = site.normal.cross(site.tangent);
+      Radiance sum = Radiance::Zero();
+      double weights = 0;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int x = std::clamp(static_cast<int>(std::floor(at.x())) + dx, 0, set.texels->width() - 1),
+                    y = std::clamp(static_cast<int>(std::floor(at.y())) + dy, 0, set.texels->height() - 1);
+          const Texel& texel = set.texels->at(x, y);
+          if (!texel.opaque()) continue;
+          const auto features = decode_features(texel, set.texels->alpha_code());
+          for (int side = 0; side < 2; ++side) {
+            const double share = side == 0 ? static_cast<double>(facing[i]) : 1 - static_cast<double>(facing[i]);
+            if (share == 0) continue;
+            for (int k = 0; k < 4; ++k) {
+              const double tilt = 0.7;
+              const Vec3 aside = (k % 2 == 0 ? site.tangent : across) * (k < 2 ? 1 : -1);
+              const Vec3 towards_eye =
+                  (std::cos(tilt) * (side == 0 ? 1 : -1) * site.normal + std::sin(tilt) * aside).normalized();
+              const Color color = decode(*object.decoder, features, axes * -towards_eye);
+              sum += share * Radiance(to_linear(color.x()), to_linear(color.y()), to_linear(color.z()));
+              weights += share;
+            }
+          }
+        }
+      if (weights > 0) colors[i] = sum / weights;
+    });
+  }
+  return colors;
+}
+
+std::vector<LightMap> light_maps(const std::vector<std::shared_ptr<const LightChart>>& charts, const LightSites& sites,
+                                 const std::vector<Radiance>& colors, const std::vector<Radiance>& before,
+                                 const std::vector<Radiance>& after) {
+  // What is common: the irradiance that nine sites of ten do not reach.
+  Radiance lambda = Radiance::Zero();
+  for (int c = 0; c < 3 && !before.empty(); ++c) {
+    std::vector<double> values;
+    for (const Radiance& e : before) values.push_back(e[c]);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 9 / 10);
+    std::nth_element(values.begin(), at, values.end());
+    lambda[c] = dark_share * *at * dark_share * *at;
+  }
+  const std::size_t parts = sites.part.empty() ? 0 : *std::max_element(sites.part.begin(), sites.part.end()) + 1;
+  std::vector<Radiance> ce(parts, Radiance::Zero()), ee(parts, Radiance::Zero());
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    ce[sites.part[i]] += colors[i].cwiseProduct(before[i]);
+    ee[sites.part[i]] += before[i].cwiseProduct(before[i]);
+  }
+  std::vector<LightMap> maps;
+  for (std::size_t s = 0; s < charts.size(); ++s) {
+    LightMap map;
+    map.chart = charts[s];
+    const std::size_t texels = charts[s]->node_of.size();
+    map.gain.assign(texels, Eigen::Vector3f::Ones());
+    map.offset.assign(texels, Eigen::Vector3f::Zero());
+    bool any_offset = false;
+    for (std::size_t i = sites.first[s]; i < sites.first[s + 1]; ++i) {
+      const std::uint32_t texel = charts[s]->nodes[i - sites.first[s]].texel;
+      for (int c = 0; c < 3; ++c) {
+        const double e = before[i][c], change = after[i][c] - e, part = ee[sites.part[i]][c];
+        if (change == 0 || !(e * e + lambda[c] > 0)) continue;
+        map.gain[texel][c] = static_cast<float>(1 + e * change / (e * e + lambda[c]));
+        const double albedo = part > 0 ? ce[sites.part[i]][c] / part : 0;
+        map.offset[texel][c] = static_cast<float>(lambda[c] * albedo * change / (e * e + lambda[c]));
+        any_offset = any_offset || map.offset[texel][c] != 0;
+      }
+    }
+    if (!any_offset) map.offset.clear();
+    maps.push_back(std::move(map));
+  }
+  return maps;
+}
+
+}  // namespace rebake

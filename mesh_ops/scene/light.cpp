@@ -1,0 +1,97 @@
+#include "mesh_ops/scene/light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rebake {
+
+SkyMap::SkyMap(int side)
+    : side_(side), texels_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), Eigen::Vector3f::Zero()) {}
+
+SkyMap::SkyMap(const Radiance& uniform) : SkyMap(1) { texels_.front() = uniform.cast<float>(); }
+
+Vec3 SkyMap::direction(std::size_t texel) const {
+  const auto side = static_cast<std::size_t>(side_);
+  const double x = (static_cast<double>(texel % side) + 0.5) / side_ * 2 - 1,
+               y = (static_cast<double>(texel / side) + 0.5) / side_ * 2 - 1;
+  Vec3 d(x, 1 - std::abs(x) - std::abs(y), y);
+  if (d.y() < 0) d = Vec3((1 - std::abs(y)) * (x >= 0 ? 1 : -1), d.y(), (1 - std::abs(x)) * (y >= 0 ? 1 : -1));
+  return d.normalized();
+}
+
+Radiance SkyMap::at(const Vec3& direction) const {
+  if (side_ == 1) return texels_.front().cast<double>();
+  const double sum = direction.cwiseAbs().sum();
+  double x = direction.x() / sum, y = direction.z() / sum;
+  if (direction.y() < 0) {
+    const double folded = (1 - std::abs(y)) * (x >= 0 ? 1 : -1);
+    y = (1 - std::abs(x)) * (y >= 0 ? 1 : -1);
+    x = folded;
+  }
+  const double column = std::clamp((x + 1) / 2 * side_ - 0.5, 0.0, side_ - 1.0),
+               row = std::clamp((y + 1) / 2 * side_ - 0.5, 0.0, side_ - 1.0);
+  const int i = std::min(static_cast<int>(column), side_ - 2), j = std::min(static_cast<int>(row), side_ - 2);
+  const double fx = column - i, fy = row - j;
+  const auto texel = [&](int a, int b) -> const Eigen::Vector3f& {
+    return texels_[static_cast<std::size_t>(j + b) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(i + a)];
+  };
+  const auto weight = [](double w) { return static_cast<float>(w); };
+  return (texel(0, 0) * weight((1 - fx) * (1 - fy)) + texel(1, 0) * weight(fx * (1 - fy)) +
+          texel(0, 1) * weight((1 - fx) * fy) + texel(1, 1) * weight(fx * fy))
+      .cast<double>();
+}
+
+bool SkyMap::black() const {
+  return std::all_of(texels_.begin(), texels_.end(), [](const Eigen::Vector3f& t) { return t.isZero(0); });
+}
+
+Radiance SkyMap::mean() const {
+  // Octahedral texels differ in solid angle: by the cube of the octahedron's distance.
+  Radiance sum = Radiance::Zero();
+  double weights = 0;
+  for (std::size_t k = 0; k < texels_.size(); ++k) {
+    const double weight = std::pow(direction(k).cwiseAbs().sum(), 3);
+    sum += weight * texels_[k].cast<double>();
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+Radiance SkyMap::brightest() const {
+  Radiance most = Radiance::Zero();
+  for (const Eigen::Vector3f& texel : texels_) most = most.cwiseMax(texel.cast<double>());
+  return most;
+}
+
+Light sky_and_sun(const Radiance& ground, const Radiance& zenith, const Sun& sun, const Radiance& bounce) {
+  Light light;
+  light.sky = SkyMap(64, [&](const Vec3& d) -> Radiance {
+    const double t = d.y() * 0.5 + 0.5;
+    return ground * (1 - t) + zenith * t;
+  });
+  if (!sun.irradiance.isZero(0)) light.suns.push_back(sun);
+  light.bounce = bounce;
+  return light;
+}
+
+std::shared_ptr<const Light> given_light(const SceneLight& settings) {
+  if (settings.source == SceneLight::Source::estimated) return nullptr;
+  if (settings.source == SceneLight::Source::sky) {
+    Sun sun = settings.sun;
+    sun.direction.normalize();
+    return std::make_shared<const Light>(sky_and_sun(settings.ground, settings.zenith, sun, settings.bounce));
+  }
+  auto light = std::make_shared<Light>();
+  light->sky = SkyMap(settings.zenith);
+  light->bounce = settings.bounce;
+  return light;
+}
+
+double to_linear(double display) {
+  return display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
+}
+double to_display(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+}  // namespace rebake

@@ -1,0 +1,347 @@
+// Light that follows edits: against closed forms, known lights, and itself where nothing changed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "mesh_ops/deform/deform_object.h"
+#include "mesh_ops/index/index.h"
+#include "mesh_ops/light/light_estimate.h"
+#include "mesh_ops/light/lighting.h"
+#include "tests/support/lit_objects.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+using std::numbers::pi;
+
+Radiance grey(double value) { return Radiance::Constant(value); }
+
+Light uniform_light(double value) {
+  Light light;
+  light.sky = SkyMap(grey(value));
+  return light;
+}
+
+LightSite site(const Vec3& position, const Vec3& normal) {
+  return {position, normal.normalized(), normal.unitOrthogonal(), 1e-4};
+}
+
+SceneRays rays_of_objects(const std::vector<std::shared_ptr<const BakedObject>>& objects) {
+  std::vector<SceneRays::Instance> instances;
+  for (const auto& object : objects)
+    instances.push_back({rays_of(*object), Affine::Identity(), object->bounds().diagonal().norm()});
+  return SceneRays(std::move(instances));
+}
+
+SiteLight traced(const LightSite& at, const SceneRays& around, const Light& light, int rays = 4096) {
+  return traced_light(std::vector<LightSite>{at}, {}, around, light, Mat3::Identity(), {rays, true}).front();
+}
+
+Scene scene_with(std::vector<std::pair<std::string, std::shared_ptr<const BakedObject>>> objects, SceneLight light) {
+  Scene scene;
+  for (auto& [name, object] : objects) {
+    Node node;
+    node.name = name;
+    node.object = object;
+    scene = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
+  }
+  scene.light = std::make_shared<const SceneLight>(light);
+  return scene;
+}
+
+SceneLight given_uniform(double value) {
+  SceneLight light;
+  light.source = SceneLight::Source::uniform;
+  light.zenith = grey(value);
+  return light;
+}
+
+// By what the map multiplies a linear colour, at the node that is nearest to a place of the object's.
+Eigen::Vector3f factor_at(const BakedObject& object, const LightMap& map, const Vec3& place, float color = 0.4F) {
+  const Soup& soup = object.sets.front().soup;
+  double nearest = 1e300;
+  Eigen::Vector3f gain = Eigen::Vector3f::Zero();
+  for (const LightChart::Node& node : map.chart->nodes) {
+    Vec3 p = Vec3::Zero();
+    for (int k = 0; k < 3; ++k)
+      p +=
+          static_cast<double>(node.weights[k]) * soup.positions()[soup.faces()[node.face][static_cast<std::size_t>(k)]];
+    if ((p - place).norm() >= nearest) continue;
+    nearest = (p - place).norm();
+    gain = map.gain[node.texel];
+    if (!map.offset.empty()) gain += map.offset[node.texel] / color;
+  }
+  return gain;
+}
+
+const LightDecision* decision(const Lighting& lighting, const std::string& name) {
+  for (const LightDecision& one : lighting.decisions)
+    if (one.name == name) return &one;
+  return nullptr;
+}
+
+TEST(SkyMap, GivesBackWhatItWasMadeOf) {
+  const SkyMap map(32, [](const Vec3& d) -> Radiance { return {1 + d.x(), 2 + d.y(), 3 - d.z()}; });
+  for (std::size_t k = 0; k < 32 * 32; ++k) {
+    const Vec3 d = map.direction(k);
+    EXPECT_NEAR(d.norm(), 1, 1e-12);
+    EXPECT_LT((map.at(d) - Radiance(1 + d.x(), 2 + d.y(), 3 - d.z())).norm(), 1e-6);
+  }
+  EXPECT_LT((map.mean() - Radiance(1, 2, 3)).norm(), 2e-3);
+  // Poles and the seams of the octahedron.
+  for (const Vec3& d : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(0.6, -1e-12, 0.8)})
+    EXPECT_LT((map.at(d) - Radiance(1 + d.x(), 2 + d.y(), 3 - d.z())).norm(), 0.1) << d.transpose();
+}
+
+TEST(DisplayColours, AreLinearLightAndBack) {
+  for (const double value : {0.0, 1e-6, 0.0031308, 0.04045, 0.2, 0.5, 1.0, 3.0})
+    EXPECT_NEAR(to_linear(to_display(value)), value, 1e-7 * std::max(1.0, value));
+}
+
+TEST(TracedLight, IsTheClosedFormInTheOpenAndBesideAWall) {
+  const auto away = lit_object({flat_quad({0, 50, 0}, {1, 0, 0}, {0, 0, 1})}, [](const Vec3&) { return grey(0.5); });
+  const SiteLight open = traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({away}), uniform_light(0.7));
+  EXPECT_NEAR(open.irradiance[0][1], 0.7, 0.7 * 2e-4);
+  EXPECT_NEAR(static_cast<double>(open.open[1]), 1, 1e-9);
+  // An endless wall of height h at distance d takes ½ (1 − cos atan(h / d)) of a uniform sky.
+  const auto wall =
+      lit_object({flat_quad({1, -1, -400}, {0, 3, 0}, {0, 0, 800})}, [](const Vec3&) { return grey(0.5); });
+  const SiteLight beside = traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({wall}), uniform_light(1), 16384);
+  EXPECT_NEAR(beside.irradiance[0][0], (1 + std::cos(std::atan(2.0))) / 2, 3e-3);
+  // What hides the sky sends its own.
+  Light with_bounce = uniform_light(1);
+  with_bounce.bounce = grey(0.25);
+  const SiteLight bounced = traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({wall}), with_bounce, 16384);
+  EXPECT_NEAR(bounced.irradiance[0][0], beside.irradiance[0][0] + 0.25 * (1 - beside.irradiance[0][0]), 1e-6);
+}
+
+TEST(TracedLight, OfASunGoesWithTheCosine) {
+  Light light;
+  for (const double degrees : {0.0, 30.0, 60.0, 85.0}) {
+    const double a = degrees * pi / 180;
+    light.suns = {{{std::sin(a), std::cos(a), 0}, 0.02, grey(2)}};
+    EXPECT_NEAR(traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({}), light).irradiance[0][2], 2 * std::cos(a), 2e-3);
+  }
+  // Behind the surface it lights the other side.
+  light.suns = {{{0, -1, 0}, 0.02, grey(2)}};
+  const SiteLight behind = traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({}), light);
+  EXPECT_EQ(behind.irradiance[0], grey(0));
+  EXPECT_NEAR(behind.irradiance[1][0], 2, 1e-3);
+}
+
+// light.md: 4.2 % at 64 rays, 1.3 % at 256, of 16k rays.
+TEST(TracedLight, ComesNearerWithMoreRays) {
+  const auto object = lit_object(box_quads({-1, 0, -1}, {1, 1, 1}, 3), [](const Vec3&) { return grey(0.5); });
+  const SceneRays rays = rays_of_objects({object});
+  std::vector<LightSite> sites;
+  for (int k = 0; k < 60; ++k) sites.push_back(site({-3 + 0.1 * k, 0, 1.4}, {0.2 * std::sin(k), 1, 0.1}));
+  const auto at = [&](int count) {
+    return traced_light(sites, {}, rays, uniform_light(1), Mat3::Identity(), {count, false});
+  };
+  const auto truth = at(16384);
+  const auto error = [&](int count) {
+    double off = 0, all = 0;
+    const auto lit = at(count);
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      off += (lit[i].irradiance[0] - truth[i].irradiance[0]).squaredNorm();
+      all += truth[i].irradiance[0].squaredNorm();
+    }
+    return std::sqrt(off / all);
+  };
+  EXPECT_LT(error(64), 0.04);
+  EXPECT_LT(error(256), 0.013);
+}
+
+TEST(LightChart, KeepsPatchesApart) {
+  const auto object = made_object({});
+  const TextureSet& set = object->sets.front();
+  const LightChart chart = light_chart(set, 4);
+  std::set<std::uint32_t> texels;
+  for (const LightChart::Node& node : chart.nodes) {
+    EXPECT_TRUE(texels.insert(node.texel).second);
+    EXPECT_NEAR(node.weights.sum(), 1, 1e-5);
+    EXPECT_GE(node.weights.minCoeff(), -1e-6);
+  }
+  // Interpolating within a face takes nodes of its own patch: those of two faces that share no texel are apart.
+  for (const Face& face : set.soup.faces())
+    for (const std::uint32_t v : face) {
+      const Eigen::Vector2f& place = chart.places[v];
+      EXPECT_GE(place.x(), 0.5F - 1e-4F);
+      EXPECT_LE(place.x(), static_cast<float>(chart.width) - 0.5F + 1e-4F);
+      EXPECT_GE(place.y(), 0.5F - 1e-4F);
+      EXPECT_LE(place.y(), static_cast<float>(chart.height) - 0.5F + 1e-4F);
+    }
+  EXPECT_GT(light_chart(set, 2).nodes.size(), 2 * chart.nodes.size());
+}
+
+TEST(Lighting, OfAnUneditedSceneIsNothing) {
+  const Lighting lighting = lighting_of(scene_with({{"ball", made_object({})}}, {}));
+  EXPECT_TRUE(lighting.maps.empty());
+  ASSERT_NE(decision(lighting, "self-shadow ball"), nullptr);
+  EXPECT_FALSE(decision(lighting, "self-shadow ball")->runs);
+  EXPECT_EQ(lighting.left_out, 0);
+}
+
+// Beside an endless wall a sheet keeps half of its light, on both of its sides.
+TEST(Lighting, TakesWhatAnotherObjectHides) {
+  const auto ground =
+      lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4, 4)}, [](const Vec3&) { return grey(0.4); });
+  const auto wall =
+      lit_object({flat_quad({1.01, -400, -400}, {0, 800, 0}, {0, 0, 800})}, [](const Vec3&) { return grey(0.4); });
+  const Scene scene = scene_with({{"ground", ground}, {"wall", wall}}, given_uniform(1));
+  const Lighting lighting = lighting_of(scene, {.rays = 1024});
+  ASSERT_TRUE(decision(lighting, "cast shadow wall→ground")->runs);
+  const auto& maps = lighting.maps.at(scene.roots.front()->id);
+  ASSERT_NE(maps.front(), nullptr);
+  EXPECT_NEAR(static_cast<double>(factor_at(*ground, *maps.front(), {0.9, 0, 0})[0]), 0.5, 0.02);
+}
+
+TEST(Lighting, GivesBackWhatARemovedPartHid) {
+  std::vector<LitQuad> quads{flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4, 4),
+                             flat_quad({1.01, -1, -400}, {0, 401, 0}, {0, 0, 800})};
+  const auto whole = lit_object(quads, [](const Vec3& p) { return p.x() > 1 ? grey(0.4) : grey(0.2); });
+  Scene scene = scene_with({{"yard", whole}}, given_uniform(1));
+  auto part = std::make_shared<BakedObject>(*whole);
+  TriangleSet keep(whole->triangle_count(), 1);
+  keep[keep.size() - 1] = keep[keep.size() - 2] = 0;
+  part->sets.front().soup = subset(whole->sets.front().soup, keep, 0, true);
+  keep_bodies(*part, *whole);
+  scene = with_changed(scene, scene.roots.front()->id, [&](Node& node) { node.object = part; });
+  const Lighting lighting = lighting_of(scene, {.rays = 1024});
+  ASSERT_TRUE(decision(lighting, "removed shadow yard")->runs);
+  const auto& map = lighting.maps.at(scene.roots.front()->id).front();
+  ASSERT_NE(map, nullptr);
+  // What was baked at half of the light has all of it.
+  const double gain = static_cast<double>(factor_at(*part, *map, {0.9, 0, 0}, 0.2F)[0]);
+  EXPECT_GT(gain, 1.6);
+  EXPECT_LT(gain, 2.05);
+  SceneLight without = given_uniform(1);
+  without.removed = false;
+  scene.light = std::make_shared<const SceneLight>(without);
+  EXPECT_TRUE(lighting_of(scene).maps.empty());
+}
+
+TEST(Lighting, LeavesOutByBoundsThatAnAuditHolds) {
+  const auto ground =
+      lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2, 2)}, [](const Vec3&) { return grey(0.4); });
+  const auto box = lit_object(box_quads({-0.5, 0, -0.5}, {0.5, 1, 0.5}), [](const Vec3&) { return grey(0.4); });
+  double last = 1;
+  for (const double away : {3.0, 10.0, 40.0, 160.0}) {
+    Scene scene = scene_with({{"ground", ground}, {"box", box}}, given_uniform(1));
+    const NodeId id = scene.roots[1]->id;
+    scene = with_changed(scene, id, [&](Node& node) { node.to_parent.translation() = Vec3(away, 0, 0); });
+    const Lighting planned = lighting_of(scene, {.rays = 1024});
+    const Lighting everything = lighting_of(scene, {.rays = 1024, .everything = true});
+    const LightDecision& cast = *decision(planned, "cast shadow box→ground");
+    EXPECT_EQ(cast.runs, cast.bound > scene.light->budget) << away;
+    EXPECT_LE(planned.left_out, scene.light->budget);
+    EXPECT_LE(cast.bound, last);
+    last = cast.bound;
+    // What it changes at most, whether it ran or not.
+    double change = 0;
+    if (const auto found = everything.maps.find(scene.roots[0]->id);
+        found != everything.maps.end() && found->second.front())
+      for (const LightChart::Node& node : found->second.front()->chart->nodes) {
+        const LightMap& map = *found->second.front();
+        const double offset = map.offset.empty() ? 0 : static_cast<double>(map.offset[node.texel][0]);
+        const double lit = 0.4 * static_cast<double>(map.gain[node.texel][0]) + offset;
+        change = std::max(change, std::abs(to_display(lit) - to_display(0.4)));
+      }
+    EXPECT_LE(change, cast.bound) << away;
+  }
+  EXPECT_LT(last, 1.0 / 255);
+}
+
+// A bend that is taken back leaves colours as they were; a mirror image and other sizes are lit alike.
+TEST(Lighting, HoldsInHardCases) {
+  const auto hinge = lit_object(
+      {flat_quad({0, 0, -1}, {0, 0, 2}, {1, 0, 0}, 4, 4), flat_quad({-1, 0, -1}, {0, 0, 2}, {1, 0, 0}, 4, 4)},
+      [](const Vec3&) { return grey(0.4); });
+  const auto folded_by = [&](double degrees, double scale) {
+    auto sized = std::make_shared<BakedObject>(*hinge);
+    const Soup& soup = hinge->sets.front().soup;
+    std::vector<Vec3> positions = soup.positions();
+    for (Vec3& p : positions) p *= scale;
+    sized->sets.front().soup =
+        Soup(std::make_shared<const std::vector<Vec3>>(positions), soup.shared_uvs(), soup.shared_faces());
+    TriangleSet flags(hinge->triangle_count(), 0);
+    for (std::size_t f = flags.size() / 2; f < flags.size(); ++f) flags[f] = 1;
+    const Mat3 turn = Eigen::AngleAxisd(-degrees * pi / 180, Vec3::UnitZ()).toRotationMatrix();
+    const auto made = deformed(*sized, Affine::Identity(), flags, 0, [&](const std::vector<Vec3>& points) {
+      DeformedPoints out;
+      for (const Vec3& p : points) out.points.push_back(turn * p);
+      out.jacobians.assign(points.size(), turn);
+      out.outside.assign(points.size(), 0);
+      return out;
+    });
+    return made.object;
+  };
+  const auto gain_of = [&](const std::shared_ptr<const BakedObject>& object, const Affine& placed, const Vec3& at) {
+    Scene scene = scene_with({{"hinge", object}}, given_uniform(1));
+    scene = with_changed(scene, scene.roots.front()->id, [&](Node& node) { node.to_parent = placed; });
+    const Lighting lighting = lighting_of(scene, {.rays = 256});
+    const auto found = lighting.maps.find(scene.roots.front()->id);
+    if (found == lighting.maps.end() || !found->second.front()) return Eigen::Vector3f(1, 1, 1);
+    for (const Eigen::Vector3f& gain : found->second.front()->gain) EXPECT_TRUE(gain.allFinite());
+    return factor_at(*object, *found->second.front(), at);
+  };
+  // Folded upright beside it, the other half hides ½ (1 − cos atan(1 / 0.2)) of the sky above; nothing of that below.
+  const double one = static_cast<double>(gain_of(folded_by(90, 1), Affine::Identity(), {0.2, 0, 0})[0]);
+  EXPECT_NEAR(one, (1 + (1 + std::cos(std::atan(5.0))) / 2) / 2, 0.02);
+  EXPECT_EQ(gain_of(folded_by(0, 1), Affine::Identity(), {0.2, 0, 0}), Eigen::Vector3f(1, 1, 1));
+  for (const double scale : {1e-6, 1e6})
+    EXPECT_NEAR(static_cast<double>(gain_of(folded_by(90, scale), Affine::Identity(), {0.2 * scale, 0, 0})[0]), one,
+                0.02);
+  Affine mirrored = Affine::Identity();
+  mirrored.linear() = Vec3(-1, 1, 1).asDiagonal();
+  EXPECT_NEAR(static_cast<double>(gain_of(folded_by(90, 1), mirrored, {0.2, 0, 0})[0]), one, 1e-6);
+  Affine sheared = Affine::Identity();
+  sheared.linear()(0, 1) = 1e-6;
+  EXPECT_NEAR(static_cast<double>(gain_of(folded_by(90, 1), sheared, {0.2, 0, 0})[0]), one, 0.03);
+  // Folded onto itself, and past it.
+  for (const double degrees : {179.9999, 180.0, 181.0}) gain_of(folded_by(degrees, 1), Affine::Identity(), {0.2, 0, 0});
+}
+
+TEST(Lighting, InTheDarkChangesNothing) {
+  const auto ground = lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0})}, [](const Vec3&) { return grey(0.4); });
+  const auto box = lit_object(box_quads({-0.5, 0.1, -0.5}, {0.5, 1, 0.5}), [](const Vec3&) { return grey(0.4); });
+  const Lighting lighting =
+      lighting_of(scene_with({{"ground", ground}, {"box", box}}, given_uniform(0)), {.everything = true});
+  for (const auto& [node, maps] : lighting.maps)
+    for (const auto& map : maps) EXPECT_EQ(map, nullptr);
+}
+
+// A box on a ground, lit by a known sun and sky: the colours alone tell where the sun is, and how bright.
+TEST(LightEstimate, FindsTheSunByWhatItShades) {
+  const Vec3 towards = Vec3(0.5, 0.8, 0.35).normalized();
+  Light truth = uniform_light(0.4);
+  truth.suns = {{towards, 0.06, grey(0.9)}};
+  std::vector<LitQuad> quads = box_quads({-0.4, 0, -0.4}, {0.4, 1, 0.4}, 4);
+  quads.push_back(flat_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 12, 12));
+  const auto shape = lit_object(quads, [](const Vec3&) { return grey(0.5); });
+  const SceneRays rays = rays_of_objects({shape});
+  const std::vector<std::shared_ptr<const LightChart>> charts{
+      std::make_shared<const LightChart>(light_chart(shape->sets.front(), 4))};
+  const LightSites sites = light_sites(*shape, charts);
+  const auto lit = traced_light(sites.baked, {}, rays, truth, Mat3::Identity(), {1024, false});
+  std::vector<Radiance> colors;
+  for (std::size_t i = 0; i < sites.size(); ++i) colors.push_back(0.5 * lit[i].irradiance[0]);
+  const LightEstimate found = estimated_light(sites, colors, rays, {.sites = 1500, .rays = 128});
+  ASSERT_TRUE(found.sun);
+  EXPECT_GT(found.light.suns.front().direction.dot(towards), std::cos(4 * pi / 180));
+  const double ratio = found.light.suns.front().irradiance[0] / found.light.sky.mean()[0];
+  EXPECT_GT(ratio, 0.7 * 0.9 / 0.4);
+  EXPECT_LT(ratio, 1.5 * 0.9 / 0.4);
+  EXPECT_GT(found.confidence, 0.9);
+}
+
+TEST(LightEstimate, OfNothingIsDark) {
+  const LightEstimate none = estimated_light({}, {}, rays_of_objects({}));
+  EXPECT_TRUE(none.light.sky.black());
+  EXPECT_EQ(none.confidence, 0);
+}
+
+}  // namespace
+}  // namespace rebake::test
