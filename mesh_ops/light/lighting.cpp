@@ -69,6 +69,32 @@ std::shared_ptr<const BakedObject> at_baked_places(const BakedObject& object) {
   return result;
 }
 
+// How far away an object's parts shade anything: what lies much farther than most of it, such as a backdrop, is what
+// shines.
+double reach_of(const BakedObject& object) {
+  std::vector<Vec3> centers;
+  for (const TextureSet& set : object.sets)
+    for (const Face& face : set.soup.faces())
+      centers.push_back(
+          (set.soup.positions()[face[0]] + set.soup.positions()[face[1]] + set.soup.positions()[face[2]]) / 3);
+  if (centers.empty()) return std::numeric_limits<double>::infinity();
+  const auto quantile = [](std::vector<double>& values, double share) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  Vec3 middle;
+  std::vector<double> values(centers.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(centers.begin(), centers.end(), values.begin(), [&](const Vec3& p) { return p[axis]; });
+    middle[axis] = quantile(values, 0.5);
+  }
+  std::transform(centers.begin(), centers.end(), values.begin(), [&](const Vec3& p) { return (p - middle).norm(); });
+  const double most = quantile(values, 0.6), all = *std::max_element(values.begin(), values.end());
+  constexpr double far = 3;
+  return all > 1.2 * far * most ? far * most : std::numeric_limits<double>::infinity();
+}
+
 // Something that shades: an object, and where it stands.
 struct Occluder {
   std::shared_ptr<const BakedObject> object;
@@ -77,7 +103,8 @@ struct Occluder {
 SceneRays rays_among(const std::vector<Occluder>& occluders) {
   std::vector<SceneRays::Instance> instances;
   for (const Occluder& occluder : occluders)
-    instances.push_back({rays_of(*occluder.object), occluder.to_frame, occluder.object->bounds().diagonal().norm()});
+    instances.push_back({rays_of(*occluder.object), occluder.to_frame, occluder.object->bounds().diagonal().norm(),
+                         reach_of(*occluder.object) * std::cbrt(std::abs(occluder.to_frame.linear().determinant()))});
   return SceneRays(std::move(instances));
 }
 

@@ -1,13 +1,12 @@
 #include "mesh_ops/rays/scene_rays.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace rebake {
 
 SceneRays::SceneRays(std::vector<Instance> instances) {
   for (Instance& instance : instances)
-    placed_.push_back({std::move(instance.tree), instance.to_world.inverse(), instance.size});
+    placed_.push_back({std::move(instance.tree), instance.to_world.inverse(), instance.size, instance.reach});
 }
 
 std::optional<SceneRays::Hit> SceneRays::nearest(const Vec3& origin, const Vec3& direction, double near,
@@ -50,8 +49,7 @@ bool SceneRays::blocked(const Vec3& from, const Vec3& to) const {
 
 bool SceneRays::shaded(const Vec3& from, const Vec3& direction) const {
   return std::any_of(placed_.begin(), placed_.end(), [&](const Placed& placed) {
-    return placed.tree->blocked(placed.to_object * from, placed.to_object.linear() * direction, 0,
-                                std::numeric_limits<double>::infinity());
+    return placed.tree->blocked(placed.to_object * from, placed.to_object.linear() * direction, 0, placed.reach);
   });
 }
 

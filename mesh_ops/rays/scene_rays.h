@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -18,6 +19,7 @@ class SceneRays {
     std::shared_ptr<const RayTree> tree;
     Affine to_world;
     double size;  ///< of the object, the diagonal of its box in its own units
+    double reach = std::numeric_limits<double>::infinity();  ///< in world units: farther away it shades nothing
   };
   explicit SceneRays(std::vector<Instance> instances);
 
@@ -39,14 +41,14 @@ class SceneRays {
   void nearest(Bundle& rays, double near) const;
   /// Whether anything opaque lies between two points; not at `to` itself, within the trees' rounding.
   bool blocked(const Vec3& from, const Vec3& to) const;
-  /// Whether anything opaque lies along the direction, however far.
+  /// Whether anything opaque lies along the direction of length 1, within the instances' reach.
   bool shaded(const Vec3& from, const Vec3& direction) const;
 
  private:
   struct Placed {
     std::shared_ptr<const RayTree> tree;
     Affine to_object;
-    double size;
+    double size, reach;
   };
   std::vector<Placed> placed_;
 };
