@@ -193,6 +193,20 @@ class Document:
 
         color: display red, green and blue (share)
         """
+    def light(self, *, effects: Sequence[str] = ["auto"], source: str = "estimated", zenith: Vector = [0.75,0.88,1.1], ground: Vector = [0.34,0.3,0.27], sun: Vector = [0.5,0.8,0.45], sun_color: Vector = [1.15,1.05,0.9], sun_degrees: float = 5.0, bounce: Vector = [0.0,0.0,0.0], budget: float = 1.0, rays: int = 256) -> None:
+        """Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone.
+
+        effects: auto: self, cast and removed, each where it would be seen; or some of them, and match: all objects in one light; none: colours stay as baked
+        source: of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground and a sun, about the objects' own upright axis
+        zenith: linear radiance from above, red, green and blue
+        ground: the same from below
+        sun: direction towards it
+        sun_color: linear, what it sends back from a white surface that faces it; 0, 0, 0: none
+        sun_degrees: its radius as seen, which softens shadows (degrees)
+        bounce: linear radiance of surfaces that hide the sky
+        budget: how far colours may be off for what is left out, of 255
+        rays: from each point, 16 to 16384: 4 % off at 64, 1.3 % at 256
+        """
     def transform(self, *, node: Node, selection: bool = False, translate: Vector = [0.0,0.0,0.0], rotate: Rotation = [1.0,0.0,0.0,0.0], scale: float | Vector = [1.0,1.0,1.0], scale_axes: Rotation = [1.0,0.0,0.0,0.0], pivot: Vector | None = None) -> None:
         """Scales, then turns, then moves a node or its selected triangles about a pivot.
 

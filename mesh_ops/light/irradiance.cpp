@@ -51,7 +51,8 @@ std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<
       if ((!wanted.empty() && wanted[i] == 0) || !(site.normal.squaredNorm() > 0.5)) continue;
       const double turn = own_angle(i), c = std::cos(turn), s = std::sin(turn);
       const Vec3 across = site.normal.cross(site.tangent);
-      for (std::size_t side = 0; side < (options.both ? 2U : 1U); ++side) {
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (!wanted.empty() && (wanted[i] >> side & 1) == 0) continue;
         const Vec3 normal = side == 0 ? site.normal : Vec3(-site.normal);
         const Vec3 from = site.position + site.offset * normal;
         Radiance sum = Radiance::Zero();

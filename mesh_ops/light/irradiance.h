@@ -18,14 +18,13 @@ struct SiteLight {
 };
 
 struct IrradianceOptions {
-  int rays = 256;    ///< over each half space; a quarter of that to each sun
-  bool both = true;  ///< both sides, else the first only
+  int rays = 256;  ///< over each half space; a quarter of that to each sun
 };
 
 /// Traced light at sites among `around`, with directions of their space turned by `to_light` into the light's. Cosine
 /// Fibonacci points turned by an angle of each site's own (4 % off at 64 rays, 1.3 % at 256), which goes with its
-/// tangent: a site that moved rigidly with all that it sees gets the same. Deterministic. `wanted` leaves out sites
-/// where it is 0; empty: all.
+/// tangent: a site that moved rigidly with all that it sees gets the same. Deterministic. `wanted`: of each site 1 for
+/// the first side, 2 for the other, 3 for both; empty: both of all.
 std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
                                     const SceneRays& around, const Light& light, const Mat3& to_light,
                                     const IrradianceOptions& options, const Progress& progress = {});

@@ -144,7 +144,7 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
                                   const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
                                   int rays, Results* results, const Progress& progress) {
   const auto trace = [&] {
-    return traced_light(sites, wanted, rays_among(occluders), light, to_light, {rays, true}, progress);
+    return traced_light(sites, wanted, rays_among(occluders), light, to_light, {rays}, progress);
   };
   if (results == nullptr) return trace();
   std::string inputs;
@@ -204,6 +204,70 @@ std::vector<std::shared_ptr<const LightChart>> charts_of(const BakedObject& obje
   }
 }
 
+// The light that an object as it was baked stood in, likewise.
+LightEstimate kept_estimate(const BakedObject& body, const LightingOptions& options, const Progress& progress) {
+  Results* results = options.results;
+  const auto make = [&] {
+    const auto charts = charts_of(body, options);
+    const LightSites sites = light_sites(body, charts);
+    const auto colors = site_colors(body, charts, sites, std::vector<float>(sites.size(), 0.5F));
+    return estimated_light(sites, colors, rays_among({{std::make_shared<const BakedObject>(body), Affine::Identity()}}),
+                           {}, progress);
+  };
+  if (results == nullptr) return make();
+  std::string inputs;
+  const std::uint64_t hash = surface_hash(body);
+  append(inputs, &hash, sizeof(hash));
+  const Decoder& d = *body.decoder;
+  for (const auto* weights : {&d.weights0, &d.weights1, &d.weights2})
+    append(inputs, weights->data(), static_cast<std::size_t>(weights->size()) * sizeof(double));
+  for (const auto* bias : {&d.bias0, &d.bias1, &d.bias2})
+    append(inputs, bias->data(), static_cast<std::size_t>(bias->size()) * sizeof(double));
+  append(inputs, &options.spacing, sizeof(options.spacing));
+  const std::string key = result_key("lightestimate2", inputs);
+  // Numbers in this order; the sky last.
+  constexpr std::size_t fixed = 12;
+  if (const auto bytes = results->find(key); bytes && bytes->size() > fixed * sizeof(double)) {
+    std::vector<double> n(bytes->size() / sizeof(double));
+    std::memcpy(n.data(), bytes->data(), n.size() * sizeof(double));
+    const int side = static_cast<int>(n[0]);
+    if (side >= 1 && side <= 4096 &&
+        n.size() == fixed + static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * 3) {
+      LightEstimate estimate;
+      estimate.confidence = n[1];
+      estimate.light.bounce = {n[2], n[3], n[4]};
+      estimate.sun = n[8] > 0;
+      if (estimate.sun) estimate.light.suns.push_back({{n[5], n[6], n[7]}, n[8], {n[9], n[10], n[11]}});
+      std::size_t at = fixed;
+      // SkyMap asks texel by texel, in order.
+      estimate.light.sky = SkyMap(side, [&](const Vec3&) -> Radiance {
+        at += 3;
+        return {n[at - 3], n[at - 2], n[at - 1]};
+      });
+      return estimate;
+    }
+  }
+  const LightEstimate estimate = make();
+  const Sun sun = estimate.sun ? estimate.light.suns.front() : Sun{{0, 0, 0}, 0, {0, 0, 0}};
+  const Radiance& b = estimate.light.bounce;
+  std::vector<double> n{static_cast<double>(estimate.light.sky.side()),
+                        estimate.confidence,
+                        b[0],
+                        b[1],
+                        b[2],
+                        sun.direction[0],
+                        sun.direction[1],
+                        sun.direction[2],
+                        sun.radius,
+                        sun.irradiance[0],
+                        sun.irradiance[1],
+                        sun.irradiance[2]};
+  for (const Eigen::Vector3f& texel : estimate.light.sky.texels())
+    for (int c = 0; c < 3; ++c) n.push_back(static_cast<double>(texel[c]));
+  results->keep(key, {reinterpret_cast<const char*>(n.data()), n.size() * sizeof(double)});
+  return estimate;
+}
+
 // An object whose colours may change.
 class Receiver {
  public:
@@ -253,7 +317,7 @@ class Receiver {
     prepare(progress);
     std::vector<std::uint8_t> wanted(sites_.size(), 0);
     const std::size_t step = std::max<std::size_t>(1, sites_.size() / some);
-    for (std::size_t i = step / 2; i < sites_.size(); i += step) wanted[i] = 1;
+    for (std::size_t i = step / 2; i < sites_.size(); i += step) wanted[i] = sides_[i];
     const auto before = light_before(self, removed, wanted, 64, progress);
     const auto after = light_after({}, wanted, 64, light(progress), to_light_baked(), progress);
     double most = 0;
@@ -276,9 +340,9 @@ class Receiver {
                                                     const Progress& progress) {
     prepare(progress);
     const int rays = options_.rays > 0 ? options_.rays : settings_.rays;
-    const auto before = light_before(self, removed, {}, rays, progress);
+    const auto before = light_before(self, removed, sides_, rays, progress);
     const Mat3 in_shared = in_world() ? to_shared : Mat3(to_shared * turn());
-    const auto after = light_after(casters, {}, rays, shared != nullptr ? *shared : light(progress),
+    const auto after = light_after(casters, sides_, rays, shared != nullptr ? *shared : light(progress),
                                    shared != nullptr ? in_shared : to_light_baked(), progress);
     std::vector<Radiance> e0, e1;
     for (std::size_t i = 0; i < sites_.size(); ++i) {
@@ -300,6 +364,7 @@ class Receiver {
     prepare(progress);
     return *light_;
   }
+  std::shared_ptr<const Light> shared_light() const { return light_; }
   double confidence() const { return confidence_; }
   // Turns its light's directions into the world's.
   Mat3 turn() const { return orthogonal_factor(to_world().linear()); }
@@ -353,14 +418,14 @@ class Receiver {
       light_ = given;
       confidence_ = 1;
     } else {
-      const BakedBody body = bodies_of(object()).front();
-      const LightEstimate estimate =
-          estimated_light(sites_, colors_, rays_among({{body.object, Affine::Identity()}}), {}, progress);
+      const LightEstimate estimate = kept_estimate(*bodies_of(object()).front().object, options_, progress);
       light_ = std::make_shared<const Light>(estimate.light);
       confidence_ = estimate.confidence;
     }
     const auto lit = light_before(true, true, {}, 64, progress);
     facing_ = facing_of(sites_, lit, colors_);
+    for (const float facing : facing_)
+      sides_.push_back(static_cast<std::uint8_t>((facing > 0 ? 1 : 0) + (facing < 1 ? 2 : 0)));
     // What nine sites of ten stay below.
     std::vector<double> values;
     for (int c = 0; c < 3; ++c) {
@@ -374,6 +439,7 @@ class Receiver {
     }
   }
   const Radiance& albedo() const { return albedo_; }
+  Results* traced_results() const { return options_.keep_traced ? options_.results : nullptr; }
 
   Radiance shown(std::size_t i, const std::vector<SiteLight>& lit) const {
     const double f = static_cast<double>(facing_[i]);
@@ -387,14 +453,14 @@ class Receiver {
     if (moved_ && !self) {
       std::vector<Occluder> occluders;
       for (const std::size_t k : relatives_) occluders.push_back(occluder(k));
-      return kept_light(now_, wanted, occluders, shining, to_light_baked(), rays, options_.results, progress);
+      return kept_light(now_, wanted, occluders, shining, to_light_baked(), rays, traced_results(), progress);
     }
     const std::vector<BakedBody> bodies = bodies_of(object());
     std::vector<SiteLight> result(sites_.size());
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       std::vector<std::uint8_t> of_body(sites_.size());
       for (std::size_t i = 0; i < of_body.size(); ++i)
-        of_body[i] = sites_.body[i] == b && (wanted.empty() || wanted[i] != 0) ? 1 : 0;
+        of_body[i] = sites_.body[i] != b ? 0 : wanted.empty() ? 3 : wanted[i];
       std::vector<Occluder> occluders;
       if (removed || !missing_) {
         occluders.push_back({bodies[b].object, Affine::Identity()});
@@ -405,7 +471,7 @@ class Receiver {
               occluders.push_back({at_baked_places(*objects_[k].node->object), body.to_object.inverse()});
       }
       const auto lit =
-          kept_light(sites_.baked, of_body, occluders, shining, Mat3::Identity(), rays, options_.results, progress);
+          kept_light(sites_.baked, of_body, occluders, shining, Mat3::Identity(), rays, traced_results(), progress);
       for (std::size_t i = 0; i < of_body.size(); ++i)
         if (of_body[i] != 0) result[i] = lit[i];
     }
@@ -417,7 +483,7 @@ class Receiver {
     std::vector<Occluder> occluders;
     for (const std::size_t k : relatives_) occluders.push_back(occluder(k));
     for (const std::size_t k : casters) occluders.push_back(occluder(k));
-    return kept_light(now_, wanted, occluders, shining, to_light_directions, rays, options_.results, progress);
+    return kept_light(now_, wanted, occluders, shining, to_light_directions, rays, traced_results(), progress);
   }
   Occluder occluder(std::size_t k) const {
     if (in_world()) return {objects_[k].node->object, objects_[k].to_world};
@@ -437,6 +503,7 @@ class Receiver {
   std::vector<LightSite> now_;    // in the space that light is traced in
   std::vector<Radiance> colors_;  // seen from both sides alike
   std::vector<float> facing_;
+  std::vector<std::uint8_t> sides_;  // that show, as traced_light wants them
   std::shared_ptr<const Light> light_;
   double confidence_ = 0;
   Radiance albedo_{1, 1, 1};
@@ -538,6 +605,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     result.maps[objects[k].node->id] =
         receivers[k].maps(self, removed, casters, matched ? shared : nullptr, to_shared, progress);
     const double seconds = seconds_since(start);
+    result.lights[objects[k].node->id] = receivers[k].shared_light();
     for (const std::size_t decision : running)
       result.decisions[decision].seconds = seconds / static_cast<double>(running.size());
     if (estimated) {

@@ -23,6 +23,7 @@ struct LightDecision {
 /// What light does to a scene's colours: a map for each texture set of the nodes where it changes any.
 struct Lighting {
   std::map<NodeId, std::vector<std::shared_ptr<const LightMap>>> maps;
+  std::map<NodeId, std::shared_ptr<const Light>> lights;  ///< of those, what they were baked in
   std::vector<LightDecision> decisions;
   double left_out = 0;  ///< the sum of bounds of what was left out
 
@@ -35,7 +36,8 @@ struct LightingOptions {
   double spacing = 4;  ///< of light's nodes, in texels; wider where an object would have more than `most_nodes`
   std::size_t most_nodes = 400000;
   bool everything = false;     ///< also what is not called for: to audit
-  Results* results = nullptr;  ///< where traced light is kept; null for nowhere
+  Results* results = nullptr;  ///< where estimates and traced light are kept; null for nowhere
+  bool keep_traced = true;     ///< false: estimates only
 };
 
 /// The light that a scene calls for (Scene::light; nothing where that is null): decides by bounds, estimates what it

@@ -144,6 +144,28 @@ class ViewTest(WindowCase):
         editor.move(*editor.in_viewport(0.5, 0.5))
         editor.until(lambda state: "largest error" not in state["items"], "no ring")
 
+    def test_light_follows_what_is_bent(self):
+        editor = self.open_ficus()
+        editor.click("status/Light")
+        editor.click("tabs/light/Follows edits")
+        editor.until_ops("import", "light")
+        self.assertNotIn("tabs/light/decisions", editor.state()["items"])
+        editor.command("bend by")
+        editor.click("form/degrees")
+        editor.type("60")
+        editor.click("form/Apply")
+        editor.until_ops("import", "light", "bend")
+        editor.settle()
+        lit = editor.viewport()
+        editor.click("tabs/light/As baked")
+        different = lambda a: int((abs(editor.viewport() - a).max(axis=2) > 8).sum())
+        self.assertGreater(different(lit), 1000, "light changed the bent plant")
+        editor.click("tabs/light/As baked")
+        self.assertLess(different(lit), 100)
+        editor.click("tabs/light/What is gone")
+        editor.until_ops("import", "light", "bend", "light")
+        self.assertEqual(editor.last_edit()["effects"], ["self", "cast"])
+
     def test_the_sheet_of_keys_holds_keys_back(self):
         editor = self.open_ficus()
         self.select_branch()

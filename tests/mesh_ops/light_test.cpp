@@ -36,7 +36,7 @@ SceneRays rays_of_objects(const std::vector<std::shared_ptr<const BakedObject>>&
 }
 
 SiteLight traced(const LightSite& at, const SceneRays& around, const Light& light, int rays = 4096) {
-  return traced_light(std::vector<LightSite>{at}, {}, around, light, Mat3::Identity(), {rays, true}).front();
+  return traced_light(std::vector<LightSite>{at}, {}, around, light, Mat3::Identity(), {rays}).front();
 }
 
 Scene scene_with(std::vector<std::pair<std::string, std::shared_ptr<const BakedObject>>> objects, SceneLight light) {
@@ -137,9 +137,7 @@ TEST(TracedLight, ComesNearerWithMoreRays) {
   const SceneRays rays = rays_of_objects({object});
   std::vector<LightSite> sites;
   for (int k = 0; k < 60; ++k) sites.push_back(site({-3 + 0.1 * k, 0, 1.4}, {0.2 * std::sin(k), 1, 0.1}));
-  const auto at = [&](int count) {
-    return traced_light(sites, {}, rays, uniform_light(1), Mat3::Identity(), {count, false});
-  };
+  const auto at = [&](int count) { return traced_light(sites, {}, rays, uniform_light(1), Mat3::Identity(), {count}); };
   const auto truth = at(16384);
   const auto error = [&](int count) {
     double off = 0, all = 0;
@@ -325,7 +323,7 @@ TEST(LightEstimate, FindsTheSunByWhatItShades) {
   const std::vector<std::shared_ptr<const LightChart>> charts{
       std::make_shared<const LightChart>(light_chart(shape->sets.front(), 4))};
   const LightSites sites = light_sites(*shape, charts);
-  const auto lit = traced_light(sites.baked, {}, rays, truth, Mat3::Identity(), {1024, false});
+  const auto lit = traced_light(sites.baked, {}, rays, truth, Mat3::Identity(), {1024});
   std::vector<Radiance> colors;
   for (std::size_t i = 0; i < sites.size(); ++i) colors.push_back(0.5 * lit[i].irradiance[0]);
   const LightEstimate found = estimated_light(sites, colors, rays, {.sites = 1500, .rays = 128});

@@ -14,6 +14,7 @@
 #include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/hide.h"
 #include "editor/edits/nodes/import.h"
+#include "editor/edits/nodes/light.h"
 #include "editor/edits/nodes/lock.h"
 #include "editor/edits/nodes/merge.h"
 #include "editor/edits/nodes/remove.h"

@@ -11,6 +11,7 @@
 #include "editor/gui/view/thumbnails.h"
 #include "editor/gui/window/desk.h"
 #include "render/picture.h"
+#include "render/picture_texture.h"
 
 namespace rebake {
 
@@ -67,6 +68,21 @@ class ViewsPanel {
   void draw_name(Desk& desk, const std::string& name, float width);
   std::string renaming_, name_;  ///< the view, and what is typed
   bool focus_name_ = false;
+};
+
+/// What light does: which effects follow edits, where it comes from, and what each cost.
+class LightPanel {
+ public:
+  void draw(Desk& desk);
+
+ private:
+  void draw_settings(Desk& desk, const SceneLight& light, bool on);
+  void draw_ball(const Lighting& lighting);
+  std::optional<PictureTexture> ball_;
+  std::shared_ptr<const Light> ball_of_;
+  Vec3 sun_{0.5, 0.8, 0.45};  ///< while it is dragged
+  double budget_ = 1;
+  bool dragging_ = false;
 };
 
 /// The edits as script lines, to be copied or saved, and a line to type one.

@@ -43,6 +43,7 @@ constexpr const char* chevron_up = "\xEF\x85\x83";
 constexpr const char* dots_vertical = "\xEF\x87\x99";
 constexpr const char* dots_horizontal = "\xEF\x87\x98";
 constexpr const char* history = "\xEF\x8B\x9A";
+constexpr const char* weather_sunny = "\xEF\x96\x99";
 constexpr const char* script = "\xEF\x91\xB8";
 constexpr const char* chart_line = "\xEF\x84\xAA";
 constexpr const char* message_text = "\xEF\x8D\xA9";

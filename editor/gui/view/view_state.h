@@ -21,6 +21,7 @@ struct ViewState {
   Guides::Inspect inspect = Guides::Inspect::none;
   int channel = 1;             ///< of the features, when they are inspected
   bool wipe = false;           ///< the scene as imported is shown left of `wipe_at`
+  bool as_baked = false;       ///< without what light does
   std::optional<Vec2> marked;  ///< a place in the picture that a panel points at, by shares of its size
   double wipe_at = 0.5;        ///< share of the viewport's width
 

@@ -190,14 +190,17 @@ void Viewport::picture(Desk& desk) {
   }
   view.width = std::max(16, static_cast<int>(std::lround(desk.view.width * scale)));
   view.height = std::max(16, static_cast<int>(std::lround(desk.view.height * scale)));
-  Made wanted{scene, view, guides(desk), each_pass_, desk.view.wipe, desk.view.width, desk.view.height};
-  if (made_ && same_scene(made_->scene, scene) && same_view(made_->view, view) && made_->guides == wanted.guides &&
-      made_->each_pass == each_pass_ && made_->wipe == desk.view.wipe)
+  desk.relighter.request(scene, desk.preview.has_value());
+  const std::shared_ptr<const Lighting> lighting =
+      scene.light && !desk.view.as_baked ? desk.relighter.latest() : nullptr;
+  Made wanted{scene, lighting, view, guides(desk), each_pass_, desk.view.wipe, desk.view.width, desk.view.height};
+  if (made_ && same_scene(made_->scene, scene) && made_->lighting == lighting && same_view(made_->view, view) &&
+      made_->guides == wanted.guides && made_->each_pass == each_pass_ && made_->wipe == desk.view.wipe)
     return;
   // Whether it can be drawn or not: what cannot is said once.
   made_ = wanted;
   texture_ = 0;
-  const Renderer::Shown shown = renderer_.show(scene, view, {}, wanted.guides, each_pass_);
+  const Renderer::Shown shown = renderer_.show(scene, view, {}, wanted.guides, each_pass_, lighting.get());
   const double ms = shown.times.frame_ms;
   if (view.width == desk.view.width && view.samples == desk.view.samples) full_ms_ = ms;
   // The time goes with the pixels, as far as it goes with anything that can be chosen here.

@@ -40,6 +40,7 @@ class Viewport {
   /// What the shown picture was made of.
   struct Made {
     Scene scene;
+    std::shared_ptr<const Lighting> lighting;
     View view;
     Guides guides;
     bool each_pass = false, wipe = false;

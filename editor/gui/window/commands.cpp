@@ -358,6 +358,8 @@ const std::vector<Command>& command_table() {
        shows_tab<BottomTab::history>},
       {"Window", "Views", "", "", "Stored views with pictures.", always, toggle_tab<BottomTab::views>,
        shows_tab<BottomTab::views>},
+      {"Window", "Light", "", "", "Shadows that follow edits: what runs, what is left out, and why.", always,
+       toggle_tab<BottomTab::light>, shows_tab<BottomTab::light>},
       {"Window", "Script", "", "", "The steps as lines of a script.", always, toggle_tab<BottomTab::script>,
        shows_tab<BottomTab::script>},
       {"Window", "Cost", "", "", "What accuracy costs in time, and which effects run.", always,

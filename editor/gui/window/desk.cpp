@@ -32,6 +32,7 @@ bool makes_nodes(const Edit& edit) {
 Desk::Desk(Settings with, std::function<void()> wake)
     : settings(std::move(with)),
       previews(wake),
+      relighter(wake),
       jobs(std::move(wake)),
       now(jobs.worker.snapshot()),
       project(jobs.worker, settings, messages, now, [this] { view.camera = framing_of(scene(), view.aspect()); }) {

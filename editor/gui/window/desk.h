@@ -19,6 +19,7 @@
 #include "editor/gui/window/messages.h"
 #include "editor/gui/window/previews.h"
 #include "editor/gui/window/project.h"
+#include "editor/gui/window/relighter.h"
 #include "editor/gui/window/settings.h"
 
 namespace rebake {
@@ -38,6 +39,7 @@ struct Desk {
   Messages messages;
   Asking asking;
   Previews previews;
+  Relighter relighter;
   Jobs jobs;
   std::shared_ptr<const Snapshot> now;
   Project project;

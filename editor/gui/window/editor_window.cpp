@@ -258,8 +258,8 @@ class EditorWindow {
   void tell() {
     if (!announce::on()) return;
     nlohmann::json state;
-    const bool working =
-        !desk_.at_rest() || desk_.tools.steps_waiting != 0 || desk_.jobs.worker.busy() || desk_.previews.busy();
+    const bool working = !desk_.at_rest() || desk_.tools.steps_waiting != 0 || desk_.jobs.worker.busy() ||
+                         desk_.previews.busy() || desk_.relighter.busy();
     state["settled"] = !working && !window().input_waits() && viewport().next_frame_in(desk_) < 0 && frames_ == 0;
     state["input"] = {{"keys", window().seen().keys},
                       {"buttons", window().seen().buttons},

@@ -15,6 +15,7 @@ using nlohmann::json;
 NLOHMANN_JSON_SERIALIZE_ENUM(Looks, {{Looks::dark, "dark"}, {Looks::light, "light"}, {Looks::system, "system"}})
 NLOHMANN_JSON_SERIALIZE_ENUM(BottomTab, {{BottomTab::history, "history"},
                                          {BottomTab::views, "views"},
+                                         {BottomTab::light, "light"},
                                          {BottomTab::script, "script"},
                                          {BottomTab::cost, "cost"},
                                          {BottomTab::log, "messages"}})

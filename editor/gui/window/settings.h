@@ -7,7 +7,7 @@
 namespace rebake {
 
 enum class Looks { dark, light, system };
-enum class BottomTab { history, views, script, cost, log };
+enum class BottomTab { history, views, light, script, cost, log };
 
 /// What the editor remembers of a person, as JSON in the user's configuration folder.
 struct Settings {

@@ -17,6 +17,7 @@
 #include "editor/edits/nodes/duplicate.h"
 #include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/import.h"
+#include "editor/edits/nodes/light.h"
 #include "editor/edits/nodes/merge.h"
 #include "editor/edits/nodes/remove_view.h"
 #include "editor/edits/nodes/rename.h"
@@ -127,6 +128,8 @@ std::string special(const Edit& edit) {
   if (const auto* view = edit.as<RenameView>())
     return "Renamed the view \"" + view->name + "\" to \"" + view->to + "\"";
   if (const auto* view = edit.as<RemoveView>()) return "Forgot the view \"" + view->name + "\"";
+  if (const auto* light = edit.as<LightEdit>())
+    return light->effects == std::vector<std::string>{"none"} ? "Light stays as baked" : "Light follows edits";
   if (const auto* rename = edit.as<Rename>()) return "Renamed to \"" + rename->name + "\"";
   return "";
 }

@@ -245,7 +245,7 @@ void WindowLayout::tool_bar() {
 void WindowLayout::tabs() {
   const announce::Part part("tabs");
   int tab = static_cast<int>(desk_.settings.bottom_tab);
-  if (ui::choice("tabs", tab, {"History", "Views", "Script", "Cost", "Messages"}))
+  if (ui::choice("tabs", tab, {"History", "Views", "Light", "Script", "Cost", "Messages"}))
     desk_.settings.bottom_tab = static_cast<BottomTab>(tab);
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - px(24));
   if (ui::quiet_icon(icons::close, "Close")) desk_.settings.bottom_open = false;
@@ -257,6 +257,9 @@ void WindowLayout::tabs() {
     case BottomTab::views:
       views_.draw(desk_, Viewport::drawn(desk_), viewport_->thumbnails());
       views_shown_ = true;
+      break;
+    case BottomTab::light:
+      light_.draw(desk_);
       break;
     case BottomTab::script:
       script_.draw(desk_);
@@ -295,7 +298,7 @@ void WindowLayout::status() {
   if (desk_.selected_triangles() > 0)
     selected = fmt::format("{} selected{}", desk_.selected_triangles(),
                            desk_.seen_last() != nullptr ? ", back sides not" : "");
-  const float buttons = px(5 * 30);
+  const float buttons = px(6 * 30);
   ImGui::SameLine(ImGui::GetWindowWidth() - buttons - px(20) - ImGui::CalcTextSize(selected.c_str()).x);
   ImGui::TextDisabled("%s", selected.c_str());
   ImGui::SameLine(ImGui::GetWindowWidth() - buttons);
@@ -306,8 +309,8 @@ void WindowLayout::status() {
   };
   for (const Tab& one :
        {Tab{BottomTab::history, icons::history, "History"}, Tab{BottomTab::views, icons::image_multiple, "Views"},
-        Tab{BottomTab::script, icons::script, "Script"}, Tab{BottomTab::cost, icons::chart_line, "Cost"},
-        Tab{BottomTab::log, icons::message_text, "Messages"}}) {
+        Tab{BottomTab::light, icons::weather_sunny, "Light"}, Tab{BottomTab::script, icons::script, "Script"},
+        Tab{BottomTab::cost, icons::chart_line, "Cost"}, Tab{BottomTab::log, icons::message_text, "Messages"}}) {
     const Command& command = command_named(one.command);
     const bool open = desk_.settings.bottom_open && desk_.settings.bottom_tab == one.tab;
     if (ui::quiet_icon(one.icon, one.command, open)) command.run(desk_);

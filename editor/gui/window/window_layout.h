@@ -36,6 +36,7 @@ class WindowLayout {
   AdjustPanel adjust_;
   HistoryPanel history_;
   ViewsPanel views_;
+  LightPanel light_;
   ScriptPanel script_;
   PalettePanel palette_;
   EditForm form_;

@@ -1,0 +1,214 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "editor/edits/nodes/light.h"
+#include "editor/gui/panels/panels.h"
+#include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/number_field.h"
+#include "editor/gui/ui/widgets.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr const char* source_words[] = {"estimated", "uniform", "sky"};
+
+// The edit that makes the scene's light this.
+LightEdit edit_for(const SceneLight& light, bool on) {
+  LightEdit edit;
+  edit.light = light;
+  edit.source = source_words[static_cast<std::size_t>(light.source)];
+  edit.budget = light.budget * 255;
+  edit.sun_degrees = light.sun.radius * 180 / std::numbers::pi;
+  edit.effects.clear();
+  if (!on) {
+    edit.effects = {"none"};
+    return edit;
+  }
+  if (light.self && light.cast && light.removed) {
+    edit.effects.emplace_back("auto");
+  } else {
+    if (light.self) edit.effects.emplace_back("self");
+    if (light.cast) edit.effects.emplace_back("cast");
+    if (light.removed) edit.effects.emplace_back("removed");
+  }
+  if (light.match) edit.effects.emplace_back("match");
+  if (edit.effects.empty()) edit.effects = {"none"};
+  return edit;
+}
+
+// A white matte ball in a light, seen from the front, in display colours over the panel's ground.
+Image ball_in(const Light& light, const Rgb& ground) {
+  constexpr int side = 96;
+  Image image{side, side, std::vector<std::uint8_t>(std::size_t{side} * side * 3)};
+  std::vector<Vec3> directions;
+  for (int k = 0; k < 256; ++k) {
+    const double y = 1 - 2 * (k + 0.5) / 256, r = std::sqrt(1 - y * y), phi = 2.399963 * k;
+    directions.emplace_back(r * std::cos(phi), y, r * std::sin(phi));
+  }
+  std::vector<Radiance> sky;
+  for (const Vec3& d : directions) sky.push_back(light.sky.at(d));
+  const auto lit = [&](const Vec3& n) {
+    Radiance sum = Radiance::Zero();
+    for (std::size_t k = 0; k < directions.size(); ++k) sum += 4.0 / 256 * std::max(0.0, n.dot(directions[k])) * sky[k];
+    for (const Sun& sun : light.suns) sum += std::max(0.0, n.dot(sun.direction)) * sun.irradiance;
+    return sum;
+  };
+  // As bright as fits: only its shape and tint are known.
+  double most = 1e-9;
+  for (const Vec3& d : directions) most = std::max(most, lit(d).maxCoeff());
+  const double behind[3] = {ground.r / 255.0, ground.g / 255.0, ground.b / 255.0};
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const double u = (x + 0.5) / side * 2 - 1, v = 1 - (y + 0.5) / side * 2, r2 = u * u + v * v;
+      const double inside = std::clamp((0.96 - std::sqrt(r2)) * side / 2, 0.0, 1.0);
+      const Vec3 n(u / 0.96, v / 0.96, std::sqrt(std::max(0.0, 1 - r2 / (0.96 * 0.96))));
+      const Radiance e = inside > 0 ? Radiance(0.9 / most * lit(n.normalized())) : Radiance(0, 0, 0);
+      for (int c = 0; c < 3; ++c) {
+        const double shown = inside * std::clamp(to_display(e[c]), 0.0, 1.0) + (1 - inside) * behind[c];
+        image.rgb[static_cast<std::size_t>((y * side + x) * 3 + c)] =
+            static_cast<std::uint8_t>(std::lround(255 * shown));
+      }
+    }
+  return image;
+}
+
+void draw_decisions(const Lighting& lighting) {
+  const announce::Part part("decisions");
+  if (!ImGui::BeginTable("decisions", 4, ImGuiTableFlags_SizingStretchProp)) return;
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, px(56));
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 2);
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 3);
+  for (const LightDecision& decision : lighting.decisions) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    if (decision.runs)
+      ImGui::TextUnformatted("runs");
+    else
+      ImGui::TextDisabled("left out");
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(ui::shortened(decision.name, ImGui::GetContentRegionAvail().x).c_str());
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", ui::shortened(decision.why, ImGui::GetContentRegionAvail().x).c_str());
+    ui::tip(decision.name, "", decision.why);
+  }
+  ImGui::EndTable();
+}
+
+}  // namespace
+
+void LightPanel::draw_ball(const Lighting& lighting) {
+  if (lighting.lights.empty()) return;
+  const std::shared_ptr<const Light>& light = lighting.lights.begin()->second;
+  if (ball_of_ != light) {
+    ball_.emplace(ball_in(*light, theme().panel));
+    ball_of_ = light;
+  }
+  const float size = px(84);
+  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(ball_->name())), {size, size});
+  ui::tip("The light", "", "A white ball in the light that the first object was baked in, as it was found or given.");
+}
+
+void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
+  const auto commit = [&](const SceneLight& changed) { desk.edit(edit_for(changed, true)); };
+  bool follows = on;
+  if (ui::toggle("Follows edits", follows)) desk.edit(edit_for(light, follows));
+  ui::tip("Light follows edits", "", "What is bent, set beside something or taken away changes shadows too.");
+  if (!on) return;
+  ImGui::SameLine();
+  ui::toggle("As baked", desk.view.as_baked);
+  ui::tip("As baked", "", "Shows colours without what light does, to compare.");
+  struct Wanted {
+    const char* name;
+    const char* help;
+    bool SceneLight::*wanted;
+  };
+  for (const Wanted& effect : {Wanted{"On itself", "What moved shades its object anew.", &SceneLight::self},
+                               Wanted{"On others", "Objects shade each other.", &SceneLight::cast},
+                               Wanted{"What is gone", "Shadows of what was removed go too.", &SceneLight::removed},
+                               Wanted{"One light", "All objects stand in one light.", &SceneLight::match}}) {
+    bool wanted = light.*effect.wanted;
+    ui::flow(px(100));
+    if (ui::toggle(effect.name, wanted)) {
+      SceneLight changed = light;
+      changed.*effect.wanted = wanted;
+      commit(changed);
+    }
+    ui::tip(effect.name, "", effect.help);
+  }
+  int source = static_cast<int>(light.source);
+  ui::label("Light");
+  if (ui::choice("source", source, {"Estimated", "Uniform", "Sky"})) {
+    SceneLight changed = light;
+    changed.source = static_cast<SceneLight::Source>(source);
+    commit(changed);
+  }
+  if (!dragging_) {
+    budget_ = light.budget * 255;
+    sun_ = light.sun.direction;
+  }
+  bool now_dragging = false;
+  const auto field = [&](const char* id, double& value, const char* format, double step, double low, double high) {
+    const ui::Changed changed = ui::number_field(id, value, format, step, px(84));
+    value = std::clamp(value, low, high);
+    now_dragging = now_dragging || changed == ui::Changed::dragged;
+    return changed == ui::Changed::finished;
+  };
+  ui::label("Budget");
+  if (field("budget", budget_, "{:.2g} of 255", 0.05, 0, 255)) {
+    SceneLight changed = light;
+    changed.budget = budget_ / 255;
+    commit(changed);
+  }
+  ui::tip("Budget", "", "How far colours may be off for what is left out.");
+  if (light.source == SceneLight::Source::sky) {
+    bool finished = false;
+    ui::label("Sun");
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis > 0) ImGui::SameLine();
+      const char* const names[] = {"sun x", "sun y", "sun z"};
+      finished = field(names[axis], sun_[axis], "{:.2f}", 0.02, -1, 1) || finished;
+      ui::tip("Sun", "", "Direction towards the sun, in the objects' own space.");
+    }
+    if (finished && sun_.norm() > 1e-3) {
+      SceneLight changed = light;
+      changed.sun.direction = sun_;
+      commit(changed);
+    }
+  }
+  dragging_ = now_dragging || (dragging_ && ImGui::IsMouseDown(ImGuiMouseButton_Left));
+}
+
+void LightPanel::draw(Desk& desk) {
+  const announce::Part part("light");
+  const bool on = desk.scene().light != nullptr;
+  const SceneLight light = on ? *desk.scene().light : SceneLight{};
+  const std::shared_ptr<const Lighting> lighting = on ? desk.relighter.latest() : nullptr;
+  const float left = std::min(px(330), 0.5F * ImGui::GetContentRegionAvail().x);
+  ImGui::BeginChild("settings", {left, 0});
+  draw_settings(desk, light, on);
+  ImGui::EndChild();
+  ImGui::SameLine();
+  if (lighting && !lighting->lights.empty()) {
+    ImGui::BeginChild("ball", {px(96), 0});
+    draw_ball(*lighting);
+    ImGui::EndChild();
+    ImGui::SameLine();
+  }
+  ImGui::BeginChild("what");
+  if (!on)
+    ui::muted("Colours stay as they were baked, whatever is bent, moved or removed.");
+  else if (const std::string problem = desk.relighter.problem(); !problem.empty())
+    ui::muted(problem);
+  else if (!lighting)
+    ui::muted(desk.relighter.busy() ? "Working out the light …" : "Nothing is shown yet.");
+  else
+    draw_decisions(*lighting);
+  ImGui::EndChild();
+}
+
+}  // namespace rebake

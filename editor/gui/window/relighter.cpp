@@ -1,0 +1,97 @@
+#include "editor/gui/window/relighter.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "editor/edits/results.h"
+#include "mesh_ops/base/error.h"
+
+namespace rebake {
+
+Relighter::Relighter(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { loop(); }) {}
+
+Relighter::~Relighter() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+    cancel_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+bool Relighter::same(const Wanted& a, const Scene& scene, bool rough) const {
+  return a.scene.roots == scene.roots && a.scene.light == scene.light && (a.rough == rough || (rough && !a.rough));
+}
+
+void Relighter::request(const Scene& scene, bool rough) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (asked_ && same(*asked_, scene, rough)) return;
+    asked_ = Wanted{scene, rough};
+    wanted_ = asked_;
+    if (!scene.light) latest_ = nullptr;
+    // A quick answer to a drag is let finish: else a fast hand would never see one.
+    if (running_ && !rough) cancel_ = true;
+  }
+  changed_.notify_all();
+}
+
+std::shared_ptr<const Lighting> Relighter::latest() const {
+  const std::lock_guard lock(mutex_);
+  return latest_;
+}
+
+bool Relighter::busy() const {
+  const std::lock_guard lock(mutex_);
+  return running_ || wanted_.has_value();
+}
+
+std::string Relighter::problem() const {
+  const std::lock_guard lock(mutex_);
+  return problem_;
+}
+
+void Relighter::loop() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return ending_ || wanted_; });
+    if (ending_) return;
+    const Wanted next = *std::exchange(wanted_, std::nullopt);
+    problem_.clear();
+    if (!next.scene.light) continue;
+    running_ = true;
+    const int full = next.scene.light->rays;
+    for (const int rays : {16, full}) {
+      if ((rays < full && rays * 2 > full) || (next.rough && rays > 16)) continue;
+      cancel_ = false;
+      lock.unlock();
+      std::shared_ptr<const Lighting> made;
+      std::string problem;
+      try {
+        LightingOptions options;
+        options.rays = rays;
+        // Rough ones are not worth a place on the disk.
+        const std::shared_ptr<Results> results = kept_results();
+        options.results = results.get();
+        options.keep_traced = rays == full;
+        made = std::make_shared<const Lighting>(
+            lighting_of(next.scene, options, Progress([](std::string_view, double) {}, &cancel_)));
+      } catch (const Cancelled&) {
+      } catch (const std::exception& error) {
+        problem = error.what();
+      }
+      lock.lock();
+      problem_ = problem;
+      // Switched off meanwhile: it must not come back.
+      if (made && asked_ && asked_->scene.light) latest_ = std::move(made);
+      if (wanted_ || ending_ || !problem.empty()) break;
+      wake_();
+    }
+    running_ = false;
+    wake_();
+  }
+}
+
+}  // namespace rebake

@@ -1,0 +1,210 @@
+// Light as an edit: it is data like the others, edits remember what light was baked on, and results are kept.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "editor/commands/session.h"
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/scene_folder.h"
+#include "mesh_ops/index/index.h"
+#include "mesh_ops/light/irradiance.h"
+#include "mesh_ops/light/lighting.h"
+#include "render/graph/effects.h"
+#include "render/picture.h"
+#include "tests/support/document_fixture.h"
+#include "tests/support/edits.h"
+#include "tests/support/lit_objects.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+using nlohmann::json;
+
+struct Remembered final : Results {
+  std::map<std::string, std::string> held;
+  int found = 0;
+  std::optional<std::string> find(const std::string& key) override {
+    const auto it = held.find(key);
+    if (it == held.end()) return std::nullopt;
+    ++found;
+    return it->second;
+  }
+  void keep(const std::string& key, std::string_view bytes) override { held[key] = bytes; }
+};
+
+// A box over a ground, which it shades under a uniform sky: one object.
+Scene table() {
+  std::vector<LitQuad> quads = box_quads({-0.3, 0.02, -0.3}, {0.3, 0.6, 0.3}, 2);
+  quads.push_back(flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4, 4));
+  const auto grey = [](const Vec3&) -> Radiance { return Radiance::Constant(0.4); };
+  const auto shape = lit_object(quads, grey);
+  const SceneRays rays({{rays_of(*shape), Affine::Identity(), 3}});
+  Light sky;
+  sky.sky = SkyMap(Radiance::Constant(1));
+  return scene_of(lit_object(quads,
+                             [&](const Vec3& p) -> Radiance {
+                               if (p.y() > 0.01) return Radiance::Constant(0.4);
+                               const std::vector<LightSite> site{{p, {0, 1, 0}, {1, 0, 0}, 1e-3}};
+                               const std::vector<std::uint8_t> up{1};
+                               return 0.4 * traced_light(site, up, rays, sky, Mat3::Identity(), {64})[0].irradiance[0];
+                             }),
+                  "table");
+}
+
+Scene with_light(const Scene& scene) {
+  return apply(scene, read_edit({{"op", "light"}, {"source", "uniform"}, {"zenith", {1, 1, 1}}, {"rays", 64}}, scene))
+      .scene;
+}
+
+bool runs(const Lighting& lighting, const std::string& name) {
+  return std::any_of(lighting.decisions.begin(), lighting.decisions.end(),
+                     [&](const LightDecision& one) { return one.name == name && one.runs; });
+}
+
+TEST(LightEdit, IsReadBackAsItWasWritten) {
+  const Scene scene = table();
+  const json line = {{"op", "light"},        {"effects", {"self", "match"}}, {"source", "sky"}, {"zenith", {1, 2, 3}},
+                     {"sun", {0, 1, 1}},     {"sun_degrees", 3.5},           {"budget", 2},     {"rays", 128},
+                     {"bounce", {0, 0, 0.5}}};
+  const Edit edit = read_edit(line, scene);
+  EXPECT_EQ(to_json(edit), to_json(read_edit(to_json(edit), scene)));
+  const Scene lit = apply(scene, edit).scene;
+  ASSERT_NE(lit.light, nullptr);
+  EXPECT_TRUE(lit.light->self && lit.light->match && !lit.light->cast && !lit.light->removed);
+  EXPECT_EQ(lit.light->zenith, Radiance(1, 2, 3));
+  EXPECT_NEAR(lit.light->sun.direction.norm(), 1, 1e-15);
+  EXPECT_EQ(apply(lit, read_edit({{"op", "light"}, {"effects", {"none"}}}, lit)).scene.light, nullptr);
+}
+
+TEST(LightEdit, NamesTheFieldThatIsWrong) {
+  const Scene scene = table();
+  for (const auto& [field, value] : std::vector<std::pair<std::string, json>>{{"effects", {"shade"}},
+                                                                              {"effects", json::array()},
+                                                                              {"source", "moon"},
+                                                                              {"rays", 1},
+                                                                              {"budget", -1},
+                                                                              {"sun", {0, 0, 0}},
+                                                                              {"sun_degrees", 90},
+                                                                              {"zenith", {-1, 0, 0}}}) {
+    try {
+      json line = {{"op", "light"}, {"source", "sky"}};
+      line[field] = value;
+      apply(scene, read_edit(line, scene));
+      ADD_FAILURE() << field << " was taken: " << value;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(DocumentTest, LightIsUndoneAndSavedWithTheScene) {
+  Document document;
+  act(document, R"({"op": "light", "effects": ["cast"], "source": "sky"})");
+  ASSERT_NE(document.scene().light, nullptr);
+  document.undo();
+  EXPECT_EQ(document.scene().light, nullptr);
+  document.redo();
+  Scene scene = with_added(table(), *scene_of(made_object()).roots.front(), NodeId::none, 1);
+  scene.light = document.scene().light;
+  export_scene(scene, path("lit"), {});
+  const Scene back = read_scene_folder(path("lit"), {});
+  ASSERT_NE(back.light, nullptr);
+  EXPECT_EQ(*back.light, *scene.light);
+}
+
+// What deletes, moves, erases, separates and joins: light knows what there was when it was baked.
+TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
+  const Scene scene = with_light(table());
+  EXPECT_TRUE(lighting_of(scene).maps.empty());
+  const auto after = [](const Scene& from, std::vector<json> lines) {
+    Scene made = from;
+    for (const json& line : lines) made = apply(made, read_edit(line, made)).scene;
+    return made;
+  };
+  const json box = {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}};
+  const Scene cut = after(scene, {box, {{"op", "delete"}}});
+  EXPECT_TRUE(runs(lighting_of(cut), "removed shadow table"));
+  const Scene lifted =
+      after(scene, {box, {{"op", "transform"}, {"node", "table"}, {"selection", true}, {"translate", {0, 2, 0}}}});
+  EXPECT_TRUE(runs(lighting_of(lifted), "self-shadow table"));
+  EXPECT_FALSE(runs(lighting_of(lifted), "removed shadow table"));
+  // Put back, all is as it was but for the rounding of floats.
+  const Scene back =
+      after(lifted, {{{"op", "transform"}, {"node", "table"}, {"selection", true}, {"translate", {0, -2, 0}}}});
+  EXPECT_FALSE(runs(lighting_of(back), "self-shadow table"));
+  // Two nodes of one body shade each other as they were baked to.
+  const Scene apart = after(scene, {box, {{"op", "separate"}, {"node", "table"}, {"as", "box"}}});
+  EXPECT_TRUE(lighting_of(apart).maps.empty());
+  EXPECT_TRUE(lighting_of(after(apart, {{{"op", "merge"}, {"nodes", {"table", "box"}}}})).maps.empty());
+  EXPECT_TRUE(runs(lighting_of(after(apart, {{{"op", "remove"}, {"node", "box"}}})), "removed shadow table"));
+  const Scene erased = after(scene, {{{"op", "erase"}, {"box", {{"min", {-0.4, 0.3, -0.4}}, {"max", {0.4, 1, 0.4}}}}}});
+  EXPECT_TRUE(runs(lighting_of(erased), "removed shadow table"));
+  // Objects that are joined in another place keep what they were baked on.
+  Scene two = after(scene, {{{"op", "duplicate"}, {"node", "table"}, {"translate", {5, 0, 0}}}});
+  two = after(two, {{{"op", "merge"}, {"nodes", {"table", "table.2"}}}});
+  const Lighting joined = lighting_of(two);
+  EXPECT_FALSE(runs(joined, "self-shadow table"));
+  EXPECT_FALSE(runs(joined, "removed shadow table"));
+}
+
+TEST(LightEdit, ResultsAreFoundAgain) {
+  const Scene scene = with_light(table());
+  const Edit bend = read_edit({{"op", "bend"}, {"node", "table"}, {"degrees", 40}, {"axis", {0, 1, 0}}}, scene);
+  const Scene bent = apply(scene, bend).scene;
+  Remembered results;
+  const Lighting first = lighting_of(bent, {.results = &results});
+  const int before = results.found;
+  const std::size_t held = results.held.size();
+  const Lighting again = lighting_of(bent, {.results = &results});
+  EXPECT_GT(results.found, before);
+  EXPECT_EQ(results.held.size(), held);
+  const auto& a = *first.maps.begin()->second.front();
+  const auto& b = *again.maps.begin()->second.front();
+  EXPECT_EQ(a.gain, b.gain);
+  // What is kept is what is worked out without a place to keep it, but for its rounding to floats.
+  const Lighting without = lighting_of(bent);
+  for (std::size_t k = 0; k < a.gain.size(); ++k)
+    EXPECT_LT((a.gain[k] - without.maps.begin()->second.front()->gain[k]).norm(), 1e-4F);
+  // Damaged results count as not there.
+  for (auto& [key, bytes] : results.held) bytes.resize(bytes.size() / 2);
+  EXPECT_EQ(lighting_of(bent, {.results = &results}).maps.begin()->second.front()->gain, a.gain);
+}
+
+// A picture changes where light does, and keeps its bytes where nothing was edited.
+TEST(LightEdit, PicturesChangeWithTheLightOnly) {
+  const Scene scene = with_light(table());
+  const Scene cut = [&] {
+    Scene made = scene;
+    for (const json& line : std::vector<json>{
+             {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}}, {{"op", "delete"}}})
+      made = apply(made, read_edit(line, made)).scene;
+    return made;
+  }();
+  Renderer renderer;
+  for (const int samples : {1, 4}) {
+    View view;
+    view.camera.eye = {0, 2, 2};
+    view.camera.near_plane = 0.1;
+    view.camera.far_plane = 10;
+    view.width = view.height = 64;
+    view.samples = samples;
+    const Lighting nothing = lighting_of(scene), light = lighting_of(cut);
+    EXPECT_EQ(renderer.render(scene, view, {}, &nothing), renderer.render(scene, view));
+    const Image plain = renderer.render(cut, view), lit = renderer.render(cut, view, {}, &light);
+    // The middle was in the box's shade.
+    const std::size_t middle = (32 * 64 + 32) * 3;
+    EXPECT_GT(lit.rgb[middle], plain.rgb[middle] + 20) << samples;
+    RenderOptions deferred;
+    deferred.shading = RenderOptions::Shading::deferred;
+    const Image other = renderer.render(cut, view, deferred, &light);
+    EXPECT_NEAR(other.rgb[middle], lit.rgb[middle], 1);
+    const FramePlan frame = plan(cut, view, {}, nullptr, &light);
+    EXPECT_TRUE(frame.runs(effects::light));
+    EXPECT_FALSE(plan(scene, view, {}, nullptr, &nothing).runs(effects::light));
+  }
+}
+
+}  // namespace
+}  // namespace rebake::test
