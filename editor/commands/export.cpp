@@ -1,6 +1,7 @@
 #include "editor/commands/export.h"
 
 #include "editor/commands/describe.h"
+#include "editor/commands/lit.h"
 #include "editor/commands/plain_scene.h"
 #include "editor/commands/views.h"
 #include "editor/edits/support.h"
@@ -24,13 +25,13 @@ namespace rebake {
 
 namespace {
 
-// How pictures of another scene differ from those of `scene`, from four sides.
+// How pictures of another scene differ from those of `scene`, lit where it is, from four sides.
 struct SeenLoss {
   double mean_db = 0, worst_db = 100;
   int largest = 0;          ///< of a channel, 0 … 255
   double share_beyond = 0;  ///< of pixels that differ by more than 2/255
 };
-SeenLoss seen_loss(Session& session, const Scene& scene, const Scene& other) {
+SeenLoss seen_loss(Session& session, const Scene& scene, const Scene& other, const Lighting* lighting = nullptr) {
   const Camera front = framing_of(scene, 1);
   SeenLoss loss;
   double squares = 0;
@@ -42,7 +43,7 @@ SeenLoss seen_loss(Session& session, const Scene& scene, const Scene& other) {
     view.camera.eye = front.target + Eigen::AngleAxisd(side * 2 * std::numbers::pi / sides, front.up.normalized()) *
                                          (front.eye - front.target);
     Renderer& renderer = session.renderer();
-    const Difference difference = compare(renderer.render(scene, view), renderer.render(other, view), 2);
+    const Difference difference = compare(renderer.render(scene, view, {}, lighting), renderer.render(other, view), 2);
     const double psnr = std::min(100.0, difference.psnr_db);
     squares += std::pow(10, -psnr / 10) / sides;
     loss.worst_db = std::min(loss.worst_db, psnr);
@@ -55,9 +56,10 @@ SeenLoss seen_loss(Session& session, const Scene& scene, const Scene& other) {
 
 // Says what `describe` makes of a loss. It needs OpenGL; says so where there is none.
 template <class Describe>
-void say_loss(Session& session, const Scene& scene, const Scene& other, const Describe& describe) {
+void say_loss(Session& session, const Scene& scene, const Scene& other, const Describe& describe,
+              const Lighting* lighting = nullptr) {
   try {
-    session.say("note: " + describe(seen_loss(session, scene, other)));
+    session.say("note: " + describe(seen_loss(session, scene, other, lighting)));
   } catch (const DeviceError& error) {
     session.say(fmt::format("note: what that costs cannot be measured here: {}", error.what()));
   }
@@ -70,6 +72,22 @@ std::size_t decoders_of(const Scene& scene) {
         std::none_of(found.begin(), found.end(), [&](const Decoder* d) { return *d == *placed.node->object->decoder; }))
       found.push_back(placed.node->object->decoder.get());
   return found.size();
+}
+
+// The formats have no light that follows: what is lost without it.
+void say_light_lost(Session& session, const Scene& scene) {
+  const Lighting lighting = lit(session.scene(), session.progress);
+  if (lighting.maps.empty()) return;
+  say_loss(
+      session, scene, scene,
+      [](const SeenLoss& loss) {
+        return fmt::format(
+            "light that follows edits is not in the folder: colours are as they were baked, {:.1f} dB from what is "
+            "shown "
+            "over four sides, {:.1f} dB at the worst",
+            loss.mean_db, loss.worst_db);
+      },
+      &lighting);
 }
 
 // What the export shows otherwise than the scene, by pictures of both.
@@ -118,6 +136,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
     }
   }
   for (const std::string& line : lines_of(report)) session.say(line);
+  say_light_lost(session, scene);
   const bool seen_less = report.pictures_measured && report.whole.psnr_db < options.psnr_db;
   if (!report.exact && (report.texels.whole.psnr_db < options.psnr_db || seen_less))
     session.say(fmt::format("note: {} reach less than {:.1f} dB", seen_less ? "pictures" : "texels", options.psnr_db));
@@ -173,6 +192,7 @@ void run(Session& session, const ExportAction& action) {
   session.exports.push_back(action.out);
   for (const std::string& note : report.notes) session.say("note: " + note);
   if (!report.keeps_everything) say_losses(session, scene, action, report);
+  say_light_lost(session, scene);
   session.say(fmt::format("exported {}", action.out));
 }
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/commands/session.h"
-#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/light/irradiance.h"
@@ -108,7 +108,7 @@ TEST_F(DocumentTest, LightIsUndoneAndSavedWithTheScene) {
   document.redo();
   Scene scene = with_added(table(), *scene_of(made_object()).roots.front(), NodeId::none, 1);
   scene.light = document.scene().light;
-  export_scene(scene, path("lit"), {});
+  format_named("rebake").write(scene, path("lit"), {}, {});
   const Scene back = read_scene_folder(path("lit"), {});
   ASSERT_NE(back.light, nullptr);
   EXPECT_EQ(*back.light, *scene.light);
