@@ -5,41 +5,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 
-#include "mesh_ops/index/numbering.h"
+#include "mesh_ops/light/cosine_rays.h"
 
 namespace rebake {
-
-namespace {
-
-using std::numbers::pi;
-
-constexpr double golden = 0.6180339887498949;
-
-struct Spot {
-  double x, y;
-};
-
-// Fibonacci points of the unit disk: cosine-weighted directions once raised to the half sphere.
-std::vector<Spot> disk_points(int count) {
-  std::vector<Spot> points;
-  for (int k = 0; k < count; ++k) {
-    const double r = std::sqrt((k + 0.5) / count), phi = 2 * pi * std::fmod(k * golden, 1.0);
-    points.push_back({r * std::cos(phi), r * std::sin(phi)});
-  }
-  return points;
-}
-
-double own_angle(std::size_t site) { return 2 * pi * static_cast<double>(mixed(site, 0x51, 7) >> 11) * 0x1p-53; }
-
-}  // namespace
 
 std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
                                     const SceneRays& around, const Light& light, const Mat3& to_light,
                                     const IrradianceOptions& options, const Progress& progress) {
   std::vector<SiteLight> result(sites.size());
-  const std::vector<Spot> disk = disk_points(options.rays), sun_disk = disk_points(std::max(4, options.rays / 4));
+  const std::vector<DiskPoint> disk = disk_points(options.rays), sun_disk = disk_points(std::max(4, options.rays / 4));
   const bool sky = !light.sky.black();
   constexpr std::size_t batch = 64;
   const std::size_t batches = (sites.size() + batch - 1) / batch;
@@ -49,17 +24,14 @@ std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<
     for (std::size_t i = b * batch; i < std::min(sites.size(), (b + 1) * batch); ++i) {
       const LightSite& site = sites[i];
       if ((!wanted.empty() && wanted[i] == 0) || !(site.normal.squaredNorm() > 0.5)) continue;
-      const double turn = own_angle(i), c = std::cos(turn), s = std::sin(turn);
-      const Vec3 across = site.normal.cross(site.tangent);
       for (std::size_t side = 0; side < 2; ++side) {
         if (!wanted.empty() && (wanted[i] >> side & 1) == 0) continue;
-        const Vec3 normal = side == 0 ? site.normal : Vec3(-site.normal);
-        const Vec3 from = site.position + site.offset * normal;
+        const SiteFrame frame(site, i, side == 1);
+        const Vec3 &normal = frame.normal(), &from = frame.from();
         Radiance sum = Radiance::Zero();
         int open = 0;
-        for (const Spot& spot : disk) {
-          const double x = c * spot.x - s * spot.y, y = s * spot.x + c * spot.y;
-          const Vec3 d = x * site.tangent + y * across + std::sqrt(std::max(0.0, 1 - x * x - y * y)) * normal;
+        for (const DiskPoint& point : disk) {
+          const Vec3 d = frame.direction(point);
           if (around.shaded(from, d)) {
             sum += light.bounce;
             continue;
@@ -75,8 +47,9 @@ std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<
           if (cosine <= -r) continue;
           const Vec3 u = towards.unitOrthogonal(), v = towards.cross(u);
           double share = 0;
-          for (const Spot& spot : sun_disk) {
-            const Vec3 d = (towards + r * ((c * spot.x - s * spot.y) * u + (s * spot.x + c * spot.y) * v)).normalized();
+          for (const DiskPoint& point : sun_disk) {
+            const DiskPoint p = frame.turned(point);
+            const Vec3 d = (towards + r * (p.x * u + p.y * v)).normalized();
             const double above = normal.dot(d);
             if (above > 0 && !around.shaded(from, d)) share += above;
           }

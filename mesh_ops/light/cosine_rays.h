@@ -1,0 +1,60 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "mesh_ops/index/numbering.h"
+#include "mesh_ops/light/light_sites.h"
+
+namespace rebake {
+
+/// A point of the unit disk; raised to the half sphere it is a direction, cosine-weighted over all of them.
+struct DiskPoint {
+  double x, y;
+};
+
+/// Fibonacci points of the unit disk.
+inline std::vector<DiskPoint> disk_points(int count) {
+  constexpr double golden = 0.6180339887498949;
+  std::vector<DiskPoint> points;
+  for (int k = 0; k < count; ++k) {
+    const double r = std::sqrt((k + 0.5) / count), phi = 2 * std::numbers::pi * std::fmod(k * golden, 1.0);
+    points.push_back({r * std::cos(phi), r * std::sin(phi)});
+  }
+  return points;
+}
+
+/// The angle by which a site turns its points: each its own, so that errors of neighbours differ.
+inline double own_angle(std::size_t site) {
+  return 2 * std::numbers::pi * static_cast<double>(mixed(site, 0x51, 7) >> 11) * 0x1p-53;
+}
+
+/// Directions over a side of a site, going with its tangent.
+class SiteFrame {
+ public:
+  SiteFrame(const LightSite& site, std::size_t number, bool back = false)
+      : normal_(back ? Vec3(-site.normal) : site.normal),
+        tangent_(site.tangent),
+        across_(site.normal.cross(site.tangent)),
+        from_(site.position + site.offset * normal_),
+        cosine_(std::cos(own_angle(number))),
+        sine_(std::sin(own_angle(number))) {}
+
+  const Vec3& normal() const { return normal_; }
+  /// Where rays start.
+  const Vec3& from() const { return from_; }
+  DiskPoint turned(const DiskPoint& p) const { return {cosine_ * p.x - sine_ * p.y, sine_ * p.x + cosine_ * p.y}; }
+  Vec3 direction(const DiskPoint& point) const {
+    const DiskPoint p = turned(point);
+    return p.x * tangent_ + p.y * across_ + std::sqrt(std::max(0.0, 1 - p.x * p.x - p.y * p.y)) * normal_;
+  }
+
+ private:
+  Vec3 normal_, tangent_, across_, from_;
+  double cosine_, sine_;
+};
+
+}  // namespace rebake
