@@ -77,7 +77,10 @@ std::size_t decoders_of(const Scene& scene) {
 // The formats have no light that follows: what is lost without it.
 void say_light_lost(Session& session, const Scene& scene) {
   const Lighting lighting = lit(session.scene(), session.progress);
-  if (lighting.maps.empty()) return;
+  if (std::none_of(lighting.maps.begin(), lighting.maps.end(), [](const auto& entry) {
+        return std::any_of(entry.second.begin(), entry.second.end(), [](const auto& map) { return map != nullptr; });
+      }))
+    return;
   say_loss(
       session, scene, scene,
       [](const SeenLoss& loss) {
@@ -192,7 +195,7 @@ void run(Session& session, const ExportAction& action) {
   session.exports.push_back(action.out);
   for (const std::string& note : report.notes) session.say("note: " + note);
   if (!report.keeps_everything) say_losses(session, scene, action, report);
-  say_light_lost(session, scene);
+  if (action.format == "mobilenerf") say_light_lost(session, scene);
   session.say(fmt::format("exported {}", action.out));
 }
 

@@ -24,7 +24,7 @@ struct LightEstimate {
 };
 
 /// Non-negative lobes, what hides them, and a sun where there is one, fitted to linear colours of sites (one each) by
-/// robust least squares; albedos are one a cluster of chromaticities and part, in turn with the light. Deterministic.
+/// robust least squares; albedos are one a cluster of chromaticities, in turn with the light. Deterministic.
 LightEstimate estimated_light(const LightSites& sites, const std::vector<Radiance>& colors, const SceneRays& body,
                               const EstimateOptions& options = {}, const Progress& progress = {});
 

@@ -48,10 +48,17 @@ bool any_displaced(const BakedObject& object) {
   });
 }
 
-bool share_body(const BakedObject& a, const BakedObject& b) {
-  const std::vector<BakedBody> first = bodies_of(a), second = bodies_of(b);
+// Whether two nodes hold parts of one body that is still in one piece: what was separated and then moved is another
+// object, and so is a copy elsewhere.
+bool share_body(const PlacedNode& a, const PlacedNode& b) {
+  const std::vector<BakedBody> first = bodies_of(*a.node->object), second = bodies_of(*b.node->object);
+  const auto same_place = [&](const BakedBody& x, const BakedBody& y) {
+    return (a.to_world * x.to_object).isApprox(b.to_world * y.to_object, 1e-9);
+  };
   return std::any_of(first.begin(), first.end(), [&](const BakedBody& x) {
-    return std::any_of(second.begin(), second.end(), [&](const BakedBody& y) { return same_body(x, y); });
+    return std::any_of(second.begin(), second.end(), [&](const BakedBody& y) {
+      return same_body({x.object, Affine::Identity()}, {y.object, Affine::Identity()}) && same_place(x, y);
+    });
   });
 }
 
@@ -148,6 +155,9 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
   };
   if (results == nullptr) return trace();
   std::string inputs;
+  const std::array<std::size_t, 5> counts{sites.size(), wanted.size(), occluders.size(), light.sky.texels().size(),
+                                          light.suns.size()};
+  append(inputs, counts.data(), sizeof(counts));
   append(inputs, sites);
   append(inputs, wanted);
   for (const Occluder& occluder : occluders) {
@@ -164,7 +174,7 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
   append(inputs, light.bounce.data(), 3 * sizeof(double));
   append(inputs, to_light.data(), 9 * sizeof(double));
   append(inputs, &rays, sizeof(rays));
-  const std::string key = result_key("light1", inputs);
+  const std::string key = result_key("light2", inputs);
   constexpr std::size_t floats = 8;
   if (const auto bytes = results->find(key); bytes && bytes->size() == sites.size() * floats * sizeof(float)) {
     std::vector<SiteLight> lit(sites.size());
@@ -224,7 +234,13 @@ LightEstimate kept_estimate(const BakedObject& body, const LightingOptions& opti
   for (const auto* bias : {&d.bias0, &d.bias1, &d.bias2})
     append(inputs, bias->data(), static_cast<std::size_t>(bias->size()) * sizeof(double));
   append(inputs, &options.spacing, sizeof(options.spacing));
-  const std::string key = result_key("lightestimate2", inputs);
+  append(inputs, &options.most_nodes, sizeof(options.most_nodes));
+  append(inputs, &body.axes, sizeof(body.axes));
+  for (const TextureSet& set : body.sets) {
+    const AlphaCode code = set.texels->alpha_code();
+    append(inputs, &code, sizeof(code));
+  }
+  const std::string key = result_key("lightestimate3", inputs);
   // Numbers in this order; the sky last.
   constexpr std::size_t fixed = 12;
   if (const auto bytes = results->find(key); bytes && bytes->size() > fixed * sizeof(double)) {
@@ -275,8 +291,9 @@ class Receiver {
            const LightingOptions& options)
       : objects_(objects), own_(own), settings_(settings), options_(options) {
     for (std::size_t k = 0; k < objects_.size(); ++k)
-      if (k == own_ || share_body(object(), *objects_[k].node->object)) relatives_.push_back(k);
-    moved_ = any_displaced(object());
+      if (k == own_ || share_body(objects_[own_], objects_[k])) relatives_.push_back(k);
+    // What was joined of several shades each other as it was not baked to.
+    moved_ = any_displaced(object()) || object().bodies.size() > 1;
     missing_ = anything_missing();
   }
 
@@ -288,20 +305,25 @@ class Receiver {
     return std::find(relatives_.begin(), relatives_.end(), other) != relatives_.end();
   }
 
-  // An upper bound of what another object takes from this one's light, in display colours. Under its light, whose sun
-  // counts where a ray to it may meet the other's sphere.
-  double cast_bound(std::size_t other, const Progress& progress) {
+  // An upper bound of what another object takes from this one's light, in display colours; under the shared light where
+  // there is one. A sun counts where a ray to it may meet the other's sphere.
+  double cast_bound(std::size_t other, const Light* shared, const Mat3& to_shared, const Progress& progress) {
     const Sphere mine = around(objects_[own_]), its = around(objects_[other]);
     const double distance = (its.center - mine.center).norm() - mine.radius;
     const double sine = distance > its.radius ? its.radius / distance : 1;
-    // Without a light to be found: nothing is a thousand times as bright as what it lights.
-    if (sine * sine * 1000 * steepest < settings_.budget / 1000) return sine * sine * 1000 * steepest;
-    const Light& shining = light(progress);
+    // Without a light to be found: a sun of a degree is ten thousand times as bright as what it lights.
+    constexpr double brightest_sun = 1e5;
+    if (const double at_most = sine * sine * brightest_sun * steepest; at_most < settings_.budget / 1000)
+      return at_most;
+    const Light& own = light(progress);
+    const Light& shining = shared != nullptr ? *shared : own;
+    const Mat3 to_space = shared != nullptr ? Mat3(to_shared.transpose()) : turn();
     double most = 0;
     for (int c = 0; c < 3; ++c) {
-      double taken = sine * sine * shining.sky.brightest()[c];
+      // What hides the sky sends its own light instead.
+      double taken = sine * sine * std::max(shining.sky.brightest()[c], shining.bounce[c]);
       for (const Sun& sun : shining.suns) {
-        const Vec3 towards = turn() * sun.direction, way = its.center - mine.center;
+        const Vec3 towards = to_space * sun.direction, way = its.center - mine.center;
         const double along = way.dot(towards), aside = (way - along * towards).norm();
         const double reach = mine.radius + its.radius + std::tan(sun.radius) * std::max(0.0, along + mine.radius);
         if (along > -reach && aside < reach) taken += sun.irradiance[c];
@@ -311,7 +333,7 @@ class Receiver {
     return std::min(1.0, steepest * most);
   }
 
-  // What an effect changes where it is looked at, 64 rays each: twice the largest of some sites.
+  // What an effect changes where it is looked at, 64 rays each: twice the largest of some sites. An estimate.
   double sampled_bound(bool self, bool removed, const Progress& progress) {
     constexpr std::size_t some = 512;
     prepare(progress);
@@ -319,15 +341,17 @@ class Receiver {
     const std::size_t step = std::max<std::size_t>(1, sites_.size() / some);
     for (std::size_t i = step / 2; i < sites_.size(); i += step) wanted[i] = sides_[i];
     const auto before = light_before(self, removed, wanted, 64, progress);
-    const auto after = light_after({}, wanted, 64, light(progress), to_light_baked(), progress);
+    const auto after = light_after({}, wanted, 64, nullptr, Mat3::Identity(), progress);
     double most = 0;
     for (std::size_t i = 0; i < sites_.size(); ++i) {
       if (wanted[i] == 0) continue;
       const Radiance e0 = shown(i, before), e1 = shown(i, after);
       for (int c = 0; c < 3; ++c) {
         const double color = colors_[i][c];
-        if (!(e0[c] > 0)) continue;
-        most = std::max(most, std::abs(to_display(std::min(1.0, color * e1[c] / e0[c])) - to_display(color)));
+        // What was baked in the dark counts with the common albedo, as it is lit.
+        const double albedo = e0[c] > 0 ? std::min(color / e0[c], 4 * albedo_[c]) : albedo_[c];
+        const double changed = std::clamp(color + albedo * (e1[c] - e0[c]), 0.0, 1.0);
+        most = std::max(most, std::abs(to_display(changed) - to_display(color)));
       }
     }
     return std::min(1.0, 2 * most);
@@ -342,8 +366,7 @@ class Receiver {
     const int rays = options_.rays > 0 ? options_.rays : settings_.rays;
     const auto before = light_before(self, removed, sides_, rays, progress);
     const Mat3 in_shared = in_world() ? to_shared : Mat3(to_shared * turn());
-    const auto after = light_after(casters, sides_, rays, shared != nullptr ? *shared : light(progress),
-                                   shared != nullptr ? in_shared : to_light_baked(), progress);
+    const auto after = light_after(casters, sides_, rays, shared, in_shared, progress);
     std::vector<Radiance> e0, e1;
     for (std::size_t i = 0; i < sites_.size(); ++i) {
       e0.push_back(shown(i, before));
@@ -478,12 +501,27 @@ class Receiver {
     return result;
   }
   std::vector<SiteLight> light_after(const std::vector<std::size_t>& casters, const std::vector<std::uint8_t>& wanted,
-                                     int rays, const Light& shining, const Mat3& to_light_directions,
-                                     const Progress& progress) {
+                                     int rays, const Light* shared, const Mat3& to_shared, const Progress& progress) {
     std::vector<Occluder> occluders;
     for (const std::size_t k : relatives_) occluders.push_back(occluder(k));
     for (const std::size_t k : casters) occluders.push_back(occluder(k));
-    return kept_light(now_, wanted, occluders, shining, to_light_directions, rays, traced_results(), progress);
+    if (shared != nullptr)
+      return kept_light(now_, wanted, occluders, *shared, to_shared, rays, traced_results(), progress);
+    const std::vector<BakedBody> bodies = bodies_of(object());
+    if (bodies.size() == 1)
+      return kept_light(now_, wanted, occluders, *light_, to_light_baked(), rays, traced_results(), progress);
+    // Each body's light turned with it when it was joined.
+    std::vector<SiteLight> result(sites_.size());
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      std::vector<std::uint8_t> of_body(sites_.size());
+      for (std::size_t i = 0; i < of_body.size(); ++i)
+        of_body[i] = sites_.body[i] != b ? 0 : wanted.empty() ? 3 : wanted[i];
+      const Mat3 to_body = orthogonal_factor(bodies[b].to_object.linear()).transpose() * to_light_baked();
+      const auto lit = kept_light(now_, of_body, occluders, *light_, to_body, rays, traced_results(), progress);
+      for (std::size_t i = 0; i < of_body.size(); ++i)
+        if (of_body[i] != 0) result[i] = lit[i];
+    }
+    return result;
   }
   Occluder occluder(std::size_t k) const {
     if (in_world()) return {objects_[k].node->object, objects_[k].to_world};
@@ -542,22 +580,33 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     result.decisions.push_back({std::move(name), false, bound, 0, std::move(why)});
     return result.decisions.size() - 1;
   };
+  const Light* shared = nullptr;
+  Mat3 to_shared = Mat3::Identity();
+  if (settings.match && !receivers.empty()) {
+    shared = &receivers.front().light(progress);
+    // A given light stands in the world.
+    if (estimated) to_shared = receivers.front().turn().transpose();
+  }
+  const auto matched_at = [&](std::size_t k) { return shared != nullptr && (!estimated || k > 0); };
+  // Of an object that moved in itself and lost parts both shadows are traced as one; the line that follows another.
+  std::map<std::size_t, std::size_t> follows;
   for (std::size_t k = 0; k < receivers.size(); ++k) {
     Receiver& receiver = receivers[k];
+    const bool self = settings.self && receiver.moved(), removed = settings.removed && receiver.missing();
+    std::optional<std::size_t> own;
     if (!settings.self)
       say("self-shadow " + receiver.name(), 0, "not asked for");
-    else if (!receiver.moved())
+    else if (!self)
       say("self-shadow " + receiver.name(), 0, "no triangle moved against its object");
     else
-      candidates.push_back({say("self-shadow " + receiver.name(), receiver.sampled_bound(true, false, progress), ""), k,
-                            Candidate::Kind::self});
-    if (receiver.missing()) {
-      if (!settings.removed)
-        say("removed shadow " + receiver.name(), 0, "not asked for");
-      else
-        candidates.push_back(
-            {say("removed shadow " + receiver.name(), receiver.sampled_bound(settings.self, true, progress), ""), k,
-             Candidate::Kind::removed});
+      own = say("self-shadow " + receiver.name(), removed ? 0 : receiver.sampled_bound(true, false, progress), "");
+    if (own && !removed) candidates.push_back({*own, k, Candidate::Kind::self});
+    if (receiver.missing() && !removed) say("removed shadow " + receiver.name(), 0, "not asked for");
+    if (removed) {
+      const std::size_t line =
+          say("removed shadow " + receiver.name(), receiver.sampled_bound(receiver.moved(), true, progress), "");
+      candidates.push_back({line, k, Candidate::Kind::removed});
+      if (own) follows[*own] = line;
     }
     for (std::size_t other = 0; other < receivers.size(); ++other) {
       if (other == k || receiver.related(other)) continue;
@@ -565,7 +614,9 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       if (!settings.cast)
         say(name, 0, "not asked for");
       else
-        candidates.push_back({say(name, receiver.cast_bound(other, progress), ""), k, Candidate::Kind::cast, other});
+        candidates.push_back(
+            {say(name, receiver.cast_bound(other, matched_at(k) ? shared : nullptr, to_shared, progress), ""), k,
+             Candidate::Kind::cast, other});
     }
   }
   // The least bounds are left out while their sum stays within the budget.
@@ -577,16 +628,17 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
   for (const std::size_t k : order) {
     LightDecision& decision = result.decisions[candidates[k].decision];
     const double sum = result.left_out + decision.bound;
-    decision.runs = options.everything || sum > settings.budget;
+    // In another light all of an object's own changes count.
+    const bool in_other_light = candidates[k].kind != Candidate::Kind::cast && matched_at(candidates[k].receiver);
+    decision.runs = options.everything || in_other_light || sum > settings.budget;
+    decision.why = fmt::format("{} {:.2g} of 255, {:.2g} left out before it; budget {:.2g}",
+                               candidates[k].kind == Candidate::Kind::cast ? "at most" : "about", decision.bound * 255,
+                               result.left_out * 255, settings.budget * 255);
     if (!decision.runs) result.left_out = sum;
-    decision.why = fmt::format("bound {:.4f} {} {:.4f}", decision.bound, decision.runs ? ">" : "<", settings.budget);
   }
-  const Light* shared = nullptr;
-  Mat3 to_shared = Mat3::Identity();
-  if (settings.match && !receivers.empty()) {
-    shared = &receivers.front().light(progress);
-    // A given light stands in the world.
-    if (estimated) to_shared = receivers.front().turn().transpose();
+  for (const auto& [line, other] : follows) {
+    result.decisions[line].runs = result.decisions[other].runs;
+    result.decisions[line].why = "together with the removed shadow";
   }
   for (std::size_t k = 0; k < receivers.size(); ++k) {
     bool self = false, removed = false;
@@ -599,7 +651,8 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       removed = removed || candidate.kind == Candidate::Kind::removed;
       if (candidate.kind == Candidate::Kind::cast) casters.push_back(candidate.caster);
     }
-    const bool matched = shared != nullptr && (!estimated || k > 0);
+    self = self || (removed && receivers[k].moved());
+    const bool matched = matched_at(k);
     if (running.empty() && !matched) continue;
     const Clock::time_point start = Clock::now();
     result.maps[objects[k].node->id] =

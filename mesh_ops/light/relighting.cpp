@@ -14,6 +14,9 @@ namespace {
 
 constexpr double dark_share = 0.3;
 
+// Beyond this all is white; half floats hold it.
+constexpr double largest = 1e4;
+
 }  // namespace
 
 namespace {
@@ -151,10 +154,12 @@ std::vector<LightMap> light_maps(const std::vector<std::shared_ptr<const LightCh
       const std::uint32_t texel = charts[s]->nodes[i - sites.first[s]].texel;
       for (int c = 0; c < 3; ++c) {
         const double e = before[i][c], change = after[i][c] - e, part = ee[sites.part[i]][c];
-        if (change == 0 || !(e * e + lambda[c] > 0)) continue;
-        map.gain[texel][c] = static_cast<float>(1 + e * change / (e * e + lambda[c]));
+        // Without an area it had no light that could be changed.
+        if (change == 0 || !(e * e + lambda[c] > 0) || sites.baked[i].normal.isZero(0)) continue;
+        map.gain[texel][c] = static_cast<float>(std::min(largest, 1 + e * change / (e * e + lambda[c])));
         const double albedo = part > 0 ? ce[sites.part[i]][c] / part : 0;
-        map.offset[texel][c] = static_cast<float>(lambda[c] * albedo * change / (e * e + lambda[c]));
+        map.offset[texel][c] =
+            static_cast<float>(std::clamp(lambda[c] * albedo * change / (e * e + lambda[c]), -largest, largest));
         any_offset = any_offset || map.offset[texel][c] != 0;
       }
     }

@@ -78,7 +78,7 @@ std::shared_ptr<const Light> given_light(const SceneLight& settings) {
   if (settings.source == SceneLight::Source::estimated) return nullptr;
   if (settings.source == SceneLight::Source::sky) {
     Sun sun = settings.sun;
-    sun.direction.normalize();
+    sun.direction.stableNormalize();
     return std::make_shared<const Light>(sky_and_sun(settings.ground, settings.zenith, sun, settings.bounce));
   }
   auto light = std::make_shared<Light>();

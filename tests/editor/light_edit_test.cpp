@@ -63,6 +63,12 @@ bool runs(const Lighting& lighting, const std::string& name) {
                      [&](const LightDecision& one) { return one.name == name && one.runs; });
 }
 
+const LightDecision* decided(const Lighting& lighting, const std::string& name) {
+  for (const LightDecision& one : lighting.decisions)
+    if (one.name == name) return &one;
+  return nullptr;
+}
+
 TEST(LightEdit, IsReadBackAsItWasWritten) {
   const Scene scene = table();
   const json line = {{"op", "light"},        {"effects", {"self", "match"}}, {"source", "sky"}, {"zenith", {1, 2, 3}},
@@ -141,8 +147,27 @@ TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
   EXPECT_TRUE(runs(lighting_of(after(apart, {{{"op", "remove"}, {"node", "box"}}})), "removed shadow table"));
   const Scene erased = after(scene, {{{"op", "erase"}, {"box", {{"min", {-0.4, 0.3, -0.4}}, {"max", {0.4, 1, 0.4}}}}}});
   EXPECT_TRUE(runs(lighting_of(erased), "removed shadow table"));
+  // What was separated and moved away leaves its shadow behind no more, and shades where it is now.
+  const Scene beside = after(apart, {{{"op", "transform"}, {"node", "box"}, {"translate", {0.5, 0, 0}}}});
+  EXPECT_TRUE(runs(lighting_of(beside), "removed shadow table"));
+  EXPECT_TRUE(runs(lighting_of(beside), "cast shadow box→table"));
+  // A copy is another object; it does not stand for what was removed.
+  const Scene copied = after(cut, {{{"op", "duplicate"}, {"node", "table"}, {"translate", {2.1, 0, 0}}}});
+  EXPECT_TRUE(runs(lighting_of(copied), "removed shadow table"));
+  EXPECT_NE(decided(lighting_of(copied), "cast shadow table.2→table"), nullptr);
+  // A little bent and then cut: both are traced as one.
+  const Scene both = after(
+      scene, {{{"op", "bend"}, {"node", "table"}, {"degrees", 0.01}, {"axis", {1, 0, 0}}, {"direction", {0, 1, 0}}},
+              box,
+              {{"op", "delete"}}});
+  const Lighting of_both = lighting_of(both);
+  EXPECT_TRUE(runs(of_both, "self-shadow table") && runs(of_both, "removed shadow table"));
+  double most = 1;
+  for (const Eigen::Vector3f& gain : of_both.maps.begin()->second.front()->gain)
+    most = std::max(most, static_cast<double>(gain[0]));
+  EXPECT_GT(most, 1.2);
   // Objects that are joined in another place keep what they were baked on.
-  Scene two = after(scene, {{{"op", "duplicate"}, {"node", "table"}, {"translate", {5, 0, 0}}}});
+  Scene two = after(scene, {{{"op", "duplicate"}, {"node", "table"}, {"translate", {50, 0, 0}}}});
   two = after(two, {{{"op", "merge"}, {"nodes", {"table", "table.2"}}}});
   const Lighting joined = lighting_of(two);
   EXPECT_FALSE(runs(joined, "self-shadow table"));

@@ -302,6 +302,28 @@ TEST(Lighting, LeavesOutByBoundsThatAnAuditHolds) {
   EXPECT_LT(last, 1.0 / 255);
 }
 
+// What hides the sky may be brighter than it; and in one light for all, bounds are of that light.
+TEST(Lighting, BoundsCountBounceAndTheSharedLight) {
+  const auto ground =
+      lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2, 2)}, [](const Vec3&) { return grey(0.4); });
+  const auto box = lit_object(box_quads({1.2, 0, -0.5}, {1.7, 1, 0.5}), [](const Vec3&) { return grey(0.4); });
+  SceneLight light = given_uniform(0);
+  light.bounce = grey(1);
+  EXPECT_TRUE(
+      decision(lighting_of(scene_with({{"ground", ground}, {"box", box}}, light)), "cast shadow box→ground")->runs);
+  light = {};
+  light.source = SceneLight::Source::sky;
+  light.match = true;
+  light.sun.direction = {1, 0.2, 0};
+  Scene scene = scene_with({{"ground", ground}, {"box", box}}, light);
+  // Turned, its own light would shine from elsewhere: the shared one still comes over the box.
+  scene = with_changed(scene, scene.roots[0]->id, [](Node& node) {
+    node.to_parent.linear() = Eigen::AngleAxisd(pi / 2, Vec3::UnitY()).toRotationMatrix();
+  });
+  const Lighting lighting = lighting_of(scene);
+  EXPECT_GT(decision(lighting, "cast shadow box→ground")->bound, 0.9);
+}
+
 // A bend that is taken back leaves colours as they were; a mirror image and other sizes are lit alike.
 TEST(Lighting, HoldsInHardCases) {
   const auto hinge = lit_object(

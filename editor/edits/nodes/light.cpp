@@ -29,7 +29,8 @@ bool choose_effects(const std::vector<std::string>& words, SceneLight& light) {
     else if (word == "match")
       light.match = true;
     else
-      throw FieldError("effects", "\"" + word + "\" is none: use auto, self, cast, removed, match, or none alone");
+      throw FieldError("effects",
+                       "\"" + word + "\" does not go here: use auto, self, cast, removed and match, or none alone");
   }
   if (words.empty()) throw FieldError("effects", "must name at least one: auto, self, cast, removed, match, or none");
   return true;
@@ -64,7 +65,7 @@ Scene apply(const Scene& scene, const LightEdit& edit) {
   else if (edit.source == "sky")
     light->source = SceneLight::Source::sky;
   else
-    throw FieldError("source", "\"" + edit.source + "\" is none: use estimated, uniform or sky");
+    throw FieldError("source", "\"" + edit.source + "\" is not known: use estimated, uniform or sky");
   result.light = std::move(light);
   return result;
 }
@@ -80,7 +81,8 @@ REBAKE_DESCRIBE_EDIT(
             "and a sun, about the objects' own upright axis");
       visit("zenith", edit.light.zenith, Need::optional, "linear radiance from above, red, green and blue");
       visit("ground", edit.light.ground, Need::optional, "the same from below");
-      visit("sun", edit.light.sun.direction, Need::optional, "direction towards it");
+      visit("sun", edit.light.sun.direction, Need::optional,
+            "direction towards it, in the objects' own space as they were read; with match in the world");
       visit("sun_color", edit.light.sun.irradiance, Need::optional,
             "linear, what it sends back from a white surface that faces it; 0, 0, 0: none");
       visit("sun_degrees", edit.sun_degrees, Need::optional, "its radius as seen, which softens shadows",

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "editor/commands/lit.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/support.h"
 #include "editor/gui/ui/announce.h"
@@ -354,7 +355,8 @@ void Viewport::write_pictures(Desk& desk) {
     made_.reset();
     const Scene scene = with_only(desk.scene(), desk.jobs.pictured);
     const View view{with_depth_for(camera, world_bounds(scene)), width, height, desk.view.samples};
-    write_png(renderer_.render(scene, view), path, desk.now->sources);
+    const Lighting lighting = desk.view.as_baked ? Lighting{} : lit(desk.scene());
+    write_png(renderer_.render(scene, view, {}, &lighting), path, desk.now->sources);
   };
   try {
     if (const auto shot = std::exchange(desk.jobs.screenshot, std::nullopt)) {

@@ -1,8 +1,8 @@
 #include "editor/gui/window/relighter.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
+#include <vector>
 
 #include "editor/edits/results.h"
 #include "mesh_ops/base/error.h"
@@ -33,7 +33,7 @@ void Relighter::request(const Scene& scene, bool rough) {
     wanted_ = asked_;
     if (!scene.light) latest_ = nullptr;
     // A quick answer to a drag is let finish: else a fast hand would never see one.
-    if (running_ && !rough) cancel_ = true;
+    if (running_ && (!rough || !quick_pass_)) cancel_ = true;
   }
   changed_.notify_all();
 }
@@ -62,9 +62,14 @@ void Relighter::loop() {
     problem_.clear();
     if (!next.scene.light) continue;
     running_ = true;
+    // The last is what was asked for; a rough one stands in for it while it is worth it.
+    constexpr int quick = 16;
     const int full = next.scene.light->rays;
-    for (const int rays : {16, full}) {
-      if ((rays < full && rays * 2 > full) || (next.rough && rays > 16)) continue;
+    std::vector<int> passes;
+    if (next.rough || full >= 2 * quick) passes.push_back(std::min(quick, full));
+    if (!next.rough) passes.push_back(full);
+    for (const int rays : passes) {
+      quick_pass_ = rays < full;
       cancel_ = false;
       lock.unlock();
       std::shared_ptr<const Lighting> made;
@@ -86,6 +91,7 @@ void Relighter::loop() {
       problem_ = problem;
       // Switched off meanwhile: it must not come back.
       if (made && asked_ && asked_->scene.light) latest_ = std::move(made);
+      if (!problem.empty()) latest_ = nullptr;
       if (wanted_ || ending_ || !problem.empty()) break;
       wake_();
     }

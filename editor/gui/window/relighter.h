@@ -47,7 +47,7 @@ class Relighter {
   std::optional<Wanted> wanted_, asked_;  ///< to be done; asked for last
   std::shared_ptr<const Lighting> latest_;
   std::string problem_;
-  bool running_ = false, ending_ = false;
+  bool running_ = false, ending_ = false, quick_pass_ = false;
   std::atomic<bool> cancel_ = false;
   std::thread thread_;  // last: it uses the others
 };
