@@ -200,7 +200,7 @@ class Document:
         source: of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground and a sun, about the objects' own upright axis
         zenith: linear radiance from above, red, green and blue
         ground: the same from below
-        sun: direction towards it
+        sun: direction towards it, in the objects' own space as they were read; with match in the world
         sun_color: linear, what it sends back from a white surface that faces it; 0, 0, 0: none
         sun_degrees: its radius as seen, which softens shadows (degrees)
         bounce: linear radiance of surfaces that hide the sky
