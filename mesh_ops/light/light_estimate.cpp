@@ -182,15 +182,17 @@ class Fit {
   }
   void solve(int c) {
     const Eigen::Index n = x_[0].size();
-    Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      const double a = albedo_[samples_[i].cluster][c], w = weight_[i];
-      const Eigen::VectorXd r = row(i);
-      squares.selfadjointView<Eigen::Lower>().rankUpdate(r, w * a * a);
-      right += w * a * colors_[samples_[i].site][c] * r;
+    const auto count = static_cast<Eigen::Index>(samples_.size());
+    Eigen::MatrixXd rows(count, n);
+    Eigen::VectorXd wanted(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Sample& sample = samples_[static_cast<std::size_t>(i)];
+      const double root = std::sqrt(weight_[static_cast<std::size_t>(i)]);
+      rows.row(i) = root * albedo_[sample.cluster][c] * row(static_cast<std::size_t>(i)).transpose();
+      wanted[i] = root * colors_[sample.site][c];
     }
-    squares.triangularView<Eigen::StrictlyUpper>() = squares.transpose();
+    Eigen::MatrixXd squares = rows.transpose() * rows;
+    const Eigen::VectorXd right = rows.transpose() * wanted;
     const double usual = squares.diagonal().head(smoothness_.rows()).mean();
     squares.topLeftCorner(smoothness_.rows(), smoothness_.rows()) += smooth * usual * smoothness_;
     squares.diagonal().array() += 1e-3 * usual;

@@ -11,9 +11,9 @@ SkyMap::SkyMap(int side)
 SkyMap::SkyMap(const Radiance& uniform) : SkyMap(1) { texels_.front() = uniform.cast<float>(); }
 
 Vec3 SkyMap::direction(std::size_t texel) const {
-  const auto side = static_cast<std::size_t>(side_);
-  const double x = (static_cast<double>(texel % side) + 0.5) / side_ * 2 - 1,
-               y = (static_cast<double>(texel / side) + 0.5) / side_ * 2 - 1;
+  const std::size_t side = static_cast<std::size_t>(side_), column = texel % side, row = texel / side;
+  const double x = (static_cast<double>(column) + 0.5) / side_ * 2 - 1,
+               y = (static_cast<double>(row) + 0.5) / side_ * 2 - 1;
   Vec3 d(x, 1 - std::abs(x) - std::abs(y), y);
   if (d.y() < 0) d = Vec3((1 - std::abs(y)) * (x >= 0 ? 1 : -1), d.y(), (1 - std::abs(x)) * (y >= 0 ? 1 : -1));
   return d.normalized();
