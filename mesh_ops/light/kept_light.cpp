@@ -1,0 +1,220 @@
+#include "mesh_ops/light/kept_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "mesh_ops/base/hash.h"
+#include "mesh_ops/index/index.h"
+#include "mesh_ops/light/relighting.h"
+
+namespace rebake {
+
+namespace {
+
+// How far away an object's parts shade anything.
+double reach_of(const BakedObject& object) {
+  std::vector<Vec3> centers;
+  for (const TextureSet& set : object.sets)
+    for (const Face& face : set.soup.faces())
+      centers.push_back(
+          (set.soup.positions()[face[0]] + set.soup.positions()[face[1]] + set.soup.positions()[face[2]]) / 3);
+  if (centers.empty()) return std::numeric_limits<double>::infinity();
+  const auto quantile = [](std::vector<double>& values, double share) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  Vec3 middle;
+  std::vector<double> values(centers.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(centers.begin(), centers.end(), values.begin(), [&](const Vec3& p) { return p[axis]; });
+    middle[axis] = quantile(values, 0.5);
+  }
+  std::transform(centers.begin(), centers.end(), values.begin(), [&](const Vec3& p) { return (p - middle).norm(); });
+  const double most = quantile(values, 0.6), all = *std::max_element(values.begin(), values.end());
+  constexpr double far = 3;
+  return all > 1.2 * far * most ? far * most : std::numeric_limits<double>::infinity();
+}
+
+void append(std::string& bytes, const void* data, std::size_t size) {
+  bytes.append(static_cast<const char*>(data), size);
+}
+template <class T>
+void append(std::string& bytes, const std::vector<T>& values) {
+  append(bytes, values.data(), values.size() * sizeof(T));
+}
+
+// A hash of what shades: triangles, and which of their texels are opaque.
+std::uint64_t surface_hash(const BakedObject& object) {
+  std::string hashes;
+  const auto add = [&](std::string_view bytes) {
+    const std::uint64_t hash = content_hash(bytes);
+    append(hashes, &hash, sizeof(hash));
+  };
+  const auto view = [](const auto& values) {
+    return std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
+  };
+  for (const TextureSet& set : object.sets) {
+    add(view(set.soup.positions()));
+    add(view(set.soup.uvs()));
+    add(view(set.soup.faces()));
+    const std::array<int, 2> size{set.texels->width(), set.texels->height()};
+    add(view(size));
+    for (int row = 0; row < set.texels->tile_rows(); ++row)
+      for (int column = 0; column < set.texels->tile_columns(); ++column)
+        add(view(set.texels->tile(column, row)->texels));
+  }
+  return content_hash(hashes);
+}
+
+}  // namespace
+
+SceneRays rays_among(const std::vector<Occluder>& occluders) {
+  std::vector<SceneRays::Instance> instances;
+  for (const Occluder& occluder : occluders)
+    instances.push_back({rays_of(*occluder.object), occluder.to_frame, occluder.object->bounds().diagonal().norm(),
+                         reach_of(*occluder.object) * std::cbrt(std::abs(occluder.to_frame.linear().determinant()))});
+  return SceneRays(std::move(instances));
+}
+
+std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& object, double spacing,
+                                                            std::size_t most_nodes) {
+  for (;; spacing *= 1.5) {
+    std::vector<std::shared_ptr<const LightChart>> charts;
+    std::size_t nodes = 0;
+    for (const TextureSet& set : object.sets) {
+      charts.push_back(std::make_shared<const LightChart>(light_chart(set, spacing)));
+      nodes += charts.back()->nodes.size();
+    }
+    if (nodes <= most_nodes || spacing > 1000) return charts;
+  }
+}
+
+std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
+                                  const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
+                                  int rays, Results* results, const Progress& progress) {
+  const auto trace = [&] {
+    return traced_light(sites, wanted, rays_among(occluders), light, to_light, {rays}, progress);
+  };
+  if (results == nullptr) return trace();
+  std::string inputs;
+  const std::array<std::size_t, 5> counts{sites.size(), wanted.size(), occluders.size(), light.sky.texels().size(),
+                                          light.suns.size()};
+  append(inputs, counts.data(), sizeof(counts));
+  append(inputs, sites);
+  append(inputs, wanted);
+  for (const Occluder& occluder : occluders) {
+    const std::uint64_t hash = surface_hash(*occluder.object);
+    append(inputs, &hash, sizeof(hash));
+    append(inputs, occluder.to_frame.matrix().data(), 16 * sizeof(double));
+  }
+  append(inputs, light.sky.texels());
+  for (const Sun& sun : light.suns) {
+    append(inputs, sun.direction.data(), 3 * sizeof(double));
+    append(inputs, &sun.radius, sizeof(double));
+    append(inputs, sun.irradiance.data(), 3 * sizeof(double));
+  }
+  append(inputs, light.bounce.data(), 3 * sizeof(double));
+  append(inputs, to_light.data(), 9 * sizeof(double));
+  append(inputs, &rays, sizeof(rays));
+  const std::string key = result_key("light2", inputs);
+  constexpr std::size_t floats = 8;
+  if (const auto bytes = results->find(key); bytes && bytes->size() == sites.size() * floats * sizeof(float)) {
+    std::vector<SiteLight> lit(sites.size());
+    for (std::size_t i = 0; i < lit.size(); ++i) {
+      std::array<float, floats> f{};
+      std::memcpy(f.data(), bytes->data() + i * sizeof(f), sizeof(f));
+      for (std::size_t side = 0; side < 2; ++side) {
+        lit[i].irradiance[side] = Eigen::Vector3f(f[side * 4], f[side * 4 + 1], f[side * 4 + 2]).cast<double>();
+        lit[i].open[side] = f[side * 4 + 3];
+      }
+    }
+    return lit;
+  }
+  std::vector<SiteLight> lit = trace();
+  std::string bytes;
+  for (SiteLight& one : lit)
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Eigen::Vector3f e = one.irradiance[side].cast<float>();
+      append(bytes, e.data(), sizeof(e));
+      append(bytes, &one.open[side], sizeof(float));
+      // The same whether it was kept or not.
+      one.irradiance[side] = e.cast<double>();
+    }
+  results->keep(key, bytes);
+  return lit;
+}
+
+LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t most_nodes, Results* results,
+                            const Progress& progress) {
+  const auto make = [&] {
+    const auto charts = light_charts(body, spacing, most_nodes);
+    const LightSites sites = light_sites(body, charts);
+    const auto colors = site_colors(body, charts, sites, std::vector<float>(sites.size(), 0.5F));
+    return estimated_light(sites, colors, rays_among({{std::make_shared<const BakedObject>(body), Affine::Identity()}}),
+                           {}, progress);
+  };
+  if (results == nullptr) return make();
+  std::string inputs;
+  const std::uint64_t hash = surface_hash(body);
+  append(inputs, &hash, sizeof(hash));
+  const Decoder& d = *body.decoder;
+  for (const auto* weights : {&d.weights0, &d.weights1, &d.weights2})
+    append(inputs, weights->data(), static_cast<std::size_t>(weights->size()) * sizeof(double));
+  for (const auto* bias : {&d.bias0, &d.bias1, &d.bias2})
+    append(inputs, bias->data(), static_cast<std::size_t>(bias->size()) * sizeof(double));
+  append(inputs, &spacing, sizeof(spacing));
+  append(inputs, &most_nodes, sizeof(most_nodes));
+  append(inputs, &body.axes, sizeof(body.axes));
+  for (const TextureSet& set : body.sets) {
+    const AlphaCode code = set.texels->alpha_code();
+    append(inputs, &code, sizeof(code));
+  }
+  const std::string key = result_key("lightestimate3", inputs);
+  // Numbers in this order; the sky last.
+  constexpr std::size_t fixed = 12;
+  if (const auto bytes = results->find(key); bytes && bytes->size() > fixed * sizeof(double)) {
+    std::vector<double> n(bytes->size() / sizeof(double));
+    std::memcpy(n.data(), bytes->data(), n.size() * sizeof(double));
+    const int side = static_cast<int>(n[0]);
+    if (side >= 1 && side <= 4096 &&
+        n.size() == fixed + static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * 3) {
+      LightEstimate estimate;
+      estimate.confidence = n[1];
+      estimate.light.bounce = {n[2], n[3], n[4]};
+      estimate.sun = n[8] > 0;
+      if (estimate.sun) estimate.light.suns.push_back({{n[5], n[6], n[7]}, n[8], {n[9], n[10], n[11]}});
+      std::size_t at = fixed;
+      // SkyMap asks texel by texel, in order.
+      estimate.light.sky = SkyMap(side, [&](const Vec3&) -> Radiance {
+        at += 3;
+        return {n[at - 3], n[at - 2], n[at - 1]};
+      });
+      return estimate;
+    }
+  }
+  const LightEstimate estimate = make();
+  const Sun sun = estimate.sun ? estimate.light.suns.front() : Sun{{0, 0, 0}, 0, {0, 0, 0}};
+  const Radiance& b = estimate.light.bounce;
+  std::vector<double> n{static_cast<double>(estimate.light.sky.side()),
+                        estimate.confidence,
+                        b[0],
+                        b[1],
+                        b[2],
+                        sun.direction[0],
+                        sun.direction[1],
+                        sun.direction[2],
+                        sun.radius,
+                        sun.irradiance[0],
+                        sun.irradiance[1],
+                        sun.irradiance[2]};
+  for (const Eigen::Vector3f& texel : estimate.light.sky.texels())
+    for (int c = 0; c < 3; ++c) n.push_back(static_cast<double>(texel[c]));
+  results->keep(key, {reinterpret_cast<const char*>(n.data()), n.size() * sizeof(double)});
+  return estimate;
+}
+
+}  // namespace rebake

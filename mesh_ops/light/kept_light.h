@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "mesh_ops/base/results.h"
+#include "mesh_ops/light/irradiance.h"
+#include "mesh_ops/light/light_estimate.h"
+
+namespace rebake {
+
+/// Something that shades: an object, and where it stands in the space that light is traced in.
+struct Occluder {
+  std::shared_ptr<const BakedObject> object;
+  Affine to_frame;
+};
+
+/// Rays among them. What lies much farther than most of an object, such as a backdrop, shades nothing: it is what
+/// shines.
+SceneRays rays_among(const std::vector<Occluder>& occluders);
+
+/// traced_light(), from where such results are kept if it is there; rounded to floats where they are. `results` may be
+/// null.
+std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
+                                  const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
+                                  int rays, Results* results, const Progress& progress);
+
+/// Charts of all texture sets, with nodes `spacing` texels apart, wider where there would be more than `most_nodes`.
+std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& object, double spacing,
+                                                            std::size_t most_nodes);
+
+/// The light that an object stood in as it was baked, likewise kept.
+LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t most_nodes, Results* results,
+                            const Progress& progress);
+
+}  // namespace rebake

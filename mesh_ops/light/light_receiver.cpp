@@ -1,0 +1,306 @@
+#include "mesh_ops/light/light_receiver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/polar.h"
+
+namespace rebake {
+
+namespace {
+
+// The steepest that display colours rise over linear light.
+constexpr double steepest = 12.92;
+
+struct Sphere {
+  Vec3 center{0, 0, 0};
+  double radius = 0;
+};
+Sphere around(const PlacedNode& placed) {
+  const Box box = transformed(placed.node->object->bounds(), placed.to_world);
+  return box.isEmpty() ? Sphere{} : Sphere{box.center(), box.diagonal().norm() / 2};
+}
+
+bool similarity(const Mat3& m) {
+  const Mat3 squares = m.transpose() * m;
+  const double scale = squares.trace() / 3;
+  return (squares - scale * Mat3::Identity()).cwiseAbs().maxCoeff() <= 1e-9 * scale;
+}
+
+// What was separated and then moved is another object, and so is a copy elsewhere.
+bool share_body(const PlacedNode& a, const PlacedNode& b) {
+  const std::vector<BakedBody> first = bodies_of(*a.node->object), second = bodies_of(*b.node->object);
+  const auto same_place = [&](const BakedBody& x, const BakedBody& y) {
+    return (a.to_world * x.to_object).isApprox(b.to_world * y.to_object, 1e-9);
+  };
+  return std::any_of(first.begin(), first.end(), [&](const BakedBody& x) {
+    return std::any_of(second.begin(), second.end(), [&](const BakedBody& y) {
+      return same_body({x.object, Affine::Identity()}, {y.object, Affine::Identity()}) && same_place(x, y);
+    });
+  });
+}
+
+bool any_displaced(const BakedObject& object) {
+  return std::any_of(object.sets.begin(), object.sets.end(), [](const TextureSet& set) {
+    return set.soup.vertex_attributes().shared(Soup::displacement) != nullptr;
+  });
+}
+
+// The object's triangles where they were when their light was baked.
+std::shared_ptr<const BakedObject> at_baked_places(const BakedObject& object) {
+  auto result = std::make_shared<BakedObject>(object);
+  for (TextureSet& set : result->sets) {
+    const auto* displaced = set.soup.vertex_attributes().find<Eigen::Vector3f>(Soup::displacement);
+    if (displaced == nullptr) continue;
+    std::vector<Vec3> positions = set.soup.positions();
+    for (std::size_t v = 0; v < positions.size(); ++v) positions[v] -= (*displaced)[v].cast<double>();
+    set.soup = Soup(std::make_shared<const std::vector<Vec3>>(std::move(positions)), set.soup.shared_uvs(),
+                    set.soup.shared_faces(), {}, set.soup.face_attributes());
+  }
+  return result;
+}
+
+}  // namespace
+
+LightReceiver::LightReceiver(const std::vector<PlacedNode>& objects, std::size_t own, const SceneLight& settings,
+                             const LightingOptions& options)
+    : objects_(objects), own_(own), settings_(settings), options_(options) {
+  for (std::size_t k = 0; k < objects_.size(); ++k)
+    if (k == own_ || share_body(placed(), objects_[k])) relatives_.push_back(k);
+  // What was joined of several shades each other as it was not baked to.
+  moved_ = any_displaced(object()) || object().bodies.size() > 1;
+  missing_ = anything_missing();
+}
+
+bool LightReceiver::related(std::size_t other) const {
+  return std::find(relatives_.begin(), relatives_.end(), other) != relatives_.end();
+}
+
+Mat3 LightReceiver::turn() const { return orthogonal_factor(to_world().linear()); }
+
+// Light is traced in the object's own space, where nothing is rounded that did not move, unless that is sheared.
+bool LightReceiver::in_world() const { return !similarity(to_world().linear()); }
+
+// Turns directions of the space that light is traced in into those of the light that it was baked in.
+Mat3 LightReceiver::to_own_light() const { return in_world() ? Mat3(turn().transpose()) : Mat3(Mat3::Identity()); }
+
+std::shared_ptr<const Light> LightReceiver::light(const Progress& progress) {
+  prepare(progress);
+  return light_;
+}
+
+bool LightReceiver::anything_missing() const {
+  const std::vector<BakedBody> bodies = bodies_of(object());
+  std::size_t baked = 0, there = 0;
+  std::set<const void*> textures;
+  for (const BakedBody& body : bodies) baked += body.object->triangle_count();
+  for (const std::size_t k : relatives_) {
+    there += objects_[k].node->object->triangle_count();
+    for (const TextureSet& set : objects_[k].node->object->sets) textures.insert(set.texels.get());
+  }
+  bool erased = false;
+  for (const BakedBody& body : bodies)
+    for (const TextureSet& set : body.object->sets) erased = erased || !textures.contains(set.texels.get());
+  return there < baked || erased;
+}
+
+double LightReceiver::cast_bound(std::size_t other, const Shared& shared, const Progress& progress) {
+  const Sphere mine = around(placed()), its = around(objects_[other]);
+  const double distance = (its.center - mine.center).norm() - mine.radius;
+  const double sine = distance > its.radius ? its.radius / distance : 1;
+  // Without a light to be found: a sun of a degree is ten thousand times as bright as what it lights.
+  constexpr double brightest_sun = 1e5;
+  if (const double at_most = sine * sine * brightest_sun * steepest; at_most < settings_.budget / 1000) return at_most;
+  prepare(progress);
+  const Light& shining = shared.light != nullptr ? *shared.light : *light_;
+  const Mat3 to_space = shared.light != nullptr ? Mat3(shared.to_light.transpose()) : turn();
+  double most = 0;
+  for (int c = 0; c < 3; ++c) {
+    // What hides the sky sends its own light instead.
+    double taken = sine * sine * std::max(shining.sky.brightest()[c], shining.bounce[c]);
+    for (const Sun& sun : shining.suns) {
+      const Vec3 towards = to_space * sun.direction, way = its.center - mine.center;
+      const double along = way.dot(towards), aside = (way - along * towards).norm();
+      const double reach = mine.radius + its.radius + std::tan(sun.radius) * std::max(0.0, along + mine.radius);
+      if (along > -reach && aside < reach) taken += sun.irradiance[c];
+    }
+    most = std::max(most, taken * albedo_[c]);
+  }
+  return std::min(1.0, steepest * most);
+}
+
+double LightReceiver::sampled_change(bool self, bool removed, const Progress& progress) {
+  constexpr std::size_t some = 512;
+  prepare(progress);
+  std::vector<std::uint8_t> wanted(sites_.size(), 0);
+  const std::size_t step = std::max<std::size_t>(1, sites_.size() / some);
+  for (std::size_t i = step / 2; i < sites_.size(); i += step) wanted[i] = sides_[i];
+  const auto before = light_before(self, removed, wanted, 64, progress);
+  const auto after = light_after({}, wanted, 64, {}, progress);
+  double most = 0;
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    if (wanted[i] == 0) continue;
+    const Radiance e0 = shown(i, before), e1 = shown(i, after);
+    for (int c = 0; c < 3; ++c) {
+      const double color = colors_[i][c];
+      // What was baked in the dark counts with the common albedo, as it is lit.
+      const double albedo = e0[c] > 0 ? std::min(color / e0[c], 4 * albedo_[c]) : albedo_[c];
+      const double changed = std::clamp(color + albedo * (e1[c] - e0[c]), 0.0, 1.0);
+      most = std::max(most, std::abs(to_display(changed) - to_display(color)));
+    }
+  }
+  return std::min(1.0, 2 * most);
+}
+
+std::vector<std::shared_ptr<const LightMap>> LightReceiver::maps(bool self, bool removed,
+                                                                 const std::vector<std::size_t>& casters,
+                                                                 const Shared& shared, const Progress& progress) {
+  prepare(progress);
+  const int rays = options_.rays > 0 ? options_.rays : settings_.rays;
+  const auto before = light_before(self, removed, sides_, rays, progress);
+  const auto after = light_after(casters, sides_, rays, shared, progress);
+  std::vector<Radiance> e0, e1;
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    e0.push_back(shown(i, before));
+    e1.push_back(shown(i, after));
+  }
+  const std::vector<Radiance> colors = site_colors(object(), charts_, sites_, facing_);
+  std::vector<std::shared_ptr<const LightMap>> result;
+  for (LightMap& map : light_maps(charts_, sites_, colors, e0, e1)) {
+    const bool changes = std::any_of(map.gain.begin(), map.gain.end(),
+                                     [](const Eigen::Vector3f& g) { return g != Eigen::Vector3f::Ones(); }) ||
+                         !map.offset.empty();
+    result.push_back(changes ? std::make_shared<const LightMap>(std::move(map)) : nullptr);
+  }
+  return result;
+}
+
+void LightReceiver::prepare(const Progress& progress) {
+  if (!charts_.empty()) return;
+  try {
+    orthogonal_factor(to_world().linear());
+  } catch (const std::invalid_argument& error) {
+    throw EditError(fmt::format("node \"{}\": {}", name(), error.what()));
+  }
+  charts_ = light_charts(object(), options_.spacing, options_.most_nodes);
+  sites_ = light_sites(object(), charts_);
+  now_ = sites_.now;
+  if (in_world()) {
+    const Affine& motion = to_world();
+    const Mat3 normals = motion.linear().inverse().transpose();
+    for (LightSite& site : now_) {
+      site.position = motion * site.position;
+      site.normal = (normals * site.normal).normalized();
+      const Vec3 tangent = motion.linear() * site.tangent;
+      site.tangent = (tangent - tangent.dot(site.normal) * site.normal).normalized();
+      site.offset *= std::cbrt(std::abs(motion.linear().determinant()));
+    }
+  }
+  colors_ = site_colors(object(), charts_, sites_, std::vector<float>(sites_.size(), 0.5F));
+  if (const auto given = given_light(settings_)) {
+    light_ = given;
+    confidence_ = 1;
+  } else {
+    const LightEstimate estimate = kept_estimate(*bodies_of(object()).front().object, options_.spacing,
+                                                 options_.most_nodes, options_.results, progress);
+    light_ = std::make_shared<const Light>(estimate.light);
+    confidence_ = estimate.confidence;
+  }
+  const auto lit = light_before(true, true, {}, 64, progress);
+  facing_ = facing_of(sites_, lit, colors_);
+  for (const float facing : facing_)
+    sides_.push_back(static_cast<std::uint8_t>((facing > 0 ? 1 : 0) + (facing < 1 ? 2 : 0)));
+  // What nine sites of ten stay below.
+  std::vector<double> values;
+  for (int c = 0; c < 3; ++c) {
+    values.clear();
+    for (std::size_t i = 0; i < sites_.size(); ++i)
+      if (const double e = shown(i, lit)[c]; e > 0) values.push_back(colors_[i][c] / e);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 9 / 10);
+    if (values.empty()) continue;
+    std::nth_element(values.begin(), at, values.end());
+    albedo_[c] = *at;
+  }
+}
+Radiance LightReceiver::shown(std::size_t i, const std::vector<SiteLight>& lit) const {
+  const double f = static_cast<double>(facing_[i]);
+  return f * lit[i].irradiance[0] + (1 - f) * lit[i].irradiance[1];
+}
+
+Occluder LightReceiver::occluder(std::size_t k) const {
+  if (in_world()) return {objects_[k].node->object, objects_[k].to_world};
+  if (k == own_) return {objects_[k].node->object, Affine::Identity()};
+  return {objects_[k].node->object, to_world().inverse() * objects_[k].to_world};
+}
+
+std::vector<Occluder> LightReceiver::relatives() const {
+  std::vector<Occluder> occluders;
+  for (const std::size_t k : relatives_) occluders.push_back(occluder(k));
+  return occluders;
+}
+
+std::vector<std::uint8_t> LightReceiver::of_body(std::size_t body, const std::vector<std::uint8_t>& wanted) const {
+  std::vector<std::uint8_t> flags(sites_.size());
+  for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = sites_.body[i] != body ? 0 : wanted.empty() ? 3 : wanted[i];
+  return flags;
+}
+
+std::vector<SiteLight> LightReceiver::traced(const std::vector<LightSite>& sites,
+                                             const std::vector<std::uint8_t>& wanted,
+                                             const std::vector<Occluder>& occluders, const Light& light,
+                                             const Mat3& to_light, int rays, const Progress& progress) const {
+  return kept_light(sites, wanted, occluders, light, to_light, rays, options_.keep_traced ? options_.results : nullptr,
+                    progress);
+}
+
+// Without `self`, triangles count as baked where they are now.
+std::vector<SiteLight> LightReceiver::light_before(bool self, bool removed, const std::vector<std::uint8_t>& wanted,
+                                                   int rays, const Progress& progress) const {
+  if (moved_ && !self) return traced(now_, wanted, relatives(), *light_, to_own_light(), rays, progress);
+  const std::vector<BakedBody> bodies = bodies_of(object());
+  std::vector<SiteLight> result(sites_.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    std::vector<Occluder> occluders;
+    if (removed || !missing_) {
+      occluders.push_back({bodies[b].object, Affine::Identity()});
+    } else {
+      for (const std::size_t k : relatives_)
+        for (const BakedBody& body : bodies_of(*objects_[k].node->object))
+          if (same_body(body, bodies[b]))
+            occluders.push_back({at_baked_places(*objects_[k].node->object), body.to_object.inverse()});
+    }
+    const std::vector<std::uint8_t> flags = of_body(b, wanted);
+    const auto lit = traced(sites_.baked, flags, occluders, *light_, Mat3::Identity(), rays, progress);
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      if (flags[i] != 0) result[i] = lit[i];
+  }
+  return result;
+}
+
+std::vector<SiteLight> LightReceiver::light_after(const std::vector<std::size_t>& casters,
+                                                  const std::vector<std::uint8_t>& wanted, int rays,
+                                                  const Shared& shared, const Progress& progress) const {
+  std::vector<Occluder> occluders = relatives();
+  for (const std::size_t k : casters) occluders.push_back(occluder(k));
+  if (shared.light != nullptr)
+    return traced(now_, wanted, occluders, *shared.light, in_world() ? shared.to_light : Mat3(shared.to_light * turn()),
+                  rays, progress);
+  const std::vector<BakedBody> bodies = bodies_of(object());
+  if (bodies.size() == 1) return traced(now_, wanted, occluders, *light_, to_own_light(), rays, progress);
+  // Each body's light turned with it when it was joined.
+  std::vector<SiteLight> result(sites_.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Mat3 to_body = orthogonal_factor(bodies[b].to_object.linear()).transpose() * to_own_light();
+    const std::vector<std::uint8_t> flags = of_body(b, wanted);
+    const auto lit = traced(now_, flags, occluders, *light_, to_body, rays, progress);
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      if (flags[i] != 0) result[i] = lit[i];
+  }
+  return result;
+}
+
+}  // namespace rebake

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/light/kept_light.h"
+#include "mesh_ops/light/lighting.h"
+
+namespace rebake {
+
+/// One object of a scene whose colours light may change: what its own edits and others may take from its light, and the
+/// change itself. What that needs is made when it is first asked for.
+class LightReceiver {
+ public:
+  /// Objects, settings and options must outlive it.
+  LightReceiver(const std::vector<PlacedNode>& objects, std::size_t own, const SceneLight& settings,
+                const LightingOptions& options);
+
+  const std::string& name() const { return placed().node->name; }
+  /// Whether triangles moved against their object, or were joined with others'.
+  bool moved() const { return moved_; }
+  /// Whether some of what it was baked with is gone.
+  bool missing() const { return missing_; }
+  /// Whether another object is part of the same body, still in one piece with it.
+  bool related(std::size_t other) const;
+
+  /// Another light than its own; `to_light` turns the world's directions into the light's.
+  struct Shared {
+    const Light* light = nullptr;  ///< null: each object stands in its own
+    Mat3 to_light = Mat3::Identity();
+  };
+
+  /// An upper bound of what another object takes from this one's light, in display colours. A sun counts where a ray to
+  /// it may meet the other's bounding sphere.
+  double cast_bound(std::size_t other, const Shared& shared, const Progress& progress);
+  /// About what an effect changes: twice the largest change at some sites, 64 rays each.
+  double sampled_change(bool self, bool removed, const Progress& progress);
+  /// The change of colours under what runs, a map a texture set; null where nothing changes.
+  std::vector<std::shared_ptr<const LightMap>> maps(bool self, bool removed, const std::vector<std::size_t>& casters,
+                                                    const Shared& shared, const Progress& progress);
+
+  /// What it was baked in: found or given. Throws EditError for a node that is flattened.
+  std::shared_ptr<const Light> light(const Progress& progress);
+  double confidence() const { return confidence_; }
+  /// Turns its light's directions into the world's.
+  Mat3 turn() const;
+
+ private:
+  const PlacedNode& placed() const { return objects_[own_]; }
+  const BakedObject& object() const { return *placed().node->object; }
+  const Affine& to_world() const { return placed().to_world; }
+  bool anything_missing() const;
+  bool in_world() const;
+  Mat3 to_own_light() const;
+  void prepare(const Progress& progress);
+  Radiance shown(std::size_t i, const std::vector<SiteLight>& lit) const;
+  Occluder occluder(std::size_t k) const;
+  std::vector<Occluder> relatives() const;
+  std::vector<std::uint8_t> of_body(std::size_t body, const std::vector<std::uint8_t>& wanted) const;
+  std::vector<SiteLight> traced(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
+                                const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
+                                int rays, const Progress& progress) const;
+  std::vector<SiteLight> light_before(bool self, bool removed, const std::vector<std::uint8_t>& wanted, int rays,
+                                      const Progress& progress) const;
+  std::vector<SiteLight> light_after(const std::vector<std::size_t>& casters, const std::vector<std::uint8_t>& wanted,
+                                     int rays, const Shared& shared, const Progress& progress) const;
+
+  const std::vector<PlacedNode>& objects_;
+  std::size_t own_;
+  const SceneLight& settings_;
+  const LightingOptions& options_;
+  std::vector<std::size_t> relatives_;
+  bool moved_ = false, missing_ = false;
+  // Made by prepare():
+  std::vector<std::shared_ptr<const LightChart>> charts_;
+  LightSites sites_;
+  std::vector<LightSite> now_;    ///< in the space that light is traced in
+  std::vector<Radiance> colors_;  ///< seen from both sides alike
+  std::vector<float> facing_;
+  std::vector<std::uint8_t> sides_;  ///< that show, as traced_light wants them
+  std::shared_ptr<const Light> light_;
+  double confidence_ = 0;
+  Radiance albedo_{1, 1, 1};  ///< that nine sites of ten stay below
+};
+
+}  // namespace rebake
