@@ -74,7 +74,7 @@ std::size_t decoders_of(const Scene& scene) {
   return found.size();
 }
 
-// The formats have no light that follows: what is lost without it.
+// The format has no light that follows: what is lost without it.
 void say_light_lost(Session& session, const Scene& scene) {
   const Lighting lighting = lit(session.scene(), session.progress);
   if (std::none_of(lighting.maps.begin(), lighting.maps.end(), [](const auto& entry) {
@@ -86,8 +86,7 @@ void say_light_lost(Session& session, const Scene& scene) {
       [](const SeenLoss& loss) {
         return fmt::format(
             "light that follows edits is not in the folder: colours are as they were baked, {:.1f} dB from what is "
-            "shown "
-            "over four sides, {:.1f} dB at the worst",
+            "shown over four sides, {:.1f} dB at the worst",
             loss.mean_db, loss.worst_db);
       },
       &lighting);

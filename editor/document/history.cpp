@@ -29,7 +29,10 @@ void for_each_part(const Scene& scene, Visit visit) {
     if (node->selection) visit(node->selection.get(), node->selection->size());
     for (const auto& [name, saved] : node->saved_selections) visit(saved.get(), saved->size());
     if (!node->object) continue;
-    for (const TextureSet& set : node->object->sets) {
+    std::vector<TextureSet> sets = node->object->sets;
+    for (const BakedBody& body : node->object->bodies)
+      sets.insert(sets.end(), body.object->sets.begin(), body.object->sets.end());
+    for (const TextureSet& set : sets) {
       visit_soup(set.soup);
       if (set.soup.lineage()) {
         visit_soup(set.soup.lineage()->whole);

@@ -198,12 +198,12 @@ class Document:
 
         effects: auto: self, cast and removed, each where it would be seen; or some of them, and match: all objects in one light; none: colours stay as baked
         source: of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground and a sun, about the objects' own upright axis
-        zenith: linear radiance from above, red, green and blue
-        ground: the same from below
-        sun: direction towards it, in the objects' own space as they were read; with match in the world
-        sun_color: linear, what it sends back from a white surface that faces it; 0, 0, 0: none
-        sun_degrees: its radius as seen, which softens shadows (degrees)
-        bounce: linear radiance of surfaces that hide the sky
+        zenith: uniform and sky: linear radiance from above, red, green and blue
+        ground: sky: the same from below
+        sun: sky: direction towards the sun, in the objects' own space as they were read; with match in the world
+        sun_color: sky: linear, what the sun sends back from a white surface that faces it; 0, 0, 0: none
+        sun_degrees: sky: the sun's radius as seen, which softens shadows (degrees)
+        bounce: uniform and sky: linear radiance of surfaces that hide it
         budget: how far colours may be off for what is left out, of 255
         rays: from each point, 16 to 16384: 4 % off at 64, 1.3 % at 256
         """

@@ -17,6 +17,10 @@ struct SiteLight {
   std::array<float, 2> open{0, 0};  ///< cosine-weighted share of the half space that nothing hides
 };
 
+/// By how much two sides are open: the share of the first in what shows, 1, ½ or 0. A side that is as good as closed,
+/// or a tenth as open as the other, does not show: the inside of what has one, but for cracks and a missing bottom.
+double facing_by_openness(double first, double second);
+
 struct IrradianceOptions {
   int rays = 256;  ///< over each half space; a quarter of that to each sun
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/index/texel_patches.h"
@@ -80,8 +81,6 @@ LightChart light_chart(const TextureSet& set, double spacing) {
   chart.uvs = set.soup.shared_uvs();
   place(patches, chart);
   chart.places.resize(set.soup.positions().size(), Eigen::Vector2f::Zero());
-  chart.node_of.assign(static_cast<std::size_t>(chart.width) * static_cast<std::size_t>(chart.height),
-                       LightChart::none);
   for (const Patch& patch : patches) {
     std::vector<std::array<Vec2, 3>> corners;
     for (const std::uint32_t f : patch.faces) {
@@ -108,7 +107,6 @@ LightChart light_chart(const TextureSet& set, double spacing) {
           node.weights = weights.cast<float>();
         }
         if (least == std::numeric_limits<double>::infinity()) continue;
-        chart.node_of[node.texel] = static_cast<std::uint32_t>(chart.nodes.size());
         chart.nodes.push_back(node);
       }
   }

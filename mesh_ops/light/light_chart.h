@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -12,8 +11,6 @@ namespace rebake {
 /// A coarse grid of light over a texture set: each patch of texels has its own nodes, so that light interpolated
 /// between nodes of one never takes any of another.
 struct LightChart {
-  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
   Soup::Uvs uvs;                        ///< that it was made of
   int width = 0, height = 0;            ///< of the texture whose texels are the nodes
   std::vector<Eigen::Vector2f> places;  ///< of each vertex in it, in texels, y down; nodes lie at whole numbers + ½
@@ -24,10 +21,9 @@ struct LightChart {
     std::uint32_t face;   ///< of the set
     Eigen::Vector3f weights;
   };
-  std::vector<Node> nodes;  ///< by texel
+  std::vector<Node> nodes;
 
-  /// For every texel of the light texture the number of the node that it shows, `none` where nothing looks.
-  std::vector<std::uint32_t> node_of;
+  std::size_t texel_count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
 /// Nodes at most `spacing` ≥ 1 texels apart, at least two across each patch.

@@ -1,16 +1,13 @@
 #include "mesh_ops/light/light_estimate.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
 
-#include "mesh_ops/index/numbering.h"
+#include "mesh_ops/light/site_rays.h"
 
 namespace rebake {
 
@@ -261,23 +258,22 @@ class Fit {
 
 // What a sun of irradiance 1 gives each sample.
 Eigen::VectorXd sun_column(const std::vector<Sample>& samples, const LightSites& sites, const SceneRays& body,
-                           const Vec3& direction, double radius, int rays = 6) {
+                           const Vec3& direction, double radius, int rays, const Progress& progress) {
   Eigen::VectorXd column = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(samples.size()));
+  const std::vector<DiskPoint> disk = disk_points(rays);
   const Vec3 u = direction.unitOrthogonal(), v = direction.cross(u);
   const double r = std::tan(radius);
-  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-    const LightSite& site = sites.baked[samples[i].site];
-    const double turn = 2 * pi * static_cast<double>(mixed(i, 3, 5) >> 11) * 0x1p-53;
+  for_each_site(samples.size(), progress, "estimating light", 0.8, 0.8, [&](std::size_t i) {
     for (int side = 0; side < 2; ++side) {
       const double share = side == 0 ? samples[i].facing : 1 - samples[i].facing;
-      const Vec3 normal = side == 0 ? site.normal : Vec3(-site.normal);
-      if (share == 0 || normal.dot(direction) <= -r) continue;
-      const Vec3 from = site.position + site.offset * normal;
-      for (int k = 0; k < rays; ++k) {
-        const double away = r * std::sqrt((k + 0.5) / rays), phi = 2 * pi * std::fmod(k * golden, 1.0) + turn;
-        const Vec3 d = (direction + away * (std::cos(phi) * u + std::sin(phi) * v)).normalized();
-        const double above = normal.dot(d);
-        if (above > 0 && !body.shaded(from, d)) column[static_cast<Eigen::Index>(i)] += share * above / rays;
+      const SiteFrame frame(sites.baked[samples[i].site], samples[i].site, side == 1);
+      if (share == 0 || frame.normal().dot(direction) <= -r) continue;
+      for (const DiskPoint& point : disk) {
+        const DiskPoint p = frame.turned(point);
+        const Vec3 d = (direction + r * (p.x * u + p.y * v)).normalized();
+        const double above = frame.normal().dot(d);
+        if (above > 0 && !body.shaded(frame.from(), d))
+          column[static_cast<Eigen::Index>(i)] += share * above / static_cast<double>(disk.size());
       }
     }
   });
@@ -311,22 +307,16 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
   const Lobes lobes(options.lobes);
   const auto lobe_count = static_cast<Eigen::Index>(lobes.size());
   std::vector<std::array<Eigen::VectorXd, 2>> sides(samples.size());
-  std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-    if (i % 64 == 0)
-      progress.at("estimating light", 0.6 * static_cast<double>(done += 64) / static_cast<double>(count + 64));
-    const LightSite& site = sites.baked[samples[i].site];
-    const Vec3 across = site.normal.cross(site.tangent);
-    const double turn = 2 * pi * static_cast<double>(mixed(i, 9, 1) >> 11) * 0x1p-53;
+  const std::vector<DiskPoint> disk = disk_points(options.rays);
+  for_each_site(samples.size(), progress, "estimating light", 0, 0.6, [&](std::size_t i) {
     std::vector<double> weights;
     for (std::size_t side = 0; side < 2; ++side) {
+      const SiteFrame frame(sites.baked[samples[i].site], samples[i].site, side == 1);
       Eigen::VectorXd& column = sides[i][side];
       column = Eigen::VectorXd::Zero(lobe_count + 1);
-      const Vec3 normal = side == 0 ? site.normal : Vec3(-site.normal), from = site.position + site.offset * normal;
-      for (int k = 0; k < options.rays; ++k) {
-        const double r = std::sqrt((k + 0.5) / options.rays), phi = 2 * pi * std::fmod(k * golden, 1.0) + turn;
-        const Vec3 d = r * std::cos(phi) * site.tangent + r * std::sin(phi) * across + std::sqrt(1 - r * r) * normal;
-        if (body.shaded(from, d)) {
+      for (const DiskPoint& point : disk) {
+        const Vec3 d = frame.direction(point);
+        if (body.shaded(frame.from(), d)) {
           column[lobe_count] += 1.0 / options.rays;
           continue;
         }
@@ -336,10 +326,7 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
     }
   });
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double front = 1 - sides[i][0][lobe_count], back = 1 - sides[i][1][lobe_count];
-    constexpr double closed = 0.03;
-    const double least = std::max(closed, 0.1 * std::max(front, back));
-    samples[i].facing = (front > least) == (back > least) ? 0.5 : front > least ? 1 : 0;
+    samples[i].facing = facing_by_openness(1 - sides[i][0][lobe_count], 1 - sides[i][1][lobe_count]);
     samples[i].column = samples[i].facing * sides[i][0] + (1 - samples[i].facing) * sides[i][1];
   }
   Fit fit(samples, colors, lobes);
@@ -351,34 +338,35 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
     Eigen::Index brightest = 0;
     for (Eigen::Index k = 1; k < lobe_count; ++k)
       if (fit.light(k).sum() > fit.light(brightest).sum()) brightest = k;
+    constexpr int rough_rays = 6;
     FoundSun best;
     best.direction = lobes.center(static_cast<std::size_t>(brightest));
     const double without = fit.error();
-    for (const double step : {0.16, 0.06, 0.025}) {
+    constexpr double first_step = 0.16;  // radians
+    for (const double step : {first_step, 0.06, 0.025}) {
       const Vec3 center = best.direction, u = center.unitOrthogonal(), v = center.cross(u);
-      const int reach = step == 0.16 ? 3 : 2;
+      const int reach = step == first_step ? 3 : 2;
       for (int a = -reach; a <= reach; ++a)
         for (int b = -reach; b <= reach; ++b) {
-          if (step != 0.16 && a == 0 && b == 0) continue;
+          if (step != first_step && a == 0 && b == 0) continue;
           FoundSun other;
           other.direction = (center + step * (a * u + b * v)).normalized();
-          other.column = sun_column(samples, sites, body, other.direction, other.radius);
+          other.column = sun_column(samples, sites, body, other.direction, other.radius, rough_rays, progress);
           other.error = fit.error_with(other.column);
           if (other.error < best.error) best = other;
         }
-      progress.at("estimating light", 0.8);
     }
     for (const double radius : {0.02, 0.2}) {
       FoundSun other = best;
       other.radius = radius;
-      other.column = sun_column(samples, sites, body, other.direction, radius);
+      other.column = sun_column(samples, sites, body, other.direction, radius, rough_rays, progress);
       other.error = fit.error_with(other.column);
       if (other.error < best.error) best = other;
     }
     // It must be worth it: lobes alone explain soft light as well.
     if (best.error < 0.97 * without) sun = best;
   }
-  if (sun) fit.run({sun_column(samples, sites, body, sun->direction, sun->radius, 48)}, 12);
+  if (sun) fit.run({sun_column(samples, sites, body, sun->direction, sun->radius, 48, progress)}, 12);
   result.confidence = fit.explained();
   result.light.sky = SkyMap(32, [&](const Vec3& d) -> Radiance {
     std::vector<double> weights;

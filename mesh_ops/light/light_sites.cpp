@@ -132,13 +132,10 @@ LightSites light_sites(const BakedObject& object, const std::vector<std::shared_
     for (const LightChart::Node& node : charts[s]->nodes) {
       const std::uint32_t face = first_face + node.face;
       const Vec3 weights = node.weights.cast<double>();
-      sites.face.push_back(face);
       sites.body.push_back(body_of[face]);
       sites.part.push_back(components->part_of[face]);
       sites.now.push_back(site_at(surface_now, face, weights));
       LightSite before = site_at(surface_baked, face, weights);
-      sites.moved.push_back(
-          before.position != sites.now.back().position || before.normal != sites.now.back().normal ? 1 : 0);
       const Affine& change = to_body[body_of[face]];
       if (!change.matrix().isIdentity(0)) {
         before.position = change * before.position;

@@ -18,12 +18,11 @@ struct LightSite {
 
 /// The points of an object's light charts, set by set, node by node.
 struct LightSites {
-  std::vector<std::size_t> first;  ///< of each set, and the end
-  std::vector<std::uint32_t> face, body,
-      part;                         ///< in the object's numbering; number of the body; part that hangs together
+  std::vector<std::size_t> first;   ///< of each set, and the end
+  std::vector<std::uint32_t> body;  ///< number of each site's body
+  std::vector<std::uint32_t> part;  ///< of its part that hangs together (Components)
   std::vector<LightSite> baked;     ///< in its body's own space
   std::vector<LightSite> now;       ///< in the object's space
-  std::vector<std::uint8_t> moved;  ///< 1 where `now` differs from `baked` in the object's space
   std::size_t size() const { return now.size(); }
 };
 LightSites light_sites(const BakedObject& object, const std::vector<std::shared_ptr<const LightChart>>& charts);

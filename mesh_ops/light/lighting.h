@@ -15,8 +15,8 @@ namespace rebake {
 struct LightDecision {
   std::string name;  ///< such as "cast shadow kettle→ficus"
   bool runs = false;
-  double bound = 0;    ///< of what it changes, in display colours 0 … 1
-  double seconds = 0;  ///< that it took, or that leaving it out saves, about
+  double bound = 0;    ///< of what it changes, in display colours 0 … 1; of an object's own shadows an estimate
+  double seconds = 0;  ///< of tracing, where it runs: its share of its object's
   std::string why;
 };
 
@@ -41,7 +41,7 @@ struct LightingOptions {
 };
 
 /// The light that a scene calls for (Scene::light; nothing where that is null): decides by bounds, estimates what it
-/// needs, traces before and after. Deterministic. Throws EditError for a node that is flattened.
+/// needs, traces before and after. Deterministic. Throws EditError where light is traced on a node that is flattened.
 Lighting lighting_of(const Scene& scene, const LightingOptions& options = {}, const Progress& progress = {});
 
 }  // namespace rebake

@@ -12,14 +12,11 @@ namespace rebake {
 
 namespace {
 
+// Of the common irradiance: below it, albedos of the whole part count.
 constexpr double dark_share = 0.3;
 
 // Beyond this all is white; half floats hold it.
 constexpr double largest = 1e4;
-
-}  // namespace
-
-namespace {
 
 // How far a part's colours are from one albedo under such light: the median departure of log(colour / light).
 double unevenness(const std::vector<std::uint32_t>& part, const std::vector<SiteLight>& baked,
@@ -50,10 +47,7 @@ std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLigh
   std::vector<float> facing(sites.size());
   for (const std::vector<std::uint32_t>& part : parts) {
     if (part.empty()) continue;
-    // A side shows unless most of it is closed: the inside of what has one is, but for cracks and rims.
-    // What is open a tenth as far as the other side counts as closed too: a pot's wall is seen through its missing
-    // bottom.
-    constexpr float closed = 0.03F, much = 0.1F;
+    // What three sites of five exceed: rims and cracks do not count.
     std::array<float, 2> common{};
     for (std::size_t side = 0; side < 2; ++side) {
       std::vector<float> values;
@@ -62,11 +56,8 @@ std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLigh
       std::nth_element(values.begin(), at, values.end());
       common[side] = *at;
     }
-    const float least_open = std::max(closed, much * std::max(common[0], common[1]));
-    float best = 0.5F;
-    if ((common[0] > least_open) != (common[1] > least_open)) {
-      best = common[0] > least_open ? 1.0F : 0.0F;
-    } else {
+    auto best = static_cast<float>(facing_by_openness(static_cast<double>(common[0]), static_cast<double>(common[1])));
+    if (best == 0.5F) {
       // Both may show: colours tell, if they do so clearly.
       constexpr double clearly = 0.8;
       double least = clearly * unevenness(part, baked, colors, 0.5);
@@ -146,7 +137,7 @@ std::vector<LightMap> light_maps(const std::vector<std::shared_ptr<const LightCh
   for (std::size_t s = 0; s < charts.size(); ++s) {
     LightMap map;
     map.chart = charts[s];
-    const std::size_t texels = charts[s]->node_of.size();
+    const std::size_t texels = charts[s]->texel_count();
     map.gain.assign(texels, Eigen::Vector3f::Ones());
     map.offset.assign(texels, Eigen::Vector3f::Zero());
     bool any_offset = false;

@@ -2,11 +2,9 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <atomic>
 #include <cmath>
 
-#include "mesh_ops/light/cosine_rays.h"
+#include "mesh_ops/light/site_rays.h"
 
 namespace rebake {
 
@@ -25,28 +23,21 @@ Transfer traced_transfer(std::span<const LightSite> sites, const SceneRays& arou
   result.sites.assign(sites.size(), sh::Coefficients::Zero());
   std::vector<sh::Coefficients> half = result.sites;
   const std::vector<DiskPoint> disk = disk_points(rays);
-  constexpr std::size_t batch = 64;
-  const std::size_t batches = (sites.size() + batch - 1) / batch;
-  std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t b) {
-    progress.at("tracing transfer", static_cast<double>(done++) / static_cast<double>(batches));
-    for (std::size_t i = b * batch; i < std::min(sites.size(), (b + 1) * batch); ++i) {
-      if (!(sites[i].normal.squaredNorm() > 0.5)) continue;
-      const SiteFrame frame(sites[i], i);
-      for (std::size_t k = 0; k < disk.size(); ++k) {
-        const Vec3 d = frame.direction(disk[k]);
-        if (around.shaded(frame.from(), d)) continue;
-        const sh::Coefficients one = sh::basis(d);
-        result.sites[i] += one;
-        if (k % 2 == 0) half[i] += one;
-      }
-      result.sites[i] /= rays;
-      half[i] *= 2.0 / rays;
+  for_each_site(sites.size(), progress, "tracing transfer", 0, 1, [&](std::size_t i) {
+    if (!(sites[i].normal.squaredNorm() > 0.5)) return;
+    const SiteFrame frame(sites[i], i);
+    for (std::size_t k = 0; k < disk.size(); ++k) {
+      const Vec3 d = frame.direction(disk[k]);
+      if (around.shaded(frame.from(), d)) continue;
+      const sh::Coefficients one = sh::basis(d);
+      result.sites[i] += one;
+      if (k % 2 == 0) half[i] += one;
     }
+    result.sites[i] /= rays;
+    half[i] *= 2.0 / rays;
   });
   // The halves' difference is twice what the whole is off by, where errors are independent.
   result.relative_error = relative_difference(half, result.sites);
-  progress.at("tracing transfer", 1);
   return result;
 }
 

@@ -79,15 +79,16 @@ REBAKE_DESCRIBE_EDIT(
       visit("source", edit.source, Need::optional,
             "of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground "
             "and a sun, about the objects' own upright axis");
-      visit("zenith", edit.light.zenith, Need::optional, "linear radiance from above, red, green and blue");
-      visit("ground", edit.light.ground, Need::optional, "the same from below");
+      visit("zenith", edit.light.zenith, Need::optional,
+            "uniform and sky: linear radiance from above, red, green and blue");
+      visit("ground", edit.light.ground, Need::optional, "sky: the same from below");
       visit("sun", edit.light.sun.direction, Need::optional,
-            "direction towards it, in the objects' own space as they were read; with match in the world");
+            "sky: direction towards the sun, in the objects' own space as they were read; with match in the world");
       visit("sun_color", edit.light.sun.irradiance, Need::optional,
-            "linear, what it sends back from a white surface that faces it; 0, 0, 0: none");
-      visit("sun_degrees", edit.sun_degrees, Need::optional, "its radius as seen, which softens shadows",
+            "sky: linear, what the sun sends back from a white surface that faces it; 0, 0, 0: none");
+      visit("sun_degrees", edit.sun_degrees, Need::optional, "sky: the sun's radius as seen, which softens shadows",
             Unit::degrees);
-      visit("bounce", edit.light.bounce, Need::optional, "linear radiance of surfaces that hide the sky");
+      visit("bounce", edit.light.bounce, Need::optional, "uniform and sky: linear radiance of surfaces that hide it");
       visit("budget", edit.budget, Need::optional, "how far colours may be off for what is left out, of 255");
       visit("rays", edit.light.rays, Need::optional, "from each point, 16 to 16384: 4 % off at 64, 1.3 % at 256");
     })

@@ -110,7 +110,8 @@ void LightPanel::draw_ball(const Lighting& lighting) {
   }
   const float size = px(84);
   ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(ball_->name())), {size, size});
-  ui::tip("The light", "", "A white ball in the light that the first object was baked in, as it was found or given.");
+  ui::tip("The light", "",
+          "A white ball in the light of the first object whose colours change, as it was found or given.");
 }
 
 void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
@@ -133,7 +134,9 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
                                Wanted{"One light", "All objects stand in one light.", &SceneLight::match}}) {
     bool wanted = light.*effect.wanted;
     ui::flow(px(100));
-    if (ui::toggle(effect.name, wanted)) {
+    // The last one stays: without any, it is the light that is switched off.
+    const bool only = wanted && light.self + light.cast + light.removed + light.match == 1;
+    if (ui::toggle(effect.name, wanted) && !only) {
       SceneLight changed = light;
       changed.*effect.wanted = wanted;
       commit(changed);
@@ -186,7 +189,8 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
 void LightPanel::draw(Desk& desk) {
   const announce::Part part("light");
   const bool on = desk.scene().light != nullptr;
-  const SceneLight light = on ? *desk.scene().light : SceneLight{};
+  if (on) last_ = *desk.scene().light;
+  const SceneLight light = last_;
   const std::shared_ptr<const Lighting> lighting = on ? desk.relighter.latest() : nullptr;
   const float left = std::min(px(330), 0.5F * ImGui::GetContentRegionAvail().x);
   ImGui::BeginChild("settings", {left, 0});
@@ -206,8 +210,10 @@ void LightPanel::draw(Desk& desk) {
     ui::muted(problem);
   else if (!lighting)
     ui::muted(desk.relighter.busy() ? "Working out the light …" : "Nothing is shown yet.");
-  else
+  else {
+    if (desk.relighter.busy()) ui::muted("Working out better …");
     draw_decisions(*lighting);
+  }
   ImGui::EndChild();
 }
 

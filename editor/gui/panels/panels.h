@@ -80,6 +80,7 @@ class LightPanel {
   void draw_ball(const Lighting& lighting);
   std::optional<PictureTexture> ball_;
   std::shared_ptr<const Light> ball_of_;
+  SceneLight last_;           ///< what it was while it was on
   Vec3 sun_{0.5, 0.8, 0.45};  ///< while it is dragged
   double budget_ = 1;
   bool dragging_ = false;

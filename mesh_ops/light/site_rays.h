@@ -1,11 +1,16 @@
 #pragma once
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
+#include "mesh_ops/base/progress.h"
 #include "mesh_ops/index/numbering.h"
 #include "mesh_ops/light/light_sites.h"
 
@@ -56,5 +61,19 @@ class SiteFrame {
   Vec3 normal_, tangent_, across_, from_;
   double cosine_, sine_;
 };
+
+/// Calls visit(i) for every number below `count`, many at once; `what` is being done, from one share of it to another.
+template <class Visit>
+void for_each_site(std::size_t count, const Progress& progress, std::string_view what, double from, double to,
+                   Visit visit) {
+  constexpr std::size_t batch = 64;
+  const std::size_t batches = (count + batch - 1) / batch;
+  std::atomic<std::size_t> done = 0;
+  tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t b) {
+    progress.at(what, from + (to - from) * static_cast<double>(done++) / static_cast<double>(batches));
+    for (std::size_t i = b * batch; i < std::min(count, (b + 1) * batch); ++i) visit(i);
+  });
+  progress.at(what, to);
+}
 
 }  // namespace rebake
