@@ -13,6 +13,26 @@ double facing_by_openness(double first, double second) {
   return (first > least) == (second > least) ? 0.5 : first > least ? 1 : 0;
 }
 
+namespace {
+
+// Irradiance over π of what a site sees of a sun.
+Radiance sunlight(const SiteFrame& frame, const Sun& sun, const Vec3& towards, const std::vector<DiskPoint>& disk,
+                  const SceneRays& around) {
+  const double r = std::tan(sun.radius);
+  if (frame.normal().dot(towards) <= -r) return Radiance::Zero();
+  const Vec3 u = towards.unitOrthogonal(), v = towards.cross(u);
+  double share = 0;
+  for (const DiskPoint& point : disk) {
+    const DiskPoint p = frame.turned(point);
+    const Vec3 d = (towards + r * (p.x * u + p.y * v)).normalized();
+    const double above = frame.normal().dot(d);
+    if (above > 0 && !around.shaded(frame.from(), d)) share += above;
+  }
+  return share / static_cast<double>(disk.size()) * sun.irradiance;
+}
+
+}  // namespace
+
 std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
                                     const SceneRays& around, const Light& light, const Mat3& to_light,
                                     const IrradianceOptions& options, const Progress& progress) {
@@ -25,7 +45,7 @@ std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<
     for (std::size_t side = 0; side < 2; ++side) {
       if (!wanted.empty() && (wanted[i] >> side & 1) == 0) continue;
       const SiteFrame frame(site, i, side == 1);
-      const Vec3 &normal = frame.normal(), &from = frame.from();
+      const Vec3& from = frame.from();
       Radiance sum = Radiance::Zero();
       int open = 0;
       for (const DiskPoint& point : disk) {
@@ -39,20 +59,26 @@ std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<
       }
       result[i].irradiance[side] = sum / options.rays;
       result[i].open[side] = static_cast<float>(open) / static_cast<float>(options.rays);
-      for (const Sun& sun : light.suns) {
-        const Vec3 towards = to_light.transpose() * sun.direction;
-        const double r = std::tan(sun.radius), cosine = normal.dot(towards);
-        if (cosine <= -r) continue;
-        const Vec3 u = towards.unitOrthogonal(), v = towards.cross(u);
-        double share = 0;
-        for (const DiskPoint& point : sun_disk) {
-          const DiskPoint p = frame.turned(point);
-          const Vec3 d = (towards + r * (p.x * u + p.y * v)).normalized();
-          const double above = normal.dot(d);
-          if (above > 0 && !around.shaded(from, d)) share += above;
-        }
-        result[i].irradiance[side] += share / static_cast<double>(sun_disk.size()) * sun.irradiance;
-      }
+      for (const Sun& sun : light.suns)
+        result[i].irradiance[side] += sunlight(frame, sun, to_light.transpose() * sun.direction, sun_disk, around);
+    }
+  });
+  return result;
+}
+
+std::vector<SiteLight> traced_suns(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
+                                   const SceneRays& around, const Light& light, const Mat3& to_light, int rays,
+                                   const Progress& progress) {
+  std::vector<SiteLight> result(sites.size());
+  if (light.suns.empty()) return result;
+  const std::vector<DiskPoint> disk = disk_points(rays);
+  for_each_site(sites.size(), progress, "tracing suns", 0, 1, [&](std::size_t i) {
+    if (!(sites[i].normal.squaredNorm() > 0.5)) return;
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (!wanted.empty() && (wanted[i] >> side & 1) == 0) continue;
+      const SiteFrame frame(sites[i], i, side == 1);
+      for (const Sun& sun : light.suns)
+        result[i].irradiance[side] += sunlight(frame, sun, to_light.transpose() * sun.direction, disk, around);
     }
   });
   return result;

@@ -32,5 +32,9 @@ struct IrradianceOptions {
 std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
                                     const SceneRays& around, const Light& light, const Mat3& to_light,
                                     const IrradianceOptions& options, const Progress& progress = {});
+/// The suns' part of that alone, `rays` to each; nothing of `open`.
+std::vector<SiteLight> traced_suns(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
+                                   const SceneRays& around, const Light& light, const Mat3& to_light, int rays,
+                                   const Progress& progress = {});
 
 }  // namespace rebake

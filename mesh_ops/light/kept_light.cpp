@@ -70,6 +70,14 @@ std::uint64_t surface_hash(const BakedObject& object) {
   return content_hash(hashes);
 }
 
+void append(std::string& bytes, const std::vector<Occluder>& occluders) {
+  for (const Occluder& occluder : occluders) {
+    const std::uint64_t hash = surface_hash(*occluder.object);
+    append(bytes, &hash, sizeof(hash));
+    append(bytes, occluder.to_frame.matrix().data(), 16 * sizeof(double));
+  }
+}
+
 }  // namespace
 
 SceneRays rays_among(const std::vector<Occluder>& occluders) {
@@ -106,11 +114,7 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
   append(inputs, counts.data(), sizeof(counts));
   append(inputs, sites);
   append(inputs, wanted);
-  for (const Occluder& occluder : occluders) {
-    const std::uint64_t hash = surface_hash(*occluder.object);
-    append(inputs, &hash, sizeof(hash));
-    append(inputs, occluder.to_frame.matrix().data(), 16 * sizeof(double));
-  }
+  append(inputs, occluders);
   append(inputs, light.sky.texels());
   for (const Sun& sun : light.suns) {
     append(inputs, sun.direction.data(), 3 * sizeof(double));
@@ -146,6 +150,53 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
     }
   results->keep(key, bytes);
   return lit;
+}
+
+std::vector<sh::Coefficients> kept_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,
+                                            const std::vector<Occluder>& occluders, int rays, Results* results,
+                                            const Progress& progress) {
+  std::string key;
+  std::vector<sh::Coefficients> transfer(sites.size(), sh::Coefficients::Zero());
+  if (results != nullptr) {
+    std::string inputs;
+    append(inputs, sites);
+    append(inputs, facing);
+    append(inputs, occluders);
+    append(inputs, &rays, sizeof(rays));
+    key = result_key("transfer1", inputs);
+    if (const auto bytes = results->find(key); bytes && bytes->size() == sites.size() * sh::count * sizeof(float)) {
+      for (std::size_t i = 0; i < sites.size(); ++i) {
+        Eigen::Matrix<float, sh::count, 1> one;
+        std::memcpy(one.data(), bytes->data() + i * sizeof(one), sizeof(one));
+        transfer[i] = one.cast<double>();
+      }
+      return transfer;
+    }
+  }
+  const SceneRays around = rays_among(occluders);
+  for (const bool back : {false, true}) {
+    std::vector<LightSite> some;
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      if (facing[i] == (back ? 1.0F : 0.0F)) continue;
+      some.push_back(sites[i]);
+      if (back) some.back().normal = -some.back().normal;
+      numbers.push_back(i);
+    }
+    const Transfer traced = traced_transfer(some, around, rays, progress);
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      const double share = static_cast<double>(facing[numbers[k]]);
+      transfer[numbers[k]] += (back ? 1 - share : share) * traced.sites[k];
+    }
+  }
+  std::string bytes;
+  for (sh::Coefficients& one : transfer) {
+    const Eigen::Matrix<float, sh::count, 1> rounded = one.cast<float>();
+    append(bytes, rounded.data(), sizeof(rounded));
+    one = rounded.cast<double>();
+  }
+  if (results != nullptr) results->keep(key, bytes);
+  return transfer;
 }
 
 LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t most_nodes, Results* results,

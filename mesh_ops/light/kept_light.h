@@ -6,6 +6,7 @@
 #include "mesh_ops/base/results.h"
 #include "mesh_ops/light/irradiance.h"
 #include "mesh_ops/light/light_estimate.h"
+#include "mesh_ops/light/transfer.h"
 
 namespace rebake {
 
@@ -24,6 +25,11 @@ SceneRays rays_among(const std::vector<Occluder>& occluders);
 std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
                                   const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
                                   int rays, Results* results, const Progress& progress);
+
+/// Transfer of what each site shows, by the share of its first side in that; likewise kept.
+std::vector<sh::Coefficients> kept_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,
+                                            const std::vector<Occluder>& occluders, int rays, Results* results,
+                                            const Progress& progress);
 
 /// Charts of all texture sets, with nodes `spacing` texels apart, wider where there would be more than `most_nodes`.
 std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& object, double spacing,

@@ -156,27 +156,46 @@ double LightReceiver::sampled_change(bool self, bool removed, const Progress& pr
   return std::min(1.0, 2 * most);
 }
 
-std::vector<std::shared_ptr<const LightMap>> LightReceiver::maps(bool self, bool removed,
-                                                                 const std::vector<std::size_t>& casters,
-                                                                 const Shared& shared, const Progress& progress) {
+LightReceiver::Change LightReceiver::change(bool self, bool removed, const std::vector<std::size_t>& casters,
+                                            const Shared& shared, const Progress& progress) {
   prepare(progress);
   const int rays = options_.rays > 0 ? options_.rays : settings_.rays;
   const auto before = light_before(self, removed, sides_, rays, progress);
   const auto after = light_after(casters, sides_, rays, shared, progress);
-  std::vector<Radiance> e0, e1;
+  Change change{{}, {}, site_colors(object(), charts_, sites_, facing_)};
   for (std::size_t i = 0; i < sites_.size(); ++i) {
-    e0.push_back(shown(i, before));
-    e1.push_back(shown(i, after));
+    change.before.push_back(shown(i, before));
+    change.after.push_back(shown(i, after));
   }
-  const std::vector<Radiance> colors = site_colors(object(), charts_, sites_, facing_);
-  std::vector<std::shared_ptr<const LightMap>> result;
-  for (LightMap& map : light_maps(charts_, sites_, colors, e0, e1)) {
-    const bool changes = std::any_of(map.gain.begin(), map.gain.end(),
-                                     [](const Eigen::Vector3f& g) { return g != Eigen::Vector3f::Ones(); }) ||
-                         !map.offset.empty();
-    result.push_back(changes ? std::make_shared<const LightMap>(std::move(map)) : nullptr);
+  return change;
+}
+
+std::vector<std::shared_ptr<const LightMap>> LightReceiver::maps(const Change& change) const {
+  return light_maps(charts_, sites_, change.colors, change.before, change.after);
+}
+
+std::shared_ptr<const TurnedLight> LightReceiver::turned(const Change& change, const std::vector<std::size_t>& casters,
+                                                         const Shared& shared, const Progress& progress) const {
+  // Sheared objects are traced in the world, which their triangles do not turn in.
+  if (in_world() || !settings_.self) return nullptr;
+  TurnedLight::Start start{placed().node->object, charts_,      sites_, facing_, change.colors,
+                           change.before,         change.after, {},     {},      {}};
+  for (const std::size_t k : relatives_)
+    if (k != own_) start.others.push_back(occluder(k));
+  for (const std::size_t k : casters) start.others.push_back(occluder(k));
+  std::vector<Occluder> occluders = start.others;
+  occluders.push_back(occluder(own_));
+  constexpr int rays = 64;
+  start.transfer = kept_transfer(now_, facing_, occluders, rays, options_.results, progress);
+  const std::vector<BakedBody> bodies = bodies_of(object());
+  for (const BakedBody& body : bodies) {
+    if (shared.light != nullptr)
+      start.lights.push_back({std::make_shared<const Light>(*shared.light), shared.to_light * turn()});
+    else
+      start.lights.push_back(
+          {light_, bodies.size() == 1 ? to_own_light() : Mat3(orthogonal_factor(body.to_object.linear()).transpose())});
   }
-  return result;
+  return std::make_shared<const TurnedLight>(std::move(start));
 }
 
 void LightReceiver::prepare(const Progress& progress) {
@@ -212,8 +231,7 @@ void LightReceiver::prepare(const Progress& progress) {
   }
   const auto lit = light_before(true, true, {}, 64, progress);
   facing_ = facing_of(sites_, lit, colors_);
-  for (const float facing : facing_)
-    sides_.push_back(static_cast<std::uint8_t>((facing > 0 ? 1 : 0) + (facing < 1 ? 2 : 0)));
+  for (const float facing : facing_) sides_.push_back(shown_sides(facing));
   // What nine sites of ten stay below.
   std::vector<double> values;
   for (int c = 0; c < 3; ++c) {
@@ -227,8 +245,7 @@ void LightReceiver::prepare(const Progress& progress) {
   }
 }
 Radiance LightReceiver::shown(std::size_t i, const std::vector<SiteLight>& lit) const {
-  const double f = static_cast<double>(facing_[i]);
-  return f * lit[i].irradiance[0] + (1 - f) * lit[i].irradiance[1];
+  return shown_light(lit[i], facing_[i]);
 }
 
 Occluder LightReceiver::occluder(std::size_t k) const {

@@ -36,9 +36,17 @@ class LightReceiver {
   double cast_bound(std::size_t other, const Shared& shared, const Progress& progress);
   /// About what an effect changes: twice the largest change at some sites, 64 rays each.
   double sampled_change(bool self, bool removed, const Progress& progress);
-  /// The change of colours under what runs, a map a texture set; null where nothing changes.
-  std::vector<std::shared_ptr<const LightMap>> maps(bool self, bool removed, const std::vector<std::size_t>& casters,
-                                                    const Shared& shared, const Progress& progress);
+  /// Irradiance over π of its sites, as baked and under what runs, and their colours.
+  struct Change {
+    std::vector<Radiance> before, after, colors;
+  };
+  Change change(bool self, bool removed, const std::vector<std::size_t>& casters, const Shared& shared,
+                const Progress& progress);
+  /// What that does to colours, a map a texture set; null where nothing changes.
+  std::vector<std::shared_ptr<const LightMap>> maps(const Change& change) const;
+  /// The same, to go along with triangles that move on; null where it cannot.
+  std::shared_ptr<const TurnedLight> turned(const Change& change, const std::vector<std::size_t>& casters,
+                                            const Shared& shared, const Progress& progress) const;
 
   /// What it was baked in: found or given. Throws EditError for a node that is flattened.
   std::shared_ptr<const Light> light(const Progress& progress);

@@ -119,9 +119,15 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       if (candidate.kind == Candidate::Kind::cast) casters.push_back(candidate.caster);
     }
     self = self || (removed && receivers[k].moved());
-    if (running.empty() && !matched(k)) continue;
+    const bool turning = options.turning.contains(objects[k].node->id);
+    if (running.empty() && !matched(k) && !turning) continue;
     const Clock::time_point start = Clock::now();
-    result.maps[objects[k].node->id] = receivers[k].maps(self, removed, casters, light_for(k), progress);
+    const LightReceiver::Change change = receivers[k].change(self, removed, casters, light_for(k), progress);
+    if (turning)
+      if (auto turned = receivers[k].turned(change, casters, light_for(k), progress))
+        result.turning[objects[k].node->id] = std::move(turned);
+    if (running.empty() && !matched(k)) continue;
+    result.maps[objects[k].node->id] = receivers[k].maps(change);
     const double seconds = seconds_since(start);
     result.lights[objects[k].node->id] = receivers[k].light(progress);
     for (const std::size_t decision : running)
@@ -140,6 +146,28 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
   }
   for (LightDecision& decision : result.decisions)
     if (decision.runs && decision.seconds > 0) decision.why += fmt::format(", took {:.2f} s", decision.seconds);
+  return result;
+}
+
+std::optional<Lighting> turned_lighting(const Scene& start_scene, const Lighting& start, const Scene& scene) {
+  if (!scene.light || !start_scene.light || !(*scene.light == *start_scene.light)) return std::nullopt;
+  const std::vector<PlacedNode> before = placed_nodes(start_scene), now = placed_nodes(scene);
+  if (before.size() != now.size()) return std::nullopt;
+  Lighting result = start;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    const PlacedNode &a = before[k], &b = now[k];
+    if (a.node->id != b.node->id || a.visible != b.visible || a.to_world.matrix() != b.to_world.matrix())
+      return std::nullopt;
+    if (a.node->object == b.node->object || !b.visible) continue;
+    const auto turning = start.turning.find(b.node->id);
+    if (turning == start.turning.end() || !b.node->object || !turning->second->fits(*b.node->object))
+      return std::nullopt;
+    const Clock::time_point began = Clock::now();
+    result.maps[b.node->id] = turning->second->maps(*b.node->object);
+    const double seconds = seconds_since(began);
+    result.decisions.push_back({"self-shadow " + b.node->name, true, 0, seconds,
+                                fmt::format("turned along while triangles move, took {:.0f} ms", 1000 * seconds)});
+  }
   return result;
 }
 

@@ -72,6 +72,15 @@ std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLigh
   return facing;
 }
 
+std::uint8_t shown_sides(float facing) {
+  return static_cast<std::uint8_t>((facing > 0 ? 1 : 0) + (facing < 1 ? 2 : 0));
+}
+
+Radiance shown_light(const SiteLight& lit, float facing) {
+  const double f = static_cast<double>(facing);
+  return f * lit.irradiance[0] + (1 - f) * lit.irradiance[1];
+}
+
 std::vector<Radiance> site_colors(const BakedObject& object,
                                   const std::vector<std::shared_ptr<const LightChart>>& charts, const LightSites& sites,
                                   const std::vector<float>& facing) {
@@ -115,9 +124,10 @@ std::vector<Radiance> site_colors(const BakedObject& object,
   return colors;
 }
 
-std::vector<LightMap> light_maps(const std::vector<std::shared_ptr<const LightChart>>& charts, const LightSites& sites,
-                                 const std::vector<Radiance>& colors, const std::vector<Radiance>& before,
-                                 const std::vector<Radiance>& after) {
+std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::shared_ptr<const LightChart>>& charts,
+                                                        const LightSites& sites, const std::vector<Radiance>& colors,
+                                                        const std::vector<Radiance>& before,
+                                                        const std::vector<Radiance>& after) {
   // What is common: the irradiance that nine sites of ten do not reach.
   Radiance lambda = Radiance::Zero();
   for (int c = 0; c < 3 && !before.empty(); ++c) {
@@ -133,20 +143,21 @@ std::vector<LightMap> light_maps(const std::vector<std::shared_ptr<const LightCh
     ce[sites.part[i]] += colors[i].cwiseProduct(before[i]);
     ee[sites.part[i]] += before[i].cwiseProduct(before[i]);
   }
-  std::vector<LightMap> maps;
+  std::vector<std::shared_ptr<const LightMap>> maps;
   for (std::size_t s = 0; s < charts.size(); ++s) {
     LightMap map;
     map.chart = charts[s];
     const std::size_t texels = charts[s]->texel_count();
     map.gain.assign(texels, Eigen::Vector3f::Ones());
     map.offset.assign(texels, Eigen::Vector3f::Zero());
-    bool any_offset = false;
+    bool any = false, any_offset = false;
     for (std::size_t i = sites.first[s]; i < sites.first[s + 1]; ++i) {
       const std::uint32_t texel = charts[s]->nodes[i - sites.first[s]].texel;
       for (int c = 0; c < 3; ++c) {
         const double e = before[i][c], change = after[i][c] - e, part = ee[sites.part[i]][c];
         // Without an area it had no light that could be changed.
         if (change == 0 || !(e * e + lambda[c] > 0) || sites.baked[i].normal.isZero(0)) continue;
+        any = true;
         map.gain[texel][c] = static_cast<float>(std::min(largest, 1 + e * change / (e * e + lambda[c])));
         const double albedo = part > 0 ? ce[sites.part[i]][c] / part : 0;
         map.offset[texel][c] =
@@ -155,7 +166,7 @@ std::vector<LightMap> light_maps(const std::vector<std::shared_ptr<const LightCh
       }
     }
     if (!any_offset) map.offset.clear();
-    maps.push_back(std::move(map));
+    maps.push_back(any ? std::make_shared<const LightMap>(std::move(map)) : nullptr);
   }
   return maps;
 }

@@ -26,10 +26,16 @@ std::vector<Radiance> site_colors(const BakedObject& object,
 std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLight>& baked,
                              const std::vector<Radiance>& colors);
 
+/// The sides that show by that, as traced_light wants them, and what is seen of their light.
+std::uint8_t shown_sides(float facing);
+Radiance shown_light(const SiteLight& lit, float facing);
+
 /// c' = max(0, c + ρ (E₁ − E₀)) with ρ = (c E₀ + λ ρ_part) / (E₀² + λ): linear in c, exactly the identity where E₁ =
-/// E₀. `before` and `after` are irradiances over π, λ is (0.3 · the object's common irradiance)².
-std::vector<LightMap> light_maps(const std::vector<std::shared_ptr<const LightChart>>& charts, const LightSites& sites,
-                                 const std::vector<Radiance>& colors, const std::vector<Radiance>& before,
-                                 const std::vector<Radiance>& after);
+/// E₀. `before` and `after` are irradiances over π, λ is (0.3 · the object's common irradiance)². A map a texture set;
+/// null where nothing changes.
+std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::shared_ptr<const LightChart>>& charts,
+                                                        const LightSites& sites, const std::vector<Radiance>& colors,
+                                                        const std::vector<Radiance>& before,
+                                                        const std::vector<Radiance>& after);
 
 }  // namespace rebake

@@ -48,21 +48,45 @@ void Estimate(benchmark::State& state) {
 }
 BENCHMARK(Estimate)->Unit(benchmark::kMillisecond)->Iterations(3);
 
+Scene with(Scene scene, const std::vector<nlohmann::json>& edits) {
+  for (const nlohmann::json& line : edits) scene = apply(scene, read_edit(line, scene)).scene;
+  return scene;
+}
+const nlohmann::json in_sky{{"op", "light"}, {"source", "sky"}};
+nlohmann::json bent_by(int degrees) {
+  return {{"op", "bend"},        {"node", "ficus"},         {"degrees", degrees},
+          {"axis", {1, 0.3, 0}}, {"direction", {0, -1, 0}}, {"box", {{"min", {0.52, 0.5, 0}}, {"max", {1, 1, 1}}}},
+          {"frame", "bounds"}};
+}
+
 void BentBranch(benchmark::State& state) {
-  Scene scene = ficus();
-  for (const nlohmann::json& line : std::vector<nlohmann::json>{{{"op", "light"}, {"source", "sky"}},
-                                                                {{"op", "bend"},
-                                                                 {"node", "ficus"},
-                                                                 {"degrees", 70},
-                                                                 {"axis", {1, 0.3, 0}},
-                                                                 {"direction", {0, -1, 0}},
-                                                                 {"box", {{"min", {0.52, 0.5, 0}}, {"max", {1, 1, 1}}}},
-                                                                 {"frame", "bounds"}}})
-    scene = apply(scene, read_edit(line, scene)).scene;
+  const Scene scene = with(ficus(), {in_sky, bent_by(70)});
   for (auto _ : state)
     benchmark::DoNotOptimize(lighting_of(scene, {.rays = static_cast<int>(state.range(0))}).left_out);
 }
 BENCHMARK(BentBranch)->Arg(16)->Arg(64)->Arg(256)->Unit(benchmark::kMillisecond)->Iterations(3);
+
+// What a drag adds to a frame, off the window's thread, and how near the traced light it comes (root mean square over
+// the sites that change, of what changes).
+void DraggedBranch(benchmark::State& state) {
+  const Scene rest = with(ficus(), {in_sky}), bent = with(rest, {bent_by(static_cast<int>(state.range(0)))});
+  const NodeId node = rest.roots.front()->id;
+  const Lighting start = lighting_of(rest, {.rays = 64, .turning = {node}});
+  const TurnedLight& turning = *start.turning.at(node);
+  for (auto _ : state) benchmark::DoNotOptimize(turned_lighting(rest, start, bent)->left_out);
+  const Lighting truth = lighting_of(bent, {.rays = 256, .turning = {node}});
+  const std::vector<Radiance>& traced = truth.turning.at(node)->start().after;
+  const std::vector<Radiance> turned = turning.light_on(*bent.roots.front()->object);
+  double off = 0, all = 0;
+  for (std::size_t i = 0; i < traced.size(); ++i) {
+    if (turned[i] == turning.start().after[i]) continue;
+    off += (turned[i] - traced[i]).squaredNorm();
+    all += (turning.start().after[i] - traced[i]).squaredNorm();
+  }
+  state.counters["left"] = std::sqrt(off / all);
+  state.counters["sites"] = static_cast<double>(traced.size());
+}
+BENCHMARK(DraggedBranch)->Arg(10)->Arg(40)->Arg(70)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace rebake::test

@@ -174,6 +174,57 @@ TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
   EXPECT_FALSE(runs(joined, "removed shadow table"));
 }
 
+TEST(LightEdit, GoesAlongWithTrianglesThatMove) {
+  const auto after = [](Scene made, const std::vector<json>& lines) {
+    for (const json& line : lines) made = apply(made, read_edit(line, made)).scene;
+    return made;
+  };
+  const Scene rest =
+      after(table(), {{{"op", "light"}, {"source", "sky"}, {"sun_color", {0, 0, 0}}, {"rays", 1024}},
+                      {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}}});
+  const NodeId node = rest.roots.front()->id;
+  const LightingOptions options{.turning = {node}};
+  const Lighting start = lighting_of(rest, options);
+  // Nothing moved: nothing changes.
+  const auto same = turned_lighting(rest, start, rest);
+  ASSERT_TRUE(same);
+  EXPECT_EQ(same->maps, start.maps);
+  EXPECT_EQ(same->decisions.size(), start.decisions.size());
+  const auto turned_by = [&](const json& box, double degrees) {
+    json line = {
+        {"op", "bend"}, {"node", "table"}, {"degrees", degrees}, {"axis", {0, 1, 0}}, {"direction", {1, 0, 0}}};
+    line["box"] = box;
+    return after(rest, {line});
+  };
+  // The box alone is bent: its vertices are split from what stays, and the map is of the new ones.
+  const Scene bent = turned_by({{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}, 60);
+  const auto turned = turned_lighting(rest, start, bent);
+  ASSERT_TRUE(turned);
+  EXPECT_NE(turned->map_of(node, 0, bent.roots.front()->object->sets.front()), nullptr);
+  EXPECT_TRUE(runs(*turned, "self-shadow table"));
+  // Where all turns together, it is what tracing says.
+  const Scene tilted = after(rest, {{{"op", "select"}, {"box", {{"min", {-9, -9, -9}}, {"max", {9, 9, 9}}}}},
+                                    {{"op", "transform"},
+                                     {"node", "table"},
+                                     {"selection", true},
+                                     {"rotate", {{"axis", {1, 0, 0}}, {"degrees", 40}}}}});
+  const Lighting truth = lighting_of(tilted, options);
+  const auto &going = start.turning.at(node), &traced = truth.turning.at(node);
+  const std::vector<Radiance> light = going->light_on(*tilted.roots.front()->object);
+  double off = 0, all = 0;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    off += (light[i] - traced->start().after[i]).squaredNorm();
+    all += (going->start().after[i] - traced->start().after[i]).squaredNorm();
+  }
+  EXPECT_GT(std::sqrt(all / static_cast<double>(light.size())), 0.1);
+  EXPECT_LT(std::sqrt(off / all), 0.1) << "64 rays of the transfer are 4 % off";
+  // Where more than triangles moved, it says nothing.
+  EXPECT_FALSE(turned_lighting(rest, start, after(rest, {{{"op", "delete"}}})));
+  EXPECT_FALSE(
+      turned_lighting(rest, start, after(rest, {{{"op", "transform"}, {"node", "table"}, {"translate", {1, 0, 0}}}})));
+  EXPECT_FALSE(turned_lighting(rest, lighting_of(rest), bent)) << "nobody asked for this node";
+}
+
 TEST(LightEdit, ResultsAreFoundAgain) {
   const Scene scene = with_light(table());
   const Edit bend = read_edit({{"op", "bend"}, {"node", "table"}, {"degrees", 40}, {"axis", {0, 1, 0}}}, scene);

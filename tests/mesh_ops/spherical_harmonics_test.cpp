@@ -6,6 +6,7 @@
 #include <random>
 
 #include "mesh_ops/light/spherical_harmonics.h"
+#include "mesh_ops/light/turned_product.h"
 
 namespace rebake::test {
 namespace {
@@ -157,6 +158,41 @@ TEST(SphericalHarmonics, WindowsTakeRinging) {
     EXPECT_EQ(softer[0], spike[0]);
   }
   EXPECT_EQ(sh::windowed(spike, sh::Window::none), spike);
+}
+
+TEST(SphericalHarmonics, ProductsWithTurnedTransferNeedNoMatrix) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal;
+  const auto some = [&] {
+    sh::Coefficients c;
+    for (double& value : c) value = normal(random);
+    return c;
+  };
+  const std::array<sh::Coefficients, 3> radiance{some(), some(), some()};
+  const TurnedProduct product(radiance);
+  std::vector<Mat3> turns{Mat3::Identity(), Vec3(-1, 1, -1).asDiagonal().toDenseMatrix()};
+  for (const double tiny : {1e-12, 1e-6})
+    turns.push_back(Eigen::AngleAxisd(tiny, Vec3(1, 2, 3).normalized()).toRotationMatrix());
+  for (int k = 0; k < 20; ++k) turns.push_back(some_rotation(random));
+  for (const Mat3& turn : turns) {
+    const sh::Coefficients transfer = some(), turned = sh::Rotation(turn) * transfer;
+    const Radiance sum = product(turn, transfer);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], turned.dot(radiance[static_cast<std::size_t>(c)]), 1e-14 * 16);
+  }
+}
+
+TEST(SphericalHarmonics, AProjectedSkyGivesItsIrradiance) {
+  Light light = sky_and_sun({0.2, 0.3, 0.4}, {1, 0.9, 0.8}, {}, {0.1, 0.1, 0.1});
+  const Mat3 to_light = Eigen::AngleAxisd(0.4, Vec3(1, 0, 1).normalized()).toRotationMatrix();
+  const auto coefficients = projected_sky(light, to_light);
+  // Colours that go with height are of degrees 0 and 1: half of the sky's mean and two thirds of its slope.
+  const Vec3 normal = Vec3(0.3, 0.7, -0.2).normalized();
+  const double height = (to_light * normal).y();
+  for (int c = 0; c < 3; ++c) {
+    const double below = Vec3(0.2, 0.3, 0.4)[c], above = Vec3(1, 0.9, 0.8)[c];
+    const double expected = (below + above) / 2 + 2.0 / 3 * height * (above - below) / 2;
+    EXPECT_NEAR(sh::clamped_cosine(normal).dot(coefficients[static_cast<std::size_t>(c)]) + 0.1, expected, 2e-3);
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "editor/commands/lit.h"
 #include "editor/edits/nodes/import.h"
@@ -26,6 +27,20 @@ Scene on_ground(const Scene& scene, const Desk& desk) {
   const Rgb ground = theme().viewport;
   if (!desk.settings.scene_background) result.background = Color(ground.r, ground.g, ground.b) / 255;
   return result;
+}
+
+// Nodes whose triangles a drag would move.
+std::set<NodeId> deformable(const Desk& desk) {
+  std::set<NodeId> nodes;
+  for (const DeformTarget& target : desk.deform_targets()) {
+    if (target.node) {
+      nodes.insert(target.node->id);
+      continue;
+    }
+    for (const PlacedNode& placed : placed_nodes(desk.scene()))
+      if (placed.visible && placed.node->selection && count(*placed.node->selection) > 0) nodes.insert(placed.node->id);
+  }
+  return nodes;
 }
 
 bool same_scene(const Scene& a, const Scene& b) {
@@ -191,7 +206,7 @@ void Viewport::picture(Desk& desk) {
   }
   view.width = std::max(16, static_cast<int>(std::lround(desk.view.width * scale)));
   view.height = std::max(16, static_cast<int>(std::lround(desk.view.height * scale)));
-  desk.relighter.request(scene, desk.preview.has_value());
+  desk.relighter.request(scene, desk.preview.has_value(), scene.light ? deformable(desk) : std::set<NodeId>{});
   const std::shared_ptr<const Lighting> lighting =
       scene.light && !desk.view.as_baked ? desk.relighter.latest() : nullptr;
   Made wanted{scene, lighting, view, guides(desk), each_pass_, desk.view.wipe, desk.view.width, desk.view.height};

@@ -21,15 +21,18 @@ Relighter::~Relighter() {
   thread_.join();
 }
 
-bool Relighter::same(const Wanted& a, const Scene& scene, bool rough) const {
-  return a.scene.roots == scene.roots && a.scene.light == scene.light && (a.rough == rough || (rough && !a.rough));
+bool Relighter::same(const Wanted& a, const Wanted& b) const {
+  // What was asked for in full answers a rough question, and one about fewer nodes.
+  return a.scene.roots == b.scene.roots && a.scene.light == b.scene.light &&
+         (b.rough || (!a.rough && std::includes(a.nodes.begin(), a.nodes.end(), b.nodes.begin(), b.nodes.end())));
 }
 
-void Relighter::request(const Scene& scene, bool rough) {
+void Relighter::request(const Scene& scene, bool rough, std::set<NodeId> nodes) {
   {
     const std::lock_guard lock(mutex_);
-    if (asked_ && same(*asked_, scene, rough)) return;
-    asked_ = Wanted{scene, rough};
+    Wanted wanted{scene, rough, std::move(nodes)};
+    if (asked_ && same(*asked_, wanted)) return;
+    asked_ = std::move(wanted);
     wanted_ = asked_;
     if (!scene.light) latest_ = nullptr;
     // A quick answer to a drag is let finish: else a fast hand would never see one.
@@ -53,6 +56,16 @@ std::string Relighter::problem() const {
   return problem_;
 }
 
+// Shows light that turns along with what moved since it was worked out, where that is all that changed.
+bool Relighter::turn_along(const Scene& scene) {
+  if (!start_) return false;
+  std::optional<Lighting> turned = turned_lighting(start_scene_, *start_, scene);
+  if (!turned) return false;
+  const std::lock_guard lock(mutex_);
+  if (asked_ && asked_->scene.light) latest_ = std::make_shared<const Lighting>(std::move(*turned));
+  return true;
+}
+
 void Relighter::loop() {
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -60,13 +73,21 @@ void Relighter::loop() {
     if (ending_) return;
     const Wanted next = *std::exchange(wanted_, std::nullopt);
     problem_.clear();
-    if (!next.scene.light) continue;
+    if (!next.scene.light) {
+      start_ = nullptr;
+      start_scene_ = {};
+      continue;
+    }
     running_ = true;
     // The last is what was asked for; a rough one stands in for it while it is worth it.
     constexpr int quick = 16;
     const int full = next.scene.light->rays;
+    lock.unlock();
+    const bool turned = turn_along(next.scene);
+    lock.lock();
+    if (turned) wake_();
     std::vector<int> passes;
-    if (next.rough || full >= 2 * quick) passes.push_back(std::min(quick, full));
+    if (!turned && (next.rough || full >= 2 * quick)) passes.push_back(std::min(quick, full));
     if (!next.rough) passes.push_back(full);
     for (const int rays : passes) {
       quick_pass_ = rays < full;
@@ -81,6 +102,7 @@ void Relighter::loop() {
         const std::shared_ptr<Results> results = kept_results();
         options.results = results.get();
         options.keep_traced = rays == full;
+        if (!next.rough && rays == full) options.turning = next.nodes;
         made = std::make_shared<const Lighting>(
             lighting_of(next.scene, options, Progress([](std::string_view, double) {}, &cancel_)));
       } catch (const Cancelled&) {
@@ -90,6 +112,10 @@ void Relighter::loop() {
       lock.lock();
       problem_ = problem;
       // Switched off meanwhile: it must not come back.
+      if (made && !next.rough && rays == full) {
+        start_scene_ = next.scene;
+        start_ = made;
+      }
       if (made && asked_ && asked_->scene.light) latest_ = std::move(made);
       if (!problem.empty()) latest_ = nullptr;
       if (wanted_ || ending_ || !problem.empty()) break;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "mesh_ops/light/lighting.h"
@@ -23,8 +24,9 @@ class Relighter {
   Relighter& operator=(const Relighter&) = delete;
 
   /// Wants the light of this scene; what was asked for before is stopped unless it is the same. `rough`: only the
-  /// first, quick answer, as while something is dragged.
-  void request(const Scene& scene, bool rough);
+  /// first, quick answer, as while something is dragged: where just triangles of `nodes` move, their light turns along
+  /// (TurnedLight).
+  void request(const Scene& scene, bool rough, std::set<NodeId> nodes);
   /// Null where light stays as it was baked. What was worked out last, maybe of a scene before: of triangles that are
   /// still the same it holds roughly.
   std::shared_ptr<const Lighting> latest() const;
@@ -37,9 +39,11 @@ class Relighter {
   struct Wanted {
     Scene scene;
     bool rough;
+    std::set<NodeId> nodes;
   };
   void loop();
-  bool same(const Wanted& a, const Scene& scene, bool rough) const;
+  bool same(const Wanted& a, const Wanted& b) const;
+  bool turn_along(const Scene& scene);
 
   std::function<void()> wake_;
   mutable std::mutex mutex_;
@@ -47,6 +51,8 @@ class Relighter {
   std::optional<Wanted> wanted_, asked_;  ///< to be done; asked for last
   std::shared_ptr<const Lighting> latest_;
   std::string problem_;
+  Scene start_scene_;                      ///< of `start_`; the thread's own
+  std::shared_ptr<const Lighting> start_;  ///< worked out in full, and how it goes along; the thread's own
   bool running_ = false, ending_ = false, quick_pass_ = false;
   std::atomic<bool> cancel_ = false;
   std::thread thread_;  // last: it uses the others

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "mesh_ops/light/kept_light.h"
+#include "mesh_ops/light/relighting.h"
+#include "mesh_ops/light/turned_product.h"
+
+namespace rebake {
+
+/// What light does to an object whose triangles move on from where light was traced last, fast enough to go along with
+/// a drag: each site's transfer turns with the surface around it, which changes what it takes of the sky, and a few
+/// rays say what it sees of a sun. Only changes are added to what was traced, so that nothing jumps when a drag begins.
+/// Where parts newly hide the sky from each other is not in it: tracing says that.
+class TurnedLight {
+ public:
+  struct BodyLight {
+    std::shared_ptr<const Light> light;
+    Mat3 to_light;  ///< turns the object's directions into the light's
+  };
+  struct Start {
+    std::shared_ptr<const BakedObject> object;  ///< where it was traced
+    std::vector<std::shared_ptr<const LightChart>> charts;
+    LightSites sites;
+    std::vector<float> facing;                    ///< as facing_of
+    std::vector<Radiance> colors, before, after;  ///< of each site: as baked; irradiance over π it was baked in; traced
+    std::vector<sh::Coefficients> transfer;       ///< of what it shows, in the object's space
+    std::vector<BodyLight> lights;                ///< of each body
+    std::vector<Occluder> others;                 ///< what else shades it, in its space
+  };
+  explicit TurnedLight(Start start);
+
+  /// Whether an object has the same triangles, maybe elsewhere.
+  bool fits(const BakedObject& object) const;
+  /// The change of colours of an object that fits, a map a texture set; null where nothing changes.
+  std::vector<std::shared_ptr<const LightMap>> maps(const BakedObject& object) const;
+  /// Irradiance over π of each site there.
+  std::vector<Radiance> light_on(const BakedObject& object) const;
+  const Start& start() const { return start_; }
+
+ private:
+  Start start_;
+  std::vector<Radiance> suns_on(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns) const;
+  std::vector<TurnedProduct> products_;      ///< of each body
+  std::vector<Radiance> unturned_, sunlit_;  ///< of each site, where it was traced
+};
+
+/// How the surface around a node of a chart turned from one place of a set's vertices to another, a node. By the
+/// vertices' own rotations where the set keeps them, else by its triangle.
+std::vector<Mat3> node_turns(const TextureSet& from, const TextureSet& to, const LightChart& chart);
+
+}  // namespace rebake
