@@ -49,6 +49,7 @@ StudyTable study_cage(const StudyInput& input);
 StudyTable study_rotation(const StudyInput& input);
 StudyTable study_wrap(const StudyInput& input);
 StudyTable study_fuse(const StudyInput& input);
+StudyTable study_transfer(const StudyInput& input);
 
 /// The one table of studies.
 inline constexpr Study study_table[] = {
@@ -59,6 +60,7 @@ inline constexpr Study study_table[] = {
     {"rotation", "local rotations, against exact gradients and SVD", study_rotation},
     {"wrap", "coarseness of the wrap around what shows something", study_wrap},
     {"fuse", "one decoder for several: how it is made, its width, bits a feature", study_fuse},
+    {"transfer", "what a bent body sees of the sky: turned along, learnt, traced", study_transfer},
 };
 
 /// Table of a study of pictures: milliseconds a frame (the median), PSNR, the largest difference of a channel in 1/255,

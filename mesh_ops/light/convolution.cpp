@@ -1,0 +1,41 @@
+// Compiled for several kinds of processors (mesh_ops/CMakeLists.txt).
+#include "mesh_ops/light/convolution.h"
+
+#ifndef REBAKE_CONVOLVE_NAME
+#define REBAKE_CONVOLVE_NAME convolve_row_baseline
+#endif
+
+namespace rebake {
+
+namespace {
+
+using Vector = float __attribute__((vector_size(convolution_lanes * sizeof(float)), aligned(4), may_alias));
+constexpr int lanes = convolution_lanes;
+
+}  // namespace
+
+void REBAKE_CONVOLVE_NAME(const Convolution& convolution, const float* input, PlaneLayout layout, int width, int row,
+                          int block, float* result) {
+  const int reach = convolution.kernel / 2;
+  const std::size_t taps = static_cast<std::size_t>(convolution.kernel * convolution.kernel);
+  const float* weights = convolution.weights +
+                         static_cast<std::size_t>(block) * static_cast<std::size_t>(convolution.inputs) * taps * lanes;
+  for (int x = 0; x < width; x += lanes) {
+    // A sum a plane of the block, each over lanes columns.
+    Vector sums[lanes];
+    for (int o = 0; o < lanes; ++o) sums[o] = Vector{} + convolution.bias[block * lanes + o];
+    const float* w = weights;
+    for (int i = 0; i < convolution.inputs; ++i)
+      for (int dy = -reach; dy <= reach; ++dy) {
+        const float* at = input + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * layout.plane) +
+                          (row + dy) * static_cast<std::ptrdiff_t>(layout.pitch) + x;
+        for (int dx = -reach; dx <= reach; ++dx, w += lanes) {
+          const Vector values = *reinterpret_cast<const Vector*>(at + dx);
+          for (int o = 0; o < lanes; ++o) sums[o] += w[o] * values;
+        }
+      }
+    for (int o = 0; o < lanes; ++o) *reinterpret_cast<Vector*>(result + o * width + x) = sums[o];
+  }
+}
+
+}  // namespace rebake

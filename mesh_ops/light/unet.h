@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "mesh_ops/light/unet_layers.h"
+
+namespace rebake {
+
+/// A trained U-Net (unet_layers), batch normalisation folded into its convolutions.
+class Unet {
+ public:
+  /// Throws std::invalid_argument for a side that is not a positive multiple of 64, or another number of weights.
+  Unet(int side, int channels, std::vector<float> weights);
+
+  /// [channel][row][column], 6 planes in, 16 out. The same bits on every processor.
+  std::vector<float> run(std::span<const float> image) const;
+  int side() const { return side_; }
+  int channels() const { return channels_; }
+  const std::vector<float>& weights() const { return weights_; }
+
+ private:
+  struct Packed {
+    UnetLayer layer;
+    std::vector<float> weights, bias;  ///< as Convolution wants them
+  };
+  int side_, channels_;
+  std::vector<float> weights_;
+  std::vector<Packed> packed_;
+};
+
+}  // namespace rebake

@@ -1,0 +1,103 @@
+#include "mesh_ops/light/unet_transfer.h"
+
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace rebake {
+
+namespace {
+
+// Positions in half diagonals of the body at rest from its middle, and normals.
+void append_image(const GeometryImage& image, const Box& box, const std::vector<LightSite>& sites,
+                  std::vector<float>& planes) {
+  const std::size_t texels = image.texels().size(), first = planes.size();
+  planes.resize(first + unet_inputs * texels);
+  const double half = box.diagonal().norm() / 2;
+  for (std::size_t t = 0; t < texels; ++t) {
+    const GeometryImage::Texel& texel = image.texels()[t];
+    Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double w = static_cast<double>(texel.weights[static_cast<Eigen::Index>(k)]);
+      position += w * sites[texel.vertices[k]].position;
+      normal += w * sites[texel.vertices[k]].normal;
+    }
+    position = (position - box.center()) / (half > 0 ? half : 1);
+    normal = normal.stableNorm() > 0 ? normal.stableNormalized() : Vec3(0, 0, 0);
+    for (std::size_t c = 0; c < 3; ++c) {
+      planes[first + c * texels + t] = static_cast<float>(position[static_cast<Eigen::Index>(c)]);
+      planes[first + (3 + c) * texels + t] = static_cast<float>(normal[static_cast<Eigen::Index>(c)]);
+    }
+  }
+}
+
+Box box_of(const ProxyMesh& mesh) {
+  Box box;
+  for (const Vec3& p : mesh.vertices) box.extend(p);
+  return box;
+}
+
+}  // namespace
+
+UnetTransfer::Training::Training(ProxyMesh rest, GeometryImage image)
+    : rest_(std::move(rest)), image_(std::move(image)) {}
+
+void UnetTransfer::Training::add(const std::vector<LightSite>& sites, const std::vector<Mat3>& turns,
+                                 const std::vector<sh::Coefficients>& transfer) {
+  append_image(image_, box_of(rest_), sites, images_);
+  std::vector<sh::Coefficients> local(transfer.size());
+  tbb::parallel_for(std::size_t{0}, local.size(),
+                    [&](std::size_t i) { local[i] = sh::Rotation(turns[i].transpose()) * transfer[i]; });
+  const std::size_t texels = image_.texels().size(), first = local_.size();
+  local_.resize(first + unet_outputs * texels);
+  for (std::size_t t = 0; t < texels; ++t) {
+    const GeometryImage::Texel& texel = image_.texels()[t];
+    sh::Coefficients mean = sh::Coefficients::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+      mean += static_cast<double>(texel.weights[static_cast<Eigen::Index>(k)]) * local[texel.vertices[k]];
+    for (std::size_t c = 0; c < sh::count; ++c)
+      local_[first + c * texels + t] = static_cast<float>(mean[static_cast<Eigen::Index>(c)]);
+  }
+  ++poses_;
+}
+
+UnetTransfer UnetTransfer::Training::learnt(const UnetTraining& options, const Progress& progress) const {
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t texels = image_.texels().size(), values = unet_outputs * texels;
+  std::vector<float> mean(values, 0);
+  for (std::size_t p = 0; p < poses_; ++p)
+    for (std::size_t k = 0; k < values; ++k) mean[k] += local_[p * values + k] / static_cast<float>(poses_);
+  // One scale for all, so that large coefficients count most, as they do in pictures.
+  UnetImages images{image_.side(), poses_, images_, local_, std::vector<float>(texels, 1)};
+  double squares = 0;
+  for (std::size_t p = 0; p < poses_; ++p)
+    for (std::size_t k = 0; k < values; ++k) {
+      float& value = images.targets[p * values + k];
+      value -= mean[k];
+      squares += static_cast<double>(value) * static_cast<double>(value);
+    }
+  const double deviation = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, poses_ * values)));
+  const float scale = deviation > 0 ? static_cast<float>(deviation) : 1.0F;
+  for (float& value : images.targets) value /= scale;
+  UnetTransfer result(image_, trained_unet(images, options, progress));
+  result.box_ = box_of(rest_);
+  result.mean_ = std::move(mean);
+  result.scale_ = scale;
+  result.seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+Eigen::VectorXf UnetTransfer::predict(const std::vector<LightSite>& sites) const {
+  std::vector<float> planes;
+  append_image(image_, box_, sites, planes);
+  std::vector<float> result = net_.run(planes);
+  for (std::size_t k = 0; k < result.size(); ++k) result[k] = mean_[k] + scale_ * result[k];
+  return image_.at_vertices(result, sh::count);
+}
+
+std::uint64_t UnetTransfer::memory() const {
+  return (net_.weights().size() + mean_.size()) * sizeof(float) + image_.texels().size() * sizeof(GeometryImage::Texel);
+}
+
+}  // namespace rebake
