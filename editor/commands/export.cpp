@@ -86,7 +86,7 @@ void say_light_lost(Session& session, const Scene& scene) {
       [](const SeenLoss& loss) {
         return fmt::format(
             "light that follows edits is not in the folder: colours are as they were baked, {:.1f} dB from what is "
-            "shown over four sides, {:.1f} dB at the worst",
+            "shown over four sides, {:.1f} dB at the worst; plain fits them",
             loss.mean_db, loss.worst_db);
       },
       &lighting);
@@ -125,20 +125,20 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
     if (std::filesystem::is_directory(action.report)) throw FieldError("report", "is a folder; name a file");
   }
   PlainReport report;
-  const Scene plain = plain_scene(scene, options, report, session.progress);
+  const Lighting lighting = lit(session.scene(), session.progress);
+  const Scene plain = plain_scene(scene, lighting, options, report, session.progress);
   const ExportReport written =
       export_scene(plain, action.out, {options.layout, session.document.sources()}, session.progress);
   session.exports.push_back(action.out);
   for (const std::string& note : written.notes) session.say("note: " + note);
   if (!report.exact) {
     try {
-      measure_pictures(session.renderer(), scene, plain, report, session.progress);
+      measure_pictures(session.renderer(), scene, lighting, plain, report, session.progress);
     } catch (const DeviceError& error) {
       session.say(fmt::format("note: pictures cannot be compared here: {}", error.what()));
     }
   }
   for (const std::string& line : lines_of(report)) session.say(line);
-  say_light_lost(session, scene);
   const bool seen_less = report.pictures_measured && report.whole.psnr_db < options.psnr_db;
   if (!report.exact && (report.texels.whole.psnr_db < options.psnr_db || seen_less))
     session.say(fmt::format("note: {} reach less than {:.1f} dB", seen_less ? "pictures" : "texels", options.psnr_db));
@@ -207,7 +207,8 @@ REBAKE_DESCRIBE_ACTION(
       visit("layout", action.layout, Need::optional, "convert to this layout; left out: as read");
       visit("nodes", action.nodes, Need::optional, "only these, with what is inside them; left out: all");
       visit("plain", action.plain, Need::optional,
-            "one folder for any scene: where one decoder cannot show it exactly, one is fitted");
+            "one folder for any scene: where one decoder cannot show it exactly, or light changes colours, one is "
+            "fitted");
       visit("width", action.width, Need::optional, "plain: of the decoder's layers at most, 4 to 256, or auto");
       visit("way", action.way, Need::optional,
             "plain: keep one decoder, train it further, train a new one, or put all side by side; left out: the best");

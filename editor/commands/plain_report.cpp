@@ -119,8 +119,8 @@ std::vector<View> judging_views(const Scene& scene, int size) {
   return views;
 }
 
-void measure_pictures(Renderer& renderer, const Scene& composition, const Scene& fused, PlainReport& report,
-                      const Progress& progress, int size) {
+void measure_pictures(Renderer& renderer, const Scene& composition, const Lighting& lighting, const Scene& fused,
+                      PlainReport& report, const Progress& progress, int size) {
   // The published viewers show white, and what is covered shows on black otherwise.
   const Scene before = on_background(composition, Color::Ones()), after = on_background(fused, Color::Ones()),
               on_black = on_background(composition, Color::Zero());
@@ -136,15 +136,15 @@ void measure_pictures(Renderer& renderer, const Scene& composition, const Scene&
   const std::vector<View> views = judging_views(composition, size);
   for (std::size_t v = 0; v < views.size(); ++v) {
     progress.at("comparing pictures", static_cast<double>(v) / static_cast<double>(views.size()));
-    const Image exact = renderer.render(before, views[v]), shown = renderer.render(after, views[v]);
+    const Image exact = renderer.render(before, views[v], {}, &lighting), shown = renderer.render(after, views[v]);
     Squares here;
-    here.add(exact, shown, covered(exact, renderer.render(on_black, views[v])));
+    here.add(exact, shown, covered(exact, renderer.render(on_black, views[v], {}, &lighting)));
     whole.add(here);
     report.whole.worst_psnr_db = std::min(report.whole.worst_psnr_db, here.psnr());
     similar += compare(exact, shown, 2).ssim / static_cast<double>(views.size());
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const Scene without_it = with_changed(before, nodes[k].node->id, [](Node& node) { node.object = nullptr; });
-      of_node[k].add(exact, shown, differing(exact, renderer.render(without_it, views[v])));
+      of_node[k].add(exact, shown, differing(exact, renderer.render(without_it, views[v], {}, &lighting)));
     }
   }
   report.whole.psnr_db = whole.psnr();

@@ -35,9 +35,9 @@ struct PlainReport {
 std::vector<View> judging_views(const Scene& scene, int size);
 
 /// Fills in what pictures of `size` pixels a side (as the published viewers') and frame times say. `composition` and
-/// `fused` show the same.
-void measure_pictures(Renderer& renderer, const Scene& composition, const Scene& fused, PlainReport& report,
-                      const Progress& progress, int size = 800);
+/// `fused` show the same, the first with what `lighting` makes of its colours.
+void measure_pictures(Renderer& renderer, const Scene& composition, const Lighting& lighting, const Scene& fused,
+                      PlainReport& report, const Progress& progress, int size = 800);
 
 /// Median of so many frames, after one that is not counted.
 double median_frame_ms(Renderer& renderer, const Scene& scene, const View& view, int frames);

@@ -14,6 +14,8 @@ Scene with_one_object(Scene scene, std::shared_ptr<const BakedObject> object) {
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.visible && placed.node->object)
       scene = with_changed(scene, placed.node->id, [](Node& node) { node.object = nullptr; });
+  // What light does is in the colours.
+  scene.light = nullptr;
   Node node;
   node.name = "scene";
   node.object = std::move(object);
@@ -32,8 +34,8 @@ Layout common_layout(const Scene& scene) {
   return layout.value_or(Layout::split);
 }
 
-PlainParts::PlainParts(const Scene& scene, Layout layout, const Progress& progress)
-    : composition(composed(scene, largest_texture_side(layout), progress)) {
+PlainParts::PlainParts(const Scene& scene, const Lighting& lighting, Layout layout, const Progress& progress)
+    : composition(composed(scene, largest_texture_side(layout), progress, &lighting)) {
   if (layout == Layout::unsplit && composition.pages.size() > 1)
     throw Error(
         fmt::format("the texels do not fit into one texture of {}²: use --layout split", largest_texture_side(layout)));
@@ -50,9 +52,10 @@ Scene PlainParts::scene(const Scene& original, std::size_t candidate, const Fuse
   return with_one_object(original, fuse(composition, *sightlines, *plan, options, progress).object);
 }
 
-Scene plain_scene(const Scene& scene, const FuseOptions& options, PlainReport& report, const Progress& progress) {
+Scene plain_scene(const Scene& scene, const Lighting& lighting, const FuseOptions& options, PlainReport& report,
+                  const Progress& progress) {
   check(options);
-  PlainParts parts(scene, options.layout, progress);
+  PlainParts parts(scene, lighting, options.layout, progress);
   if (parts.composition.exact()) {
     report.exact = true;
     const std::vector<Node> merged = merged_for_export(without_bends(scene), options.layout);

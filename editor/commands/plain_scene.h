@@ -6,13 +6,15 @@
 namespace rebake {
 
 /// The scene with all that is visible as one object of one decoder, which one plain folder holds; hidden nodes stay as
-/// they are. Fills in what `report` says of texels.
-Scene plain_scene(const Scene& scene, const FuseOptions& options, PlainReport& report, const Progress& progress);
+/// they are. Colours are as `lighting` makes them, so that the result needs no light. Fills in what `report` says of
+/// texels.
+Scene plain_scene(const Scene& scene, const Lighting& lighting, const FuseOptions& options, PlainReport& report,
+                  const Progress& progress);
 
 /// What making it needs, to be kept while several ways are tried. Throws as composed() does, and Error where an unsplit
 /// folder is too small.
 struct PlainParts {
-  PlainParts(const Scene& scene, Layout layout, const Progress& progress);
+  PlainParts(const Scene& scene, const Lighting& lighting, Layout layout, const Progress& progress);
   const FusePlan& make_plan(const FuseOptions& options, const Progress& progress);
   /// The scene as one of the plan's candidates makes it.
   Scene scene(const Scene& original, std::size_t candidate, const FuseOptions& options, const Progress& progress);

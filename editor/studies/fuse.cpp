@@ -36,7 +36,7 @@ Scene not_exact(const Scene& scene) {
 StudyTable study_fuse(const StudyInput& input) {
   const FuseOptions standard;
   const Scene scene = composed(input.scene, 4096).exact() ? not_exact(input.scene) : input.scene;
-  PlainParts parts(scene, standard.layout, input.progress);
+  PlainParts parts(scene, {}, standard.layout, input.progress);
   const Composition& composition = parts.composition;
   const TexelSample sample =
       sampled(composition, *parts.sightlines, standard.sample, standard.training.seed, input.progress);
@@ -68,7 +68,7 @@ StudyTable study_fuse(const StudyInput& input) {
     node.object = fused.object;
     plain = with_added(plain, std::move(node), NodeId::none, 0);
     constexpr int size = 400;
-    measure_pictures(input.renderer(), scene, plain, report, input.progress, size);
+    measure_pictures(input.renderer(), scene, {}, plain, report, input.progress, size);
     const double frame_ms = median_frame_ms(input.renderer(), plain, input.view, input.frames);
     const std::size_t width = std::max(way.student.decoder.hidden0, way.student.decoder.hidden1);
     table.rows.push_back(

@@ -20,14 +20,22 @@ namespace rebake {
 namespace {
 
 constexpr const char* part_attribute = "part";
+// Where a vertex lies in its part's light chart, as LightChart::places.
+constexpr const char* light_attribute = "light place";
 
 // Rays that differ by more than this angle's chord (10°) want texels of their own.
 constexpr double turned_apart = 0.25;
 
 // The triangles of one class of a set, in world space.
 TextureSet in_world(const TextureSet& set, const TriangleSet& flags, const Affine& to_world, const Mat3& node_turn,
-                    bool bent, std::uint32_t part) {
-  const Soup some = subset(set.soup, flags, 0, true);
+                    bool bent, std::uint32_t part, const LightMap* light) {
+  Soup whole = set.soup;
+  if (light != nullptr)
+    whole = Soup(
+        whole.shared_positions(), whole.shared_uvs(), whole.shared_faces(),
+        whole.vertex_attributes().with(light_attribute, Values<Eigen::Vector2f>::of(std::vector(light->chart->places))),
+        whole.face_attributes());
+  const Soup some = subset(whole, flags, 0, true);
   auto positions = std::make_shared<std::vector<Vec3>>(some.positions());
   for (Vec3& p : *positions) p = to_world * p;
   Attributes vertices;
@@ -37,6 +45,7 @@ TextureSet in_world(const TextureSet& set, const TriangleSet& flags, const Affin
       turns[v] = node_turn * (*some.rotations())[v] * node_turn.transpose();
     vertices = vertices.with(Soup::rotation, Values<Mat3>::of(std::move(turns)));
   }
+  if (light != nullptr) vertices = vertices.with(light_attribute, some.vertex_attributes().shared(light_attribute));
   const Attributes faces = Attributes().with(
       part_attribute, Values<std::uint32_t>::of(std::vector<std::uint32_t>(some.triangle_count(), part)));
   return {Soup(std::move(positions), some.shared_uvs(), some.shared_faces(), std::move(vertices), faces), set.texels};
@@ -109,6 +118,21 @@ std::uint32_t opaque_texels_in(const FeatureTexture& texels, const TexelRect& re
   return opaque;
 }
 
+// As the GPU does: bilinearly between the centres of texels.
+Eigen::Vector3f interpolated(const LightChart& chart, const std::vector<Eigen::Vector3f>& values,
+                             const Eigen::Vector2f& place) {
+  const float x = std::clamp(place.x() - 0.5F, 0.0F, static_cast<float>(chart.width - 1)),
+              y = std::clamp(place.y() - 0.5F, 0.0F, static_cast<float>(chart.height - 1));
+  const int left = static_cast<int>(x), top = static_cast<int>(y);
+  const float right = x - static_cast<float>(left), down = y - static_cast<float>(top);
+  const auto at = [&](int column, int row) -> const Eigen::Vector3f& {
+    return values[static_cast<std::size_t>(std::min(row, chart.height - 1)) * static_cast<std::size_t>(chart.width) +
+                  static_cast<std::size_t>(std::min(column, chart.width - 1))];
+  };
+  return (1 - down) * ((1 - right) * at(left, top) + right * at(left + 1, top)) +
+         down * ((1 - right) * at(left, top + 1) + right * at(left + 1, top + 1));
+}
+
 void add_blocks(Composition& result, std::uint32_t number) {
   const TextureSet& page = result.pages[number];
   const TexelPatches patches = texel_patches(page);
@@ -161,10 +185,11 @@ void add_blocks(Composition& result, std::uint32_t number) {
 }  // namespace
 
 bool Composition::exact() const {
-  return teachers.size() == 1 && std::none_of(parts.begin(), parts.end(), [](const Part& p) { return p.bent; });
+  return teachers.size() == 1 &&
+         std::none_of(parts.begin(), parts.end(), [](const Part& p) { return p.bent || p.light; });
 }
 
-Composition composed(const Scene& scene, int largest_side, const Progress& progress) {
+Composition composed(const Scene& scene, int largest_side, const Progress& progress, const Lighting* lighting) {
   Composition result;
   result.forward = true;
   const auto teacher = [&](std::shared_ptr<const Decoder> decoder) {
@@ -194,9 +219,13 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
     }
     result.forward = result.forward && object.axes == Axes::forward;
     const TurnGroups groups = turn_groups(object);
-    std::map<std::uint32_t, std::uint32_t> part_of_group;
+    // What light changes is a part of its own, set by set.
+    std::map<std::pair<std::uint32_t, const LightMap*>, std::uint32_t> part_of_group;
     std::size_t first = 0;
-    for (const TextureSet& set : object.sets) {
+    for (std::size_t s = 0; s < object.sets.size(); ++s) {
+      const TextureSet& set = object.sets[s];
+      const std::shared_ptr<const LightMap> light =
+          lighting != nullptr ? lighting->map_of(placed.node->id, s, set) : nullptr;
       const std::size_t faces = set.soup.triangle_count();
       std::map<std::uint32_t, TriangleSet> flags;
       for (std::size_t f = 0; f < faces; ++f) {
@@ -207,13 +236,14 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
       first += faces;
       for (auto& [group, some] : flags) {
         const bool bent = group == TurnGroups::bent;
-        const auto [it, fresh] = part_of_group.try_emplace(group, static_cast<std::uint32_t>(result.parts.size()));
+        const auto [it, fresh] =
+            part_of_group.try_emplace({group, light.get()}, static_cast<std::uint32_t>(result.parts.size()));
         if (fresh) {
           const Mat3 turn = bent ? node_turn : Mat3(node_turn * groups.groups[group].turn);
           result.parts.push_back(
               {placed.node->id, placed.node->name,
                teacher(std::make_shared<const Decoder>(fold_turn(*object.decoder, turn, object.axes, Axes::forward))),
-               bent});
+               bent, 0, false, light});
         }
         Composition::Part& part = result.parts[it->second];
         part.triangles += count(some);
@@ -234,8 +264,11 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
     if (!can_pack(piece.set))
       throw EditError(fmt::format(
           "node \"{}\": some UVs lie outside 0 … 1, so that its texels cannot be moved into one folder", part.name));
-    const TextureSet whole = in_world(piece.set, piece.flags, piece.to_world, piece.node_turn, part.bent, piece.part);
-    if (!part.bent) {
+    const TextureSet whole =
+        in_world(piece.set, piece.flags, piece.to_world, piece.node_turn, part.bent, piece.part, part.light.get());
+    if (part.light && !part.bent) {
+      sets.push_back(whole);
+    } else if (!part.bent) {
       // Copies that one decoder shows alike go on sharing their texels.
       const auto [it, fresh] = shared.try_emplace({whole.texels.get(), part.teacher}, sets.size());
       if (fresh)
@@ -288,6 +321,8 @@ std::vector<TexelSite> sites_of(const Composition& composition, const Compositio
   std::vector<TexelSite> sites;
   sites.reserve(block.opaque);
   const bool bent = composition.parts[block.part].bent;
+  const LightMap* light = composition.parts[block.part].light.get();
+  const auto* light_places = page.soup.vertex_attributes().find<Eigen::Vector2f>(light_attribute);
   const auto add = [&](int x, int y) {
     const std::uint32_t number = face_at[static_cast<std::size_t>((y - rect.top) * width + x - rect.left)];
     if (number == none || !page.texels->at(x, y).opaque()) return;
@@ -302,6 +337,13 @@ std::vector<TexelSite> sites_of(const Composition& composition, const Compositio
       site.turn.setZero();
       for (std::size_t k = 0; k < 3; ++k)
         site.turn += weights[static_cast<Eigen::Index>(k)] * turn_of(page.soup, face[k]).transpose();
+    }
+    if (light != nullptr) {
+      Eigen::Vector2f place = Eigen::Vector2f::Zero();
+      for (std::size_t k = 0; k < 3; ++k)
+        place += static_cast<float>(weights[static_cast<Eigen::Index>(k)]) * (*light_places)[face[k]];
+      site.gain = interpolated(*light->chart, light->gain, place);
+      if (!light->offset.empty()) site.offset = interpolated(*light->chart, light->offset, place);
     }
     sites.push_back(site);
   };

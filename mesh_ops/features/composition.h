@@ -7,6 +7,7 @@
 
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/features/atlas.h"
+#include "mesh_ops/light/lighting.h"
 #include "mesh_ops/rays/scene_rays.h"
 #include "mesh_ops/scene/scene.h"
 
@@ -22,6 +23,8 @@ struct Composition {
     bool bent;            ///< turned apart: rays are turned back by the vertices' rotations first
     std::size_t triangles = 0;
     bool plain_alpha = false;  ///< some of its texels have all bits of features 3 and 7
+    /// What light does to its colours, of one texture set then; null where they are as they were baked.
+    std::shared_ptr<const LightMap> light = nullptr;
   };
   /// A rectangle of texels of one patch, at most `block_side` a side, whose triangles are of one part.
   struct Block {
@@ -50,14 +53,18 @@ struct Composition {
 
 /// Takes a scene apart for one plain folder: where two uses of a texel are turned differently, each gets its own; where
 /// they are not, they share it, and it counts as the first one's. Of an exact one there are parts and teachers only.
-/// Throws EditError where nothing visible shows anything, and for nodes whose texels cannot be moved.
-Composition composed(const Scene& scene, int largest_side, const Progress& progress = {});
+/// With `lighting`, colours are those that light makes of them. Throws EditError where nothing visible shows anything,
+/// and for nodes whose texels cannot be moved.
+Composition composed(const Scene& scene, int largest_side, const Progress& progress = {},
+                     const Lighting* lighting = nullptr);
 
 /// One opaque texel of a block.
 struct TexelSite {
   int x, y;
   Vec3 position, normal;  ///< in the world; the normal is of length 1, or 0 for a triangle without area
   Mat3 turn;              ///< fed direction = turn · world direction, then normalised
+  /// In linear light colours become gain · colour + offset.
+  Eigen::Vector3f gain = Eigen::Vector3f::Ones(), offset = Eigen::Vector3f::Zero();
 };
 
 /// The block's opaque texels that triangles come near: two rows at a time, so that a run of four is mostly a square.

@@ -194,11 +194,11 @@ TexelSample sampled(const Composition& composition, const Sightlines& sightlines
 }
 
 bool stays(const Student& student, const Composition::Part& part) {
-  return student.keeps && student.branches.front().teacher == part.teacher && !part.bent;
+  return student.keeps && student.branches.front().teacher == part.teacher && !part.bent && !part.light;
 }
 
 bool shown_exactly(const Student& student, const Composition::Part& part) {
-  return student.exact && !part.bent &&
+  return student.exact && !part.bent && !part.light &&
          std::any_of(student.branches.begin(), student.branches.end(),
                      [&](const Student::Branch& branch) { return branch.teacher == part.teacher; });
 }

@@ -113,6 +113,7 @@ std::vector<TexelGroup> groups_of(const Composition& composition, const Composit
   for (std::size_t g = 0; g < count; ++g) {
     TexelGroup& group = groups[g];
     group.turned = composition.parts[block.part].bent;
+    group.lit = composition.parts[block.part].light != nullptr;
     for (std::size_t k = 0; k < 4; ++k)
       for (std::size_t t = 4 * (g + k * count); t < std::min(sites.size(), 4 * (g + k * count) + 4); ++t)
         group.site[group.count++] = static_cast<std::uint32_t>(t);
@@ -125,6 +126,10 @@ std::vector<TexelGroup> groups_of(const Composition& composition, const Composit
       for (std::size_t k = 0; k < 9; ++k)
         group.turn[k].at[l] =
             static_cast<float>(site.turn(static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3)));
+      for (std::size_t c = 0; c < 3; ++c) {
+        group.gain[c].at[l] = site.gain[static_cast<Eigen::Index>(c)];
+        group.offset[c].at[l] = site.offset[static_cast<Eigen::Index>(c)];
+      }
     }
   }
   return groups;
@@ -163,6 +168,17 @@ void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& d
     for (float& value : lane.at) value *= coverage;
   }
   network_kernels().forward(teacher.view(), input, colors, work);
+  if (!group.lit) return;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Lanes gain = mixed(group.gain[c], mix), offset = mixed(group.offset[c], mix);
+    for (std::size_t l = 0; l < network_lanes; ++l) {
+      if (gain.at[l] == 1 && offset.at[l] == 0) continue;
+      const double linear = static_cast<double>(gain.at[l]) * to_linear(static_cast<double>(colors[c].at[l])) +
+                            static_cast<double>(offset.at[l]);
+      // Brighter than white no folder shows.
+      colors[c].at[l] = static_cast<float>(to_display(std::clamp(linear, 0.0, 1.0)));
+    }
+  }
 }
 
 SightingKind sighting_kind(std::uint64_t number) {

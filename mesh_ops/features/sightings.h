@@ -30,6 +30,8 @@ struct TexelGroup {
   std::size_t count = 0;
   std::array<std::uint32_t, network_lanes> site{};  ///< of each lane, among the block's
   bool turned = false;
+  Lanes gain[3], offset[3];  ///< what light makes of linear colours, where lit
+  bool lit = false;
 };
 std::vector<TexelGroup> groups_of(const Composition& composition, const Composition::Block& block,
                                   const std::vector<TexelSite>& sites);
@@ -38,7 +40,8 @@ std::vector<TexelGroup> groups_of(const Composition& composition, const Composit
 Lanes mixed(const Lanes& own, std::uint32_t mix);
 
 /// Display colours (3) of a group along a direction, by the rendering rule: features and directions of four texels
-/// averaged for `mix` (see Sighting), scaled by `coverage`, decoded once. `work` is the kernels' workspace.
+/// averaged for `mix` (see Sighting), scaled by `coverage`, decoded once, then changed by light, averaged for `mix`,
+/// too. `work` is the kernels' workspace.
 void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& direction, float coverage,
            std::uint32_t mix, Lanes* colors, Lanes* work);
 

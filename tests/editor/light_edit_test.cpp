@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "editor/commands/plain_scene.h"
 #include "editor/commands/session.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/scene_folder.h"
@@ -172,6 +173,34 @@ TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
   const Lighting joined = lighting_of(two);
   EXPECT_FALSE(runs(joined, "self-shadow table"));
   EXPECT_FALSE(runs(joined, "removed shadow table"));
+}
+
+TEST(LightEdit, APlainFolderShowsWhatLightMakesOfColours) {
+  Scene scene = with_light(table());
+  for (const json& line : std::vector<json>{
+           {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}}, {{"op", "delete"}}})
+    scene = apply(scene, read_edit(line, scene)).scene;
+  const Lighting lighting = lighting_of(scene);
+  ASSERT_FALSE(lighting.maps.empty());
+  PlainReport report;
+  FuseOptions options;
+  options.way = FuseWay::keep;
+  options.training.steps = 500;
+  const Scene plain = plain_scene(scene, lighting, options, report, {});
+  EXPECT_FALSE(report.exact) << "one decoder, nothing bent: but the colours are others";
+  EXPECT_EQ(plain.light, nullptr);
+  Renderer renderer;
+  measure_pictures(renderer, scene, lighting, plain, report, {}, 200);
+  // As it was baked, the shadow of what is gone stays in the folder.
+  PlainReport baked;
+  measure_pictures(renderer, scene, lighting, scene, baked, {}, 200);
+  // Partly covered pixels limit it: this steep decoder shows them otherwise in another light.
+  EXPECT_GT(report.whole.psnr_db, 30);
+  EXPECT_GT(report.whole.psnr_db, baked.whole.psnr_db + 15);
+  // Without light it needs no fit at all.
+  PlainReport exact;
+  plain_scene(scene, {}, {}, exact, {});
+  EXPECT_TRUE(exact.exact);
 }
 
 TEST(LightEdit, GoesAlongWithTrianglesThatMove) {

@@ -31,8 +31,8 @@ Renderer& renderer() {
 
 PlainReport plain_report(const Scene& scene, const FuseOptions& options, int size = 800) {
   PlainReport report;
-  const Scene plain = plain_scene(scene, options, report, {});
-  measure_pictures(renderer(), scene, plain, report, {}, size);
+  const Scene plain = plain_scene(scene, {}, options, report, {});
+  measure_pictures(renderer(), scene, {}, plain, report, {}, size);
   return report;
 }
 
@@ -95,7 +95,7 @@ TEST(Plain, ABentBranchKeepsItsColours) {
               R"({"op": "bend", "node": "ficus", "degrees": 70, "axis": [1, 0.3, 0], "direction": [0, -1, 0],
                   "box": {"min": [0.52, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds", "falloff": 0.15})"});
   PlainReport report;
-  const Scene plain = plain_scene(scene, {}, report, {});
+  const Scene plain = plain_scene(scene, {}, {}, report, {});
   // As an export without a fit is judged, which has 43.5 dB over these four sides and 40.8 at the worst.
   const Camera front = framing_of(scene, 1);
   double squares = 0, worst = 100;
@@ -167,7 +167,7 @@ TEST_F(PlainExport, IsOneFolderThatReadsBackAsItWasMeasured) {
   const Scene read = read_any(path("plain"), Axes::y_up);
   ASSERT_EQ(placed_nodes(read).size(), 1U);
   PlainReport report;
-  measure_pictures(renderer(), session_.scene(), read, report, {});
+  measure_pictures(renderer(), session_.scene(), {}, read, report, {});
   const nlohmann::json written = nlohmann::json::parse(read_file(path("report.json")));
   EXPECT_NEAR(written["pictures"]["psnr_db"].get<double>(), report.whole.psnr_db, 0.1);
   EXPECT_GT(report.whole.psnr_db, 38);

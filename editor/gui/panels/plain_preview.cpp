@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "editor/commands/lit.h"
 #include "editor/commands/plain_scene.h"
 #include "editor/edits/support.h"
 #include "editor/gui/ui/announce.h"
@@ -71,9 +72,10 @@ void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
         measured->scene = with_only(session.scene(), measured->nodes);
         measured->scene.background = Color::Ones();
         const FuseOptions options = quick_options(measured->scene);
-        measured->parts.emplace(measured->scene, options.layout, session.progress);
+        const Lighting lighting = lit(session.scene(), session.progress);
+        measured->parts.emplace(measured->scene, lighting, options.layout, session.progress);
         Renderer& renderer = session.renderer();
-        measured->reference = renderer.render(measured->scene, measured->view);
+        measured->reference = renderer.render(measured->scene, measured->view, {}, &lighting);
         measured->reference_ms = median_frame_ms(renderer, measured->scene, measured->view, timed_frames);
         measured->exact = measured->parts->composition.exact();
         session.drop_renderer();  // a second copy of the scene on the GPU
