@@ -13,6 +13,7 @@ void describe_batch(CommandDescription& command);
 void describe_recover(CommandDescription& command);
 void describe_compare(CommandDescription& command);
 void describe_study(CommandDescription& command);
+void describe_light(CommandDescription& command);
 
 /// The one table of subcommands, in the order of help.
 inline constexpr Subcommand subcommand_table[] = {
@@ -25,6 +26,7 @@ inline constexpr Subcommand subcommand_table[] = {
      describe_batch},
     {"recover", "gets the work of a run that was killed back from its journal, as a project", describe_recover},
     {"compare", "says how much two pictures differ", describe_compare},
-    {"study", "measures accuracy against time: a table (CSV) and a plot (SVG, PNG)", describe_study}};
+    {"study", "measures accuracy against time: a table (CSV) and a plot (SVG, PNG)", describe_study},
+    {"light", "learns how an object sees the sky in its poses, for light that goes along with drags", describe_light}};
 
 }  // namespace rebake

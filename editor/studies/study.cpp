@@ -122,8 +122,11 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
       table.log_x ? "set logscale x\nset format x '10^{%L}'\n" : "",
       table.log_y ? "set logscale y\nset format y '10^{%L}'\n" : "");
   // Its output is written here, so that no name of a file reaches gnuplot.
+  // As high as its key.
+  const std::size_t height = std::max<std::size_t>(440, 60 + 20 * table.rows.size());
   for (const auto& [terminal, extension] :
-       {std::pair{"svg size 860,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 860,440", "png"}})
+       {std::pair{fmt::format("svg size 860,{} dynamic background rgb 'white'", height), "svg"},
+        std::pair{fmt::format("pngcairo size 860,{}", height), "png"}})
     write_file_atomically(base + "." + extension,
                           plotted(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)), guard);
 }

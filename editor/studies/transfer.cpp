@@ -62,7 +62,7 @@ struct Way {
   std::string name;
   std::function<Coefficients(const Tested&)> transfer;
   std::function<void(const Tested&)> light;
-  double bytes = 0, tracing_seconds = 0, learning_seconds = 0;
+  double bytes = 0, tracing_seconds = 0, learning_seconds = 0, undersampled = 0;
 };
 
 Coefficients turned(const Coefficients& local, const std::vector<Mat3>& turns) {
@@ -125,7 +125,7 @@ void study_body(const StudyInput& input, const PosedBody& body, StudyTable& tabl
     ways.push_back({fmt::format("turned + U-Net, {} channels", channels),
                     [=](const Tested& t) { return turned(local(t), t.truth.turns); },
                     [=, &lit](const Tested& t) { lit(local(t), &t.truth.turns); }, static_cast<double>(net->memory()),
-                    training.seconds, net->seconds()});
+                    training.seconds, net->seconds(), GeometryImage(body.chart, image_side).undersampled(body.rest)});
   }
   for (const int rays : {16, 64, 256, 1024}) {
     const auto trace = [rays, &body](const Tested& t) { return traced_pose(body.rest, t.mesh, rays).transfer.sites; };
@@ -162,6 +162,7 @@ void study_body(const StudyInput& input, const PosedBody& body, StudyTable& tabl
     row.values.push_back(way.bytes > 0 ? every_pose / way.bytes : 0);
     row.values.push_back(way.tracing_seconds);
     row.values.push_back(way.learning_seconds);
+    row.values.push_back(100 * way.undersampled);
     table.rows.push_back(std::move(row));
   }
 }
@@ -169,13 +170,14 @@ void study_body(const StudyInput& input, const PosedBody& body, StudyTable& tabl
 }  // namespace
 
 StudyTable study_transfer(const StudyInput& input) {
-  StudyTable table{{"milliseconds", "% off, range of training", "% off, 1.6 times that", "% off, bent", "kilobytes",
-                    "times smaller than every pose", "seconds of tracing", "seconds of learning"},
-                   {},
-                   0,
-                   1,
-                   true,
-                   true};
+  StudyTable table{
+      {"milliseconds", "% off, range of training", "% off, 1.6 times that", "% off, bent", "kilobytes",
+       "times smaller than every pose", "seconds of tracing", "seconds of learning", "% of surface undersampled"},
+      {},
+      0,
+      1,
+      true,
+      true};
   study_body(input, bumpy_sheet(64), table);
   study_body(input, wrapped_part(input.scene, Box(Vec3(0.52, 0.5, 0), Vec3(1, 1, 1)), 0.03), table);
   return table;

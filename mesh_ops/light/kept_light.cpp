@@ -47,7 +47,8 @@ void append(std::string& bytes, const std::vector<T>& values) {
   append(bytes, values.data(), values.size() * sizeof(T));
 }
 
-// A hash of what shades: triangles, and which of their texels are opaque.
+}  // namespace
+
 std::uint64_t surface_hash(const BakedObject& object) {
   std::string hashes;
   const auto add = [&](std::string_view bytes) {
@@ -69,6 +70,8 @@ std::uint64_t surface_hash(const BakedObject& object) {
   }
   return content_hash(hashes);
 }
+
+namespace {
 
 void append(std::string& bytes, const std::vector<Occluder>& occluders) {
   for (const Occluder& occluder : occluders) {
@@ -152,6 +155,27 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
   return lit;
 }
 
+std::vector<sh::Coefficients> shown_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,
+                                             const SceneRays& around, int rays, const Progress& progress) {
+  std::vector<sh::Coefficients> transfer(sites.size(), sh::Coefficients::Zero());
+  for (const bool back : {false, true}) {
+    std::vector<LightSite> some;
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      if (facing[i] == (back ? 1.0F : 0.0F)) continue;
+      some.push_back(sites[i]);
+      if (back) some.back().normal = -some.back().normal;
+      numbers.push_back(i);
+    }
+    const Transfer traced = traced_transfer(some, around, rays, progress);
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      const double share = static_cast<double>(facing[numbers[k]]);
+      transfer[numbers[k]] += (back ? 1 - share : share) * traced.sites[k];
+    }
+  }
+  return transfer;
+}
+
 std::vector<sh::Coefficients> kept_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,
                                             const std::vector<Occluder>& occluders, int rays, Results* results,
                                             const Progress& progress) {
@@ -173,22 +197,7 @@ std::vector<sh::Coefficients> kept_transfer(const std::vector<LightSite>& sites,
       return transfer;
     }
   }
-  const SceneRays around = rays_among(occluders);
-  for (const bool back : {false, true}) {
-    std::vector<LightSite> some;
-    std::vector<std::size_t> numbers;
-    for (std::size_t i = 0; i < sites.size(); ++i) {
-      if (facing[i] == (back ? 1.0F : 0.0F)) continue;
-      some.push_back(sites[i]);
-      if (back) some.back().normal = -some.back().normal;
-      numbers.push_back(i);
-    }
-    const Transfer traced = traced_transfer(some, around, rays, progress);
-    for (std::size_t k = 0; k < numbers.size(); ++k) {
-      const double share = static_cast<double>(facing[numbers[k]]);
-      transfer[numbers[k]] += (back ? 1 - share : share) * traced.sites[k];
-    }
-  }
+  transfer = shown_transfer(sites, facing, rays_among(occluders), rays, progress);
   std::string bytes;
   for (sh::Coefficients& one : transfer) {
     const Eigen::Matrix<float, sh::count, 1> rounded = one.cast<float>();

@@ -26,7 +26,13 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
                                   const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
                                   int rays, Results* results, const Progress& progress);
 
-/// Transfer of what each site shows, by the share of its first side in that; likewise kept.
+/// A hash of what shades: triangles, and which of their texels are opaque.
+std::uint64_t surface_hash(const BakedObject& object);
+
+/// Transfer of what each site shows, by the share of its first side in that.
+std::vector<sh::Coefficients> shown_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,
+                                             const SceneRays& around, int rays, const Progress& progress = {});
+/// The same, likewise kept.
 std::vector<sh::Coefficients> kept_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,
                                             const std::vector<Occluder>& occluders, int rays, Results* results,
                                             const Progress& progress);

@@ -50,7 +50,7 @@ class LearntTransfer {
   std::vector<Vec3> probes_in(const std::vector<Vec3>& places) const;
   std::size_t site_count() const { return static_cast<std::size_t>(mean.size()) / sh::count; }
   /// PoseSpace::Place::range up to which it is better than turning alone, by `rebake study transfer`.
-  static constexpr double trusted_range = 1.7;
+  static constexpr double trusted_range = 2;
   /// Bytes of what prediction needs.
   std::uint64_t memory() const;
 

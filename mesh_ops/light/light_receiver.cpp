@@ -8,6 +8,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
+#include "mesh_ops/light/transfer_model.h"
 
 namespace rebake {
 
@@ -174,12 +175,29 @@ std::vector<std::shared_ptr<const LightMap>> LightReceiver::maps(const Change& c
   return light_maps(charts_, sites_, change.colors, change.before, change.after);
 }
 
+// What was learnt of its body; what cannot be read was never kept.
+std::shared_ptr<const TransferModel> LightReceiver::kept_model() const {
+  const std::vector<BakedBody> bodies = bodies_of(object());
+  if (options_.results == nullptr || bodies.size() != 1 || !bodies.front().to_object.matrix().isIdentity(0))
+    return nullptr;
+  const BakedObject& body = *bodies.front().object;
+  const auto bytes = options_.results->find(transfer_model_key(body, sites_.size()));
+  if (!bytes || body.triangle_count() != object().triangle_count()) return nullptr;
+  try {
+    auto model = std::make_shared<const TransferModel>(transfer_model_of(*bytes));
+    return model->body == surface_hash(body) && model->sites == sites_.size() ? model : nullptr;
+  } catch (const Error&) {
+    return nullptr;
+  }
+}
+
 std::shared_ptr<const TurnedLight> LightReceiver::turned(const Change& change, const std::vector<std::size_t>& casters,
                                                          const Shared& shared, const Progress& progress) const {
   // Sheared objects are traced in the world, which their triangles do not turn in.
   if (in_world() || !settings_.self) return nullptr;
-  TurnedLight::Start start{placed().node->object, charts_,      sites_, facing_, change.colors,
-                           change.before,         change.after, {},     {},      {}};
+  TurnedLight::Start start{
+      placed().node->object, charts_, sites_, facing_, change.colors, change.before, change.after, {}, {},
+      kept_model(),          {}};
   for (const std::size_t k : relatives_)
     if (k != own_) start.others.push_back(occluder(k));
   for (const std::size_t k : casters) start.others.push_back(occluder(k));

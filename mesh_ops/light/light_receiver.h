@@ -59,6 +59,7 @@ class LightReceiver {
   const BakedObject& object() const { return *placed().node->object; }
   const Affine& to_world() const { return placed().to_world; }
   bool anything_missing() const;
+  std::shared_ptr<const TransferModel> kept_model() const;
   bool in_world() const;
   Mat3 to_own_light() const;
   void prepare(const Progress& progress);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "mesh_ops/light/light_receiver.h"
+#include "mesh_ops/light/transfer_model.h"
 
 namespace rebake {
 
@@ -165,8 +166,14 @@ std::optional<Lighting> turned_lighting(const Scene& start_scene, const Lighting
     const Clock::time_point began = Clock::now();
     result.maps[b.node->id] = turning->second->maps(*b.node->object);
     const double seconds = seconds_since(began);
-    result.decisions.push_back({"self-shadow " + b.node->name, true, 0, seconds,
-                                fmt::format("turned along while triangles move, took {:.0f} ms", 1000 * seconds)});
+    const std::optional<double> range = turning->second->range_of(*b.node->object);
+    std::string why = "turned along while triangles move";
+    if (range && *range <= LearntTransfer::trusted_range)
+      why += ", and as was learnt of such poses";
+    else if (range)
+      why += fmt::format("; {:.1f} times as far out as the poses that were learnt", *range);
+    result.decisions.push_back(
+        {"self-shadow " + b.node->name, true, 0, seconds, fmt::format("{}, took {:.0f} ms", why, 1000 * seconds)});
   }
   return result;
 }

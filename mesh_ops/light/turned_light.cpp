@@ -3,6 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mesh_ops/light/transfer_model.h"
 
 namespace rebake {
 
@@ -65,47 +69,123 @@ std::vector<Mat3> node_turns(const TextureSet& from, const TextureSet& to, const
 
 TurnedLight::TurnedLight(Start start) : start_(std::move(start)) {
   for (const BodyLight& body : start_.lights) products_.emplace_back(projected_sky(*body.light, body.to_light));
-  std::vector<std::vector<Mat3>> turns;
-  for (const auto& chart : start_.charts) turns.emplace_back(chart->nodes.size(), Mat3::Identity());
   for (std::size_t i = 0; i < start_.transfer.size(); ++i)
     unturned_.push_back(products_[start_.sites.body[i]](Mat3::Identity(), start_.transfer[i]));
-  sunlit_ = suns_on(*start_.object, turns);
+  sunlit_ = suns_on(*start_.object, start_.sites.now);
+  if (start_.model) prepare_model();
 }
 
-// Irradiance over π that suns give each site when it has turned.
-std::vector<Radiance> TurnedLight::suns_on(const BakedObject& object,
-                                           const std::vector<std::vector<Mat3>>& turns) const {
-  std::vector<Radiance> result(start_.sites.size(), Radiance::Zero());
-  if (std::all_of(start_.lights.begin(), start_.lights.end(), [](const BodyLight& b) { return b.light->suns.empty(); }))
-    return result;
+std::vector<LightSite> TurnedLight::sites_on(const BakedObject& object,
+                                             const std::vector<std::vector<Mat3>>& turns) const {
   std::vector<LightSite> sites = start_.sites.now;
-  std::vector<std::uint8_t> sides(sites.size());
   for (std::size_t s = 0; s < start_.charts.size(); ++s) {
     const Soup& soup = object.sets[s].soup;
     for (std::size_t k = 0; k < turns[s].size(); ++k) {
       const LightChart::Node& node = start_.charts[s]->nodes[k];
       const Face& face = soup.faces()[node.face];
-      const std::size_t i = start_.sites.first[s] + k;
-      LightSite& site = sites[i];
+      LightSite& site = sites[start_.sites.first[s] + k];
       site.position = Vec3::Zero();
       for (std::size_t c = 0; c < 3; ++c)
         site.position += static_cast<double>(node.weights[static_cast<Eigen::Index>(c)]) * soup.positions()[face[c]];
       site.normal = turns[s][k] * site.normal;
       site.tangent = turns[s][k] * site.tangent;
-      sides[i] = shown_sides(start_.facing[i]);
     }
   }
+  return sites;
+}
+
+// Irradiance over π that suns give each site.
+std::vector<Radiance> TurnedLight::suns_on(const BakedObject& object, const std::vector<LightSite>& sites) const {
+  std::vector<Radiance> result(sites.size(), Radiance::Zero());
+  if (std::all_of(start_.lights.begin(), start_.lights.end(), [](const BodyLight& b) { return b.light->suns.empty(); }))
+    return result;
   std::vector<Occluder> occluders = start_.others;
   occluders.push_back({std::make_shared<const BakedObject>(object), Affine::Identity()});
   const SceneRays around = rays_among(occluders);
   constexpr int rays = 4;
   for (std::size_t b = 0; b < start_.lights.size(); ++b) {
-    std::vector<std::uint8_t> wanted(sides.size());
-    for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = start_.sites.body[i] == b ? sides[i] : 0;
+    std::vector<std::uint8_t> wanted(sites.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      wanted[i] = start_.sites.body[i] == b ? shown_sides(start_.facing[i]) : 0;
     const auto lit = traced_suns(sites, wanted, around, *start_.lights[b].light, start_.lights[b].to_light, rays);
     for (std::size_t i = 0; i < lit.size(); ++i) result[i] += shown_light(lit[i], start_.facing[i]);
   }
   return result;
+}
+
+void TurnedLight::prepare_model() {
+  const TransferModel& model = *start_.model;
+  const std::shared_ptr<const BakedObject> body = bodies_of(*start_.object).front().object;
+  for (std::size_t s = 0; s < start_.charts.size(); ++s)
+    for (const Mat3& turn : node_turns(body->sets[s], start_.object->sets[s], *start_.charts[s]))
+      since_baked_.push_back(turn);
+  const PoseSpace::Place place = model.learnt.space.place(probes_in(start_.sites.now));
+  if (place.range > LearntTransfer::trusted_range) return;
+  learnt_ = model.learnt.predict(place);
+  // Of the keys that are near and face much the same way, the nearest four.
+  const auto shown_normal = [&](std::size_t i) -> Vec3 {
+    return start_.facing[i] == 0.0F ? Vec3(-start_.sites.baked[i].normal) : start_.sites.baked[i].normal;
+  };
+  shares_.resize(start_.sites.size());
+  tbb::parallel_for(std::size_t{0}, shares_.size(), [&](std::size_t i) {
+    std::array<double, 4> least{};
+    least.fill(std::numeric_limits<double>::infinity());
+    Share share{{0, 0, 0, 0}, {0, 0, 0, 0}};
+    const Vec3 normal = shown_normal(i), at = start_.sites.baked[i].position;
+    for (std::uint32_t k = 0; k < model.keys.size(); ++k) {
+      const std::uint32_t other = model.keys[k];
+      const double distance = (start_.sites.baked[other].position - at).squaredNorm();
+      if (!(distance < least[3])) continue;
+      if (start_.facing[i] != start_.facing[other] || shown_normal(other).dot(normal) < 0.5) continue;
+      std::size_t place_in = 3;
+      for (; place_in > 0 && distance < least[place_in - 1]; --place_in) {
+        least[place_in] = least[place_in - 1];
+        share.keys[place_in] = share.keys[place_in - 1];
+      }
+      least[place_in] = distance;
+      share.keys[place_in] = k;
+    }
+    double sum = 0, farthest = 0;
+    std::array<double, 4> weights{};
+    for (const double distance : least)
+      if (std::isfinite(distance)) farthest = distance;
+    for (std::size_t k = 0; k < 4; ++k)
+      if (std::isfinite(least[k])) sum += weights[k] = farthest > 0 ? farthest / (least[k] + 1e-3 * farthest) : 1;
+    for (std::size_t k = 0; k < 4; ++k) share.weights[k] = sum > 0 ? static_cast<float>(weights[k] / sum) : 0;
+    shares_[i] = share;
+  });
+}
+
+std::vector<Vec3> TurnedLight::probes_in(const std::vector<LightSite>& sites) const {
+  std::vector<Vec3> places;
+  for (const std::uint32_t probe : start_.model->learnt.probes)
+    places.push_back(sites[start_.model->keys[probe]].position);
+  return places;
+}
+
+std::optional<double> TurnedLight::range_of(const BakedObject& object) const {
+  if (!start_.model) return std::nullopt;
+  std::vector<std::vector<Mat3>> turns;
+  for (const auto& chart : start_.charts) turns.emplace_back(chart->nodes.size(), Mat3::Identity());
+  return start_.model->learnt.space.place(probes_in(sites_on(object, turns))).range;
+}
+
+// What the model says beside turning, where it was learnt for such poses.
+void TurnedLight::add_learnt(const std::vector<LightSite>& sites, const std::vector<std::vector<Mat3>>& turns,
+                             std::vector<Radiance>& light) const {
+  if (shares_.empty()) return;
+  const PoseSpace::Place place = start_.model->learnt.space.place(probes_in(sites));
+  if (place.range > LearntTransfer::trusted_range) return;
+  const Eigen::VectorXf change = start_.model->learnt.predict(place) - learnt_;
+  for (std::size_t s = 0; s < turns.size(); ++s)
+    tbb::parallel_for(std::size_t{0}, turns[s].size(), [&](std::size_t k) {
+      const std::size_t i = start_.sites.first[s] + k;
+      Eigen::Matrix<float, sh::count, 1> own = Eigen::Matrix<float, sh::count, 1>::Zero();
+      for (std::size_t j = 0; j < 4; ++j)
+        own += shares_[i].weights[j] *
+               change.segment<sh::count>(static_cast<Eigen::Index>(shares_[i].keys[j]) * sh::count);
+      light[i] += products_[start_.sites.body[i]](turns[s][k] * since_baked_[i], own.cast<double>());
+    });
 }
 
 bool TurnedLight::fits(const BakedObject& object) const {
@@ -126,15 +206,18 @@ std::vector<Radiance> TurnedLight::light_on(const BakedObject& object) const {
   std::vector<std::vector<Mat3>> turns;
   for (std::size_t s = 0; s < start_.charts.size(); ++s)
     turns.push_back(node_turns(start_.object->sets[s], object.sets[s], *start_.charts[s]));
-  std::vector<Radiance> light = suns_on(object, turns);
+  const std::vector<LightSite> sites = sites_on(object, turns);
+  std::vector<Radiance> light = suns_on(object, sites);
   for (std::size_t s = 0; s < start_.charts.size(); ++s)
     tbb::parallel_for(std::size_t{0}, turns[s].size(), [&](std::size_t k) {
       const std::size_t i = start_.sites.first[s] + k;
       const Mat3& turn = turns[s][k];
       Radiance change = light[i] - sunlit_[i];
       if (!turn.isIdentity(0)) change += products_[start_.sites.body[i]](turn, start_.transfer[i]) - unturned_[i];
-      light[i] = (start_.after[i] + change).cwiseMax(0.0);
+      light[i] = start_.after[i] + change;
     });
+  add_learnt(sites, turns, light);
+  for (Radiance& one : light) one = one.cwiseMax(0.0);
   return light;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "mesh_ops/light/kept_light.h"
@@ -8,6 +10,8 @@
 #include "mesh_ops/light/turned_product.h"
 
 namespace rebake {
+
+struct TransferModel;
 
 /// What light does to an object whose triangles move on from where light was traced last, fast enough to go along with
 /// a drag: each site's transfer turns with the surface around it, which changes what it takes of the sky, and a few
@@ -27,6 +31,7 @@ class TurnedLight {
     std::vector<Radiance> colors, before, after;  ///< of each site: as baked; irradiance over π it was baked in; traced
     std::vector<sh::Coefficients> transfer;       ///< of what it shows, in the object's space
     std::vector<BodyLight> lights;                ///< of each body
+    std::shared_ptr<const TransferModel> model;   ///< of its body, to tell more than turning does; may be null
     std::vector<Occluder> others;                 ///< what else shades it, in its space
   };
   explicit TurnedLight(Start start);
@@ -37,11 +42,27 @@ class TurnedLight {
   std::vector<std::shared_ptr<const LightMap>> maps(const BakedObject& object) const;
   /// Irradiance over π of each site there.
   std::vector<Radiance> light_on(const BakedObject& object) const;
+  /// The sites when they have turned so.
+  std::vector<LightSite> sites_on(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns) const;
+  /// How far out a pose is of those that the model was learnt from (PoseSpace::Place::range); nothing without one.
+  std::optional<double> range_of(const BakedObject& object) const;
   const Start& start() const { return start_; }
 
  private:
   Start start_;
-  std::vector<Radiance> suns_on(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns) const;
+  void prepare_model();
+  void add_learnt(const std::vector<LightSite>& sites, const std::vector<std::vector<Mat3>>& turns,
+                  std::vector<Radiance>& light) const;
+  std::vector<Vec3> probes_in(const std::vector<LightSite>& sites) const;
+  std::vector<Radiance> suns_on(const BakedObject& object, const std::vector<LightSite>& sites) const;
+  /// Of each site the keys that it takes from, and how much of each.
+  struct Share {
+    std::array<std::uint32_t, 4> keys;
+    std::array<float, 4> weights;
+  };
+  std::vector<Share> shares_;                ///< empty without a model
+  std::vector<Mat3> since_baked_;            ///< of each site, how it had turned
+  Eigen::VectorXf learnt_;                   ///< what the model says of the start
   std::vector<TurnedProduct> products_;      ///< of each body
   std::vector<Radiance> unturned_, sunlit_;  ///< of each site, where it was traced
 };

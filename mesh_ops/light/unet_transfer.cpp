@@ -49,34 +49,36 @@ void UnetTransfer::Training::add(const std::vector<LightSite>& sites, const std:
   std::vector<sh::Coefficients> local(transfer.size());
   tbb::parallel_for(std::size_t{0}, local.size(),
                     [&](std::size_t i) { local[i] = sh::Rotation(turns[i].transpose()) * transfer[i]; });
-  const std::size_t texels = image_.texels().size(), first = local_.size();
-  local_.resize(first + unet_outputs * texels);
-  for (std::size_t t = 0; t < texels; ++t) {
-    const GeometryImage::Texel& texel = image_.texels()[t];
-    sh::Coefficients mean = sh::Coefficients::Zero();
-    for (std::size_t k = 0; k < 3; ++k)
-      mean += static_cast<double>(texel.weights[static_cast<Eigen::Index>(k)]) * local[texel.vertices[k]];
-    for (std::size_t c = 0; c < sh::count; ++c)
-      local_[first + c * texels + t] = static_cast<float>(mean[static_cast<Eigen::Index>(c)]);
-  }
+  for (const sh::Coefficients& one : local)
+    for (const double value : one) local_.push_back(static_cast<float>(value));
   ++poses_;
 }
 
 UnetTransfer UnetTransfer::Training::learnt(const UnetTraining& options, const Progress& progress) const {
   const auto start = std::chrono::steady_clock::now();
-  const std::size_t texels = image_.texels().size(), values = unet_outputs * texels;
-  std::vector<float> mean(values, 0);
-  for (std::size_t p = 0; p < poses_; ++p)
-    for (std::size_t k = 0; k < values; ++k) mean[k] += local_[p * values + k] / static_cast<float>(poses_);
+  const std::size_t texels = image_.texels().size(), own = rest_.vertices.size() * sh::count;
+  Eigen::VectorXf mean = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(own));
+  const auto of_pose = [&](std::size_t p) {
+    return Eigen::Map<const Eigen::VectorXf>(local_.data() + p * own, static_cast<Eigen::Index>(own));
+  };
+  for (std::size_t p = 0; p < poses_; ++p) mean += of_pose(p) / static_cast<float>(poses_);
   // One scale for all, so that large coefficients count most, as they do in pictures.
-  UnetImages images{image_.side(), poses_, images_, local_, std::vector<float>(texels, 1)};
+  UnetImages images{image_.side(), poses_, images_, {}, std::vector<float>(texels, 1)};
+  images.targets.reserve(poses_ * unet_outputs * texels);
   double squares = 0;
-  for (std::size_t p = 0; p < poses_; ++p)
-    for (std::size_t k = 0; k < values; ++k) {
-      float& value = images.targets[p * values + k];
-      value -= mean[k];
-      squares += static_cast<double>(value) * static_cast<double>(value);
-    }
+  for (std::size_t p = 0; p < poses_; ++p) {
+    const Eigen::VectorXf away = of_pose(p) - mean;
+    for (std::size_t c = 0; c < sh::count; ++c)
+      for (const GeometryImage::Texel& texel : image_.texels()) {
+        float value = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+          value += texel.weights[static_cast<Eigen::Index>(k)] *
+                   away[static_cast<Eigen::Index>(texel.vertices[k] * sh::count + c)];
+        images.targets.push_back(value);
+        squares += static_cast<double>(value) * static_cast<double>(value);
+      }
+  }
+  const std::size_t values = unet_outputs * texels;
   const double deviation = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, poses_ * values)));
   const float scale = deviation > 0 ? static_cast<float>(deviation) : 1.0F;
   for (float& value : images.targets) value /= scale;
@@ -91,13 +93,12 @@ UnetTransfer UnetTransfer::Training::learnt(const UnetTraining& options, const P
 Eigen::VectorXf UnetTransfer::predict(const std::vector<LightSite>& sites) const {
   std::vector<float> planes;
   append_image(image_, box_, sites, planes);
-  std::vector<float> result = net_.run(planes);
-  for (std::size_t k = 0; k < result.size(); ++k) result[k] = mean_[k] + scale_ * result[k];
-  return image_.at_vertices(result, sh::count);
+  return mean_ + scale_ * image_.at_vertices(net_.run(planes), sh::count);
 }
 
 std::uint64_t UnetTransfer::memory() const {
-  return (net_.weights().size() + mean_.size()) * sizeof(float) + image_.texels().size() * sizeof(GeometryImage::Texel);
+  return (net_.weights().size() + static_cast<std::size_t>(mean_.size())) * sizeof(float) +
+         image_.texels().size() * sizeof(GeometryImage::Texel);
 }
 
 }  // namespace rebake

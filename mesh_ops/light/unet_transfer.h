@@ -22,7 +22,8 @@ class UnetTransfer {
    private:
     ProxyMesh rest_;
     GeometryImage image_;
-    std::vector<float> images_, local_;  ///< [pose][plane][texel]
+    std::vector<float> images_;  ///< [pose][plane][texel]
+    std::vector<float> local_;   ///< [pose][vertex][coefficient], in turned frames
     std::size_t poses_ = 0;
   };
 
@@ -35,9 +36,9 @@ class UnetTransfer {
   UnetTransfer(GeometryImage image, Unet net) : image_(std::move(image)), net_(std::move(net)) {}
   GeometryImage image_;
   Unet net_;
-  Box box_;                  ///< of the body at rest
-  std::vector<float> mean_;  ///< [plane][texel]
-  float scale_ = 1;          ///< of departures from it
+  Box box_;               ///< of the body at rest
+  Eigen::VectorXf mean_;  ///< [vertex][coefficient]: where the image is coarse, the surface keeps that
+  float scale_ = 1;       ///< of departures from it
   double seconds_ = 0;
 };
 

@@ -11,6 +11,7 @@
 #include "mesh_ops/light/light_estimate.h"
 #include "mesh_ops/light/lighting.h"
 #include "mesh_ops/light/transfer.h"
+#include "mesh_ops/light/transfer_model.h"
 
 namespace rebake::test {
 namespace {
@@ -67,11 +68,29 @@ void BentBranch(benchmark::State& state) {
 BENCHMARK(BentBranch)->Arg(16)->Arg(64)->Arg(256)->Unit(benchmark::kMillisecond)->Iterations(3);
 
 // What a drag adds to a frame, off the window's thread, and how near the traced light it comes (root mean square over
-// the sites that change, of what changes).
+// the sites that change, of what changes): by turning, and with what was learnt of such bends.
+struct InMemory final : Results {
+  std::map<std::string, std::string> held;
+  std::optional<std::string> find(const std::string& key) override {
+    const auto it = held.find(key);
+    return it == held.end() ? std::nullopt : std::optional(it->second);
+  }
+  void keep(const std::string& key, std::string_view bytes) override { held[key] = bytes; }
+};
+
 void DraggedBranch(benchmark::State& state) {
   const Scene rest = with(ficus(), {in_sky}), bent = with(rest, {bent_by(static_cast<int>(state.range(0)))});
   const NodeId node = rest.roots.front()->id;
-  const Lighting start = lighting_of(rest, {.rays = 64, .turning = {node}});
+  InMemory results;
+  LightingOptions options{.rays = 256, .results = &results, .turning = {node}};
+  Lighting start = lighting_of(rest, options);
+  if (state.range(1) != 0) {
+    const TransferModel model = learnt_model(
+        *start.turning.at(node), [&](int k) { return with(rest, {bent_by(3 * k - 90)}).roots.front()->object; },
+        {.poses = 60, .rays = 128});
+    results.keep(transfer_model_key(*rest.roots.front()->object, model.sites), bytes_of(model));
+    start = lighting_of(rest, options);
+  }
   const TurnedLight& turning = *start.turning.at(node);
   for (auto _ : state) benchmark::DoNotOptimize(turned_lighting(rest, start, bent)->left_out);
   const Lighting truth = lighting_of(bent, {.rays = 256, .turning = {node}});
@@ -86,7 +105,10 @@ void DraggedBranch(benchmark::State& state) {
   state.counters["left"] = std::sqrt(off / all);
   state.counters["sites"] = static_cast<double>(traced.size());
 }
-BENCHMARK(DraggedBranch)->Arg(10)->Arg(40)->Arg(70)->Unit(benchmark::kMillisecond);
+BENCHMARK(DraggedBranch)
+    ->ArgsProduct({{10, 40, 70}, {0, 1}})
+    ->ArgNames({"degrees", "learnt"})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace rebake::test

@@ -11,6 +11,7 @@
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/light/irradiance.h"
 #include "mesh_ops/light/lighting.h"
+#include "mesh_ops/light/transfer_model.h"
 #include "render/graph/effects.h"
 #include "render/picture.h"
 #include "tests/support/document_fixture.h"
@@ -252,6 +253,67 @@ TEST(LightEdit, GoesAlongWithTrianglesThatMove) {
   EXPECT_FALSE(
       turned_lighting(rest, start, after(rest, {{{"op", "transform"}, {"node", "table"}, {"translate", {1, 0, 0}}}})));
   EXPECT_FALSE(turned_lighting(rest, lighting_of(rest), bent)) << "nobody asked for this node";
+}
+
+TEST(LightEdit, WhatWasLearntIsUsedWithinItsRange) {
+  // The box is lifted: nothing turns, but the ground below sees the sky again.
+  Scene rest = with_light(table());
+  const json box = {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}};
+  rest = apply(rest, read_edit(box, rest)).scene;
+  const NodeId node = rest.roots.front()->id;
+  const auto lifted = [&](double by) {
+    const json line = {{"op", "transform"}, {"node", "table"}, {"selection", true}, {"translate", {0, by, 0}}};
+    return apply(rest, read_edit(line, rest)).scene;
+  };
+  Remembered store;
+  LightingOptions options;
+  options.results = &store;
+  options.turning = {node};
+  const auto turning_now = [&](const Scene& scene) { return lighting_of(scene, options).turning.at(node); };
+  const auto plain = turning_now(rest);
+  const TransferModel model = learnt_model(*plain, [&](int k) { return lifted(0.02 * k).roots.front()->object; },
+                                           {.poses = 24, .rays = 64, .keys = 600});
+  const std::string bytes = bytes_of(model);
+  store.keep(transfer_model_key(*rest.roots.front()->object, model.sites), bytes);
+  const auto learnt = turning_now(rest);
+  const Scene moved = lifted(0.31);
+  const std::vector<Radiance> truth = turning_now(moved)->start().after;
+  const auto off = [&](const TurnedLight& turning) {
+    const std::vector<Radiance> light = turning.light_on(*moved.roots.front()->object);
+    double sum = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) sum += (light[i] - truth[i]).squaredNorm();
+    return std::sqrt(sum);
+  };
+  EXPECT_LT(off(*learnt), 0.45 * off(*plain));
+  EXPECT_EQ(learnt->light_on(*rest.roots.front()->object), learnt->start().after) << "nothing jumps";
+  const auto why = [&](const Scene& scene) {
+    const auto lighting = turned_lighting(rest, lighting_of(rest, options), scene);
+    return lighting->decisions.back().why;
+  };
+  EXPECT_NE(why(moved).find("as was learnt"), std::string::npos) << why(moved);
+  const Scene far = lifted(5);
+  EXPECT_NE(why(far).find("times as far out"), std::string::npos) << why(far);
+  EXPECT_EQ(learnt->light_on(*far.roots.front()->object), plain->light_on(*far.roots.front()->object));
+
+  // As bytes it is the same; damaged or of something else it is refused.
+  const TransferModel read = transfer_model_of(bytes);
+  EXPECT_EQ(bytes_of(read), bytes);
+  for (const std::size_t size : {std::size_t{0}, std::size_t{40}, bytes.size() / 2, bytes.size() - 1})
+    EXPECT_THROW(transfer_model_of(std::string_view(bytes).substr(0, size)), Error);
+  std::string damaged = bytes;
+  damaged[bytes.size() / 2] ^= 1;
+  EXPECT_THROW(transfer_model_of(damaged), Error);
+  EXPECT_THROW(transfer_model_of("P6 1 1 255\n"), Error);
+  // Of another object it is not even asked for.
+  const Scene other = with_light(scene_of(
+      lit_object(box_quads({0, 0, 0}, {1, 1, 1}), [](const Vec3&) -> Radiance { return Radiance::Constant(0.4); }),
+      "other"));
+  LightingOptions of_other = options;
+  of_other.turning = {other.roots.front()->id};
+  EXPECT_EQ(lighting_of(other, of_other).turning.begin()->second->start().model, nullptr);
+  // And not learnt from an object that edits moved.
+  EXPECT_THROW(learnt_model(*turning_now(moved), [&](int) { return moved.roots.front()->object; }, {.poses = 8}),
+               Error);
 }
 
 TEST(LightEdit, ResultsAreFoundAgain) {

@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "editor/cli/commands.h"
+#include "editor/cli/options.h"
+#include "editor/cli/terminal.h"
+#include "editor/edits/edit.h"
+#include "editor/edits/results.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/light/lighting.h"
+#include "mesh_ops/light/transfer_model.h"
+
+namespace rebake {
+
+namespace {
+
+using nlohmann::json;
+
+// What says how far a deformation goes: scaled by a share of it that each pose draws.
+void scale_strength(json& edit, double share) {
+  for (const char* field : {"degrees", "translate"}) {
+    if (!edit.contains(field)) continue;
+    json& value = edit[field];
+    if (value.is_number()) value = value.get<double>() * share;
+    if (value.is_array())
+      for (json& one : value)
+        if (one.is_number()) one = one.get<double>() * share;
+  }
+  for (const char* field : {"factor", "scale"})
+    if (edit.contains(field) && edit[field].is_number() && edit[field].get<double>() > 0)
+      edit[field] = std::pow(edit[field].get<double>(), share);
+  if (edit.contains("rotate") && edit["rotate"].is_object()) scale_strength(edit["rotate"], share);
+}
+
+// The edit as pose `k` has it: as far as −1 … 1 of what it says, moves of a cage each on their own.
+json posed(json edit, std::mt19937& random) {
+  const auto share = [&] { return 2 * ((random() + 0.5) / 4294967296.0) - 1; };
+  if (edit.contains("moves") && edit["moves"].is_array()) {
+    for (json& move : edit["moves"]) scale_strength(move, share());
+    return edit;
+  }
+  scale_strength(edit, share());
+  return edit;
+}
+
+struct Options {
+  std::string action;
+  std::vector<std::string> paths;
+  std::vector<std::string> edits;
+  std::string node, out, axes = "360";
+  int poses = 200, rays = 128;
+};
+
+std::string read_model_bytes(const std::string& path) {
+  const std::string bytes = read_file(path);
+  try {
+    transfer_model_of(bytes);
+  } catch (const Error& error) {
+    throw FileError(path, error.what());
+  }
+  return bytes;
+}
+
+void say(const TransferModel& model) {
+  fmt::print("poses       {} of {}\n", model.poses, model.poses_from);
+  fmt::print("range       up to {:.3g} from the mean pose, {} directions; trusted to {:.1f} times that\n",
+             model.learnt.space.largest * model.learnt.space.size, model.learnt.space.dimensions(),
+             LearntTransfer::trusted_range);
+  fmt::print("error       {:.1f} % of transfer, over poses that were held back\n", 100 * model.learnt.held_back_error);
+  fmt::print("size        {} points of {}, {:.1f} MB\n", model.keys.size(), model.sites,
+             static_cast<double>(model.learnt.memory()) / 1e6);
+  fmt::print("took        {:.1f} s to trace with {} rays, {:.1f} s to learn\n", model.tracing_seconds, model.rays,
+             model.learnt.seconds);
+}
+
+// Its light, ready to go along.
+std::shared_ptr<const TurnedLight> turning_of(Scene scene, NodeId node) {
+  // What shows of a surface and its points do not depend on the scene's other settings.
+  if (!scene.light) scene.light = std::make_shared<const SceneLight>();
+  LightingOptions options;
+  options.rays = 16;
+  options.results = kept_results().get();
+  options.keep_traced = false;
+  options.turning = {node};
+  const Lighting lighting = lighting_of(scene, options, progress_bar());
+  const auto found = lighting.turning.find(node);
+  if (found == lighting.turning.end())
+    throw Error("light cannot go along with this object: it is sheared, or own shadows are off");
+  return found->second;
+}
+
+NodePtr chosen_node(const Scene& scene, const std::string& name) {
+  NodePtr chosen;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.visible || !placed.node->object || (!name.empty() && placed.node->name != name)) continue;
+    if (chosen && name.empty()) throw FieldError("node", "name one: the scene has several objects");
+    chosen = find(scene, placed.node->id);
+  }
+  if (!chosen)
+    throw FieldError("node", name.empty() ? "the scene has no object" : "there is no object \"" + name + "\"");
+  return chosen;
+}
+
+void keep(const std::string& bytes, const BakedObject& body, std::size_t sites) {
+  const std::shared_ptr<Results> results = kept_results();
+  if (!results) throw Error("results are kept nowhere (REBAKE_RESULTS is empty): the model cannot be kept");
+  results->keep(transfer_model_key(body, sites), bytes);
+  fmt::print("kept: from now on drags of this object use it\n");
+}
+
+void train(const Options& options) {
+  if (options.edits.empty())
+    throw FieldError("edit", "say what moves it, such as '{\"op\": \"bend\", \"degrees\": 60, …}'");
+  auto [scene, sources] = read_all(options.paths, options.axes, progress_bar());
+  if (!options.out.empty()) sources.check_file(options.out);
+  const NodePtr node = chosen_node(scene, options.node);
+  std::vector<json> edits;
+  for (const std::string& text : options.edits) {
+    const json edit = json::parse(text, nullptr, false);
+    if (!edit.is_object()) throw FieldError("edit", "is no JSON object: " + text);
+    // What is wrong with it is said before anything is traced.
+    apply(scene, read_edit(edit, scene));
+    edits.push_back(edit);
+  }
+  const auto turning = turning_of(scene, node->id);
+  const auto pose = [&, &from = scene](int k) {
+    std::mt19937 random(static_cast<std::uint32_t>(k));
+    Scene made = from;
+    for (const json& edit : edits) made = apply(made, read_edit(posed(edit, random), made)).scene;
+    return find(made, node->id)->object;
+  };
+  TransferModel model = learnt_model(*turning, pose, {options.poses, options.rays}, progress_bar());
+  for (const json& edit : edits) model.poses_from += (model.poses_from.empty() ? "" : ", ") + edit.dump();
+  clear_progress_bar();
+  say(model);
+  const std::string bytes = bytes_of(model);
+  if (!options.out.empty()) write_file_atomically(options.out, bytes, sources);
+  if (options.out.empty() || kept_results()) keep(bytes, *node->object, model.sites);
+}
+
+void keep_model(const Options& options) {
+  if (options.paths.size() < 2) throw FieldError("paths", "name the model, then the scene that it is for");
+  const std::string bytes = read_model_bytes(options.paths.front());
+  const TransferModel model = transfer_model_of(bytes);
+  auto [scene, sources] = read_all({options.paths.begin() + 1, options.paths.end()}, options.axes, progress_bar());
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object) continue;
+    for (const BakedBody& body : bodies_of(*placed.node->object))
+      if (surface_hash(*body.object) == model.body) {
+        clear_progress_bar();
+        return keep(bytes, *body.object, model.sites);
+      }
+  }
+  throw FileError(options.paths.front(),
+                  "was learnt of another object: none in the scene has its triangles and texels");
+}
+
+}  // namespace
+
+void describe_light(CommandDescription& command) {
+  auto options = std::make_shared<Options>();
+  command.option("action", options->action, "train, keep or info", "train|keep|info")
+      .required()
+      .one_of(std::vector<std::string>{"train", "keep", "info"});
+  command
+      .option("paths", options->paths, "train: a scene; keep: a model and the scene it is for; info: a model",
+              "PATH...")
+      .required();
+  command.option("--edit", options->edits,
+                 "train: what moves the object, a line as in scripts; poses take it as far as -1 to 1 times",
+                 "JSON...");
+  command.option("--node", options->node, "train: the object; left out: the only one", "NAME");
+  command.option("--poses", options->poses, "train: so many", "N [200]").between(8, 100000);
+  command.option("--rays", options->rays, "train: from each point", "N [128]").between(16, 16384);
+  command.option("-o,--out", options->out, "train: also writes the model to a file", "FILE");
+  add_axes_option(command, options->axes);
+  command.footer(
+      "A model makes light that goes along with drags truer than turning alone, at poses like those it saw.");
+  command.does([options] {
+    if (options->action == "train") return train(*options);
+    if (options->action == "keep") return keep_model(*options);
+    say(transfer_model_of(read_model_bytes(options->paths.front())));
+  });
+}
+
+}  // namespace rebake

@@ -1,0 +1,212 @@
+#include "mesh_ops/light/transfer_model.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/hash.h"
+#include "mesh_ops/base/results.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr const char* kind = "rebake transfer model 1";
+
+// Numbers one after the other, written or read in the same order.
+class Writer {
+ public:
+  template <class T>
+  void operator()(const T* values, std::size_t count) {
+    bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+  }
+  std::string bytes;
+};
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : rest_(bytes) {}
+  template <class T>
+  void operator()(T* values, std::size_t count) {
+    if (rest_.size() / sizeof(T) < count) throw Error("it ends too early");
+    std::memcpy(values, rest_.data(), count * sizeof(T));
+    rest_.remove_prefix(count * sizeof(T));
+  }
+  bool done() const { return rest_.empty(); }
+
+ private:
+  std::string_view rest_;
+};
+
+struct Sizes {
+  std::uint64_t keys, probes, dimensions, components, kernels;
+};
+
+// All that is numbers, sized already.
+template <class Model, class Visit>
+void visit_numbers(Model& model, Visit& visit) {
+  auto& learnt = model.learnt;
+  const auto matrix = [&](auto& m) { visit(m.data(), static_cast<std::size_t>(m.size())); };
+  visit(model.keys.data(), model.keys.size());
+  visit(learnt.probes.data(), learnt.probes.size());
+  for (auto& p : learnt.space.rest) visit(p.data(), 3);
+  visit(&learnt.space.size, 1);
+  visit(&learnt.space.farthest, 1);
+  visit(&learnt.space.largest, 1);
+  matrix(learnt.space.mean);
+  matrix(learnt.space.axes);
+  matrix(learnt.space.deviations);
+  matrix(learnt.mean);
+  matrix(learnt.components);
+  matrix(learnt.linear);
+  matrix(learnt.centers);
+  matrix(learnt.kernel);
+  visit(&learnt.width, 1);
+}
+
+}  // namespace
+
+TransferModel learnt_model(const TurnedLight& start,
+                           const std::function<std::shared_ptr<const BakedObject>(int k)>& pose,
+                           const TransferModelOptions& options, const Progress& progress) {
+  const TurnedLight::Start& from = start.start();
+  if (!from.object->bodies.empty()) throw Error("edits have changed the object already: learn from it as it was read");
+  std::vector<Vec3> places;
+  for (const LightSite& site : from.sites.now) places.push_back(site.position);
+  TransferModel model;
+  model.body = surface_hash(*from.object);
+  model.sites = places.size();
+  model.poses = options.poses;
+  model.rays = options.rays;
+  // Those that lie far from each other; of as many places as there are all.
+  model.keys = PoseSpace::probes_of(places, options.keys);
+  std::vector<Vec3> key_places;
+  std::vector<float> facing;
+  for (const std::uint32_t k : model.keys) {
+    key_places.push_back(places[k]);
+    facing.push_back(from.facing[k]);
+  }
+  const auto began = std::chrono::steady_clock::now();
+  TransferTraining training(key_places, static_cast<std::size_t>(options.poses));
+  for (int k = 0; k < options.poses; ++k) {
+    progress.at("tracing poses", static_cast<double>(k) / options.poses);
+    const std::shared_ptr<const BakedObject> posed = pose(k);
+    if (!start.fits(*posed)) throw Error("a pose has other triangles than the object; only move them");
+    std::vector<std::vector<Mat3>> turns;
+    std::vector<Mat3> all_turns;
+    for (std::size_t s = 0; s < from.charts.size(); ++s) {
+      turns.push_back(node_turns(from.object->sets[s], posed->sets[s], *from.charts[s]));
+      all_turns.insert(all_turns.end(), turns.back().begin(), turns.back().end());
+    }
+    const std::vector<LightSite> sites = start.sites_on(*posed, turns);
+    std::vector<LightSite> key_sites;
+    std::vector<Mat3> key_turns;
+    for (std::size_t i = 0; i < model.keys.size(); ++i) {
+      key_sites.push_back(sites[model.keys[i]]);
+      key_places[i] = key_sites.back().position;
+      key_turns.push_back(all_turns[model.keys[i]]);
+    }
+    training.set(static_cast<std::size_t>(k), key_places, key_turns,
+                 shown_transfer(key_sites, facing, rays_among({{posed, Affine::Identity()}}), options.rays));
+  }
+  model.tracing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  // By `rebake study transfer` kernels gain nothing over it.
+  model.learnt = LearntTransfer::learnt(training, {.way = TransferWay::turned_linear}, progress);
+  return model;
+}
+
+std::string bytes_of(const TransferModel& model) {
+  const LearntTransfer& learnt = model.learnt;
+  const nlohmann::json head = {{"kind", kind},
+                               {"body", fmt::format("{:016x}", model.body)},
+                               {"sites", model.sites},
+                               {"poses_from", model.poses_from},
+                               {"poses", model.poses},
+                               {"rays", model.rays},
+                               {"tracing_seconds", model.tracing_seconds},
+                               {"learning_seconds", learnt.seconds},
+                               {"held_back_error", learnt.held_back_error},
+                               {"largest_displacement", learnt.space.largest * learnt.space.size},
+                               {"way", static_cast<int>(learnt.way)},
+                               {"keys", model.keys.size()},
+                               {"probes", learnt.probes.size()},
+                               {"dimensions", learnt.space.dimensions()},
+                               {"components", learnt.components.cols()},
+                               {"kernels", learnt.centers.cols()}};
+  Writer writer;
+  writer.bytes = head.dump() + "\n";
+  visit_numbers(model, writer);
+  const std::uint64_t hash = content_hash(writer.bytes);
+  writer(&hash, 1);
+  return std::move(writer.bytes);
+}
+
+TransferModel transfer_model_of(std::string_view bytes) {
+  std::uint64_t hash = 0;
+  const std::size_t line = bytes.find('\n');
+  if (line == std::string_view::npos || bytes.size() < line + 1 + sizeof(hash)) throw Error("it is no transfer model");
+  std::memcpy(&hash, bytes.data() + bytes.size() - sizeof(hash), sizeof(hash));
+  const std::string_view whole = bytes.substr(0, bytes.size() - sizeof(hash));
+  const auto head =
+      nlohmann::json::parse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(line), nullptr, false);
+  if (!head.is_object() || head.value("kind", "") != kind) throw Error("it is no transfer model of this version");
+  if (content_hash(whole) != hash) throw Error("it is damaged: its checksum is another");
+  TransferModel model;
+  try {
+    model.body = std::stoull(head.at("body").get<std::string>(), nullptr, 16);
+    model.sites = head.at("sites");
+    model.poses_from = head.at("poses_from");
+    model.poses = head.at("poses");
+    model.rays = head.at("rays");
+    model.tracing_seconds = head.at("tracing_seconds");
+    model.learnt.seconds = head.at("learning_seconds");
+    model.learnt.held_back_error = head.at("held_back_error");
+    const int way = head.at("way");
+    if (way < 0 || way > static_cast<int>(TransferWay::turned_kernel)) throw Error("its way is not known");
+    model.learnt.way = static_cast<TransferWay>(way);
+    const Sizes n{head.at("keys"), head.at("probes"), head.at("dimensions"), head.at("components"), head.at("kernels")};
+    // What is promised must be there before room is made for it.
+    if (n.keys > bytes.size() || n.probes > bytes.size() || n.dimensions > bytes.size() ||
+        n.components > bytes.size() || n.kernels > bytes.size() ||
+        n.keys * sh::count * (n.components + 1) * sizeof(float) > bytes.size() ||
+        n.probes * 3 * (n.dimensions + 1) * sizeof(double) > bytes.size() ||
+        n.kernels * (n.dimensions + n.components) * sizeof(double) > bytes.size())
+      throw Error("it ends too early");
+    const auto index = [](std::uint64_t value) { return static_cast<Eigen::Index>(value); };
+    LearntTransfer& learnt = model.learnt;
+    model.keys.resize(n.keys);
+    learnt.probes.resize(n.probes);
+    learnt.space.rest.resize(n.probes);
+    learnt.space.mean.resize(index(3 * n.probes));
+    learnt.space.axes.resize(index(n.dimensions), index(3 * n.probes));
+    learnt.space.deviations.resize(index(n.dimensions));
+    learnt.mean.resize(index(n.keys * sh::count));
+    learnt.components.resize(learnt.mean.size(), index(n.components));
+    learnt.linear.resize(index(n.components), index(n.dimensions + 1));
+    learnt.centers.resize(index(n.kernels > 0 ? n.dimensions : 0), index(n.kernels));
+    learnt.kernel.resize(index(n.kernels > 0 ? n.components : 0), index(n.kernels));
+  } catch (const nlohmann::json::exception&) {
+    throw Error("its first line lacks something");
+  } catch (const std::logic_error&) {
+    throw Error("its first line lacks something");
+  }
+  Reader reader(whole.substr(line + 1));
+  visit_numbers(model, reader);
+  if (!reader.done()) throw Error("it goes on behind its end");
+  for (const std::uint32_t key : model.keys)
+    if (key >= model.sites) throw Error("it names a site that is not there");
+  for (const std::uint32_t probe : model.learnt.probes)
+    if (probe >= model.keys.size()) throw Error("it names a site that is not there");
+  return model;
+}
+
+std::string transfer_model_key(const BakedObject& body, std::size_t sites) {
+  const std::array<std::uint64_t, 2> of{surface_hash(body), sites};
+  return result_key("transfermodel1", {reinterpret_cast<const char*>(of.data()), sizeof(of)});
+}
+
+}  // namespace rebake

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/light/learnt_transfer.h"
+#include "mesh_ops/light/turned_light.h"
+
+namespace rebake {
+
+/// What was learnt of one body's transfer: at some of its sites, the keys, from which the others take theirs.
+struct TransferModel {
+  std::uint64_t body = 0;   ///< hash of what shades (surface_hash)
+  std::uint64_t sites = 0;  ///< how many it had
+  std::string poses_from;   ///< what moved it, for people
+  int poses = 0, rays = 0;  ///< that it was learnt from
+  double tracing_seconds = 0;
+  std::vector<std::uint32_t> keys;  ///< numbers of sites
+  LearntTransfer learnt;            ///< of the keys, in frames that turn along
+};
+
+struct TransferModelOptions {
+  int poses = 200, rays = 128;
+  std::size_t keys = 4096;
+};
+/// Learns from poses of the object that `start` is of, which must be as its light was baked. `pose(k)` moves its
+/// triangles, the same way for the same number. Throws Error for an object that edits moved already, and for poses of
+/// other triangles.
+TransferModel learnt_model(const TurnedLight& start,
+                           const std::function<std::shared_ptr<const BakedObject>(int k)>& pose,
+                           const TransferModelOptions& options, const Progress& progress = {});
+
+/// As files and stores hold it: a line of JSON for people, then numbers, then a hash of all.
+std::string bytes_of(const TransferModel& model);
+/// Throws Error, saying what is wrong.
+TransferModel transfer_model_of(std::string_view bytes);
+
+/// Where the model of a body is kept (Results).
+std::string transfer_model_key(const BakedObject& body, std::size_t sites);
+
+}  // namespace rebake
