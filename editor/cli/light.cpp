@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -116,14 +118,21 @@ void train(const Options& options) {
   if (options.edits.empty())
     throw FieldError("edit", "say what moves it, such as '{\"op\": \"bend\", \"degrees\": 60, …}'");
   auto [scene, sources] = read_all(options.paths, options.axes, progress_bar());
-  if (!options.out.empty()) sources.check_file(options.out);
+  if (!options.out.empty()) {
+    sources.check_file(options.out);
+    const std::filesystem::path folder = std::filesystem::absolute(options.out).parent_path();
+    if (!std::filesystem::is_directory(folder)) throw FieldError("out", "there is no folder " + folder.string());
+  } else if (!kept_results()) {
+    throw FieldError("out", "name a file: results are kept nowhere (REBAKE_RESULTS is empty)");
+  }
   const NodePtr node = chosen_node(scene, options.node);
   std::vector<json> edits;
   for (const std::string& text : options.edits) {
     const json edit = json::parse(text, nullptr, false);
     if (!edit.is_object()) throw FieldError("edit", "is no JSON object: " + text);
     // What is wrong with it is said before anything is traced.
-    apply(scene, read_edit(edit, scene));
+    const NodePtr after = find(apply(scene, read_edit(edit, scene)).scene, node->id);
+    if (!after || !after->object) throw FieldError("edit", "takes the object away that is learnt: " + text);
     edits.push_back(edit);
   }
   const auto turning = turning_of(scene, node->id);
@@ -131,7 +140,9 @@ void train(const Options& options) {
     std::mt19937 random(static_cast<std::uint32_t>(k));
     Scene made = from;
     for (const json& edit : edits) made = apply(made, read_edit(posed(edit, random), made)).scene;
-    return find(made, node->id)->object;
+    const NodePtr moved = find(made, node->id);
+    if (!moved || !moved->object) throw FieldError("edit", "takes the object away that is learnt");
+    return moved->object;
   };
   TransferModel model = learnt_model(*turning, pose, {options.poses, options.rays}, progress_bar());
   for (const json& edit : edits) model.poses_from += (model.poses_from.empty() ? "" : ", ") + edit.dump();
@@ -171,10 +182,10 @@ void describe_light(CommandDescription& command) {
               "PATH...")
       .required();
   command.option("--edit", options->edits,
-                 "train: what moves the object, a line as in scripts; poses take it as far as -1 to 1 times",
+                 "train, needed: what moves the object, a line as in scripts; poses take it as far as -1 to 1 times",
                  "JSON...");
   command.option("--node", options->node, "train: the object; left out: the only one", "NAME");
-  command.option("--poses", options->poses, "train: so many", "N [200]").between(8, 100000);
+  command.option("--poses", options->poses, "train: so many", "N [200]").between(8, 2000);
   command.option("--rays", options->rays, "train: from each point", "N [128]").between(16, 16384);
   command.option("-o,--out", options->out, "train: also writes the model to a file", "FILE");
   add_axes_option(command, options->axes);

@@ -125,7 +125,7 @@ PosedBody wrapped_part(const Scene& scene, const Box& shares, double coarseness)
   for (const Face& face : whole.faces)
     if (component[face[0]] == largest) mesh.faces.push_back({number[face[0]], number[face[1]], number[face[2]]});
   PosedBody body = in_lattice("branch", std::move(mesh));
-  body.chart = disk_chart(body.rest, DiskLayout::even);
+  body.chart = disk_chart(body.rest);
   return body;
 }
 

@@ -27,11 +27,10 @@ class Sightlines {
 struct TexelGroup {
   Lanes features[texel_features];  ///< decoded, of the texels as they were
   Lanes turn[9];                   ///< row-major, where turned
+  Lanes gain[3], offset[3];        ///< what light makes of linear colours, where lit
   std::size_t count = 0;
   std::array<std::uint32_t, network_lanes> site{};  ///< of each lane, among the block's
-  bool turned = false;
-  Lanes gain[3], offset[3];  ///< what light makes of linear colours, where lit
-  bool lit = false;
+  bool turned = false, lit = false;
 };
 std::vector<TexelGroup> groups_of(const Composition& composition, const Composition::Block& block,
                                   const std::vector<TexelSite>& sites);

@@ -4,7 +4,6 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_parameterization/Discrete_conformal_map_parameterizer_3.h>
-#include <CGAL/Surface_mesh_parameterization/Iterative_authalic_parameterizer_3.h>
 #include <CGAL/Surface_mesh_parameterization/Mean_value_coordinates_parameterizer_3.h>
 #include <CGAL/Surface_mesh_parameterization/Square_border_parameterizer_3.h>
 #include <CGAL/Surface_mesh_parameterization/parameterize.h>
@@ -51,7 +50,7 @@ void lay_out(Mesh& mesh, DiskChart& chart) {
 
 }  // namespace
 
-DiskChart disk_chart(const ProxyMesh& mesh, DiskLayout wanted, int tips) {
+DiskChart disk_chart(const ProxyMesh& mesh, int tips) {
   DiskChart chart = cut_along(mesh, seams_of(mesh, tips));
   Mesh disk;
   for (const std::uint32_t v : chart.source) {
@@ -63,10 +62,6 @@ DiskChart disk_chart(const ProxyMesh& mesh, DiskLayout wanted, int tips) {
         Mesh::null_face())
       throw Error("two fans of triangles meet in one vertex: the mesh is not manifold");
   chart.uvs.resize(chart.source.size());
-  if (wanted == DiskLayout::even) {
-    lay_out<layout::Iterative_authalic_parameterizer_3<Mesh, Border>>(disk, chart);
-    if (!folds(chart)) return chart;
-  }
   lay_out<layout::Discrete_conformal_map_parameterizer_3<Mesh, Border>>(disk, chart);
   if (folds(chart)) lay_out<layout::Mean_value_coordinates_parameterizer_3<Mesh, Border>>(disk, chart);
   return chart;

@@ -182,11 +182,15 @@ std::shared_ptr<const TransferModel> LightReceiver::kept_model() const {
     return nullptr;
   const BakedObject& body = *bodies.front().object;
   const auto bytes = options_.results->find(transfer_model_key(body, sites_.size()));
-  if (!bytes || body.triangle_count() != object().triangle_count()) return nullptr;
+  if (!bytes || !TurnedLight::same_triangles(body, object())) return nullptr;
   try {
     auto model = std::make_shared<const TransferModel>(transfer_model_of(*bytes));
-    return model->body == surface_hash(body) && model->sites == sites_.size() ? model : nullptr;
-  } catch (const Error&) {
+    if (model->body != surface_hash(body) || model->sites != sites_.size()) return nullptr;
+    // What shows may be the other side in another light: it was not learnt of that.
+    for (std::size_t k = 0; k < model->keys.size(); ++k)
+      if (model->facing[k] != facing_[model->keys[k]]) return nullptr;
+    return model;
+  } catch (const std::exception&) {
     return nullptr;
   }
 }

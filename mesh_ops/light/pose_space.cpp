@@ -1,6 +1,7 @@
 #include "mesh_ops/light/pose_space.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace rebake {

@@ -1,6 +1,7 @@
 #include "mesh_ops/light/proxy_mesh.h"
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "mesh_ops/base/polar.h"
 

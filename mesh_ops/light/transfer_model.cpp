@@ -52,6 +52,7 @@ void visit_numbers(Model& model, Visit& visit) {
   auto& learnt = model.learnt;
   const auto matrix = [&](auto& m) { visit(m.data(), static_cast<std::size_t>(m.size())); };
   visit(model.keys.data(), model.keys.size());
+  visit(model.facing.data(), model.facing.size());
   visit(learnt.probes.data(), learnt.probes.size());
   for (auto& p : learnt.space.rest) visit(p.data(), 3);
   visit(&learnt.space.size, 1);
@@ -85,10 +86,9 @@ TransferModel learnt_model(const TurnedLight& start,
   // Those that lie far from each other; of as many places as there are all.
   model.keys = PoseSpace::probes_of(places, options.keys);
   std::vector<Vec3> key_places;
-  std::vector<float> facing;
   for (const std::uint32_t k : model.keys) {
     key_places.push_back(places[k]);
-    facing.push_back(from.facing[k]);
+    model.facing.push_back(from.facing[k]);
   }
   const auto began = std::chrono::steady_clock::now();
   TransferTraining training(key_places, static_cast<std::size_t>(options.poses));
@@ -111,9 +111,12 @@ TransferModel learnt_model(const TurnedLight& start,
       key_turns.push_back(all_turns[model.keys[i]]);
     }
     training.set(static_cast<std::size_t>(k), key_places, key_turns,
-                 shown_transfer(key_sites, facing, rays_among({{posed, Affine::Identity()}}), options.rays));
+                 shown_transfer(key_sites, model.facing, rays_among({{posed, Affine::Identity()}}), options.rays));
   }
   model.tracing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  const PoseSpace seen(training.rest_probes, training.posed_probes);
+  constexpr double least = 1e-6;  // of the body's size: rounding moves it about as far
+  if (!(seen.largest > least)) throw Error("nothing moves in these poses: the edit must move triangles of the object");
   // By `rebake study transfer` kernels gain nothing over it.
   model.learnt = LearntTransfer::learnt(training, {.way = TransferWay::turned_linear}, progress);
   return model;
@@ -153,7 +156,8 @@ TransferModel transfer_model_of(std::string_view bytes) {
   const std::string_view whole = bytes.substr(0, bytes.size() - sizeof(hash));
   const auto head =
       nlohmann::json::parse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(line), nullptr, false);
-  if (!head.is_object() || head.value("kind", "") != kind) throw Error("it is no transfer model of this version");
+  if (!head.is_object() || !head.contains("kind") || head["kind"] != kind)
+    throw Error("it is no transfer model of this version");
   if (content_hash(whole) != hash) throw Error("it is damaged: its checksum is another");
   TransferModel model;
   try {
@@ -165,20 +169,25 @@ TransferModel transfer_model_of(std::string_view bytes) {
     model.tracing_seconds = head.at("tracing_seconds");
     model.learnt.seconds = head.at("learning_seconds");
     model.learnt.held_back_error = head.at("held_back_error");
-    const int way = head.at("way");
-    if (way < 0 || way > static_cast<int>(TransferWay::turned_kernel)) throw Error("its way is not known");
-    model.learnt.way = static_cast<TransferWay>(way);
+    if (head.at("way") != static_cast<int>(TransferWay::turned_linear)) throw Error("its way is not known");
+    model.learnt.way = TransferWay::turned_linear;
     const Sizes n{head.at("keys"), head.at("probes"), head.at("dimensions"), head.at("components"), head.at("kernels")};
-    // What is promised must be there before room is made for it.
-    if (n.keys > bytes.size() || n.probes > bytes.size() || n.dimensions > bytes.size() ||
-        n.components > bytes.size() || n.kernels > bytes.size() ||
-        n.keys * sh::count * (n.components + 1) * sizeof(float) > bytes.size() ||
-        n.probes * 3 * (n.dimensions + 1) * sizeof(double) > bytes.size() ||
-        n.kernels * (n.dimensions + n.components) * sizeof(double) > bytes.size())
+    // What is promised must be there before room is made for it; in doubles, which do not overflow.
+    const auto fits = [&](double values, std::size_t size) {
+      return values * static_cast<double>(size) <= static_cast<double>(bytes.size());
+    };
+    const auto keys = static_cast<double>(n.keys), probes = static_cast<double>(n.probes),
+               dimensions = static_cast<double>(n.dimensions), components = static_cast<double>(n.components),
+               kernels = static_cast<double>(n.kernels);
+    if (n.keys == 0 || n.probes == 0) throw Error("it has no points");
+    if (!fits(keys * sh::count * (components + 1), sizeof(float)) ||
+        !fits(probes * 3 * (dimensions + 1), sizeof(double)) || !fits(components * (dimensions + 1), sizeof(double)) ||
+        !fits(kernels * (dimensions + components), sizeof(double)))
       throw Error("it ends too early");
     const auto index = [](std::uint64_t value) { return static_cast<Eigen::Index>(value); };
     LearntTransfer& learnt = model.learnt;
     model.keys.resize(n.keys);
+    model.facing.resize(n.keys);
     learnt.probes.resize(n.probes);
     learnt.space.rest.resize(n.probes);
     learnt.space.mean.resize(index(3 * n.probes));

@@ -17,6 +17,7 @@ struct TransferModel {
   int poses = 0, rays = 0;  ///< that it was learnt from
   double tracing_seconds = 0;
   std::vector<std::uint32_t> keys;  ///< numbers of sites
+  std::vector<float> facing;        ///< of the keys, what showed (facing_of)
   LearntTransfer learnt;            ///< of the keys, in frames that turn along
 };
 

@@ -12,8 +12,11 @@ namespace rebake {
 
 namespace {
 
+// Of what counts as a rotation; NaNs do not.
+constexpr double least_volume = 0.5;
+
 // Orthonormal axes that go with a triangle: its normal and the bisectors of two edges' directions, which stretching
-// turns least. Not finite where there is no area.
+// turns least. Not a rotation where there is no area.
 Mat3 frame_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 e = (b - a).stableNormalized(), f = (c - a).stableNormalized();
   Mat3 frame;
@@ -54,7 +57,8 @@ std::vector<Mat3> node_turns(const TextureSet& from, const TextureSet& to, const
         mean += before != nullptr ? Mat3(weight * (*after)[now[k]] * (*before)[face[k]].transpose())
                                   : Mat3(weight * (*after)[now[k]]);
       }
-      turns[i] = rotation_near(mean);
+      // Corners turned by half a turn against each other have nothing between them.
+      if (const Mat3 turn = rotation_near(mean); turn.determinant() > least_volume) turns[i] = turn;
       return;
     }
     const auto frame = [](const TextureSet& set, const Face& f) {
@@ -62,7 +66,7 @@ std::vector<Mat3> node_turns(const TextureSet& from, const TextureSet& to, const
       return frame_of(positions[f[0]], positions[f[1]], positions[f[2]]);
     };
     const Mat3 turn = frame(to, now) * frame(from, face).transpose();
-    if (turn.allFinite()) turns[i] = turn;
+    if (turn.determinant() > least_volume) turns[i] = turn;
   });
   return turns;
 }
@@ -120,7 +124,7 @@ void TurnedLight::prepare_model() {
     for (const Mat3& turn : node_turns(body->sets[s], start_.object->sets[s], *start_.charts[s]))
       since_baked_.push_back(turn);
   const PoseSpace::Place place = model.learnt.space.place(probes_in(start_.sites.now));
-  if (place.range > LearntTransfer::trusted_range) return;
+  if (!(place.range <= LearntTransfer::trusted_range)) return;
   learnt_ = model.learnt.predict(place);
   // Of the keys that are near and face much the same way, the nearest four.
   const auto shown_normal = [&](std::size_t i) -> Vec3 {
@@ -164,7 +168,7 @@ std::vector<Vec3> TurnedLight::probes_in(const std::vector<LightSite>& sites) co
 }
 
 std::optional<double> TurnedLight::range_of(const BakedObject& object) const {
-  if (!start_.model) return std::nullopt;
+  if (shares_.empty()) return std::nullopt;
   std::vector<std::vector<Mat3>> turns;
   for (const auto& chart : start_.charts) turns.emplace_back(chart->nodes.size(), Mat3::Identity());
   return start_.model->learnt.space.place(probes_in(sites_on(object, turns))).range;
@@ -175,8 +179,11 @@ void TurnedLight::add_learnt(const std::vector<LightSite>& sites, const std::vec
                              std::vector<Radiance>& light) const {
   if (shares_.empty()) return;
   const PoseSpace::Place place = start_.model->learnt.space.place(probes_in(sites));
-  if (place.range > LearntTransfer::trusted_range) return;
-  const Eigen::VectorXf change = start_.model->learnt.predict(place) - learnt_;
+  // Less and less of it towards the end of its range, so that nothing jumps there.
+  constexpr double fades = 0.5;
+  const double share = std::min(1.0, (LearntTransfer::trusted_range - place.range) / fades);
+  if (!(share > 0)) return;
+  const Eigen::VectorXf change = static_cast<float>(share) * (start_.model->learnt.predict(place) - learnt_);
   for (std::size_t s = 0; s < turns.size(); ++s)
     tbb::parallel_for(std::size_t{0}, turns[s].size(), [&](std::size_t k) {
       const std::size_t i = start_.sites.first[s] + k;
@@ -188,8 +195,8 @@ void TurnedLight::add_learnt(const std::vector<LightSite>& sites, const std::vec
     });
 }
 
-bool TurnedLight::fits(const BakedObject& object) const {
-  const auto &a = start_.object->sets, &b = object.sets;
+bool TurnedLight::same_triangles(const BakedObject& first, const BakedObject& second) {
+  const auto &a = first.sets, &b = second.sets;
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const TextureSet& x, const TextureSet& y) {
     if (x.texels != y.texels || x.soup.triangle_count() != y.soup.triangle_count()) return false;
     if (x.soup.shared_uvs() == y.soup.shared_uvs() && x.soup.shared_faces() == y.soup.shared_faces()) return true;

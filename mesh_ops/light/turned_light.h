@@ -37,14 +37,16 @@ class TurnedLight {
   explicit TurnedLight(Start start);
 
   /// Whether an object has the same triangles, maybe elsewhere.
-  bool fits(const BakedObject& object) const;
+  bool fits(const BakedObject& object) const { return same_triangles(*start_.object, object); }
+  static bool same_triangles(const BakedObject& first, const BakedObject& second);
   /// The change of colours of an object that fits, a map a texture set; null where nothing changes.
   std::vector<std::shared_ptr<const LightMap>> maps(const BakedObject& object) const;
   /// Irradiance over π of each site there.
   std::vector<Radiance> light_on(const BakedObject& object) const;
   /// The sites when they have turned so.
   std::vector<LightSite> sites_on(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns) const;
-  /// How far out a pose is of those that the model was learnt from (PoseSpace::Place::range); nothing without one.
+  /// How far out a pose is of those that the model was learnt from (PoseSpace::Place::range); nothing without one, and
+  /// where it started outside of them.
   std::optional<double> range_of(const BakedObject& object) const;
   const Start& start() const { return start_; }
 

@@ -27,7 +27,10 @@ const Module& module() {
     Module result;
     Dl_info info{};
     if (dladdr(reinterpret_cast<const void*>(&can_train_unet), &info) == 0) return result;
-    const std::filesystem::path folder = std::filesystem::absolute(info.dli_fname).parent_path();
+    // Of the program itself the name may be what it was called by.
+    std::filesystem::path own = info.dli_fname;
+    if (!own.has_parent_path()) own = std::filesystem::read_symlink("/proc/self/exe");
+    const std::filesystem::path folder = std::filesystem::absolute(own).parent_path();
     for (const char* place : {".", "../lib/rebake", "../../rebake"}) {
       const std::filesystem::path path = folder / place / "librebake_unet.so";
       std::error_code error;

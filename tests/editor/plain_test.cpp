@@ -73,7 +73,7 @@ Scene edited(const std::vector<const char*>& lines) {
   for (const char* line : lines) {
     nlohmann::json edit = nlohmann::json::parse(line);
     if (edit["op"] == "import")
-      edit["path"] = std::string(REBAKE_SOURCE) + "/samples/scenes/" + std::string(edit["as"]);
+      edit["path"] = (std::filesystem::path(REBAKE_SOURCE) / "samples/scenes" / edit["as"].get<std::string>()).string();
     document.edit(read_edit(edit, document.scene()));
   }
   return document.scene();

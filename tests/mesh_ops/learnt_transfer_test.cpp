@@ -205,7 +205,6 @@ TEST(DiskChart, LaysOutWhatHasOneBorderNoneAndMany) {
       torus.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
   expect_disk(disk_chart(torus), torus);
-  expect_disk(disk_chart(torus, DiskLayout::even), torus);
   torus.faces.erase(torus.faces.begin() + 100);
   torus.faces.erase(torus.faces.begin() + 20);
   expect_disk(disk_chart(torus), torus);

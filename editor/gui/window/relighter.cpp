@@ -59,7 +59,13 @@ std::string Relighter::problem() const {
 // Shows light that turns along with what moved since it was worked out, where that is all that changed.
 bool Relighter::turn_along(const Scene& scene) {
   if (!start_) return false;
-  std::optional<Lighting> turned = turned_lighting(start_scene_, *start_, scene);
+  std::optional<Lighting> turned;
+  try {
+    turned = turned_lighting(start_scene_, *start_, scene);
+  } catch (const std::exception&) {
+    // Tracing it says what is wrong.
+    return false;
+  }
   if (!turned) return false;
   const std::lock_guard lock(mutex_);
   if (asked_ && asked_->scene.light) latest_ = std::make_shared<const Lighting>(std::move(*turned));
@@ -82,10 +88,16 @@ void Relighter::loop() {
     // The last is what was asked for; a rough one stands in for it while it is worth it.
     constexpr int quick = 16;
     const int full = next.scene.light->rays;
+    cancel_ = false;
     lock.unlock();
     const bool turned = turn_along(next.scene);
     lock.lock();
     if (turned) wake_();
+    // Asked for something else meanwhile: what was begun for this is not worth it.
+    if (wanted_ || ending_) {
+      running_ = false;
+      continue;
+    }
     std::vector<int> passes;
     if (!turned && (next.rough || full >= 2 * quick)) passes.push_back(std::min(quick, full));
     if (!next.rough) passes.push_back(full);

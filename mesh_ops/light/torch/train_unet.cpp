@@ -5,7 +5,6 @@
 #include <cstring>
 #include <numbers>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "mesh_ops/light/unet_layers.h"
@@ -78,8 +77,8 @@ struct Network : torch::nn::Module {
 
 int train(const rebake::UnetTask& task, float* result) {
   torch::manual_seed(task.seed);
-  // Debian's LibTorch starts with one.
-  torch::set_num_threads(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  // Two are no faster on images this small, and wait for each other where the machine is busy.
+  torch::set_num_threads(1);
   const auto poses = static_cast<std::int64_t>(task.poses);
   const auto tensor = [](const float* values, std::vector<std::int64_t> shape) {
     return torch::from_blob(const_cast<float*>(values), shape, torch::kFloat32);
