@@ -80,7 +80,7 @@ int train(const rebake::UnetTask& task, float* result) {
   // Two are no faster on images this small, and wait for each other where the machine is busy.
   torch::set_num_threads(1);
   const auto poses = static_cast<std::int64_t>(task.poses);
-  const auto tensor = [](const float* values, std::vector<std::int64_t> shape) {
+  const auto tensor = [](const float* values, const std::vector<std::int64_t>& shape) {
     return torch::from_blob(const_cast<float*>(values), shape, torch::kFloat32);
   };
   const Tensor images = tensor(task.images, {poses, rebake::unet_inputs, task.side, task.side}),
