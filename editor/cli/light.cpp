@@ -22,19 +22,24 @@ namespace {
 
 using nlohmann::json;
 
+// A number, or a list of them.
+template <class Change>
+void for_each_number(json& value, Change change) {
+  if (value.is_number()) value = change(value.get<double>());
+  if (value.is_array())
+    for (json& one : value)
+      if (one.is_number()) one = change(one.get<double>());
+}
+
 // What says how far a deformation goes: scaled by a share of it that each pose draws.
 void scale_strength(json& edit, double share) {
   for (const char* field : {"degrees", "translate"}) {
     if (!edit.contains(field)) continue;
-    json& value = edit[field];
-    if (value.is_number()) value = value.get<double>() * share;
-    if (value.is_array())
-      for (json& one : value)
-        if (one.is_number()) one = one.get<double>() * share;
+    for_each_number(edit[field], [&](double number) { return number * share; });
   }
   for (const char* field : {"factor", "scale"})
-    if (edit.contains(field) && edit[field].is_number() && edit[field].get<double>() > 0)
-      edit[field] = std::pow(edit[field].get<double>(), share);
+    if (edit.contains(field))
+      for_each_number(edit[field], [&](double number) { return number > 0 ? std::pow(number, share) : number; });
   if (edit.contains("rotate") && edit["rotate"].is_object()) scale_strength(edit["rotate"], share);
 }
 
@@ -115,8 +120,12 @@ void keep(const std::string& bytes, const BakedObject& body, std::size_t sites) 
 }
 
 void train(const Options& options) {
+  for (const std::string& path : options.paths)
+    if (!std::filesystem::exists(path)) throw FileError(path, "is not there");
   if (options.edits.empty())
-    throw FieldError("edit", "say what moves it, such as '{\"op\": \"bend\", \"degrees\": 60, …}'");
+    throw FieldError(
+        "edit",
+        "say what moves it, such as '{\"op\": \"bend\", \"node\": \"NAME\", \"degrees\": 60, \"axis\": [0, 1, 0]}'");
   auto [scene, sources] = read_all(options.paths, options.axes, progress_bar());
   if (!options.out.empty()) {
     sources.check_file(options.out);
@@ -155,6 +164,8 @@ void train(const Options& options) {
 
 void keep_model(const Options& options) {
   if (options.paths.size() < 2) throw FieldError("paths", "name the model, then the scene that it is for");
+  if (std::filesystem::is_directory(options.paths.front()))
+    throw FieldError("paths", options.paths.front() + " is a folder: name the model first, then the scene");
   const std::string bytes = read_model_bytes(options.paths.front());
   const TransferModel model = transfer_model_of(bytes);
   auto [scene, sources] = read_all({options.paths.begin() + 1, options.paths.end()}, options.axes, progress_bar());
@@ -190,10 +201,13 @@ void describe_light(CommandDescription& command) {
   command.option("-o,--out", options->out, "train: also writes the model to a file", "FILE");
   add_axes_option(command, options->axes);
   command.footer(
-      "A model makes light that goes along with drags truer than turning alone, at poses like those it saw.");
+      "A model lets light that goes along with drags know what turning alone cannot, at poses like those it saw. It is "
+      "kept "
+      "by the object's content; a later one of the same object takes its place.");
   command.does([options] {
     if (options->action == "train") return train(*options);
     if (options->action == "keep") return keep_model(*options);
+    if (options->paths.size() > 1) throw FieldError("paths", "info takes one model");
     say(transfer_model_of(read_model_bytes(options->paths.front())));
   });
 }

@@ -75,10 +75,10 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-double median_frame_ms(Renderer& renderer, const Scene& scene, const View& view, int frames) {
-  renderer.render(scene, view);
+double median_frame_ms(Renderer& renderer, const Scene& scene, const View& view, int frames, const Lighting* lighting) {
+  renderer.render(scene, view, {}, lighting);
   std::vector<double> times;
-  for (int k = 0; k < frames; ++k) times.push_back(renderer.time_frame(scene, view, {}, false).frame_ms);
+  for (int k = 0; k < frames; ++k) times.push_back(renderer.time_frame(scene, view, {}, false, lighting).frame_ms);
   return median(std::move(times));
 }
 
@@ -155,7 +155,7 @@ void measure_pictures(Renderer& renderer, const Scene& composition, const Lighti
   renderer.render(before, view);
   renderer.render(after, view);
   for (int k = 0; k < 9; ++k) {
-    times_before.push_back(renderer.time_frame(before, view, {}, false).frame_ms);
+    times_before.push_back(renderer.time_frame(before, view, {}, false, &lighting).frame_ms);
     times_after.push_back(renderer.time_frame(after, view, {}, false).frame_ms);
   }
   report.composition_frame_ms = median(times_before);

@@ -40,7 +40,8 @@ void measure_pictures(Renderer& renderer, const Scene& composition, const Lighti
                       PlainReport& report, const Progress& progress, int size = 800);
 
 /// Median of so many frames, after one that is not counted.
-double median_frame_ms(Renderer& renderer, const Scene& scene, const View& view, int frames);
+double median_frame_ms(Renderer& renderer, const Scene& scene, const View& view, int frames,
+                       const Lighting* lighting = nullptr);
 
 /// What a way is, for people.
 const char* words_of(FuseWay way);

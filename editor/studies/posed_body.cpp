@@ -17,14 +17,8 @@ namespace rebake {
 
 namespace {
 
-Box box_of(const ProxyMesh& mesh) {
-  Box box;
-  for (const Vec3& p : mesh.vertices) box.extend(p);
-  return box;
-}
-
 PosedBody in_lattice(std::string name, ProxyMesh rest) {
-  Box box = box_of(rest);
+  Box box = bounds(rest);
   const Vec3 room = Vec3::Constant(0.05 * box.diagonal().norm());
   box = Box(box.min() - room, box.max() + room);
   // The most cells along the longest sides.
@@ -57,7 +51,7 @@ ProxyMesh PosedBody::caged(std::uint32_t seed, double amplitude) const {
 }
 
 ProxyMesh PosedBody::bent(double degrees) const {
-  const Box box = box_of(rest);
+  const Box box = bounds(rest);
   Eigen::Index longest = 0, thinnest = 0;
   box.sizes().maxCoeff(&longest);
   box.sizes().minCoeff(&thinnest);

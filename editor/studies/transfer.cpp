@@ -42,7 +42,7 @@ std::array<std::vector<Tested>, 3> tested_poses(const PosedBody& body, const Pro
 
 TransferTraining trained_poses(const PosedBody& body, UnetTransfer::Training* images, const Progress& progress) {
   const Clock::time_point start = Clock::now();
-  TransferTraining training(body.rest.vertices, training_poses);
+  TransferTraining training(body.rest.vertices, training_poses, TransferTraining::Frames::both);
   for (std::uint32_t k = 0; k < training_poses; ++k) {
     progress.at("poses of " + body.name, static_cast<double>(k) / training_poses);
     const ProxyMesh posed = body.caged(k, amplitude);
@@ -50,7 +50,6 @@ TransferTraining trained_poses(const PosedBody& body, UnetTransfer::Training* im
     training.set(k, posed.vertices, traced.turns, traced.transfer.sites);
     if (images != nullptr) images->add(traced.sites, traced.turns, traced.transfer.sites);
   }
-  training.rays = training_rays;
   training.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return training;
 }

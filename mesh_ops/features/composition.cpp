@@ -118,21 +118,6 @@ std::uint32_t opaque_texels_in(const FeatureTexture& texels, const TexelRect& re
   return opaque;
 }
 
-// As the GPU does: bilinearly between the centres of texels.
-Eigen::Vector3f interpolated(const LightChart& chart, const std::vector<Eigen::Vector3f>& values,
-                             const Eigen::Vector2f& place) {
-  const float x = std::clamp(place.x() - 0.5F, 0.0F, static_cast<float>(chart.width - 1)),
-              y = std::clamp(place.y() - 0.5F, 0.0F, static_cast<float>(chart.height - 1));
-  const int left = static_cast<int>(x), top = static_cast<int>(y);
-  const float right = x - static_cast<float>(left), down = y - static_cast<float>(top);
-  const auto at = [&](int column, int row) -> const Eigen::Vector3f& {
-    return values[static_cast<std::size_t>(std::min(row, chart.height - 1)) * static_cast<std::size_t>(chart.width) +
-                  static_cast<std::size_t>(std::min(column, chart.width - 1))];
-  };
-  return (1 - down) * ((1 - right) * at(left, top) + right * at(left + 1, top)) +
-         down * ((1 - right) * at(left, top + 1) + right * at(left + 1, top + 1));
-}
-
 void add_blocks(Composition& result, std::uint32_t number) {
   const TextureSet& page = result.pages[number];
   const TexelPatches patches = texel_patches(page);

@@ -45,11 +45,12 @@ Eigen::MatrixXd gaussians(const Eigen::MatrixXd& centers, const Eigen::MatrixXd&
 
 }  // namespace
 
-TransferTraining::TransferTraining(const std::vector<Vec3>& rest, std::size_t poses, std::size_t probe_count)
+TransferTraining::TransferTraining(const std::vector<Vec3>& rest, std::size_t poses, Frames frames,
+                                   std::size_t probe_count)
     : probes(PoseSpace::probes_of(rest, probe_count)), rest_probes(picked(rest, probes)), posed_probes(poses) {
   const auto rows = static_cast<Eigen::Index>(poses), columns = static_cast<Eigen::Index>(rest.size() * sh::count);
   local.setZero(rows, columns);
-  plain.setZero(rows, columns);
+  if (frames == Frames::both) plain.setZero(rows, columns);
 }
 
 std::vector<Vec3> TransferTraining::probes_in(const std::vector<Vec3>& places) const { return picked(places, probes); }
@@ -60,7 +61,7 @@ void TransferTraining::set(std::size_t k, const std::vector<Vec3>& places, const
   const auto row = static_cast<Eigen::Index>(k);
   tbb::parallel_for(std::size_t{0}, transfer.size(), [&](std::size_t i) {
     const auto column = static_cast<Eigen::Index>(i * sh::count);
-    plain.block<1, sh::count>(row, column) = transfer[i].transpose().cast<float>();
+    if (plain.size() > 0) plain.block<1, sh::count>(row, column) = transfer[i].transpose().cast<float>();
     const sh::Coefficients back = sh::Rotation(turns[i].transpose()) * transfer[i];
     local.block<1, sh::count>(row, column) = back.transpose().cast<float>();
   });

@@ -23,11 +23,13 @@ struct TransferTraining {
   std::vector<std::uint32_t> probes;            ///< sites by whose places poses are told apart
   std::vector<Vec3> rest_probes;                ///< their places at rest
   std::vector<std::vector<Vec3>> posed_probes;  ///< their places in each pose
-  Eigen::MatrixXf local, plain;                 ///< a pose a row: 16 coefficients a site, in turned frames and not
+  Eigen::MatrixXf local;                        ///< a pose a row: 16 coefficients a site, in frames that turn along
+  Eigen::MatrixXf plain;                        ///< the same in the body's space; empty where nobody wants it
   double seconds = 0;                           ///< that tracing took
-  int rays = 0;
 
-  TransferTraining(const std::vector<Vec3>& rest, std::size_t poses, std::size_t probe_count = 48);
+  /// Which frames are kept: TransferWay::linear needs both.
+  enum class Frames { turned, both };
+  TransferTraining(const std::vector<Vec3>& rest, std::size_t poses, Frames frames, std::size_t probe_count = 48);
   /// Fills in the pose `k`: places, turns since rest and transfer of each site.
   void set(std::size_t k, const std::vector<Vec3>& places, const std::vector<Mat3>& turns,
            const std::vector<sh::Coefficients>& transfer);

@@ -185,11 +185,7 @@ std::shared_ptr<const TransferModel> LightReceiver::kept_model() const {
   if (!bytes || !TurnedLight::same_triangles(body, object())) return nullptr;
   try {
     auto model = std::make_shared<const TransferModel>(transfer_model_of(*bytes));
-    if (model->body != surface_hash(body) || model->sites != sites_.size()) return nullptr;
-    // What shows may be the other side in another light: it was not learnt of that.
-    for (std::size_t k = 0; k < model->keys.size(); ++k)
-      if (model->facing[k] != facing_[model->keys[k]]) return nullptr;
-    return model;
+    return model->body == surface_hash(body) && model->sites == sites_.size() ? model : nullptr;
   } catch (const std::exception&) {
     return nullptr;
   }
@@ -214,8 +210,9 @@ std::shared_ptr<const TurnedLight> LightReceiver::turned(const Change& change, c
     if (shared.light != nullptr)
       start.lights.push_back({std::make_shared<const Light>(*shared.light), shared.to_light * turn()});
     else
-      start.lights.push_back(
-          {light_, bodies.size() == 1 ? to_own_light() : Mat3(orthogonal_factor(body.to_object.linear()).transpose())});
+      start.lights.push_back({light_, bodies.size() == 1
+                                          ? Mat3(Mat3::Identity())
+                                          : Mat3(orthogonal_factor(body.to_object.linear()).transpose())});
   }
   return std::make_shared<const TurnedLight>(std::move(start));
 }

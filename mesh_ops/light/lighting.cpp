@@ -166,14 +166,18 @@ std::optional<Lighting> turned_lighting(const Scene& start_scene, const Lighting
     const Clock::time_point began = Clock::now();
     result.maps[b.node->id] = turning->second->maps(*b.node->object);
     const double seconds = seconds_since(began);
-    const std::optional<double> range = turning->second->range_of(*b.node->object);
     std::string why = "turned along while triangles move";
-    if (range && *range <= LearntTransfer::trusted_range)
-      why += ", and as was learnt of such poses";
-    else if (range)
-      why += fmt::format("; {:.1f} times as far out as the poses that were learnt", *range);
-    result.decisions.push_back(
-        {"self-shadow " + b.node->name, true, 0, seconds, fmt::format("{}, took {:.0f} ms", why, 1000 * seconds)});
+    if (const std::optional<double> range = turning->second->range_of(*b.node->object); range) {
+      if (*range <= LearntTransfer::trusted_range)
+        why += ", and as was learnt of such poses";
+      else
+        why += fmt::format("; {:.1f} times as far out as the poses that were learnt", *range);
+    }
+    result.lights.try_emplace(b.node->id, turning->second->start().lights.front().light);
+    const std::string name = "self-shadow " + b.node->name;
+    // In place of what was decided where it started.
+    std::erase_if(result.decisions, [&](const LightDecision& decision) { return decision.name == name; });
+    result.decisions.push_back({name, true, 0, seconds, fmt::format("{}, took {:.0f} ms", why, 1000 * seconds)});
   }
   return result;
 }

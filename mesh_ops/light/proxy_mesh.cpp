@@ -32,6 +32,12 @@ std::vector<Vec3> vertex_normals(const ProxyMesh& mesh) {
 
 }  // namespace
 
+Box bounds(const ProxyMesh& mesh) {
+  Box box;
+  for (const Vec3& p : mesh.vertices) box.extend(p);
+  return box;
+}
+
 std::vector<Mat3> vertex_turns(const ProxyMesh& rest, const ProxyMesh& posed) {
   std::vector<Mat3> sums(rest.vertices.size(), Mat3::Zero());
   for (const Face& face : rest.faces) {

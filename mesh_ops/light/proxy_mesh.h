@@ -13,6 +13,8 @@ struct ProxyMesh {
   std::vector<Face> faces;
 };
 
+Box bounds(const ProxyMesh& mesh);
+
 /// How the surface around each vertex turned from one pose to another of the same faces: the rotation in the mean of
 /// its triangles' motions, weighted by area.
 std::vector<Mat3> vertex_turns(const ProxyMesh& rest, const ProxyMesh& posed);

@@ -39,6 +39,20 @@ double unevenness(const std::vector<std::uint32_t>& part, const std::vector<Site
 
 }  // namespace
 
+Eigen::Vector3f interpolated(const LightChart& chart, const std::vector<Eigen::Vector3f>& values,
+                             const Eigen::Vector2f& place) {
+  const float x = std::clamp(place.x() - 0.5F, 0.0F, static_cast<float>(chart.width - 1)),
+              y = std::clamp(place.y() - 0.5F, 0.0F, static_cast<float>(chart.height - 1));
+  const int left = static_cast<int>(x), top = static_cast<int>(y);
+  const float right = x - static_cast<float>(left), down = y - static_cast<float>(top);
+  const auto at = [&](int column, int row) -> const Eigen::Vector3f& {
+    return values[static_cast<std::size_t>(std::min(row, chart.height - 1)) * static_cast<std::size_t>(chart.width) +
+                  static_cast<std::size_t>(std::min(column, chart.width - 1))];
+  };
+  return (1 - down) * ((1 - right) * at(left, top) + right * at(left + 1, top)) +
+         down * ((1 - right) * at(left, top + 1) + right * at(left + 1, top + 1));
+}
+
 std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLight>& baked,
                              const std::vector<Radiance>& colors) {
   const std::size_t count = sites.part.empty() ? 0 : *std::max_element(sites.part.begin(), sites.part.end()) + 1;

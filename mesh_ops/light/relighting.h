@@ -15,6 +15,10 @@ struct LightMap {
   std::vector<Eigen::Vector3f> offset;  ///< likewise; empty where all are 0
 };
 
+/// Values of a chart's texels at a place (LightChart::places), bilinearly between their centres, as the GPU does.
+Eigen::Vector3f interpolated(const LightChart& chart, const std::vector<Eigen::Vector3f>& values,
+                             const Eigen::Vector2f& place);
+
 /// Mean colour of each site over the directions it is seen from, in linear light: `facing` is the share of its first
 /// side in what is seen of it.
 std::vector<Radiance> site_colors(const BakedObject& object,

@@ -43,7 +43,7 @@ class Reader {
 };
 
 struct Sizes {
-  std::uint64_t keys, probes, dimensions, components, kernels;
+  std::uint64_t keys, probes, dimensions, components;
 };
 
 // All that is numbers, sized already.
@@ -64,9 +64,6 @@ void visit_numbers(Model& model, Visit& visit) {
   matrix(learnt.mean);
   matrix(learnt.components);
   matrix(learnt.linear);
-  matrix(learnt.centers);
-  matrix(learnt.kernel);
-  visit(&learnt.width, 1);
 }
 
 }  // namespace
@@ -91,7 +88,7 @@ TransferModel learnt_model(const TurnedLight& start,
     model.facing.push_back(from.facing[k]);
   }
   const auto began = std::chrono::steady_clock::now();
-  TransferTraining training(key_places, static_cast<std::size_t>(options.poses));
+  TransferTraining training(key_places, static_cast<std::size_t>(options.poses), TransferTraining::Frames::turned);
   for (int k = 0; k < options.poses; ++k) {
     progress.at("tracing poses", static_cast<double>(k) / options.poses);
     const std::shared_ptr<const BakedObject> posed = pose(k);
@@ -134,12 +131,10 @@ std::string bytes_of(const TransferModel& model) {
                                {"learning_seconds", learnt.seconds},
                                {"held_back_error", learnt.held_back_error},
                                {"largest_displacement", learnt.space.largest * learnt.space.size},
-                               {"way", static_cast<int>(learnt.way)},
                                {"keys", model.keys.size()},
                                {"probes", learnt.probes.size()},
                                {"dimensions", learnt.space.dimensions()},
-                               {"components", learnt.components.cols()},
-                               {"kernels", learnt.centers.cols()}};
+                               {"components", learnt.components.cols()}};
   Writer writer;
   writer.bytes = head.dump() + "\n";
   visit_numbers(model, writer);
@@ -169,20 +164,17 @@ TransferModel transfer_model_of(std::string_view bytes) {
     model.tracing_seconds = head.at("tracing_seconds");
     model.learnt.seconds = head.at("learning_seconds");
     model.learnt.held_back_error = head.at("held_back_error");
-    if (head.at("way") != static_cast<int>(TransferWay::turned_linear)) throw Error("its way is not known");
     model.learnt.way = TransferWay::turned_linear;
-    const Sizes n{head.at("keys"), head.at("probes"), head.at("dimensions"), head.at("components"), head.at("kernels")};
+    const Sizes n{head.at("keys"), head.at("probes"), head.at("dimensions"), head.at("components")};
     // What is promised must be there before room is made for it; in doubles, which do not overflow.
     const auto fits = [&](double values, std::size_t size) {
       return values * static_cast<double>(size) <= static_cast<double>(bytes.size());
     };
     const auto keys = static_cast<double>(n.keys), probes = static_cast<double>(n.probes),
-               dimensions = static_cast<double>(n.dimensions), components = static_cast<double>(n.components),
-               kernels = static_cast<double>(n.kernels);
+               dimensions = static_cast<double>(n.dimensions), components = static_cast<double>(n.components);
     if (n.keys == 0 || n.probes == 0) throw Error("it has no points");
     if (!fits(keys * sh::count * (components + 1), sizeof(float)) ||
-        !fits(probes * 3 * (dimensions + 1), sizeof(double)) || !fits(components * (dimensions + 1), sizeof(double)) ||
-        !fits(kernels * (dimensions + components), sizeof(double)))
+        !fits(probes * 3 * (dimensions + 1), sizeof(double)) || !fits(components * (dimensions + 1), sizeof(double)))
       throw Error("it ends too early");
     const auto index = [](std::uint64_t value) { return static_cast<Eigen::Index>(value); };
     LearntTransfer& learnt = model.learnt;
@@ -196,8 +188,6 @@ TransferModel transfer_model_of(std::string_view bytes) {
     learnt.mean.resize(index(n.keys * sh::count));
     learnt.components.resize(learnt.mean.size(), index(n.components));
     learnt.linear.resize(index(n.components), index(n.dimensions + 1));
-    learnt.centers.resize(index(n.kernels > 0 ? n.dimensions : 0), index(n.kernels));
-    learnt.kernel.resize(index(n.kernels > 0 ? n.components : 0), index(n.kernels));
   } catch (const nlohmann::json::exception&) {
     throw Error("its first line lacks something");
   } catch (const std::logic_error&) {

@@ -18,7 +18,7 @@ struct TransferModel {
   double tracing_seconds = 0;
   std::vector<std::uint32_t> keys;  ///< numbers of sites
   std::vector<float> facing;        ///< of the keys, what showed (facing_of)
-  LearntTransfer learnt;            ///< of the keys, in frames that turn along
+  LearntTransfer learnt;            ///< of the keys: TransferWay::turned_linear
 };
 
 struct TransferModelOptions {

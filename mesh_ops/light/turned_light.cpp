@@ -79,22 +79,26 @@ TurnedLight::TurnedLight(Start start) : start_(std::move(start)) {
   if (start_.model) prepare_model();
 }
 
+Vec3 TurnedLight::place_of(const BakedObject& object, std::size_t set, std::size_t number) const {
+  const LightChart::Node& node = start_.charts[set]->nodes[number];
+  const Soup& soup = object.sets[set].soup;
+  const Face& face = soup.faces()[node.face];
+  Vec3 place = Vec3::Zero();
+  for (std::size_t c = 0; c < 3; ++c)
+    place += static_cast<double>(node.weights[static_cast<Eigen::Index>(c)]) * soup.positions()[face[c]];
+  return place;
+}
+
 std::vector<LightSite> TurnedLight::sites_on(const BakedObject& object,
                                              const std::vector<std::vector<Mat3>>& turns) const {
   std::vector<LightSite> sites = start_.sites.now;
-  for (std::size_t s = 0; s < start_.charts.size(); ++s) {
-    const Soup& soup = object.sets[s].soup;
+  for (std::size_t s = 0; s < start_.charts.size(); ++s)
     for (std::size_t k = 0; k < turns[s].size(); ++k) {
-      const LightChart::Node& node = start_.charts[s]->nodes[k];
-      const Face& face = soup.faces()[node.face];
       LightSite& site = sites[start_.sites.first[s] + k];
-      site.position = Vec3::Zero();
-      for (std::size_t c = 0; c < 3; ++c)
-        site.position += static_cast<double>(node.weights[static_cast<Eigen::Index>(c)]) * soup.positions()[face[c]];
+      site.position = place_of(object, s, k);
       site.normal = turns[s][k] * site.normal;
       site.tangent = turns[s][k] * site.tangent;
     }
-  }
   return sites;
 }
 
@@ -123,24 +127,25 @@ void TurnedLight::prepare_model() {
   for (std::size_t s = 0; s < start_.charts.size(); ++s)
     for (const Mat3& turn : node_turns(body->sets[s], start_.object->sets[s], *start_.charts[s]))
       since_baked_.push_back(turn);
-  const PoseSpace::Place place = model.learnt.space.place(probes_in(start_.sites.now));
+  const PoseSpace::Place place = model.learnt.space.place(probes_on(*start_.object));
   if (!(place.range <= LearntTransfer::trusted_range)) return;
   learnt_ = model.learnt.predict(place);
   // Of the keys that are near and face much the same way, the nearest four.
-  const auto shown_normal = [&](std::size_t i) -> Vec3 {
-    return start_.facing[i] == 0.0F ? Vec3(-start_.sites.baked[i].normal) : start_.sites.baked[i].normal;
+  const auto shown_normal = [&](std::size_t i, float facing) -> Vec3 {
+    return facing == 0.0F ? Vec3(-start_.sites.baked[i].normal) : start_.sites.baked[i].normal;
   };
   shares_.resize(start_.sites.size());
   tbb::parallel_for(std::size_t{0}, shares_.size(), [&](std::size_t i) {
     std::array<double, 4> least{};
     least.fill(std::numeric_limits<double>::infinity());
     Share share{{0, 0, 0, 0}, {0, 0, 0, 0}};
-    const Vec3 normal = shown_normal(i), at = start_.sites.baked[i].position;
+    const Vec3 normal = shown_normal(i, start_.facing[i]), at = start_.sites.baked[i].position;
     for (std::uint32_t k = 0; k < model.keys.size(); ++k) {
       const std::uint32_t other = model.keys[k];
       const double distance = (start_.sites.baked[other].position - at).squaredNorm();
       if (!(distance < least[3])) continue;
-      if (start_.facing[i] != start_.facing[other] || shown_normal(other).dot(normal) < 0.5) continue;
+      // What shows may be another side than in the light that it was learnt in.
+      if (start_.facing[i] != model.facing[k] || shown_normal(other, model.facing[k]).dot(normal) < 0.5) continue;
       std::size_t place_in = 3;
       for (; place_in > 0 && distance < least[place_in - 1]; --place_in) {
         least[place_in] = least[place_in - 1];
@@ -160,25 +165,27 @@ void TurnedLight::prepare_model() {
   });
 }
 
-std::vector<Vec3> TurnedLight::probes_in(const std::vector<LightSite>& sites) const {
+std::vector<Vec3> TurnedLight::probes_on(const BakedObject& object) const {
   std::vector<Vec3> places;
-  for (const std::uint32_t probe : start_.model->learnt.probes)
-    places.push_back(sites[start_.model->keys[probe]].position);
+  const std::vector<std::size_t>& first = start_.sites.first;
+  for (const std::uint32_t probe : start_.model->learnt.probes) {
+    const std::size_t site = start_.model->keys[probe];
+    const auto set = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), site) - first.begin()) - 1;
+    places.push_back(place_of(object, set, site - first[set]));
+  }
   return places;
 }
 
 std::optional<double> TurnedLight::range_of(const BakedObject& object) const {
   if (shares_.empty()) return std::nullopt;
-  std::vector<std::vector<Mat3>> turns;
-  for (const auto& chart : start_.charts) turns.emplace_back(chart->nodes.size(), Mat3::Identity());
-  return start_.model->learnt.space.place(probes_in(sites_on(object, turns))).range;
+  return start_.model->learnt.space.place(probes_on(object)).range;
 }
 
 // What the model says beside turning, where it was learnt for such poses.
-void TurnedLight::add_learnt(const std::vector<LightSite>& sites, const std::vector<std::vector<Mat3>>& turns,
+void TurnedLight::add_learnt(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
                              std::vector<Radiance>& light) const {
   if (shares_.empty()) return;
-  const PoseSpace::Place place = start_.model->learnt.space.place(probes_in(sites));
+  const PoseSpace::Place place = start_.model->learnt.space.place(probes_on(object));
   // Less and less of it towards the end of its range, so that nothing jumps there.
   constexpr double fades = 0.5;
   const double share = std::min(1.0, (LearntTransfer::trusted_range - place.range) / fades);
@@ -223,7 +230,7 @@ std::vector<Radiance> TurnedLight::light_on(const BakedObject& object) const {
       if (!turn.isIdentity(0)) change += products_[start_.sites.body[i]](turn, start_.transfer[i]) - unturned_[i];
       light[i] = start_.after[i] + change;
     });
-  add_learnt(sites, turns, light);
+  add_learnt(object, turns, light);
   for (Radiance& one : light) one = one.cwiseMax(0.0);
   return light;
 }

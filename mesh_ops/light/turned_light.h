@@ -51,12 +51,14 @@ class TurnedLight {
   const Start& start() const { return start_; }
 
  private:
-  Start start_;
-  void prepare_model();
-  void add_learnt(const std::vector<LightSite>& sites, const std::vector<std::vector<Mat3>>& turns,
-                  std::vector<Radiance>& light) const;
-  std::vector<Vec3> probes_in(const std::vector<LightSite>& sites) const;
+  Vec3 place_of(const BakedObject& object, std::size_t set, std::size_t node) const;
   std::vector<Radiance> suns_on(const BakedObject& object, const std::vector<LightSite>& sites) const;
+  void prepare_model();
+  std::vector<Vec3> probes_on(const BakedObject& object) const;
+  void add_learnt(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
+                  std::vector<Radiance>& light) const;
+
+  Start start_;
   /// Of each site the keys that it takes from, and how much of each.
   struct Share {
     std::array<std::uint32_t, 4> keys;

@@ -52,8 +52,7 @@ bool can_train_unet() { return module().train != nullptr; }
 Unet trained_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress) {
   const auto texels = static_cast<std::size_t>(images.side) * static_cast<std::size_t>(images.side);
   if (images.images.size() != images.poses * unet_inputs * texels ||
-      images.targets.size() != images.poses * unet_outputs * texels || images.weights.size() != texels ||
-      images.poses == 0)
+      images.targets.size() != images.poses * unet_outputs * texels || images.poses == 0)
     throw std::invalid_argument("images of another size");
   if (!can_train_unet()) throw Error(module().problem);
   struct Watch {
@@ -65,7 +64,6 @@ Unet trained_unet(const UnetImages& images, const UnetTraining& training, const 
                       images.poses,
                       images.images.data(),
                       images.targets.data(),
-                      images.weights.data(),
                       training.epochs,
                       training.batch,
                       training.rate,

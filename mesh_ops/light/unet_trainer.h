@@ -13,7 +13,6 @@ struct UnetImages {
   std::size_t poses = 0;
   std::vector<float> images;   ///< [pose][6][row][column]
   std::vector<float> targets;  ///< [pose][16][row][column]
-  std::vector<float> weights;  ///< of each texel in the loss, ≥ 0
 };
 
 struct UnetTraining {

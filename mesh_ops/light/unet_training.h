@@ -13,7 +13,6 @@ struct UnetTask {
   std::size_t poses;
   const float* images;   ///< [pose][6][row][column]
   const float* targets;  ///< [pose][16][row][column]
-  const float* weights;  ///< of each texel in the loss, ≥ 0
   int epochs, batch;
   double rate;  ///< of learning, at first
   std::uint64_t seed;

@@ -32,12 +32,6 @@ void append_image(const GeometryImage& image, const Box& box, const std::vector<
   }
 }
 
-Box box_of(const ProxyMesh& mesh) {
-  Box box;
-  for (const Vec3& p : mesh.vertices) box.extend(p);
-  return box;
-}
-
 }  // namespace
 
 UnetTransfer::Training::Training(ProxyMesh rest, GeometryImage image)
@@ -45,7 +39,7 @@ UnetTransfer::Training::Training(ProxyMesh rest, GeometryImage image)
 
 void UnetTransfer::Training::add(const std::vector<LightSite>& sites, const std::vector<Mat3>& turns,
                                  const std::vector<sh::Coefficients>& transfer) {
-  append_image(image_, box_of(rest_), sites, images_);
+  append_image(image_, bounds(rest_), sites, images_);
   std::vector<sh::Coefficients> local(transfer.size());
   tbb::parallel_for(std::size_t{0}, local.size(),
                     [&](std::size_t i) { local[i] = sh::Rotation(turns[i].transpose()) * transfer[i]; });
@@ -63,7 +57,7 @@ UnetTransfer UnetTransfer::Training::learnt(const UnetTraining& options, const P
   };
   for (std::size_t p = 0; p < poses_; ++p) mean += of_pose(p) / static_cast<float>(poses_);
   // One scale for all, so that large coefficients count most, as they do in pictures.
-  UnetImages images{image_.side(), poses_, images_, {}, std::vector<float>(texels, 1)};
+  UnetImages images{image_.side(), poses_, images_, {}};
   images.targets.reserve(poses_ * unet_outputs * texels);
   double squares = 0;
   for (std::size_t p = 0; p < poses_; ++p) {
@@ -83,7 +77,7 @@ UnetTransfer UnetTransfer::Training::learnt(const UnetTraining& options, const P
   const float scale = deviation > 0 ? static_cast<float>(deviation) : 1.0F;
   for (float& value : images.targets) value /= scale;
   UnetTransfer result(image_, trained_unet(images, options, progress));
-  result.box_ = box_of(rest_);
+  result.box_ = bounds(rest_);
   result.mean_ = std::move(mean);
   result.scale_ = scale;
   result.seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -46,7 +46,7 @@ std::vector<sh::Coefficients> known(const std::vector<LightSite>& sites, double 
 
 TransferTraining some_poses(int count, bool bent = false) {
   const ProxyMesh rest = flat();
-  TransferTraining training(rest.vertices, static_cast<std::size_t>(count), 16);
+  TransferTraining training(rest.vertices, static_cast<std::size_t>(count), TransferTraining::Frames::both, 16);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> number(-0.3, 0.3);
   for (int k = 0; k < count; ++k) {
@@ -121,7 +121,7 @@ TEST(LearntTransfer, SurvivesDegenerateBodies) {
   const auto turns = vertex_turns(rest, rest);
   for (const Mat3& turn : turns) EXPECT_TRUE(turn.isIdentity(0));
   const auto sites = vertex_sites(rest, rest, turns);
-  TransferTraining training(rest.vertices, 8);
+  TransferTraining training(rest.vertices, 8, TransferTraining::Frames::turned);
   for (std::size_t k = 0; k < 8; ++k)
     training.set(k, rest.vertices, turns, std::vector<sh::Coefficients>(4, sh::Coefficients::Zero()));
   const LearntTransfer model = LearntTransfer::learnt(training, {});

@@ -76,7 +76,7 @@ void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
         measured->parts.emplace(measured->scene, lighting, options.layout, session.progress);
         Renderer& renderer = session.renderer();
         measured->reference = renderer.render(measured->scene, measured->view, {}, &lighting);
-        measured->reference_ms = median_frame_ms(renderer, measured->scene, measured->view, timed_frames);
+        measured->reference_ms = median_frame_ms(renderer, measured->scene, measured->view, timed_frames, &lighting);
         measured->exact = measured->parts->composition.exact();
         session.drop_renderer();  // a second copy of the scene on the GPU
         if (measured->exact) return;

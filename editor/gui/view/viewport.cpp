@@ -29,20 +29,6 @@ Scene on_ground(const Scene& scene, const Desk& desk) {
   return result;
 }
 
-// Nodes whose triangles a drag would move.
-std::set<NodeId> deformable(const Desk& desk) {
-  std::set<NodeId> nodes;
-  for (const DeformTarget& target : desk.deform_targets()) {
-    if (target.node) {
-      nodes.insert(target.node->id);
-      continue;
-    }
-    for (const PlacedNode& placed : placed_nodes(desk.scene()))
-      if (placed.visible && placed.node->selection && count(*placed.node->selection) > 0) nodes.insert(placed.node->id);
-  }
-  return nodes;
-}
-
 bool same_scene(const Scene& a, const Scene& b) {
   return a.roots == b.roots && a.background == b.background && a.light == b.light;
 }
@@ -206,7 +192,7 @@ void Viewport::picture(Desk& desk) {
   }
   view.width = std::max(16, static_cast<int>(std::lround(desk.view.width * scale)));
   view.height = std::max(16, static_cast<int>(std::lround(desk.view.height * scale)));
-  desk.relighter.request(scene, desk.preview.has_value(), scene.light ? deformable(desk) : std::set<NodeId>{});
+  desk.relighter.request(scene, desk.preview.has_value(), scene.light ? desk.deform_nodes() : std::set<NodeId>{});
   const std::shared_ptr<const Lighting> lighting =
       scene.light && !desk.view.as_baked ? desk.relighter.latest() : nullptr;
   Made wanted{scene, lighting, view, guides(desk), each_pass_, desk.view.wipe, desk.view.width, desk.view.height};

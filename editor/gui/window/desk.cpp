@@ -259,6 +259,19 @@ std::vector<DeformTarget> Desk::deform_targets() const {
   return targets;
 }
 
+std::set<NodeId> Desk::deform_nodes() const {
+  std::set<NodeId> nodes;
+  for (const DeformTarget& target : deform_targets()) {
+    if (target.node) {
+      nodes.insert(target.node->id);
+      continue;
+    }
+    for (const PlacedNode& placed : placed_nodes(scene()))
+      if (placed.visible && placed.node->selection && count(*placed.node->selection) > 0) nodes.insert(placed.node->id);
+  }
+  return nodes;
+}
+
 Box Desk::deform_bounds(const std::vector<DeformTarget>& targets) const {
   Box box;
   for (const DeformTarget& target : targets) {

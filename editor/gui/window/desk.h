@@ -95,6 +95,8 @@ struct Desk {
   /// What deforming tools take, an edit each: selected triangles (of the picked nodes, where there are some), else the
   /// first picked node, else the first that shows; empty in an empty scene.
   std::vector<DeformTarget> deform_targets() const;
+  /// The nodes whose triangles those would move.
+  std::set<NodeId> deform_nodes() const;
   /// World box of those.
   Box deform_bounds(const std::vector<DeformTarget>& targets) const;
   std::size_t selected_triangles() const { return selected_; }

@@ -84,8 +84,7 @@ int train(const rebake::UnetTask& task, float* result) {
     return torch::from_blob(const_cast<float*>(values), shape, torch::kFloat32);
   };
   const Tensor images = tensor(task.images, {poses, rebake::unet_inputs, task.side, task.side}),
-               targets = tensor(task.targets, {poses, rebake::unet_outputs, task.side, task.side}),
-               weights = tensor(task.weights, {1, 1, task.side, task.side});
+               targets = tensor(task.targets, {poses, rebake::unet_outputs, task.side, task.side});
   Network network(task.channels);
   torch::optim::Adam adam(network.parameters(), torch::optim::AdamOptions(task.rate));
   const std::int64_t batches = (poses + task.batch - 1) / task.batch;
@@ -101,8 +100,7 @@ int train(const rebake::UnetTask& task, float* result) {
           .lr(task.rate * (0.01 + 0.99 * 0.5 * (1 + std::cos(std::numbers::pi * done))));
       const Tensor some = order.slice(0, b * task.batch, std::min(poses, (b + 1) * task.batch));
       adam.zero_grad();
-      const Tensor loss =
-          ((network.forward(images.index_select(0, some)) - targets.index_select(0, some)).abs() * weights).mean();
+      const Tensor loss = (network.forward(images.index_select(0, some)) - targets.index_select(0, some)).abs().mean();
       loss.backward();
       adam.step();
       sum += loss.item<double>();
