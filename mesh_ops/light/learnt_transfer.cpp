@@ -92,6 +92,12 @@ LearntTransfer LearntTransfer::learnt(const TransferTraining& training, const Op
          eigen.eigenvalues()[poses - 1 - rank] > 1e-6 * eigen.eigenvalues()[poses - 1])
     ++rank;
   const Eigen::MatrixXd vectors = eigen.eigenvectors().rightCols(rank).rowwise().reverse();
+  if (rank == 0) {
+    // Nothing departs from the mean, whatever the pose.
+    model.linear.setZero(0, coordinates.rows() + 1);
+    model.components.resize(rows.cols(), 0);
+    return model;
+  }
   const Eigen::VectorXd sizes = eigen.eigenvalues().tail(rank).reverse().cwiseMax(0.0).cwiseSqrt();
   model.components = away.transpose() * (vectors * sizes.cwiseInverse().asDiagonal()).cast<float>();
   const Eigen::MatrixXd scores = sizes.asDiagonal() * vectors.transpose();  // a pose a column
