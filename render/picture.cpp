@@ -1,6 +1,7 @@
 #include "render/picture.h"
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include <chrono>
 #include <cstring>
@@ -28,6 +29,8 @@ class Renderer::Impl {
   explicit Impl(std::unique_ptr<gl::Context> context) : context_(std::move(context)) {
     const gl::Current current(*context_);
     device_ = gl::device_name();
+    software_ = device_.find("llvmpipe") != std::string::npos || device_.find("softpipe") != std::string::npos ||
+                device_.find("SWR") != std::string::npos;
     state_.empty_array = gl::make_vertex_array();
   }
 
@@ -45,12 +48,10 @@ class Renderer::Impl {
   Impl& operator=(const Impl&) = delete;
 
   FrameTimes draw(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass,
-                  const Lighting* lighting, const Guides* guides = nullptr,
-                  std::vector<PlannedPass>* passes = nullptr) {
+                  const Lighting* lighting, const Guides* guides = nullptr) {
     const gl::Current current(*context_);
     const Clock::time_point start = Clock::now();
-    const FramePlan frame_plan = plan(scene, view, options, guides, lighting);
-    if (passes != nullptr) *passes = frame_plan.passes;
+    const FramePlan frame_plan = plan(scene, view, options, guides, lighting, device_facts());
     shown_ = view;
     if (frame_plan.frames.size() > 65535)
       throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
@@ -74,6 +75,8 @@ class Renderer::Impl {
     }
     glFinish();
     times.frame_ms = milliseconds_since(start);
+    passes_ = frame_plan.passes;
+    if (frame_plan.runs(effects::occlusion)) say_occlusion();
     if (const GLenum error = glGetError(); error != GL_NO_ERROR)
       throw DeviceError(error == GL_OUT_OF_MEMORY ? "the GPU's memory is out; use fewer samples or a smaller picture"
                                                   : "OpenGL reports error " + std::to_string(error));
@@ -82,6 +85,7 @@ class Renderer::Impl {
 
   void prepare(const Scene& scene) { gpu_->prepare(scene); }
   const std::string& device() const { return device_; }
+  const std::vector<PlannedPass>& passes() const { return passes_; }
   unsigned texture() const { return state_.targets.texture(Target::picture).name(); }
 
   Image read_back() {
@@ -102,6 +106,30 @@ class Renderer::Impl {
   }
 
  private:
+  DeviceFacts device_facts() {
+    DeviceFacts facts;
+    // A GPU draws triangles some hundred times faster than a processor, which tests them no faster beside it.
+    if (!software_) facts.occlusion_from = 2'000'000;
+    // Too little was hidden: it is looked again from time to time.
+    if (share_ > worthwhile_share && ++frames_without_ < look_again) facts.shown_share = share_;
+    return facts;
+  }
+
+  void say_occlusion() {
+    const OcclusionCounts& c = state_.occlusion_counts;
+    share_ = c.triangles == 0 ? 0 : static_cast<double>(c.triangles_drawn) / static_cast<double>(c.triangles);
+    frames_without_ = 0;
+    for (PlannedPass& pass : passes_)
+      if (pass.effect == &effects::occlusion)
+        pass.why += fmt::format(
+            ": of {} clusters {} drawn, {} hidden, {} out of view; of {} triangles {} drawn{}; deciding took {:.1f} ms",
+            c.clusters, c.clusters_drawn, c.clusters_hidden, c.clusters_out_of_view, c.triangles, c.triangles_drawn,
+            c.drawn_again ? ", and again in their order" : "", c.milliseconds);
+  }
+
+  static constexpr double worthwhile_share = 0.7;
+  static constexpr int look_again = 16;
+
   unsigned picture_buffer() { return state_.targets.framebuffer({Target::picture}, false).name(); }
 
   std::unique_ptr<gl::Context> context_;  // outlives the rest, which are names in it
@@ -109,6 +137,10 @@ class Renderer::Impl {
   PassState state_;
   View shown_;
   std::string device_;
+  bool software_ = false;
+  std::vector<PlannedPass> passes_;
+  double share_ = 0;
+  int frames_without_ = 0;
 };
 
 Renderer::Renderer() : Renderer(gl::make_headless_context()) {}
@@ -130,11 +162,14 @@ FrameTimes Renderer::time_frame(const Scene& scene, const View& view, const Rend
 Renderer::Shown Renderer::show(const Scene& scene, const View& view, const RenderOptions& options, const Guides& guides,
                                bool each_pass, const Lighting* lighting) {
   Shown shown;
-  shown.times = impl_->draw(scene, view, options, each_pass, lighting, &guides, &shown.passes);
+  shown.times = impl_->draw(scene, view, options, each_pass, lighting, &guides);
+  shown.passes = impl_->passes();
   shown.texture = impl_->texture();
   return shown;
 }
 Image Renderer::shown_image() { return impl_->read_back(); }
+
+const std::vector<PlannedPass>& Renderer::passes() const { return impl_->passes(); }
 
 std::string Renderer::device() const { return impl_->device(); }
 std::uint64_t Renderer::peak_gpu_bytes() const { return gl::memory_use().peak; }

@@ -56,6 +56,9 @@ class Renderer {
   /// The picture shown last.
   Image shown_image();
 
+  /// Of the picture drawn last: what ran and why, with what looking for hidden triangles found.
+  const std::vector<PlannedPass>& passes() const;
+
   std::string device() const;
   /// Most bytes held on the GPU at once so far.
   std::uint64_t peak_gpu_bytes() const;

@@ -99,6 +99,8 @@ void ViewOptions::add_to(CommandDescription& command) {
       .one_of(std::vector<std::string>{"automatic", "constants", "buffer"});
   command.option("--shading", shading, "forward decodes while drawing, at 1 sample only", "automatic|deferred|forward")
       .one_of(std::vector<std::string>{"automatic", "deferred", "forward"});
+  command.option("--occlusion", occlusion, "look for hidden triangles and leave them out", "automatic|on|off")
+      .one_of(std::vector<std::string>{"automatic", "on", "off"});
   command.option("--precision", precision, "decoder weights as 32- or 16-bit floats", "full|half")
       .one_of(std::vector<std::string>{"full", "half"});
 }
@@ -157,6 +159,9 @@ RenderOptions ViewOptions::render_options() const {
   options.shading = shading == "forward"    ? RenderOptions::Shading::forward
                     : shading == "deferred" ? RenderOptions::Shading::deferred
                                             : RenderOptions::Shading::automatic;
+  options.occlusion = occlusion == "on"    ? RenderOptions::Occlusion::on
+                      : occlusion == "off" ? RenderOptions::Occlusion::off
+                                           : RenderOptions::Occlusion::automatic;
   options.precision = precision == "half" ? RenderOptions::Precision::half : RenderOptions::Precision::full;
   return options;
 }

@@ -101,26 +101,29 @@ void render(const Rendering& options) {
   const RenderOptions how = options.view.render_options();
   const Lighting lighting = lit(scene, progress_bar());
   json report = json::object();
-  if (options.plan) {
-    const FramePlan frame = plan(scene, view, how, nullptr, &lighting);
-    if (!options.json) fmt::print("{}", describe(frame));
-    report["plan"] = json::array();
-    for (const PlannedPass& pass : frame.passes)
-      report["plan"].push_back({{"pass", pass.name}, {"runs", pass.runs}, {"why", pass.why}});
-  }
   if (options.audit) report["audit"] = audited(scene, view, how, lighting, options.json);
+  std::optional<Renderer> renderer;
   if (!options.out.empty() || options.time > 0) {
-    Renderer renderer;
+    renderer.emplace();
     if (!options.out.empty()) {
-      const Image picture = renderer.render(scene, view, how, &lighting);
+      const Image picture = renderer->render(scene, view, how, &lighting);
       write_png(picture, options.out, sources);
       if (const auto why = why_blank(scene, view, picture)) fmt::print(stderr, "note: {}\n", *why);
     }
     if (options.time > 0) {
-      const json times = measure(renderer, scene, view, how, lighting, options.time);
+      const json times = measure(*renderer, scene, view, how, lighting, options.time);
       if (!options.json) print_times(times);
       report.update(times);
     }
+  }
+  if (options.plan) {
+    // As it was drawn, where it was: then it says what was found.
+    const std::vector<PlannedPass> passes =
+        renderer ? renderer->passes() : plan(scene, view, how, nullptr, &lighting).passes;
+    if (!options.json) fmt::print("{}", describe(passes));
+    report["plan"] = json::array();
+    for (const PlannedPass& pass : passes)
+      report["plan"].push_back({{"pass", pass.name}, {"runs", pass.runs}, {"why", pass.why}});
   }
   if (options.json) fmt::print("{}\n", report.dump(1));
 }

@@ -53,6 +53,7 @@ void move_vertices(GpuMesh& mesh, PreparedMesh made) {
   mesh.source = std::move(made.source);
   mesh.center = made.center;
   mesh.clusters = std::move(made.clusters);
+  mesh.nearby = std::move(made.nearby);
   glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices.name());
   glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(made.vertices.size() * sizeof(GpuVertex)),
                   made.vertices.data());
@@ -76,12 +77,14 @@ GpuMesh upload(PreparedMesh made) {
                             reinterpret_cast<const void*>(column * 3 * sizeof(float)));
     }
   }
-  mesh.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, made.faces->data(), made.faces->size() * sizeof(Face));
+  mesh.indices =
+      gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, made.shown.faces->data(), made.shown.faces->size() * sizeof(Face));
   glBindVertexArray(0);
   mesh.source = std::move(made.source);
   mesh.center = made.center;
-  mesh.faces = std::move(made.faces);
+  mesh.shown = std::move(made.shown);
   mesh.clusters = std::move(made.clusters);
+  mesh.nearby = std::move(made.nearby);
   return mesh;
 }
 
@@ -134,15 +137,17 @@ PreparedMesh prepared(const TextureSet& set, ShownFaces shown) {
     });
   }
   // Faces that show nothing are not worth a draw.
-  made.faces = std::move(shown);
-  if (!made.faces) {
+  made.shown = std::move(shown);
+  if (!made.shown.faces) {
     const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
     auto faces = std::make_shared<std::vector<Face>>();
     for (std::size_t f = 0; f < shows.size(); ++f)
       if (shows[f] != 0) faces->push_back(soup.faces()[f]);
-    made.faces = std::move(faces);
+    made.shown.faces = std::move(faces);
   }
-  made.clusters = clusters_of(soup, *made.faces);
+  if (!made.shown.nearby) made.shown.nearby = nearby_order(soup, *made.shown.faces);
+  made.clusters = clusters_of(soup, *made.shown.faces);
+  made.nearby = face_clusters(soup, *made.shown.faces, *made.shown.nearby, made.center);
   return made;
 }
 
@@ -155,7 +160,7 @@ PreparedMesh GpuScene::take_prepared(const TextureSet& set) {
     if (auto node = prepared_.extract(key)) return std::move(node.mapped().mesh);
     // Bent triangles show what they showed: that is not worked out again.
     for (const auto& [other, held] : held_)
-      if (same_faces(other, key)) shown = held.faces;
+      if (same_faces(other, key)) shown = held.shown;
   }
   return prepared(set, std::move(shown));
 }
@@ -178,7 +183,7 @@ void GpuScene::prepare(const Scene& scene) {
     const MeshKey key = mesh_key(set);
     ShownFaces shown;
     for (const auto& [other, mesh] : held)
-      if (same_faces(other, key)) shown = mesh.faces;
+      if (same_faces(other, key)) shown = mesh.shown;
     PreparedMesh made = prepared(set, std::move(shown));
     const std::lock_guard lock(mutex_);
     prepared_.insert_or_assign(key, Waiting{std::move(made), turn_});
@@ -228,7 +233,7 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
   for (const auto& texture : change.textures) textures_.emplace(texture.get(), upload(texture));
   const std::lock_guard lock(mutex_);
   held_.clear();
-  for (const auto& [key, mesh] : meshes_) held_.emplace(key, Held{mesh.source, mesh.faces});
+  for (const auto& [key, mesh] : meshes_) held_.emplace(key, Held{mesh.source, mesh.shown});
   std::erase_if(prepared_, [&](const auto& entry) { return held_.contains(entry.first); });
 }
 

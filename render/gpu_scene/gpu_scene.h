@@ -7,6 +7,7 @@
 
 #include "mesh_ops/light/lighting.h"
 #include "render/gl/objects.h"
+#include "render/gpu_scene/clusters.h"
 #include "render/gpu_scene/resources.h"
 
 namespace rebake {
@@ -24,8 +25,12 @@ struct GpuCluster {
   Box bounds;
 };
 
-/// A set's faces that may show something, shared by all that differ in places only.
-using ShownFaces = std::shared_ptr<const std::vector<Face>>;
+/// A set's faces that may show something, shared by all that differ in places only, and an order of them in which
+/// neighbours stay neighbours wherever edits move them.
+struct ShownFaces {
+  std::shared_ptr<const std::vector<Face>> faces;
+  NearbyOrder nearby;
+};
 
 /// What is uploaded of a texture set, worked out beforehand: positions as floats relative to `center`, UVs in texels.
 struct PreparedMesh {
@@ -33,11 +38,12 @@ struct PreparedMesh {
   Vec3 center{0, 0, 0};
   std::vector<GpuVertex> vertices;
   std::vector<float> turns;  ///< 9 a vertex; empty where none is turned
-  ShownFaces faces;
+  ShownFaces shown;
   std::vector<GpuCluster> clusters;
+  FaceClusters nearby;
 };
-/// `shown` is null where it is not known yet.
-PreparedMesh prepared(const TextureSet& set, ShownFaces shown = nullptr);
+/// `shown` is empty where it is not known yet.
+PreparedMesh prepared(const TextureSet& set, ShownFaces shown = {});
 
 /// A texture set's triangles on the GPU.
 struct GpuMesh {
@@ -47,8 +53,9 @@ struct GpuMesh {
   gl::Buffer vertices;
   gl::Buffer turns;
   gl::Buffer indices;
-  ShownFaces faces;  ///< as in `indices`
+  ShownFaces shown;  ///< faces as in `indices`
   std::vector<GpuCluster> clusters;
+  FaceClusters nearby;
 };
 
 struct GpuTexture {
@@ -86,7 +93,7 @@ class GpuScene {
   std::mutex mutex_;
   struct Held {
     TextureSet source;  ///< keeps what the key is made of alive
-    ShownFaces faces;
+    ShownFaces shown;
   };
   std::map<MeshKey, Held> held_;  ///< of what is on the GPU
   struct Waiting {

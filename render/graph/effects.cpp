@@ -18,6 +18,7 @@ constexpr const Effect* table[] = {
     &effects::resolve,
     &effects::forward,
     &effects::culling,
+    &effects::occlusion,
     &effects::hidden_objects,
     &effects::inspect,
     &effects::selection,

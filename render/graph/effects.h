@@ -33,6 +33,7 @@ struct Use {
 /// What a frame is made of, as far as it is planned.
 struct FrameFacts {
   const FramePlan& plan;  ///< all but its passes
+  const DeviceFacts& device;
   std::size_t turned_draws = 0, culled = 0, hidden = 0;
 
   bool any_draw() const { return !plan.draws.empty(); }
@@ -59,7 +60,7 @@ struct Effect {
 
 namespace effects {
 extern const Effect geometry, supersampling, node_frames, turned_rays, light, light_offset, decoder_compositing,
-    ray_per_sample, resolve, forward, culling, hidden_objects, inspect, selection, outline, guides;
+    ray_per_sample, resolve, forward, culling, occlusion, hidden_objects, inspect, selection, outline, guides;
 }
 
 /// All of them, in the order in which they are said and run.

@@ -28,6 +28,8 @@ struct SelectedFaces {
 };
 using SelectionKey = std::pair<MeshKey, const TriangleSet*>;
 
+struct OcclusionState;
+
 /// Lives as long as the renderer: shaders and buffers that frames share.
 struct PassState {
   std::map<std::string, gl::Program> programs;  ///< by their full source
@@ -35,6 +37,8 @@ struct PassState {
   DecoderTables tables;
   std::map<SelectionKey, SelectedFaces> selected;
   gl::VertexArray empty_array;
+  std::shared_ptr<OcclusionState> occlusion;  ///< what `occlusion` knows of the last frame; null before its first
+  OcclusionCounts occlusion_counts;           ///< of this frame, where it ran
 };
 
 /// What a pass is given.

@@ -97,7 +97,7 @@ bool FramePlan::runs(const Effect& effect) const {
 }
 
 FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options, const Guides* guides,
-               const Lighting* lighting) {
+               const Lighting* lighting, const DeviceFacts& device) {
   check(view);
   if (options.shading == RenderOptions::Shading::forward && view.samples != 1)
     throw FieldError("shading",
@@ -160,16 +160,16 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
                                  ? RenderOptions::Shading::forward
                                  : RenderOptions::Shading::deferred;
   if (guides != nullptr) result.guides = *guides;
-  plan_passes(result, {result, turned, culled, hidden}, guides != nullptr);
+  plan_passes(result, {result, device, turned, culled, hidden}, guides != nullptr);
   if (lighting != nullptr)
     for (const LightDecision& decision : lighting->decisions)
       result.passes.push_back({nullptr, decision.name, decision.runs, decision.why});
   return result;
 }
 
-std::string describe(const FramePlan& plan) {
+std::string describe(const std::vector<PlannedPass>& passes) {
   std::string out;
-  for (const PlannedPass& pass : plan.passes)
+  for (const PlannedPass& pass : passes)
     out += fmt::format("{:<9} {:<20} {}\n", pass.runs ? "runs" : "left out", pass.name, pass.why);
   return out;
 }

@@ -27,9 +27,30 @@ struct RenderOptions {
     full,  ///< decoder weights as 32-bit floats
     half,  ///< decoder weights rounded to 16-bit floats (11 significant bits)
   };
+  enum class Occlusion {
+    automatic,  ///< where it pays, as far as the device and the last look tell
+    on,         ///< hidden triangles are looked for and left out
+    off,        ///< all triangles in view are drawn
+  };
   Weights weights = Weights::automatic;
   Shading shading = Shading::automatic;
   Precision precision = Precision::full;
+  Occlusion occlusion = Occlusion::automatic;
+};
+
+/// What a plan is to know of where it is carried out.
+struct DeviceFacts {
+  std::size_t occlusion_from = 20'000;  ///< triangles in view from which looking for hidden ones pays
+  /// Where the last look found that too little is hidden: the share of triangles that had to be drawn; else 0.
+  double shown_share = 0;
+};
+
+/// What looking for hidden triangles found in a frame.
+struct OcclusionCounts {
+  std::size_t clusters = 0, clusters_drawn = 0, clusters_hidden = 0, clusters_out_of_view = 0;
+  std::size_t triangles = 0, triangles_drawn = 0;
+  double milliseconds = 0;   ///< that deciding took
+  bool drawn_again = false;  ///< in the scene's order, since samples were equally near
 };
 
 /// How the samples of some nodes feed a decoder. Nodes that agree share one.
@@ -87,9 +108,9 @@ struct FramePlan {
 /// its colours, null for nothing. Throws FieldError for a view or
 /// option that cannot be carried out, EditError for a node whose transform is singular.
 FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options = {}, const Guides* guides = nullptr,
-               const Lighting* lighting = nullptr);
+               const Lighting* lighting = nullptr, const DeviceFacts& device = {});
 
-/// One line a pass, e.g. "left out  node frames     one decoder and orientation in view".
-std::string describe(const FramePlan& plan);
+/// One line each, e.g. "left out  node frames     one decoder and orientation in view".
+std::string describe(const std::vector<PlannedPass>& passes);
 
 }  // namespace rebake

@@ -1,7 +1,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-#include "render/passes/pass_support.h"
+#include "render/passes/occlusion.h"
 
 namespace rebake {
 
@@ -12,7 +12,7 @@ void execute(const PassInput& input) {
   input.draw_to({Target::picture}, true);
   begin_geometry(plan, 1);
   const std::string decoder = decoder_preamble(input);
-  for (const Draw& draw : plan.draws) {
+  const auto use = [&](const Draw& draw) -> const gl::Program& {
     const NodeFrame& frame = plan.frames[draw.frame];
     const gl::Program& shader =
         program(input.state, "geometry.vert", "forward.frag",
@@ -24,8 +24,14 @@ void execute(const PassInput& input) {
     set_uniform(shader, "decoder", static_cast<int>(frame.decoder));
     set_ray_uniforms(shader, plan.view, 1);
     bind_decoders(input, shader);
-    draw_set(input, draw, shader);
-  }
+    return shader;
+  };
+  // What was drawn hides the background wherever it was drawn, and is drawn again there.
+  draw_sets(input, use, [&] {
+    begin_clear(plan);
+    clear_depth();
+    end_clear();
+  });
   end_geometry();
 }
 

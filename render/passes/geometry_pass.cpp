@@ -1,7 +1,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-#include "render/passes/pass_support.h"
+#include "render/passes/occlusion.h"
 
 namespace rebake {
 
@@ -17,14 +17,19 @@ void execute(const PassInput& input) {
   if (light > 1) colors.push_back(Target::light_offset);
   input.draw_to(colors, true);
   begin_geometry(input.plan, input.plan.view.side());
-  const GLuint nothing[4] = {};
-  glClearBufferuiv(GL_COLOR, 0, nothing);
   const int frame_target = 1, ray_target = has_frames ? 2 : 1;
-  if (has_rays) {
-    const float no_ray[4] = {};
-    glClearBufferfv(GL_COLOR, ray_target, no_ray);
-  }
-  for (const Draw& draw : input.plan.draws) {
+  const auto clear = [&] {
+    begin_clear(input.plan);
+    const GLuint nothing[4] = {};
+    glClearBufferuiv(GL_COLOR, 0, nothing);
+    if (has_rays) {
+      const float no_ray[4] = {};
+      glClearBufferfv(GL_COLOR, ray_target, no_ray);
+    }
+    clear_depth();
+    end_clear();
+  };
+  const auto use = [&](const Draw& draw) -> const gl::Program& {
     const gl::Program& shader =
         program(input.state, "geometry.vert", "geometry.frag",
                 fmt::format("#define TURNED_MESH {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n#define "
@@ -36,8 +41,9 @@ void execute(const PassInput& input) {
                                 gain_target, gain_target + 1));
     glUseProgram(shader.name());
     set_uniform(shader, "frame", static_cast<unsigned>(draw.frame));
-    draw_set(input, draw, shader);
-  }
+    return shader;
+  };
+  draw_sets(input, use, clear);
   end_geometry();
 }
 

@@ -23,6 +23,9 @@ void execute(const PassInput& input) {
   const Guides& guides = input.plan.guides;
   input.draw_to({Target::picture}, true);
   begin_geometry(input.plan, 1);
+  begin_clear(input.plan);
+  clear_depth();
+  end_clear();
   const gl::Program& shader = program(
       input.state, "geometry.vert", "inspect.frag",
       fmt::format("#define TURNED_MESH 0\n#define LIT_MESH 0\n#define INSPECT {}\n", static_cast<int>(guides.inspect)));

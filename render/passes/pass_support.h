@@ -4,6 +4,7 @@
 #include <string>
 
 #include "render/graph/passes.h"
+#include "render/passes/depth_pyramid.h"
 
 namespace rebake {
 
@@ -38,15 +39,33 @@ int light_level(const FramePlan& plan);
 /// What shaders need to know of a draw's light map.
 std::string light_preamble(const Draw& draw);
 
+/// Whether depth is 1 at the near plane and 0 at the far one; without clip control it runs −1 … 1.
+bool reversed_depth();
+/// Camera to clip space.
+Eigen::Matrix4d projection(const View& view);
+/// Factor and offset that make of depth in clip space 1 at the near plane and 0 at the far one.
+Vec2 nearness_of_depth();
+
 /// Sets what geometry.vert needs of a set and binds its texture.
 void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Program& program);
+/// The same, and binds its vertices and light.
+void bind_set(const PassInput& input, const Draw& draw, const gl::Program& program);
+void unbind_set(const Draw& draw);
 /// The same, and draws the clusters in view.
 void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program);
 
+/// What is cleared next is cleared where plan.covered is at least; all of it where lines are compared with its depth,
+/// or where that is done sooner. end_clear() after that.
+void begin_clear(const FramePlan& plan);
+void clear_depth();
+void end_clear();
 /// Depth test (less or equal, in reversed depth where the driver can), both sides drawn, restricted to plan.covered at
 /// `side` samples.
 void begin_geometry(const FramePlan& plan, int side);
 void end_geometry();
+
+/// Draws rectangles of the picture with rectangles.vert.
+void draw_rectangles(const View& view, const gl::Program& program, const std::vector<SampleRect>& rectangles);
 
 /// For what is drawn over the picture: its whole raster, the depth convention of the scene, no depth test.
 void begin_overlay(const FramePlan& plan);

@@ -1,7 +1,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-#include "render/passes/pass_support.h"
+#include "render/passes/occlusion.h"
 
 namespace rebake {
 
@@ -36,7 +36,7 @@ void execute(const PassInput& input) {
   glScissor(plan.covered.left, plan.view.height - plan.covered.bottom, plan.covered.right - plan.covered.left,
             plan.covered.bottom - plan.covered.top);
 
-  const gl::Program& shader = program(input.state, "fullscreen.vert", "resolve.frag",
+  const gl::Program& shader = program(input.state, "rectangles.vert", "resolve.frag",
                                       fmt::format("#define SIDE {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n"
                                                   "#define RAY_PER_SAMPLE {}\n#define WRITES_LIGHT {}\n",
                                                   side, has_frames ? 1 : 0, has_rays ? 1 : 0,
@@ -76,9 +76,7 @@ void execute(const PassInput& input) {
   set_ray_uniforms(shader, plan.view, side);
   const Color& b = plan.background;
   set_uniform(shader, "background", glm::vec3(b.x(), b.y(), b.z()));
-  glBindVertexArray(input.state.empty_array.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindVertexArray(0);
+  draw_rectangles(plan.view, shader, drawn_pixels(input));
 }
 
 std::optional<Decision> decide(const FrameFacts& facts) {

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "mesh_ops/base/types.h"
+#include "render/gpu_scene/clusters.h"
+#include "render/passes/depth_pyramid.h"
+
+namespace rebake {
+
+/// Which samples of a raster something may cover, and how near it may come there.
+struct ScreenBounds {
+  enum class Where : std::int32_t {
+    outside,   ///< of the raster's rectangle, or between its samples
+    inside,    ///< within `samples`
+    anywhere,  ///< it comes too near to the eye to say
+  };
+  Where where = Where::anywhere;
+  SampleRect samples;  ///< right and top included
+  float nearness = 1;
+};
+
+/// The same of a cluster's triangles, each in an array of its own.
+struct ClusterBounds {
+  template <class T>
+  using Each = std::array<T, faces_a_face_cluster>;
+  Each<std::int32_t> left, bottom, right, top;  ///< as ScreenBounds::samples; empty where nothing is covered
+  Each<float> nearness;  ///< above all where a triangle is so thin that what drivers draw of it is rounding
+  Each<std::int32_t> where;
+
+  SampleRect samples(std::size_t k) const { return {left[k], bottom[k], right[k], top[k]}; }
+};
+
+/// Bounds what a driver draws of triangles and boxes, so that nothing it draws lies outside them: with room for the
+/// driver's floats, and for corners that it rounds to 1/256 of a sample.
+class ScreenBounder {
+ public:
+  /// `to_clip`: object to clip space. `bounds`: what is drawn, in object space. `nearness_of_depth`: factor and offset
+  /// that make of z / w in clip space 1 at the near plane and 0 at the far one.
+  ScreenBounder(const Eigen::Matrix4d& to_clip, const Box& bounds, const Vec2& nearness_of_depth, int width, int height,
+                const SampleRect& rect);
+
+  /// Of triangles within the box, in object space.
+  ScreenBounds box(const Box& box) const;
+  /// Of triangles given relative to the centre of what is drawn.
+  void triangles(const ClusterCorners& corners, ClusterBounds& bounds) const;
+
+ private:
+  ScreenBounds covered(double left, double bottom, double right, double top) const;
+
+  Eigen::Matrix4d to_clip_;
+  Eigen::Matrix4f centred_;     ///< the same from the centre
+  Eigen::Vector4d clip_error_;  ///< of each component, as worked out in floats
+  double factor_, offset_;
+  double half_width_, half_height_;
+  SampleRect rect_;
+};
+
+}  // namespace rebake

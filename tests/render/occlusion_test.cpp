@@ -1,0 +1,349 @@
+// Leaving out hidden triangles must change no byte of any picture, whatever was drawn before; and it must leave out
+// what is hidden, and nothing where that does not pay.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "mesh_ops/formats/formats.h"
+#include "render/graph/effects.h"
+#include "render/passes/depth_pyramid.h"
+#include "render/passes/screen_bounds.h"
+#include "render/picture.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+using Occlusion = RenderOptions::Occlusion;
+
+// Two renderers side by side: one that draws everything, and one that remembers its last frame.
+struct Pair {
+  Renderer all, some;
+
+  void expect_same(const Scene& scene, const View& view, const std::string& what, RenderOptions options = {}) {
+    options.occlusion = Occlusion::off;
+    const Image expected = all.render(scene, view, options);
+    options.occlusion = Occlusion::on;
+    const Image drawn = some.render(scene, view, options);
+    EXPECT_TRUE(expected.rgb == drawn.rgb) << what;
+  }
+
+  // What the last picture's plan says of hidden triangles.
+  std::string said() const {
+    for (const PlannedPass& pass : some.passes())
+      if (pass.effect == &effects::occlusion) return pass.why;
+    return "";
+  }
+};
+
+Pair& renderers() {
+  static Pair pair;
+  return pair;
+}
+
+View view_of(const Vec3& eye, const Vec3& target, int samples = 4) {
+  View view;
+  view.camera.eye = eye;
+  view.camera.target = target;
+  view.camera.near_plane = 0.05;
+  view.camera.far_plane = 50;
+  view.width = 200;
+  view.height = 150;
+  view.samples = samples;
+  return view;
+}
+
+// Spheres that cross, copies of one another at the same place, a bent one, a turned part, one far away.
+Scene crowd() {
+  Scene scene;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-1.2, 1.2), angle(0, 3);
+  const auto dense = made_object({.columns = 64, .rows = 32, .cell = 9});
+  const auto other = made_object({.columns = 48, .rows = 24, .cell = 9, .seed = 2, .radius = 0.4});
+  const auto add = [&](std::shared_ptr<const BakedObject> object, const Affine& to_world) {
+    Node node;
+    node.object = std::move(object);
+    node.to_parent = to_world;
+    scene = with_added(scene, node, NodeId::none, 99);
+  };
+  add(dense, Affine::Identity());
+  add(dense, Affine::Identity());  // equally near everywhere: the later one shows
+  for (int k = 0; k < 6; ++k)
+    add(other, Eigen::Translation3d(place(random), place(random), place(random)) *
+                   Eigen::AngleAxisd(angle(random), Vec3::UnitY()) * Eigen::Scaling(1.0, 0.5 + 0.2 * k, 1.0));
+  auto parted = std::make_shared<BakedObject>(*other);
+  TriangleSet half(parted->triangle_count(), 0);
+  std::fill(half.begin(), half.begin() + static_cast<std::ptrdiff_t>(half.size() / 2), 1);
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3::UnitZ()).toRotationMatrix();
+  parted->sets[0].soup = move_faces(parted->sets[0].soup, half, 0, Affine(turn), turn);
+  add(parted, Affine(Eigen::Translation3d(0.8, 0.8, 0.2)));
+  add(other, Affine(Eigen::Translation3d(0, 0, -30)));
+  return scene;
+}
+
+class OcclusionBySamples : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Occlusion, OcclusionBySamples, ::testing::Values(1, 4, 16));
+
+TEST_P(OcclusionBySamples, ChangesNoByteWhileTheCameraTurnsJumpsAndComesNear) {
+  const Scene scene = crowd();
+  for (int k = 0; k < 8; ++k) {
+    const double turn = 0.05 * k;
+    renderers().expect_same(scene, view_of({3 * std::sin(turn), 1, 3 * std::cos(turn)}, {0, 0, 0}, GetParam()),
+                            fmt::format("turning, {}", k));
+  }
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-2, 2);
+  for (int k = 0; k < 12; ++k)
+    renderers().expect_same(scene,
+                            view_of({place(random), place(random), place(random)},
+                                    {place(random), place(random), place(random)}, GetParam()),
+                            fmt::format("jump {}", k));
+  for (const double distance : {1.3, 1.05, 1.001, 0.97, 0.5, 0.0001})
+    renderers().expect_same(scene, view_of({0, 0, distance}, {0, 0.01, -1}, GetParam()),
+                            fmt::format("eye at {}", distance));
+}
+
+TEST_P(OcclusionBySamples, ChangesNoByteOfParallelRays) {
+  View view = view_of({2, 1, 3}, {0, 0, 0}, GetParam());
+  for (const double height : {4.0, 0.3, 100.0}) {
+    view.camera.ortho_height = height;
+    renderers().expect_same(crowd(), view, fmt::format("height {}", height));
+  }
+}
+
+TEST(Occlusion, ChangesNoByteFarFromTheOriginTinyAndHuge) {
+  for (const double scale : {1e-3, 1.0, 1e3})
+    for (const double away : {0.0, 1e3, 1e6}) {
+      Scene scene = crowd();
+      for (const NodePtr& node : std::vector<NodePtr>(scene.roots))
+        scene = with_changed(scene, node->id, [&](Node& n) {
+          n.to_parent = Eigen::Translation3d(away * scale, 0, 0) * Eigen::Scaling(scale) * n.to_parent;
+        });
+      View view = view_of(Vec3(away + 2, 1, 2.5) * scale, Vec3(away, 0, 0) * scale);
+      view.camera.near_plane *= scale;
+      view.camera.far_plane *= scale;
+      for (int k = 0; k < 2; ++k) {
+        view.camera.eye.y() += 0.1 * k * scale;
+        renderers().expect_same(scene, view, fmt::format("scale {}, {} away, {}", scale, away, k));
+      }
+    }
+}
+
+// Vertices far off their object's centre reach the GPU as coarse floats, which bounds must allow for.
+TEST(Occlusion, ChangesNoByteWhereFloatsAreCoarse) {
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 64, .rows = 32, .cell = 9}));
+  TriangleSet half(object->triangle_count(), 0);
+  std::fill(half.begin(), half.begin() + static_cast<std::ptrdiff_t>(half.size() / 2), 1);
+  object->sets[0].soup =
+      move_faces(object->sets[0].soup, half, 0, Affine(Eigen::Translation3d(2e5, 0, 0)), Mat3::Identity());
+  const Scene scene = scene_of(object);
+  for (const double angle : {0.0, 0.4, 0.8})
+    renderers().expect_same(scene, view_of({3 * std::sin(angle), 0.5, 3 * std::cos(angle)}, {0, 0, 0}),
+                            fmt::format("angle {}", angle));
+}
+
+TEST(Occlusion, ChangesNoByteOfSamplesAndOfEdits) {
+  for (const char* name : {"ficus", "kettle"}) {
+    Scene scene = read_any(std::filesystem::path(REBAKE_SOURCE) / "samples/scenes" / name, Axes::y_up);
+    const Box box = world_bounds(scene);
+    const double size = box.diagonal().norm();
+    for (int edit = 0; edit < 3; ++edit) {
+      for (int k = 0; k < 5; ++k) {
+        const double turn = 1.3 * k;
+        View view =
+            view_of(box.center() + size * (0.25 + 0.2 * k) * Vec3(std::sin(turn), 0.3, std::cos(turn)), box.center());
+        view.camera.near_plane = 0.01 * size;
+        view.camera.far_plane = 5 * size;
+        renderers().expect_same(scene, view, fmt::format("{}, edit {}, view {}", name, edit, k));
+      }
+      // Half of the triangles go, then the rest moves: what was remembered is of other faces.
+      const NodePtr node = scene.roots[0];
+      auto object = std::make_shared<BakedObject>(*node->object);
+      for (TextureSet& set : object->sets) {
+        const std::size_t count = set.soup.triangle_count();
+        TriangleSet flags(count, 0);
+        for (std::size_t f = 0; f < count; ++f) flags[f] = f % 2 == 0 ? 1 : 0;
+        const Mat3 turn = Eigen::AngleAxisd(0.3, Vec3::UnitY()).toRotationMatrix();
+        set.soup = edit == 0 ? subset(set.soup, flags, 0, true) : move_faces(set.soup, flags, 0, Affine(turn), turn);
+      }
+      scene = with_changed(scene, node->id, [&](Node& n) { n.object = object; });
+    }
+  }
+}
+
+TEST(Occlusion, ChangesNoByteOfTheRealMic) {
+  const auto mic = mic_object();
+  if (!mic) GTEST_SKIP() << "../shared/data/mic is absent";
+  const Scene scene = scene_of(mic);
+  for (int k = 0; k < 10; ++k) {
+    const double turn = 0.03 * k * k;
+    View view = view_of({3.5 * std::sin(turn), 2 - 0.3 * k, 3.5 * std::cos(turn)}, {0, 0, 0});
+    view.width = view.height = 400;
+    renderers().expect_same(scene, view, fmt::format("view {}: {}", k, renderers().said()));
+  }
+}
+
+TEST(Occlusion, OneTriangleAndNone) {
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 4}));
+  TriangleSet one(object->triangle_count(), 0);
+  renderers().expect_same(scene_of(object), view_of({0, 0, 3}, {0, 0, 0}), "few");
+  one[one.size() / 2] = 1;
+  object->sets[0].soup = subset(object->sets[0].soup, one, 0, true);
+  renderers().expect_same(scene_of(object), view_of({0, 0, 3}, {0, 0, 0}), "one");
+  one.assign(1, 0);
+  object->sets[0].soup = subset(object->sets[0].soup, one, 0, true);
+  renderers().expect_same(scene_of(object), view_of({0, 0, 3}, {0, 0, 0}), "none");
+}
+
+TEST(Occlusion, LeavesOutWhatASphereHides) {
+  // One sphere within another: all of the inner one and the far half of the outer one.
+  Scene scene = scene_of(made_object({.columns = 128, .rows = 64, .cell = 5, .holes = false}));
+  Node inner;
+  inner.object = made_object({.columns = 128, .rows = 64, .cell = 5, .seed = 3, .radius = 0.9});
+  scene = with_added(scene, inner, NodeId::none, 9);
+  const View view = view_of({0, 0.4, 4}, {0, 0, 0});
+  Renderer renderer;
+  RenderOptions options;
+  options.occlusion = Occlusion::on;
+  const auto drawn = [&] {
+    renderer.render(scene, view, options);
+    for (const PlannedPass& pass : renderer.passes())
+      if (pass.effect == &effects::occlusion) {
+        std::size_t all = 0, some = 0;
+        const std::size_t at = pass.why.find("; of ");
+        EXPECT_EQ(std::sscanf(pass.why.c_str() + at, "; of %zu triangles %zu drawn", &all, &some), 2) << pass.why;
+        return static_cast<double>(some) / static_cast<double>(all);
+      }
+    return 1.0;
+  };
+  EXPECT_LT(drawn(), 0.65) << "in the first picture already";
+  EXPECT_LT(drawn(), 0.35) << "a quarter shows";
+}
+
+TEST(Occlusion, RunsWhereItPays) {
+  const Scene few = scene_of(made_object()), many = scene_of(made_object({.columns = 200, .rows = 100, .cell = 3}));
+  const View view = view_of({0, 0.4, 4}, {0, 0, 0});
+  EXPECT_FALSE(plan(few, view).runs(effects::occlusion));
+  EXPECT_TRUE(plan(many, view).runs(effects::occlusion));
+  DeviceFacts device;
+  device.shown_share = 0.9;
+  EXPECT_FALSE(plan(many, view, {}, nullptr, nullptr, device).runs(effects::occlusion)) << "nearly all shows";
+  device = {.occlusion_from = 1'000'000};
+  EXPECT_FALSE(plan(many, view, {}, nullptr, nullptr, device).runs(effects::occlusion)) << "a GPU draws them sooner";
+  RenderOptions off;
+  off.occlusion = Occlusion::off;
+  EXPECT_FALSE(plan(many, view, off).runs(effects::occlusion));
+}
+
+// A scene whose every triangle shows must not be looked at again and again.
+TEST(Occlusion, GivesUpForAWhileWhereNothingIsHidden) {
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 200, .rows = 100, .cell = 3, .holes = false}));
+  std::vector<Vec3> flat;
+  for (const Vec2& uv : object->sets[0].soup.uvs()) flat.emplace_back(uv.x() * 2 - 1, uv.y() * 2 - 1, 0);
+  object->sets[0].soup = Soup(flat, object->sets[0].soup.uvs(), object->sets[0].soup.faces());
+  const Scene scene = scene_of(object);
+  View view = view_of({0, 0, 2.5}, {0, 0, 0});
+  view.width = view.height = 800;
+  Renderer renderer;
+  int looked = 0;
+  for (int k = 0; k < 20; ++k) {
+    renderer.render(scene, view);
+    for (const PlannedPass& pass : renderer.passes()) looked += pass.effect == &effects::occlusion && pass.runs ? 1 : 0;
+  }
+  EXPECT_GE(looked, 2) << "it may change";
+  EXPECT_LE(looked, 3);
+}
+
+TEST(DepthPyramid, HidesWhatLiesBehindAllItsSamplesOnly) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> depth(0.2F, 0.8F);
+  const SampleRect rect{3, 5, 3 + 37, 5 + 23};
+  std::vector<float> nearness(37UL * 23);
+  for (float& n : nearness) n = depth(random);
+  DepthPyramid pyramid;
+  pyramid.build(rect, nearness);
+  std::uniform_int_distribution<int> x(0, 45), y(0, 33);
+  int hidden = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const int a = x(random), b = x(random), c = y(random), d = y(random);
+    const SampleRect samples{std::min(a, b), std::min(c, d), std::max(a, b), std::max(c, d)};
+    const float at = 0.5F * depth(random);
+    if (!pyramid.hides(samples, at)) continue;
+    ++hidden;
+    for (int v = std::max(samples.bottom, 5); v <= std::min(samples.top, 5 + 22); ++v)
+      for (int u = std::max(samples.left, 3); u <= std::min(samples.right, 3 + 36); ++u)
+        ASSERT_GT(nearness[static_cast<std::size_t>(v - 5) * 37 + static_cast<std::size_t>(u - 3)], at);
+  }
+  EXPECT_GT(hidden, 1000);
+}
+
+// Bounds against the same projection in long double: no corner, moved by what drivers round, may lie outside.
+TEST(ScreenBounds, HoldTheirTriangles) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> u(-1, 1);
+  const SampleRect rect{0, 0, 640, 480};
+  std::size_t inside = 0, anywhere = 0;
+  for (int round = 0; round < 400; ++round) {
+    const double scale = std::pow(10.0, 3 * u(random)), away = scale * std::pow(10.0, 2 * u(random));
+    Eigen::Matrix4d to_clip = Eigen::Matrix4d::Identity();
+    to_clip(2, 2) = 0;
+    to_clip(2, 3) = 0.01 * scale;
+    to_clip(3, 2) = -1;
+    to_clip(3, 3) = away;
+    const Vec3 center = 5 * scale * Vec3(u(random), u(random), u(random));
+    to_clip.col(3) -= to_clip.leftCols<3>() * center;
+    const Box box(center - Vec3::Constant(scale), center + Vec3::Constant(scale));
+    const ScreenBounder bounder(to_clip, box, {1, 0}, 640, 480, rect);
+    ClusterCorners corners;
+    for (auto& corner : corners.at)
+      for (auto& axis : corner)
+        for (float& at : axis) at = static_cast<float>(scale * u(random));
+    ClusterBounds bounds;
+    bounder.triangles(corners, bounds);
+    for (std::size_t k = 0; k < faces_a_face_cluster; ++k) {
+      using Where = ScreenBounds::Where;
+      const auto where = static_cast<Where>(bounds.where[k]);
+      anywhere += where == Where::anywhere ? 1 : 0;
+      if (where != Where::inside) continue;
+      ++inside;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto at = [&](std::size_t axis) {
+          return static_cast<long double>(center[static_cast<Eigen::Index>(axis)]) +
+                 static_cast<long double>(corners.at[c][axis][k]);
+        };
+        long double clip[4];
+        for (Eigen::Index row = 0; row < 4; ++row)
+          clip[row] = to_clip(row, 0) * at(0) + to_clip(row, 1) * at(1) + to_clip(row, 2) * at(2) + to_clip(row, 3);
+        const long double px = (clip[0] / clip[3] + 1) * 320, py = (clip[1] / clip[3] + 1) * 240;
+        // The sample nearest to a corner on its inner side lies at most one further.
+        if (px > 0 && px < 640) {
+          EXPECT_LE(bounds.left[k], static_cast<int>(std::ceil(px - 0.5L)));
+          EXPECT_GE(bounds.right[k], static_cast<int>(std::floor(px - 0.5L)));
+        }
+        if (py > 0 && py < 480) {
+          EXPECT_LE(bounds.bottom[k], static_cast<int>(std::ceil(py - 0.5L)));
+          EXPECT_GE(bounds.top[k], static_cast<int>(std::floor(py - 0.5L)));
+        }
+        EXPECT_GE(static_cast<long double>(bounds.nearness[k]), clip[2] / clip[3]);
+      }
+    }
+  }
+  EXPECT_GT(inside, 5000U);
+  EXPECT_GT(anywhere, 1000U) << "triangles through the eye's plane are among them";
+}
+
+TEST(ScreenBounds, TriangleThatIsNoNumberMayBeAnywhere) {
+  const ScreenBounder bounder(Eigen::Matrix4d::Identity(), Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)), {1, 0}, 64, 64,
+                              {0, 0, 64, 64});
+  ClusterCorners corners{};
+  for (std::size_t k = 0; k < faces_a_face_cluster; ++k) corners.at[k % 3][k % 2][k] = k % 5 == 0 ? NAN : INFINITY;
+  ClusterBounds bounds;
+  bounder.triangles(corners, bounds);
+  for (const std::int32_t where : bounds.where) EXPECT_NE(where, static_cast<int>(ScreenBounds::Where::inside));
+}
+
+}  // namespace
+}  // namespace rebake::test
