@@ -2,14 +2,12 @@
 #if DECODER_BUFFER
 #include "decoder_buffer.glsl"
 #endif
-uniform usampler2D features;
-uniform ivec2 last_texel;
+#include "texel.glsl"
 uniform mat3 camera_to_fed;
 uniform vec2 alpha_code;
 uniform vec2 ray_scale;
 uniform vec2 ray_offset;
 uniform int decoder;
-in vec2 at_texel;
 #if TURNED_MESH
 in vec3 turned_ray;
 #endif
@@ -22,7 +20,7 @@ in vec2 at_light;
 layout(location = 0) out vec4 picture;
 
 void main() {
-  uvec2 texel = texelFetch(features, clamp(ivec2(floor(at_texel)), ivec2(0), last_texel), 0).rg;
+  uvec2 texel = texel_here();
   if ((texel.r & 255u) == 0u) discard;
   Sums sums = Sums(uvec4(0u), 0u);
   add(sums, texel);

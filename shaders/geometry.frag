@@ -1,6 +1,4 @@
-uniform usampler2D features;
-uniform ivec2 last_texel;
-in vec2 at_texel;
+#include "texel.glsl"
 layout(location = 0) out uvec2 sample_features;
 #if WRITES_FRAME
 uniform uint frame;
@@ -25,7 +23,7 @@ in vec2 at_light;
 #endif
 
 void main() {
-  uvec2 texel = texelFetch(features, clamp(ivec2(floor(at_texel)), ivec2(0), last_texel), 0).rg;
+  uvec2 texel = texel_here();
   if ((texel.r & 255u) == 0u) discard;
   sample_features = texel;
 #if WRITES_FRAME

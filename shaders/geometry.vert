@@ -1,5 +1,7 @@
 layout(location = 0) in vec3 position;  // object space, relative to the mesh's centre
 layout(location = 1) in vec2 texel;     // in texels, v down
+layout(location = 6) in uvec4 rectangle;  // first and last texel of those that the vertex's triangles show
+layout(location = 7) in uvec2 place;      // of the first one on the GPU
 #if TURNED_MESH
 layout(location = 2) in mat3 turn;  // by which an edit turned the vertex against its object
 uniform bool parallel_rays;     // of an orthographic camera
@@ -15,10 +17,12 @@ out vec2 at_light;
 #endif
 uniform mat4 object_to_clip;
 out vec2 at_texel;
+flat out uvec3 packed_at;
 
 void main() {
   gl_Position = object_to_clip * vec4(position, 1.0);
   at_texel = texel;
+  packed_at = uvec3(rectangle.xz | rectangle.yw << 16, place.x | place.y << 16);
 #if LIT_MESH
   at_light = light_place / light_size;
 #endif

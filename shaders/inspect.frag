@@ -1,14 +1,12 @@
 // Other looks at the triangles than their colours. INSPECT: 1 wireframe, 2 opacity, 3 texture sets, 4 a feature channel,
 // 5 overdraw.
-uniform usampler2D features;
-uniform ivec2 last_texel;
+#include "texel.glsl"
 uniform int channel;     // 0 … 7
 uniform vec3 set_color;
-in vec2 at_texel;
 out vec4 color;
 
 void main() {
-  uvec2 texel = texelFetch(features, clamp(ivec2(floor(at_texel)), ivec2(0), last_texel), 0).rg;
+  uvec2 texel = texel_here();
   bool opaque = (texel.r & 255u) != 0u;
 #if INSPECT == 1
   color = vec4(set_color * 0.6, 1.0);

@@ -5,26 +5,11 @@
 
 #include <algorithm>
 
-#include "mesh_ops/index/opacity.h"
-
 namespace rebake {
 
 namespace {
 
 constexpr std::size_t faces_a_cluster = 2048;
-
-std::vector<GpuVertex> vertices_of(const TextureSet& set, const Vec3& center) {
-  const Soup& soup = set.soup;
-  std::vector<GpuVertex> vertices(soup.positions().size());
-  const double width = set.texels->width(), height = set.texels->height();
-  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t v) {
-    const Eigen::Vector3f position = (soup.positions()[v] - center).cast<float>();
-    const Vec2& uv = soup.uvs()[v];
-    vertices[v] = {{position.x(), position.y(), position.z()},
-                   {static_cast<float>(uv.x() * width), static_cast<float>((1 - uv.y()) * height)}};
-  });
-  return vertices;
-}
 
 std::vector<GpuCluster> clusters_of(const Soup& soup, const std::vector<Face>& faces) {
   std::vector<GpuCluster> clusters((faces.size() + faces_a_cluster - 1) / faces_a_cluster);
@@ -38,14 +23,9 @@ std::vector<GpuCluster> clusters_of(const Soup& soup, const std::vector<Face>& f
   return clusters;
 }
 
-// Whether the same triangles of both show something.
-bool same_faces(const MeshKey& a, const MeshKey& b) {
-  return a.uvs == b.uvs && a.faces == b.faces && a.texels == b.texels;
-}
-
 // Whether a mesh is a set's but for its positions, as while something is dragged.
 bool differs_in_place(const MeshKey& held, const MeshKey& wanted) {
-  return same_faces(held, wanted) && held.turns == nullptr && wanted.turns == nullptr;
+  return held.surface == wanted.surface && held.turns == nullptr && wanted.turns == nullptr;
 }
 
 // New positions into a mesh that is there.
@@ -54,21 +34,18 @@ void move_vertices(GpuMesh& mesh, PreparedMesh made) {
   mesh.center = made.center;
   mesh.clusters = std::move(made.clusters);
   mesh.nearby = std::move(made.nearby);
-  glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices.name());
-  glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(made.vertices.size() * sizeof(GpuVertex)),
-                  made.vertices.data());
+  glBindBuffer(GL_ARRAY_BUFFER, mesh.positions.name());
+  glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(made.positions.size() * sizeof(made.positions[0])),
+                  made.positions.data());
 }
 
-GpuMesh upload(PreparedMesh made) {
+GpuMesh upload(PreparedMesh made, const GpuSurface& surface) {
   GpuMesh mesh;
   mesh.array = gl::make_vertex_array();
   glBindVertexArray(mesh.array.name());
-  mesh.vertices = gl::make_buffer(GL_ARRAY_BUFFER, made.vertices.data(), made.vertices.size() * sizeof(GpuVertex));
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(GpuVertex), nullptr);
-  glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(GpuVertex),
-                        reinterpret_cast<const void*>(offsetof(GpuVertex, texel)));
+  mesh.positions =
+      gl::make_buffer(GL_ARRAY_BUFFER, made.positions.data(), made.positions.size() * sizeof(made.positions[0]));
+  bind_vertices(mesh.positions, surface);
   if (!made.turns.empty()) {
     mesh.turns = gl::make_buffer(GL_ARRAY_BUFFER, made.turns.data(), made.turns.size() * sizeof(float));
     for (GLuint column = 0; column < 3; ++column) {
@@ -77,30 +54,13 @@ GpuMesh upload(PreparedMesh made) {
                             reinterpret_cast<const void*>(column * 3 * sizeof(float)));
     }
   }
-  mesh.indices =
-      gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, made.shown.faces->data(), made.shown.faces->size() * sizeof(Face));
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, surface.indices.name());
   glBindVertexArray(0);
   mesh.source = std::move(made.source);
   mesh.center = made.center;
-  mesh.shown = std::move(made.shown);
   mesh.clusters = std::move(made.clusters);
   mesh.nearby = std::move(made.nearby);
   return mesh;
-}
-
-GpuTexture upload(const std::shared_ptr<const FeatureTexture>& source) {
-  GpuTexture result{source, gl::make_texture(GL_RG32UI, source->width(), source->height(), sizeof(Texel))};
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, TexelTile::size);
-  for (int row = 0; row < source->tile_rows(); ++row) {
-    for (int column = 0; column < source->tile_columns(); ++column) {
-      const int x = column * TexelTile::size, y = row * TexelTile::size;
-      glTexSubImage2D(GL_TEXTURE_2D, 0, x, y, std::min(TexelTile::size, source->width() - x),
-                      std::min(TexelTile::size, source->height() - y), GL_RG_INTEGER, GL_UNSIGNED_INT,
-                      source->tile(column, row)->texels.data());
-    }
-  }
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  return result;
 }
 
 gl::Texture upload(const LightChart& chart, const std::vector<Eigen::Vector3f>& values) {
@@ -123,12 +83,14 @@ GpuLight upload(const std::shared_ptr<const LightMap>& map) {
 
 }  // namespace
 
-PreparedMesh prepared(const TextureSet& set, ShownFaces shown) {
+PreparedMesh prepared(const TextureSet& set, const ShownFaces& shown) {
   const Soup& soup = set.soup;
   PreparedMesh made;
   made.source = set;
   if (!soup.bounds().isEmpty()) made.center = soup.bounds().center();
-  made.vertices = vertices_of(set, made.center);
+  made.positions.resize(soup.positions().size());
+  tbb::parallel_for(std::size_t{0}, made.positions.size(),
+                    [&](std::size_t v) { made.positions[v] = (soup.positions()[v] - made.center).cast<float>(); });
   if (soup.rotations() != nullptr) {
     const auto& rotations = *soup.rotations();
     made.turns.resize(rotations.size() * 9);
@@ -136,57 +98,79 @@ PreparedMesh prepared(const TextureSet& set, ShownFaces shown) {
       for (std::size_t k = 0; k < 9; ++k) made.turns[v * 9 + k] = static_cast<float>(rotations[v].data()[k]);
     });
   }
-  // Faces that show nothing are not worth a draw.
-  made.shown = std::move(shown);
-  if (!made.shown.faces) {
-    const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
-    auto faces = std::make_shared<std::vector<Face>>();
-    for (std::size_t f = 0; f < shows.size(); ++f)
-      if (shows[f] != 0) faces->push_back(soup.faces()[f]);
-    made.shown.faces = std::move(faces);
-  }
-  if (!made.shown.nearby) made.shown.nearby = nearby_order(soup, *made.shown.faces);
-  made.clusters = clusters_of(soup, *made.shown.faces);
-  made.nearby = face_clusters(soup, *made.shown.faces, *made.shown.nearby, made.center);
+  made.clusters = clusters_of(soup, *shown.faces);
+  made.nearby = face_clusters(soup, *shown.faces, *shown.nearby, made.center);
   return made;
 }
 
-// What was prepared of a set, or is now.
-PreparedMesh GpuScene::take_prepared(const TextureSet& set) {
-  const MeshKey key = mesh_key(set);
-  ShownFaces shown;
+PreparedMesh GpuScene::take_mesh(const TextureSet& set) {
   {
     const std::lock_guard lock(mutex_);
-    if (auto node = prepared_.extract(key)) return std::move(node.mapped().mesh);
-    // Bent triangles show what they showed: that is not worked out again.
-    for (const auto& [other, held] : held_)
-      if (same_faces(other, key)) shown = held.shown;
+    if (auto node = prepared_meshes_.extract(mesh_key(set))) return std::move(node.mapped().made);
   }
-  return prepared(set, std::move(shown));
+  return prepared(set, surface(set).shown);
+}
+
+PreparedSurface GpuScene::take_surface(const TextureSet& set) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto node = prepared_surfaces_.extract(surface_key(set))) return std::move(node.mapped().made);
+  }
+  return prepared_surface(set);
 }
 
 void GpuScene::prepare(const Scene& scene) {
-  std::set<MeshKey> there;
-  std::map<MeshKey, Held> held;
+  std::set<MeshKey> meshes;
+  std::set<SurfaceKey> surfaces;
+  std::map<SurfaceKey, Held> held;
+  std::map<SurfaceKey, ShownFaces> shown;
+  unsigned turn = 0;
   {
     const std::lock_guard lock(mutex_);
-    held = held_;
-    for (const auto& [key, mesh] : held_) there.insert(key);
-    ++turn_;
-    for (const TextureSet& set : diff({}, {}, scene).meshes)
-      if (const auto found = prepared_.find(mesh_key(set)); found != prepared_.end()) found->second.turn = turn_;
+    turn = ++turn_;
+    held = held_surfaces_;
+    for (const auto& [key, mesh] : held_meshes_) meshes.insert(key);
+    for (const auto& [key, surface] : held_surfaces_) {
+      surfaces.insert(key);
+      shown[key] = surface.shown;
+    }
+    const ResourceDiff wanted = diff(meshes, surfaces, scene);
+    const auto refresh = [&](auto& waiting, const auto& key) {
+      if (const auto found = waiting.find(key); found != waiting.end()) found->second.turn = turn;
+    };
+    for (const TextureSet& set : wanted.meshes) refresh(prepared_meshes_, mesh_key(set));
+    for (const TextureSet& set : wanted.surfaces) refresh(prepared_surfaces_, surface_key(set));
     // What two calls did not want is of a preview that was never shown.
-    std::erase_if(prepared_, [&](const auto& entry) { return entry.second.turn + 2 < turn_; });
-    for (const auto& [key, made] : prepared_) there.insert(key);
+    const auto old = [&](const auto& entry) { return entry.second.turn + 2 < turn; };
+    std::erase_if(prepared_meshes_, old);
+    std::erase_if(prepared_surfaces_, old);
+    for (const auto& [key, made] : prepared_meshes_) meshes.insert(key);
+    for (const auto& [key, made] : prepared_surfaces_) {
+      surfaces.insert(key);
+      shown[key] = made.made.shown;
+    }
   }
-  for (const TextureSet& set : diff(there, {}, scene).meshes) {
-    const MeshKey key = mesh_key(set);
-    ShownFaces shown;
-    for (const auto& [other, mesh] : held)
-      if (same_faces(other, key)) shown = mesh.shown;
-    PreparedMesh made = prepared(set, std::move(shown));
+  const ResourceDiff missing = diff(meshes, surfaces, scene);
+  std::set<SurfaceKey> taken_over;
+  for (const TextureSet& set : missing.surfaces) {
+    const SurfaceKey key = surface_key(set);
+    // What is on the GPU will do, with a few texels changed: that is not known before.
+    if (std::any_of(held.begin(), held.end(),
+                    [&](const auto& entry) { return serves(entry.second.made_for, entry.second.source, set); })) {
+      taken_over.insert(key);
+      continue;
+    }
+    PreparedSurface made = prepared_surface(set);
+    shown[key] = made.shown;
     const std::lock_guard lock(mutex_);
-    prepared_.insert_or_assign(key, Waiting{std::move(made), turn_});
+    prepared_surfaces_.insert_or_assign(key, Waiting<PreparedSurface>{std::move(made), turn});
+  }
+  for (const TextureSet& set : missing.meshes) {
+    const MeshKey key = mesh_key(set);
+    if (taken_over.contains(key.surface)) continue;
+    PreparedMesh made = prepared(set, shown.at(key.surface));
+    const std::lock_guard lock(mutex_);
+    prepared_meshes_.insert_or_assign(key, Waiting<PreparedMesh>{std::move(made), turn});
   }
 }
 
@@ -207,34 +191,85 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
   update_light(lighting);
   std::set<MeshKey> held_meshes;
   for (const auto& [key, mesh] : meshes_) held_meshes.insert(key);
-  std::set<TextureKey> held_textures;
-  for (const auto& [key, texture] : textures_) held_textures.insert(key);
-  ResourceDiff change = diff(held_meshes, held_textures, scene);
-  if (change.meshes.empty() && change.textures.empty() && change.released_meshes.empty() &&
-      change.released_textures.empty())
+  std::set<SurfaceKey> held_surfaces;
+  for (const auto& [key, surface] : surfaces_) held_surfaces.insert(key);
+  ResourceDiff change = diff(held_meshes, held_surfaces, scene);
+  if (change.meshes.empty() && change.surfaces.empty() && change.released_meshes.empty() &&
+      change.released_surfaces.empty())
     return;
-  // What has only moved keeps its buffers.
-  std::erase_if(change.meshes, [&](const TextureSet& set) {
-    const MeshKey key = mesh_key(set);
-    const auto held = std::find_if(change.released_meshes.begin(), change.released_meshes.end(),
-                                   [&](const MeshKey& other) { return differs_in_place(other, key); });
-    if (held == change.released_meshes.end()) return false;
-    auto node = meshes_.extract(*held);
-    change.released_meshes.erase(held);
+  // Where texels changed, and none became opaque, only those are uploaded.
+  std::map<SurfaceKey, SurfaceKey> taken_over;
+  std::erase_if(change.surfaces, [&](const TextureSet& set) {
+    const auto held =
+        std::find_if(change.released_surfaces.begin(), change.released_surfaces.end(), [&](const SurfaceKey& key) {
+          const GpuSurface& surface = surfaces_.at(key);
+          return serves(surface.made_for, surface.source, set);
+        });
+    if (held == change.released_surfaces.end()) return false;
+    const SurfaceKey key = surface_key(set);
+    auto node = surfaces_.extract(*held);
+    taken_over[*held] = key;
+    change.released_surfaces.erase(held);
     node.key() = key;
-    move_vertices(node.mapped(), take_prepared(set));
-    meshes_.insert(std::move(node));
+    take_over(node.mapped(), set);
+    surfaces_.insert(std::move(node));
     return true;
   });
-  // Before what comes needs the room; held_ still knows what of them showed something.
+  const auto rekeyed = [&](std::vector<MeshKey>::iterator held, const TextureSet& set) -> GpuMesh& {
+    auto node = meshes_.extract(*held);
+    change.released_meshes.erase(held);
+    node.key() = mesh_key(set);
+    return meshes_.insert(std::move(node)).position->second;
+  };
+  // What has only moved, or only other texels, keeps its buffers.
+  std::erase_if(change.meshes, [&](const TextureSet& set) {
+    const MeshKey key = mesh_key(set);
+    const auto now = [&](MeshKey other) {
+      if (const auto found = taken_over.find(other.surface); found != taken_over.end()) other.surface = found->second;
+      return other;
+    };
+    auto& released = change.released_meshes;
+    auto held = std::find_if(released.begin(), released.end(), [&](const MeshKey& other) { return now(other) == key; });
+    if (held != released.end()) {
+      rekeyed(held, set).source = set;
+      return true;
+    }
+    held = std::find_if(released.begin(), released.end(),
+                        [&](const MeshKey& other) { return differs_in_place(now(other), key); });
+    if (held == released.end()) return false;
+    move_vertices(rekeyed(held, set), take_mesh(set));
+    return true;
+  });
+  // Before what comes needs the room.
   for (const MeshKey& key : change.released_meshes) meshes_.erase(key);
-  for (const TextureKey key : change.released_textures) textures_.erase(key);
-  for (const TextureSet& set : change.meshes) meshes_.emplace(mesh_key(set), upload(take_prepared(set)));
-  for (const auto& texture : change.textures) textures_.emplace(texture.get(), upload(texture));
+  for (const SurfaceKey& key : change.released_surfaces) surfaces_.erase(key);
+  for (const TextureSet& set : change.surfaces) surfaces_.emplace(surface_key(set), rebake::upload(take_surface(set)));
+  for (const TextureSet& set : change.meshes) meshes_.emplace(mesh_key(set), upload(take_mesh(set), surface(set)));
   const std::lock_guard lock(mutex_);
-  held_.clear();
-  for (const auto& [key, mesh] : meshes_) held_.emplace(key, Held{mesh.source, mesh.shown});
-  std::erase_if(prepared_, [&](const auto& entry) { return held_.contains(entry.first); });
+  held_meshes_.clear();
+  for (const auto& [key, mesh] : meshes_) held_meshes_.emplace(key, mesh.source);
+  held_surfaces_.clear();
+  for (const auto& [key, surface] : surfaces_)
+    held_surfaces_.emplace(key, Held{surface.source, surface.made_for, surface.shown});
+  std::erase_if(prepared_meshes_, [&](const auto& entry) { return held_meshes_.contains(entry.first); });
+  std::erase_if(prepared_surfaces_, [&](const auto& entry) { return held_surfaces_.contains(entry.first); });
+}
+
+void bind_vertices(const gl::Buffer& positions, const GpuSurface& surface) {
+  glBindBuffer(GL_ARRAY_BUFFER, positions.name());
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector3f), nullptr);
+  glBindBuffer(GL_ARRAY_BUFFER, surface.vertices.name());
+  glEnableVertexAttribArray(1);
+  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(SurfaceVertex),
+                        reinterpret_cast<const void*>(offsetof(SurfaceVertex, texel)));
+  const auto whole_numbers = [](GLuint location, GLint count, std::size_t offset) {
+    glEnableVertexAttribArray(location);
+    glVertexAttribIPointer(location, count, GL_UNSIGNED_SHORT, sizeof(SurfaceVertex),
+                           reinterpret_cast<const void*>(offset));
+  };
+  whole_numbers(6, 4, offsetof(SurfaceVertex, first_texel));
+  whole_numbers(7, 2, offsetof(SurfaceVertex, place));
 }
 
 }  // namespace rebake

@@ -9,14 +9,9 @@
 #include "render/gl/objects.h"
 #include "render/gpu_scene/clusters.h"
 #include "render/gpu_scene/resources.h"
+#include "render/gpu_scene/surface.h"
 
 namespace rebake {
-
-/// What geometry.vert reads of a vertex.
-struct GpuVertex {
-  float position[3];
-  float texel[2];
-};
 
 /// Faces [first, first + count) and their box, so that what is out of view is not drawn.
 struct GpuCluster {
@@ -25,43 +20,30 @@ struct GpuCluster {
   Box bounds;
 };
 
-/// A set's faces that may show something, shared by all that differ in places only, and an order of them in which
-/// neighbours stay neighbours wherever edits move them.
-struct ShownFaces {
-  std::shared_ptr<const std::vector<Face>> faces;
-  NearbyOrder nearby;
-};
-
-/// What is uploaded of a texture set, worked out beforehand: positions as floats relative to `center`, UVs in texels.
+/// What is uploaded of where a set's vertices are, worked out beforehand: floats relative to `center`.
 struct PreparedMesh {
-  TextureSet source;  ///< keeps arrays and texels alive, so that their addresses stay identities
+  TextureSet source;  ///< keeps the arrays alive, so that their addresses stay identities
   Vec3 center{0, 0, 0};
-  std::vector<GpuVertex> vertices;
+  std::vector<Eigen::Vector3f> positions;
   std::vector<float> turns;  ///< 9 a vertex; empty where none is turned
-  ShownFaces shown;
   std::vector<GpuCluster> clusters;
   FaceClusters nearby;
 };
-/// `shown` is empty where it is not known yet.
-PreparedMesh prepared(const TextureSet& set, ShownFaces shown = {});
+PreparedMesh prepared(const TextureSet& set, const ShownFaces& shown);
 
 /// A texture set's triangles on the GPU.
 struct GpuMesh {
   TextureSet source;
   Vec3 center{0, 0, 0};
   gl::VertexArray array;
-  gl::Buffer vertices;
+  gl::Buffer positions;
   gl::Buffer turns;
-  gl::Buffer indices;
-  ShownFaces shown;  ///< faces as in `indices`
   std::vector<GpuCluster> clusters;
   FaceClusters nearby;
 };
 
-struct GpuTexture {
-  std::shared_ptr<const FeatureTexture> source;
-  gl::Texture texture;
-};
+/// Makes the vertex array that is bound read positions and a surface's vertices.
+void bind_vertices(const gl::Buffer& positions, const GpuSurface& surface);
 
 /// A light map on the GPU.
 struct GpuLight {
@@ -79,28 +61,35 @@ class GpuScene {
   void prepare(const Scene& scene);
 
   const GpuMesh& mesh(const TextureSet& set) const { return meshes_.at(mesh_key(set)); }
-  const GpuTexture& texture(const TextureSet& set) const { return textures_.at(set.texels.get()); }
+  const GpuSurface& surface(const TextureSet& set) const { return surfaces_.at(surface_key(set)); }
   const GpuLight& light(const std::shared_ptr<const LightMap>& map) const { return lights_.at(map.get()); }
 
  private:
   void update_light(const Lighting* lighting);
-  PreparedMesh take_prepared(const TextureSet& set);
+  /// What was prepared of a set, or is now.
+  PreparedMesh take_mesh(const TextureSet& set);
+  PreparedSurface take_surface(const TextureSet& set);
 
   std::map<MeshKey, GpuMesh> meshes_;
-  std::map<TextureKey, GpuTexture> textures_;
+  std::map<SurfaceKey, GpuSurface> surfaces_;
   std::map<const LightMap*, GpuLight> lights_;
   // Shared with prepare():
   std::mutex mutex_;
+  /// Of what is on the GPU; sources keep what the keys are made of alive.
   struct Held {
-    TextureSet source;  ///< keeps what the key is made of alive
+    TextureSet source;
+    std::shared_ptr<const FeatureTexture> made_for;
     ShownFaces shown;
   };
-  std::map<MeshKey, Held> held_;  ///< of what is on the GPU
+  std::map<MeshKey, TextureSet> held_meshes_;
+  std::map<SurfaceKey, Held> held_surfaces_;
+  template <class Prepared>
   struct Waiting {
-    PreparedMesh mesh;
+    Prepared made;
     unsigned turn = 0;  ///< the call of prepare() that wanted it last
   };
-  std::map<MeshKey, Waiting> prepared_;
+  std::map<MeshKey, Waiting<PreparedMesh>> prepared_meshes_;
+  std::map<SurfaceKey, Waiting<PreparedSurface>> prepared_surfaces_;
   unsigned turn_ = 0;
 };
 

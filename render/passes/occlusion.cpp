@@ -45,6 +45,7 @@ struct Candidate {
 struct Set {
   const Draw* draw;
   const GpuMesh* mesh;
+  const GpuSurface* surface;
   ScreenBounder bounder;
   std::vector<std::uint8_t>* flags;
 };
@@ -62,13 +63,14 @@ class Frame {
     std::map<OcclusionState::Key, std::vector<std::uint8_t>> kept;
     for (const Draw& draw : input.plan.draws) {
       const GpuMesh& mesh = input.gpu.mesh(draw.set);
+      const GpuSurface& surface = input.gpu.surface(draw.set);
       const OcclusionState::Key key{draw.node, draw.first_triangle};
       auto node = state_.faces.extract(key);
       std::vector<std::uint8_t>& flags = kept[key];
       if (!node.empty()) flags = std::move(node.mapped());
       // Of another object by now, whose faces have other numbers.
-      if (flags.size() != mesh.shown.faces->size()) flags.assign(mesh.shown.faces->size(), 0);
-      sets_.push_back({&draw, &mesh, bounder(draw), &flags});
+      if (flags.size() != surface.shown.faces->size()) flags.assign(surface.shown.faces->size(), 0);
+      sets_.push_back({&draw, &mesh, &surface, bounder(draw), &flags});
     }
     state_.faces = std::move(kept);
   }
@@ -149,7 +151,7 @@ class Frame {
     const Set& set = sets_[candidate.set];
     const FaceCluster& cluster = set.mesh->nearby.clusters[candidate.cluster];
     for (std::uint32_t k = cluster.first; k < cluster.first + cluster.count; ++k) {
-      const std::uint32_t face = (*set.mesh->shown.nearby)[k];
+      const std::uint32_t face = (*set.surface->shown.nearby)[k];
       visit(face, (*set.flags)[face]);
     }
   }
@@ -164,7 +166,7 @@ class Frame {
     for (std::size_t s = 0; s < sets_.size(); ++s) {
       const std::vector<FaceCluster>& clusters = sets_[s].mesh->nearby.clusters;
       counts().clusters += clusters.size();
-      counts().triangles += sets_[s].mesh->shown.faces->size();
+      counts().triangles += sets_[s].surface->shown.faces->size();
       std::vector<ScreenBounds> bounds(clusters.size());
       tbb::parallel_for(std::size_t{0}, clusters.size(),
                         [&](std::size_t k) { bounds[k] = sets_[s].bounder.box(clusters[k].bounds); });
@@ -239,7 +241,7 @@ class Frame {
       std::size_t k = 0;
       const auto take = [&](std::size_t end) {
         for (; k < end; ++k)
-          if ((flags[k] & flag) != 0) indices_.push_back((*set.mesh->shown.faces)[k]);
+          if ((flags[k] & flag) != 0) indices_.push_back((*set.surface->shown.faces)[k]);
       };
       // Eight at a time: mostly none of them is.
       while (k + 8 <= flags.size()) {
@@ -266,7 +268,7 @@ class Frame {
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>((ends[s] - first) * 3), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(first * sizeof(Face)));
       // The vertex array remembers it.
-      glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, sets_[s].mesh->indices.name());
+      glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, sets_[s].surface->indices.name());
       unbind_set(*sets_[s].draw);
     }
   }

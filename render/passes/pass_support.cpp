@@ -170,12 +170,10 @@ std::string light_preamble(const Draw& draw) {
 
 void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Program& program) {
   const GpuMesh& mesh = input.gpu.mesh(draw.set);
-  const GpuTexture& texture = input.gpu.texture(draw.set);
   Affine to_camera = draw.to_camera;
   to_camera.translation() += draw.to_camera.linear() * mesh.center;
   const Eigen::Matrix4d to_clip = projection(input.plan.view);
   set_uniform(program, "object_to_clip", to_glm(Eigen::Matrix4d(to_clip * to_camera.matrix())));
-  set_uniform(program, "last_texel", glm::ivec2(texture.source->width() - 1, texture.source->height() - 1));
   set_uniform(program, "features", 0);
   if (draw.set.soup.rotations() != nullptr) {
     const Mat3 axes = axes_matrix(draw.axes);
@@ -186,7 +184,7 @@ void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Progr
     set_uniform(program, "object_to_fed", to_glm(axes));
   }
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, texture.texture.name());
+  glBindTexture(GL_TEXTURE_2D, input.gpu.surface(draw.set).texels.name());
 }
 
 void bind_set(const PassInput& input, const Draw& draw, const gl::Program& program) {
@@ -307,16 +305,10 @@ void set_camera_to_clip(const FramePlan& plan, const gl::Program& program) {
   set_uniform(program, "camera_to_clip", to_glm(projection(plan.view)));
 }
 
-gl::VertexArray make_position_array(const GpuMesh& mesh) {
+gl::VertexArray make_position_array(const GpuMesh& mesh, const GpuSurface& surface) {
   gl::VertexArray array = gl::make_vertex_array();
   glBindVertexArray(array.name());
-  glBindBuffer(GL_ARRAY_BUFFER, mesh.vertices.name());
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(GpuVertex),
-                        reinterpret_cast<const void*>(offsetof(GpuVertex, position)));
-  glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(GpuVertex),
-                        reinterpret_cast<const void*>(offsetof(GpuVertex, texel)));
+  bind_vertices(mesh.positions, surface);
   glBindVertexArray(0);
   return array;
 }

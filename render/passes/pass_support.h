@@ -78,6 +78,6 @@ void end_mask();
 void draw_by_mask(const PassInput& input, const std::string& fragment);
 void set_camera_to_clip(const FramePlan& plan, const gl::Program& program);
 /// A vertex array over a mesh's vertices, without indices.
-gl::VertexArray make_position_array(const GpuMesh& mesh);
+gl::VertexArray make_position_array(const GpuMesh& mesh, const GpuSurface& surface);
 
 }  // namespace rebake

@@ -9,7 +9,7 @@ namespace rebake {
 namespace {
 
 // The selected faces of a set as indices of their own, over the vertices that are there already.
-SelectedFaces upload(const Draw& draw, const GpuMesh& mesh) {
+SelectedFaces upload(const Draw& draw, const GpuMesh& mesh, const GpuSurface& surface) {
   SelectedFaces selected;
   selected.selection = draw.selection;
   selected.source = draw.set.soup;
@@ -18,7 +18,7 @@ SelectedFaces upload(const Draw& draw, const GpuMesh& mesh) {
     if ((*draw.selection)[draw.first_triangle + f] != 0) faces.push_back(draw.set.soup.faces()[f]);
   selected.count = faces.size() * 3;
   if (faces.empty()) return selected;
-  selected.array = make_position_array(mesh);
+  selected.array = make_position_array(mesh, surface);
   glBindVertexArray(selected.array.name());
   selected.indices = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, faces.data(), faces.size() * sizeof(Face));
   glBindVertexArray(0);
@@ -33,8 +33,9 @@ void execute(const PassInput& input) {
     const SelectionKey key{mesh_key(draw.set), draw.selection.get()};
     const auto held = input.state.selected.find(key);
     const SelectedFaces& faces =
-        kept.emplace(key, held != input.state.selected.end() ? std::move(held->second)
-                                                             : upload(draw, input.gpu.mesh(draw.set)))
+        kept.emplace(key, held != input.state.selected.end()
+                              ? std::move(held->second)
+                              : upload(draw, input.gpu.mesh(draw.set), input.gpu.surface(draw.set)))
             .first->second;
     if (faces.count == 0) continue;
     set_mesh_uniforms(input, draw, mask);

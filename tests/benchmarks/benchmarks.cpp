@@ -77,6 +77,35 @@ BENCHMARK_CAPTURE(frame, forward_buffer, Weights::buffer, Shading::forward)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
+// From an erased disk of texels to the next picture; and as if the whole texture were new.
+void erase_stroke(benchmark::State& state) {
+  Renderer renderer;
+  const View view;
+  std::shared_ptr<const FeatureTexture> texels = subject()->sets[0].texels;
+  const auto scene_with = [&] {
+    auto object = std::make_shared<BakedObject>(*subject());
+    object->sets[0].texels = texels;
+    return scene_of(object);
+  };
+  renderer.time_frame(scene_with(), view, {}, false);
+  int at = 0;
+  double still = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    still += renderer.time_frame(scene_with(), view, {}, false).frame_ms;
+    FeatureTexture::Change change(*texels);
+    at = (at + 97) % (texels->width() - 20);
+    for (int y = at; y < at + 20; ++y)
+      for (int x = at; x < at + 20; ++x) change.at(x, y).feat0[0] = 0;
+    texels = change.finish();
+    const Scene next = scene_with();
+    state.ResumeTiming();
+    renderer.time_frame(next, view, {}, false);
+  }
+  state.counters["frame_alone_ms"] = still / static_cast<double>(state.iterations());
+}
+BENCHMARK(erase_stroke)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void export_unedited(benchmark::State& state) {
   const TemporaryFolder out;
   Node node;

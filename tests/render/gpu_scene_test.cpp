@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <thread>
+#include <tuple>
 
+#include "render/gpu_scene/surface.h"
 #include "render/picture.h"
 #include "tests/support/made_scenes.h"
 
@@ -117,6 +119,81 @@ TEST(GpuScene, WhatOnlyMovedIsDrawnAsIfItWereNew) {
   two = with_added(two, Node(*bent(scene, 0.4).roots[0]), NodeId::none, 1);
   Renderer fresh;
   EXPECT_EQ(kept.render(two, view).rgb, fresh.render(two, view).rgb);
+}
+
+// The object with texels of some rows made transparent, or all of them opaque, in shared tiles.
+Scene erased(const Scene& scene, int first_row, int last_row, bool opaque = false) {
+  return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
+    auto object = std::make_shared<BakedObject>(*node.object);
+    for (TextureSet& set : object->sets) {
+      FeatureTexture::Change change(*set.texels);
+      for (int y = first_row; y < last_row; ++y)
+        for (int x = 0; x < set.texels->width(); x += 2) change.at(x, y).feat0[0] = opaque ? 200 : 0;
+      set.texels = change.finish();
+    }
+    node.object = object;
+  });
+}
+
+TEST(GpuScene, WhatWasErasedIsDrawnAsIfItWereNew) {
+  const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
+  View view;
+  view.width = view.height = 150;
+  view.camera.eye = {0.5, 1, 4};
+  view.camera.near_plane = 0.1;
+  Renderer kept;
+  const Image first = kept.render(scene, view);
+  const auto expect_new = [&](const Scene& next, const char* what) {
+    EXPECT_EQ(kept.render(next, view).rgb, Renderer().render(next, view).rgb) << what;
+  };
+  const Scene stroke = erased(scene, 0, 300);
+  ASSERT_NE(Renderer().render(stroke, view).rgb, first.rgb) << "the stroke is seen";
+  kept.prepare(stroke);
+  expect_new(stroke, "a stroke");
+  expect_new(erased(stroke, 280, 500), "another one");
+  expect_new(scene, "both undone");
+  const Scene moved = bent(stroke, 0.2);
+  kept.prepare(moved);
+  expect_new(moved, "a stroke and a bend at once");
+  expect_new(erased(scene, 100, 700, true), "holes are filled: more triangles show than before");
+  expect_new(scene, "and are there again");
+}
+
+// A texel that a triangle may show lies on the GPU where the shader looks for it, and what none shows is not there.
+TEST(PackedTexels, HoldWhatTrianglesShow) {
+  const auto object = made_object({.columns = 64, .rows = 40});
+  TextureSet set = object->sets[0];
+  for (const bool half : {false, true}) {
+    if (half) {
+      TriangleSet keep(set.soup.triangle_count(), 0);
+      for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = f / 2 % 2 == 0 ? 1 : 0;
+      set.soup = subset(set.soup, keep, 0, true);
+    }
+    const PreparedSurface surface = prepared_surface(set);
+    const TexelPacking& packing = *surface.packing;
+    std::vector<Texel> here;
+    fill_packed_rows(packing, *set.texels, 0, packing.height, here);
+    for (const Face& face : *surface.shown.faces) {
+      const SurfaceVertex &a = surface.vertices[face[0]], &b = surface.vertices[face[1]],
+                          &c = surface.vertices[face[2]];
+      EXPECT_TRUE(std::equal(a.place, a.place + 2, b.place) && std::equal(a.place, a.place + 2, c.place));
+      for (const auto& [u, v, w] : {std::tuple(1.0F, 0.0F, 0.0F), {0.0F, 1.0F, 0.0F}, {0.3F, 0.3F, 0.4F}}) {
+        const int x = static_cast<int>(a.texel[0] * u + b.texel[0] * v + c.texel[0] * w),
+                  y = static_cast<int>(a.texel[1] * u + b.texel[1] * v + c.texel[1] * w);
+        ASSERT_TRUE(x >= a.first_texel[0] && x <= a.last_texel[0] && y >= a.first_texel[1] && y <= a.last_texel[1]);
+        ASSERT_EQ(
+            here[static_cast<std::size_t>(y - a.first_texel[1] + a.place[1]) * static_cast<std::size_t>(packing.width) +
+                 static_cast<std::size_t>(x - a.first_texel[0] + a.place[0])],
+            set.texels->at(x, y));
+      }
+    }
+    const double share = static_cast<double>(packing.width) * packing.height /
+                         (static_cast<double>(set.texels->width()) * set.texels->height());
+    if (half) {
+      EXPECT_LT(share, 0.55);
+      EXPECT_FALSE(packing.whole);
+    }
+  }
 }
 
 }  // namespace

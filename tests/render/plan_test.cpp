@@ -88,14 +88,14 @@ TEST(Resources, UnchangedPartsAreNotUploadedTwice) {
   const Scene before = scene_of(made_object());
   const TextureSet& set = before.roots[0]->object->sets[0];
   const auto first = diff({}, {}, before);
-  EXPECT_EQ(first.meshes.size(), 1U);
+  EXPECT_EQ(first.meshes.size() + first.surfaces.size(), 2U);
   const std::set<MeshKey> meshes{mesh_key(set)};
-  const std::set<TextureKey> textures{set.texels.get()};
+  const std::set<SurfaceKey> surfaces{surface_key(set)};
   const Scene moved = with_changed(before, before.roots[0]->id, [](Node& n) { n.to_parent.translation().x() = 3; });
-  const auto again = diff(meshes, textures, moved);
-  EXPECT_TRUE(again.meshes.empty() && again.textures.empty() && again.released_meshes.empty());
-  const auto gone = diff(meshes, textures, {});
-  EXPECT_EQ(gone.released_meshes.size() + gone.released_textures.size(), 2U);
+  const auto again = diff(meshes, surfaces, moved);
+  EXPECT_TRUE(again.meshes.empty() && again.surfaces.empty() && again.released_meshes.empty());
+  const auto gone = diff(meshes, surfaces, {});
+  EXPECT_EQ(gone.released_meshes.size() + gone.released_surfaces.size(), 2U);
 }
 
 // What an effect reads an earlier one has written, and names are not used twice.

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "render/gl/objects.h"
+#include "render/gpu_scene/clusters.h"
+#include "render/gpu_scene/packed_texels.h"
+
+namespace rebake {
+
+/// What geometry.vert reads of a vertex besides its position.
+struct SurfaceVertex {
+  float texel[2];                               ///< in texels of the texture, v down
+  std::uint16_t first_texel[2], last_texel[2];  ///< of its rectangle
+  std::uint16_t place[2];                       ///< of the rectangle's first texel among those on the GPU
+};
+
+/// A set's faces that may show something, and an order of them in which neighbours stay neighbours wherever edits move
+/// them.
+struct ShownFaces {
+  std::shared_ptr<const std::vector<Face>> faces;
+  NearbyOrder nearby;
+};
+
+/// What is uploaded of a set wherever its vertices are, worked out beforehand.
+struct PreparedSurface {
+  TextureSet source;  ///< keeps arrays and texels alive, so that their addresses stay identities
+  ShownFaces shown;
+  std::shared_ptr<const TexelPacking> packing;
+  std::vector<SurfaceVertex> vertices;
+};
+PreparedSurface prepared_surface(const TextureSet& set);
+
+/// A set's faces and texels on the GPU.
+struct GpuSurface {
+  TextureSet source;
+  std::shared_ptr<const FeatureTexture> made_for;  ///< whose opaque texels decided what is here
+  ShownFaces shown;                                ///< faces as in `indices`
+  std::shared_ptr<const TexelPacking> packing;
+  gl::Buffer vertices;
+  gl::Buffer indices;
+  gl::Texture texels;
+};
+GpuSurface upload(PreparedSurface made);
+
+/// Whether a surface is good for a set with the same triangles: no texel has become opaque, and sizes are the same.
+bool serves(const std::shared_ptr<const FeatureTexture>& made_for, const TextureSet& source, const TextureSet& set);
+/// Makes it that set's, for which it serves: uploads what changed of the texels.
+void take_over(GpuSurface& surface, const TextureSet& set);
+
+}  // namespace rebake
