@@ -43,6 +43,7 @@
   X(Separate) \
   X(Merge) \
   X(Erase) \
+  X(Slim) \
   X(CageDeform) \
   X(HandlesDeform) \
   X(Bend) \

@@ -50,6 +50,7 @@ StudyTable study_rotation(const StudyInput& input);
 StudyTable study_wrap(const StudyInput& input);
 StudyTable study_fuse(const StudyInput& input);
 StudyTable study_transfer(const StudyInput& input);
+StudyTable study_slim(const StudyInput& input);
 
 /// The one table of studies.
 inline constexpr Study study_table[] = {
@@ -61,6 +62,7 @@ inline constexpr Study study_table[] = {
     {"wrap", "coarseness of the wrap around what shows something", study_wrap},
     {"fuse", "one decoder for several: how it is made, its width, bits a feature", study_fuse},
     {"transfer", "what a bent body sees of the sky: turned along, learnt, traced", study_transfer},
+    {"slim", "what nobody sees removed, and fewer bits a feature: size, pictures, frame", study_slim},
 };
 
 /// Table of a study of pictures: milliseconds a frame (the median), PSNR, the largest difference of a channel in 1/255,

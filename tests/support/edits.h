@@ -39,3 +39,4 @@
 #include "editor/edits/shape/delete_selected.h"
 #include "editor/edits/shape/erase.h"
 #include "editor/edits/shape/separate.h"
+#include "editor/edits/shape/slim.h"

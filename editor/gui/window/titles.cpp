@@ -28,6 +28,7 @@
 #include "editor/edits/shape/delete_selected.h"
 #include "editor/edits/shape/erase.h"
 #include "editor/edits/shape/separate.h"
+#include "editor/edits/shape/slim.h"
 #include "editor/edits/support.h"
 #include "mesh_ops/formats/formats.h"
 
@@ -163,6 +164,8 @@ std::string title_of(const std::vector<Edit>& group, const Scene& before, const 
     return "Deleted " + amount(change.triangles_before - change.triangles_after) + " of " + together(change.names);
   if (first.is<Separate>()) return "Separated " + amount(change.selected_before) + " as " + together(change.added);
   if (first.is<Erase>()) return "Erased in " + together(change.names);
+  if (first.is<Slim>())
+    return "Slimmed " + together(change.names) + " by " + amount(change.triangles_before - change.triangles_after);
   const auto* transform = first.as<Transform>();
   if (deforms(first) || (transform != nullptr && transform->selection)) {
     const std::string of = together(change.names);

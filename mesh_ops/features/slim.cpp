@@ -1,0 +1,252 @@
+#include "mesh_ops/features/slim.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mesh_ops/base/elementary.h"
+#include "mesh_ops/features/feature_network.h"
+#include "mesh_ops/index/footprint.h"
+#include "mesh_ops/index/index.h"
+
+namespace rebake {
+
+namespace {
+
+// Rays that got through, after which a triangle is known to be seen; one more than tells openings apart.
+constexpr int enough = 4;
+
+Vec3 random_direction(Dice& dice) {
+  const double z = 2 * dice.share() - 1, r = std::sqrt(std::max(0.0, 1 - z * z));
+  const auto angle = elementary::sine_cosine(2 * std::numbers::pi * dice.share());
+  return {r * angle.cosine, r * angle.sine, z};
+}
+
+// Where a triangle shows something.
+class ShownPoints {
+ public:
+  ShownPoints(const TextureSet& set, std::size_t f) : texels_(*set.texels), uv_(texel_corners(set, f)) {
+    for (std::size_t k = 0; k < 3; ++k) corners_[k] = set.soup.positions()[set.soup.faces()[f][k]];
+    // Texels whose centre lies inside, and those that reach in from beside: their nearest points.
+    const Vec2 low = uv_[0].cwiseMin(uv_[1]).cwiseMin(uv_[2]), high = uv_[0].cwiseMax(uv_[1]).cwiseMax(uv_[2]);
+    if (!(low.allFinite() && high.allFinite())) return;
+    const auto within = [](double at, int size) { return std::clamp(static_cast<int>(std::floor(at)), 0, size - 1); };
+    for (int y = within(low.y(), texels_.height()); y <= within(high.y(), texels_.height()); ++y)
+      for (int x = within(low.x(), texels_.width()); x <= within(high.x(), texels_.width()); ++x) {
+        if (!texels_.at(x, y).opaque()) continue;
+        const Vec2 nearest = nearest_inside({x + 0.5, y + 0.5});
+        if ((nearest - Vec2(x + 0.5, y + 0.5)).cwiseAbs().maxCoeff() <= 0.5)
+          places_.push_back(at(barycentric(uv_, nearest)));
+      }
+  }
+
+  bool none() const { return places_.empty(); }
+  /// Half of them anywhere on it, half of them a texel's.
+  Vec3 random(Dice& dice) const {
+    if (dice.below(2) == 0) {
+      double a = dice.share(), b = dice.share();
+      if (a + b > 1) a = 1 - a, b = 1 - b;
+      const Vec3 weights(1 - a - b, a, b);
+      const Vec2 uv = uv_[0] * weights[0] + uv_[1] * weights[1] + uv_[2] * weights[2];
+      const auto within = [](double at, int size) { return std::clamp(static_cast<int>(std::floor(at)), 0, size - 1); };
+      if (texels_.at(within(uv.x(), texels_.width()), within(uv.y(), texels_.height())).opaque()) return at(weights);
+    }
+    return places_[dice.below(places_.size())];
+  }
+
+ private:
+  Vec3 at(const Vec3& weights) const {
+    return corners_[0] * weights[0] + corners_[1] * weights[1] + corners_[2] * weights[2];
+  }
+  Vec2 nearest_inside(const Vec2& p) const {
+    const Vec3 weights = barycentric(uv_, p);
+    if (weights.minCoeff() >= 0) return p;
+    Vec2 nearest = uv_[0];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 along = uv_[(k + 1) % 3] - uv_[k];
+      const double length = along.squaredNorm();
+      const double share = length > 0 ? std::clamp((p - uv_[k]).dot(along) / length, 0.0, 1.0) : 0;
+      const Vec2 on_edge = uv_[k] + share * along;
+      if ((on_edge - p).squaredNorm() < (nearest - p).squaredNorm()) nearest = on_edge;
+    }
+    return nearest;
+  }
+
+  const FeatureTexture& texels_;
+  std::array<Vec2, 3> uv_;
+  std::array<Vec3, 3> corners_;
+  std::vector<Vec3> places_;
+};
+
+std::uint8_t rounded(std::uint8_t value, int bits) {
+  if (bits >= 8) return value;
+  const double steps = (1 << bits) - 1;
+  return static_cast<std::uint8_t>(std::lround(std::round(value * steps / 255) * 255 / steps));
+}
+
+Texel rounded(Texel texel, const FeatureBits& bits) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    texel.feat0[k] = rounded(texel.feat0[k], bits[k]);
+    texel.feat1[k] = rounded(texel.feat1[k], bits[k + 4]);
+  }
+  // 0 would be transparent: the lowest step that is not.
+  if (texel.feat0[0] == 0) texel.feat0[0] = bits[0] >= 8 ? 1 : rounded(255, bits[0]) / ((1 << bits[0]) - 1);
+  return texel;
+}
+
+template <class Change>
+std::shared_ptr<const FeatureTexture> changed(const FeatureTexture& texels, Change change) {
+  return std::make_shared<const FeatureTexture>(
+      FeatureTexture::from_rows(texels.width(), texels.height(), texels.alpha_code(), [&](int y, Texel* row) {
+        for (int x = 0; x < texels.width(); ++x) row[x] = change(texels.at(x, y));
+      }));
+}
+
+// Texels of an object and how they look along a few directions.
+struct ColorSample {
+  struct One {
+    Texel texel;
+    AlphaCode code;
+  };
+  std::vector<One> texels;
+  std::vector<Vec3> directions;
+  std::vector<Color> colors;  ///< texel after texel
+};
+
+ColorSample sampled_colors(const BakedObject& object) {
+  constexpr std::size_t wanted = 2048, directions = 6;
+  ColorSample sample;
+  Dice dice(1);
+  for (std::size_t k = 0; k < directions; ++k) sample.directions.push_back(random_direction(dice));
+  std::uint64_t opaque = 0;
+  for (const TextureSet& set : object.sets) opaque += set.texels->opaque_count();
+  const std::uint64_t step = std::max<std::uint64_t>(1, opaque / wanted);
+  std::uint64_t number = 0;
+  for (const TextureSet& set : object.sets)
+    for (int y = 0; y < set.texels->height(); ++y)
+      for (int x = 0; x < set.texels->width();) {
+        const int end = std::min(set.texels->width(), (x / TexelTile::size + 1) * TexelTile::size);
+        const Texel* part = set.texels->row_part(x, y);
+        for (const Texel* t = part; t < part + (end - x); ++t)
+          if (t->opaque() && number++ % step == 0) sample.texels.push_back({*t, set.texels->alpha_code()});
+        x = end;
+      }
+  sample.colors.resize(sample.texels.size() * directions);
+  return sample;
+}
+
+// Mean square difference of colours with fewer bits.
+double squared_loss(const ColorSample& sample, const Decoder& decoder, const FeatureBits& bits) {
+  std::vector<double> sums(sample.texels.size());
+  tbb::parallel_for(std::size_t{0}, sample.texels.size(), [&](std::size_t k) {
+    const auto features = decode_features(rounded(sample.texels[k].texel, bits), sample.texels[k].code);
+    for (std::size_t d = 0; d < sample.directions.size(); ++d)
+      sums[k] += (decode(decoder, features, sample.directions[d]) - sample.colors[k * sample.directions.size() + d])
+                     .squaredNorm();
+  });
+  double sum = 0;
+  for (const double one : sums) sum += one;
+  return sum / (3 * static_cast<double>(sample.colors.size()));
+}
+
+}  // namespace
+
+double most_missed(int rays) { return 3.0 / rays; }
+
+Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int rays, const Progress& progress) {
+  const auto tree = rays_of(object);
+  const double size = object.bounds().diagonal().norm();
+  Sightings found;
+  found.unseen.assign(object.triangle_count(), 0);
+  struct Count {
+    std::uint32_t sent = 0, through = 0;
+  };
+  std::vector<Count> counts(object.triangle_count());
+  std::atomic<std::size_t> done = 0;
+  std::size_t first = 0;
+  for (const TextureSet& set : object.sets) {
+    tbb::parallel_for(std::size_t{0}, set.soup.triangle_count(), [&](std::size_t f) {
+      const ShownPoints points(set, f);
+      Count& count = counts[first + f];
+      Dice dice(first + f);
+      for (int k = 0; !points.none() && k < rays && count.through < enough; ++k) {
+        const Vec3 point = points.random(dice);
+        Vec3 eye;
+        if (!eyes.standpoints.empty()) {
+          const Standpoint& from = eyes.standpoints[dice.below(eyes.standpoints.size())];
+          eye = from.back.isZero(0) ? from.eye : Vec3(point + 1.5 * size * from.back);
+        } else if (eyes.box) {
+          const Vec3 share(dice.share(), dice.share(), dice.share());
+          eye = eyes.world_to_object * Vec3(eyes.box->min() + share.cwiseProduct(eyes.box->sizes()));
+        } else {
+          eye = point + 1.5 * size * random_direction(dice);
+        }
+        ++count.sent;
+        // Stops short of the point by more than the tree's rounding.
+        const Vec3 way = point - eye;
+        const double distance = way.norm();
+        if (distance > 0 && tree->blocked(eye, way, 0, 1 - 1e-5 * std::max(1.0, size / distance))) continue;
+        ++count.through;
+      }
+      const std::size_t now = ++done;
+      if (now % 1024 == 0)
+        progress.at("looking for what is seen", static_cast<double>(now) / static_cast<double>(counts.size()));
+    });
+    first += set.soup.triangle_count();
+  }
+  for (std::size_t f = 0; f < counts.size(); ++f) {
+    const Count& count = counts[f];
+    found.rays += count.sent;
+    found.unseen[f] = count.through == 0 ? 1 : 0;
+    if (count.through == 0) continue;
+    found.smallest_opening =
+        std::min(found.smallest_opening, static_cast<double>(count.through) / static_cast<double>(count.sent));
+    found.seen_once += count.through == 1 ? 1 : 0;
+  }
+  return found;
+}
+
+BitsFound fewest_bits(const BakedObject& object, double psnr_db, const Progress& progress) {
+  BitsFound found;
+  found.psnr_db = std::numeric_limits<double>::infinity();
+  ColorSample sample = sampled_colors(object);
+  if (sample.texels.empty()) return found;
+  for (std::size_t k = 0; k < sample.texels.size(); ++k)
+    for (std::size_t d = 0; d < sample.directions.size(); ++d)
+      sample.colors[k * sample.directions.size() + d] =
+          decode(*object.decoder, decode_features(sample.texels[k].texel, sample.texels[k].code), sample.directions[d]);
+  const double most = std::pow(10.0, -psnr_db / 10);
+  for (int taken = 0;; ++taken) {
+    progress.at("fewer bits", taken / 56.0);
+    double least = std::numeric_limits<double>::infinity();
+    FeatureBits best = found.bits;
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (found.bits[k] == 1) continue;
+      FeatureBits fewer = found.bits;
+      --fewer[k];
+      const double loss = squared_loss(sample, *object.decoder, fewer);
+      if (loss >= least) continue;
+      least = loss;
+      best = fewer;
+    }
+    if (!(least <= most)) return found;
+    found.bits = best;
+    found.psnr_db = -10 * std::log10(least);
+  }
+}
+
+std::shared_ptr<const FeatureTexture> with_bits(const FeatureTexture& texels, const FeatureBits& bits) {
+  return changed(texels, [&](const Texel& texel) { return texel.opaque() ? rounded(texel, bits) : texel; });
+}
+
+std::shared_ptr<const FeatureTexture> with_empty_rest(const FeatureTexture& texels) {
+  return changed(texels, [empty = empty_texel(texels.alpha_code())](const Texel& texel) {
+    return texel.opaque() ? texel : empty;
+  });
+}
+
+}  // namespace rebake

@@ -1,0 +1,187 @@
+// Slimming takes what nobody sees and nothing else: pictures from where eyes may be stay as they are.
+#include "editor/edits/shape/slim.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/edits/nodes/view.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/features/slim.h"
+#include "render/compare.h"
+#include "render/picture.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+// A sphere without holes within another; `opening` leaves out so many triangles of the outer one.
+std::shared_ptr<const BakedObject> nested(std::size_t opening = 0) {
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 32, .rows = 16, .holes = false}));
+  const TextureSet inner = made_object({.columns = 16, .rows = 8, .seed = 1, .radius = 0.5, .holes = false})->sets[0];
+  if (opening > 0) {
+    TriangleSet gone(object->sets[0].soup.triangle_count(), 0);
+    const std::size_t first = gone.size() / 2;
+    std::fill_n(gone.begin() + static_cast<std::ptrdiff_t>(first), opening, 1);
+    object->sets[0].soup = subset(object->sets[0].soup, gone, 0, false);
+  }
+  object->sets.push_back(inner);
+  return object;
+}
+
+View view_from(const Vec3& eye) {
+  View view;
+  view.camera.eye = eye;
+  view.camera.near_plane = 0.05;
+  view.camera.far_plane = 20;
+  view.width = view.height = 160;
+  return view;
+}
+
+// Pixels that differ between two pictures of 160².
+std::size_t differing(const Image& a, const Image& b) {
+  std::size_t pixels = 0;
+  for (std::size_t k = 0; k < a.rgb.size(); k += 3) pixels += std::equal(&a.rgb[k], &a.rgb[k] + 3, &b.rgb[k]) ? 0 : 1;
+  return pixels;
+}
+
+// Of 25,600: where a silhouette's near and far triangles meet, rounding decides which one a sample shows.
+constexpr std::size_t most_differing = 4;
+
+std::string joined(const Report& report) {
+  std::string all;
+  for (const std::string& line : report.lines) all += line + "\n";
+  return all;
+}
+
+TEST(Slim, TakesWhatASphereHidesAndLeavesEveryPicture) {
+  const Scene scene = scene_of(nested());
+  const Outcome slim = apply(scene, Edit(Slim{}));
+  const BakedObject& before = *scene.roots[0]->object;
+  const BakedObject& after = *slim.scene.roots[0]->object;
+  EXPECT_EQ(after.triangle_count(), before.sets[0].soup.triangle_count()) << joined(slim.report);
+  EXPECT_TRUE(after.bodies.empty()) << "light stays as it was baked";
+  std::uint64_t texels_before = 0, texels_after = 0;
+  for (const TextureSet& set : before.sets)
+    texels_before += static_cast<std::uint64_t>(set.texels->width()) * static_cast<std::uint64_t>(set.texels->height());
+  for (const TextureSet& set : after.sets)
+    texels_after += static_cast<std::uint64_t>(set.texels->width()) * static_cast<std::uint64_t>(set.texels->height());
+  EXPECT_LT(texels_after, texels_before);
+  Renderer renderer;
+  for (int k = 0; k < 8; ++k) {
+    const double turn = 0.8 * k;
+    const View view = view_from({3 * std::sin(turn), 2 * std::cos(3 * turn), 3 * std::cos(turn)});
+    EXPECT_EQ(renderer.render(scene, view).rgb, renderer.render(slim.scene, view).rgb) << k;
+  }
+  EXPECT_NE(joined(slim.report).find("256 unseen"), std::string::npos) << joined(slim.report);
+  EXPECT_NE(joined(slim.report).find("at most 0.29 %"), std::string::npos) << joined(slim.report);
+}
+
+TEST(Slim, KeepsWhatASmallOpeningShows) {
+  const auto object = nested(2);
+  const Sightings seen = look_from(*object, {}, 4096);
+  std::size_t inner_seen = 0;
+  const std::size_t outer = object->sets[0].soup.triangle_count();
+  for (std::size_t f = outer; f < seen.unseen.size(); ++f) inner_seen += seen.unseen[f] == 0 ? 1 : 0;
+  EXPECT_GT(inner_seen, 10U);
+  EXPECT_LT(seen.smallest_opening, 0.01) << "the opening is 2 of 1024 triangles";
+  EXPECT_GT(seen.rays, 4096U);
+  Slim edit;
+  edit.rays = 4096;
+  const Scene scene = scene_of(object);
+  const Scene slim = apply(scene, Edit(edit)).scene;
+  // Straight through the opening.
+  const Face& face = nested()->sets[0].soup.faces()[outer / 2];
+  const Vec3 middle = nested()->sets[0].soup.positions()[face[0]].normalized();
+  Renderer renderer;
+  const View through = view_from(3 * middle);
+  EXPECT_LE(differing(renderer.render(scene, through), renderer.render(slim, through)), most_differing);
+}
+
+TEST(Slim, FromABoxOfEyesOrViewsTheFarSideGoes) {
+  const Scene scene = scene_of(made_object({.columns = 32, .rows = 16, .holes = false}));
+  Slim in_box;
+  in_box.eyes = BoxRegion{{-0.5, -0.5, 2.5}, {0.5, 0.5, 3.5}};
+  Renderer renderer;
+  const Outcome boxed = apply(scene, Edit(in_box));
+  const std::size_t all = scene.roots[0]->object->triangle_count();
+  EXPECT_LT(boxed.scene.roots[0]->object->triangle_count(), all * 6 / 10);
+  for (const Vec3& eye : {Vec3(0.4, 0.4, 2.6), Vec3(-0.5, 0, 3.5), Vec3(0, -0.5, 3)})
+    EXPECT_LE(differing(renderer.render(scene, view_from(eye)), renderer.render(boxed.scene, view_from(eye))),
+              most_differing);
+  EXPECT_NE(renderer.render(scene, view_from({0, 0, -3})).rgb, renderer.render(boxed.scene, view_from({0, 0, -3})).rgb)
+      << "nobody looks from behind";
+
+  StoreView store;
+  store.name = "front";
+  store.camera = view_from({0, 0, 3}).camera;
+  Scene with_view = apply(scene, Edit(store)).scene;
+  Slim by_view;
+  by_view.views = {"front"};
+  with_view = apply(with_view, Edit(by_view)).scene;
+  EXPECT_LT(with_view.roots[0]->object->triangle_count(), all / 2);
+  const View front = view_from({0, 0, 3});
+  EXPECT_LE(differing(renderer.render(scene, front), renderer.render(with_view, front)), most_differing);
+}
+
+TEST(Slim, LosesAsMuchAsItMay) {
+  const Scene scene = scene_of(made_object({.columns = 32, .rows = 16, .holes = false}));
+  Renderer renderer;
+  int sum_before = 64;
+  for (const double psnr : {50.0, 40.0, 30.0}) {
+    const BitsFound found = fewest_bits(*scene.roots[0]->object, psnr);
+    EXPECT_GE(found.psnr_db, psnr);
+    EXPECT_LT(found.psnr_db, psnr + 6) << "one bit of one feature more loses at most so much";
+    int sum = 0;
+    for (const int bits : found.bits) sum += bits;
+    EXPECT_LT(sum, sum_before);
+    sum_before = sum;
+    Slim edit;
+    edit.psnr = psnr;
+    const Scene slim = apply(scene, Edit(edit)).scene;
+    const Difference d =
+        compare(renderer.render(scene, view_from({1, 1, 3})), renderer.render(slim, view_from({1, 1, 3})), 2);
+    EXPECT_GE(d.psnr_db, psnr - 1) << "pictures as texels";
+    EXPECT_EQ(slim.roots[0]->object->opaque_texel_count(), scene.roots[0]->object->opaque_texel_count());
+  }
+}
+
+TEST(Slim, IsTheSameAtAnyNumberOfThreads) {
+  const auto object = nested(2);
+  const Sightings many = look_from(*object, {}, 64);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Sightings alone = look_from(*object, {}, 64);
+  EXPECT_EQ(many.unseen, alone.unseen);
+  EXPECT_EQ(many.rays, alone.rays);
+}
+
+TEST(Slim, SaysWhatIsWrong) {
+  const Scene scene = scene_of(nested());
+  const auto error_of = [&](const Slim& edit) -> std::string {
+    try {
+      apply(scene, Edit(edit));
+      return "";
+    } catch (const Error& error) {
+      return error.what();
+    }
+  };
+  Slim edit;
+  edit.rays = 3;
+  EXPECT_NE(error_of(edit).find("rays"), std::string::npos);
+  edit = {};
+  edit.psnr = 200;
+  EXPECT_NE(error_of(edit).find("psnr"), std::string::npos);
+  edit = {};
+  edit.views = {"nowhere"};
+  EXPECT_NE(error_of(edit).find("nowhere"), std::string::npos);
+  edit = {};
+  edit.eyes = BoxRegion{{0, 0, 0}, {0, 0, 0}};  // in the middle of the inner sphere: only that is seen
+  EXPECT_EQ(error_of(edit), "");
+  edit.eyes = BoxRegion{{1, 0, 0}, {0, 0, 0}};
+  EXPECT_NE(error_of(edit).find("eyes"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace rebake::test
