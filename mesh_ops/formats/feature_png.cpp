@@ -18,56 +18,64 @@ namespace {
 constexpr int largest_side = 16384;
 constexpr int compression_level = 4;  // 1.4 s for 4096² RGBA; 6 takes 6 s for a tenth less (measured)
 
-struct Pixels {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> rgba;
-};
+// A PNG that is decoded from its top on.
+class PngRows {
+ public:
+  PngRows(std::string_view bytes, const std::filesystem::path& name)
+      : name_(name), source_(const_cast<char*>(bytes.data()), bytes.size()) {
+    if (bytes.empty()) throw FileError(name, "is empty (0 bytes); a feature PNG was expected");
+    if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) throw FileError(name, "is not a PNG file");
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    input_ = OIIO::ImageInput::create("png");
+    if (!input_) throw Error("OpenImageIO has no PNG reader; install libopenimageio with PNG support");
+    void* proxy = &source_;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    if (!input_->open(name.string(), spec_, config)) throw FileError(name, "cannot be decoded: " + input_->geterror());
+    if (spec_.width < 1 || spec_.height < 1 || spec_.width > largest_side || spec_.height > largest_side)
+      throw FileError(
+          name, fmt::format("declares {}×{} texels; at most {}² can be read", spec_.width, spec_.height, largest_side));
+    if (spec_.nchannels != 4)
+      throw FileError(name, fmt::format("has {} channels; feature textures have 4 (RGBA)", spec_.nchannels));
+    if (spec_.format != OIIO::TypeDesc::UINT8)
+      throw FileError(name, fmt::format("is not 8 bits a channel (it holds {})", spec_.format.c_str()));
+  }
 
-Pixels decode_png(std::string_view bytes, const std::filesystem::path& name) {
-  if (bytes.empty()) throw FileError(name, "is empty (0 bytes); a feature PNG was expected");
-  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) throw FileError(name, "is not a PNG file");
-  OIIO::Filesystem::IOMemReader source(const_cast<char*>(bytes.data()), bytes.size());
-  OIIO::ImageSpec config;
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  const auto input = OIIO::ImageInput::create("png");
-  if (!input) throw Error("OpenImageIO has no PNG reader; install libopenimageio with PNG support");
-  void* proxy = &source;
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  OIIO::ImageSpec spec;
-  if (!input->open(name.string(), spec, config)) throw FileError(name, "cannot be decoded: " + input->geterror());
-  if (spec.width < 1 || spec.height < 1 || spec.width > largest_side || spec.height > largest_side)
-    throw FileError(
-        name, fmt::format("declares {}×{} texels; at most {}² can be read", spec.width, spec.height, largest_side));
-  if (spec.nchannels != 4)
-    throw FileError(name, fmt::format("has {} channels; feature textures have 4 (RGBA)", spec.nchannels));
-  if (spec.format != OIIO::TypeDesc::UINT8)
-    throw FileError(name, fmt::format("is not 8 bits a channel (it holds {})", spec.format.c_str()));
-  Pixels pixels{spec.width, spec.height, {}};
-  pixels.rgba.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) * 4);
-  if (!input->read_image(0, 0, 0, 4, OIIO::TypeDesc::UINT8, pixels.rgba.data()))
-    throw FileError(name, "cannot be decoded, it may be truncated: " + input->geterror());
-  input->close();
-  return pixels;
-}
+  int width() const { return spec_.width; }
+  int height() const { return spec_.height; }
+
+  /// The next rows; those before have been read.
+  const std::vector<std::uint8_t>& read(int first, int count) {
+    rgba_.resize(static_cast<std::size_t>(spec_.width) * static_cast<std::size_t>(count) * 4);
+    if (!input_->read_scanlines(0, 0, first, first + count, 0, 0, 4, OIIO::TypeDesc::UINT8, rgba_.data()))
+      throw FileError(name_, "cannot be decoded, it may be truncated: " + input_->geterror());
+    return rgba_;
+  }
+
+ private:
+  const std::filesystem::path& name_;
+  OIIO::Filesystem::IOMemReader source_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+  OIIO::ImageSpec spec_;
+  std::vector<std::uint8_t> rgba_;
+};
 
 }  // namespace
 
 FeatureTexture read_feature_pngs(std::string_view feat0, const std::filesystem::path& name0, std::string_view feat1,
                                  const std::filesystem::path& name1, AlphaCode code) {
-  Pixels first, second;
-  tbb::parallel_invoke([&] { first = decode_png(feat0, name0); }, [&] { second = decode_png(feat1, name1); });
-  if (first.width != second.width || first.height != second.height)
+  PngRows first(feat0, name0), second(feat1, name1);
+  if (first.width() != second.width() || first.height() != second.height())
     throw FileError(
-        name1, fmt::format("is {}×{} texels, but {} is {}×{}; both images of a set must be of one size", second.width,
-                           second.height, name0.filename().string(), first.width, first.height));
-  const auto width = static_cast<std::size_t>(first.width);
-  return FeatureTexture::from_rows(first.width, first.height, code, [&](int y, Texel* row) {
-    const std::uint8_t* a = first.rgba.data() + static_cast<std::size_t>(y) * width * 4;
-    const std::uint8_t* b = second.rgba.data() + static_cast<std::size_t>(y) * width * 4;
-    for (std::size_t x = 0; x < width; ++x) {
-      std::copy_n(a + x * 4, 4, row[x].feat0.begin());
-      std::copy_n(b + x * 4, 4, row[x].feat1.begin());
+        name1, fmt::format("is {}×{} texels, but {} is {}×{}; both images of a set must be of one size", second.width(),
+                           second.height(), name0.filename().string(), first.width(), first.height()));
+  return FeatureTexture::from_parts(first.width(), first.height(), code, [&](int y, int count, Texel* rows) {
+    const std::uint8_t *a = nullptr, *b = nullptr;
+    tbb::parallel_invoke([&] { a = first.read(y, count).data(); }, [&] { b = second.read(y, count).data(); });
+    const std::size_t texels = static_cast<std::size_t>(first.width()) * static_cast<std::size_t>(count);
+    for (std::size_t k = 0; k < texels; ++k) {
+      std::copy_n(a + k * 4, 4, rows[k].feat0.begin());
+      std::copy_n(b + k * 4, 4, rows[k].feat1.begin());
     }
   });
 }

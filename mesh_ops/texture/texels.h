@@ -40,6 +40,10 @@ struct TexelTile {
 /// Both feature images of one texture set, as shared tiles: an edit copies the tiles it touches only.
 class FeatureTexture {
  public:
+  /// `fill_rows(y, count, rows)` writes `count` rows from row y on, `width` texels each; it is called for one part of
+  /// the texture after the other, so that what they come from need not be there whole.
+  static FeatureTexture from_parts(int width, int height, AlphaCode code,
+                                   const std::function<void(int y, int count, Texel* rows)>& fill_rows);
   /// `fill_row(y, row)` writes `width` texels of row y; it is called from several threads at once.
   static FeatureTexture from_rows(int width, int height, AlphaCode code,
                                   const std::function<void(int y, Texel* row)>& fill_row);
@@ -84,6 +88,14 @@ class FeatureTexture {
   std::uint64_t memory() const;
 
  private:
+  FeatureTexture(int width, int height, AlphaCode code)
+      : width_(width),
+        height_(height),
+        code_(code),
+        tiles_(static_cast<std::size_t>(tile_columns()) * static_cast<std::size_t>(tile_rows())) {}
+  /// Makes the tiles of a row of tiles from `count` rows of texels that lie `stride` apart.
+  void set_tile_row(int tile_row, int count, const Texel* rows, std::size_t stride);
+
   int width_ = 0;
   int height_ = 0;
   AlphaCode code_ = AlphaCode::halved;
