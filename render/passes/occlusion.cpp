@@ -33,6 +33,9 @@ struct OcclusionState {
 namespace {
 
 constexpr int block_pixels = 16;
+// Triangles in view of which nothing is known, from which drawing them in parts pays: each part is drawn twice, to ask
+// whether samples are equally near. On the mic (82,421) parts lose a quarter, on nine of them they win a tenth.
+constexpr std::size_t worth_parts = 200'000;
 constexpr auto not_shown = static_cast<std::uint8_t>(~OcclusionState::shown);
 
 struct Candidate {
@@ -91,8 +94,14 @@ class Frame {
     if (remembered) {
       draw_pending(false);
       ends = {candidates.size()};
+    } else if (triangles_of(candidates) < worth_parts) {
+      // Nothing is known: all of it, and then what of it shows.
+      for (const Candidate& c : candidates)
+        for_faces(c, [](std::uint32_t, std::uint8_t& flags) { flags |= OcclusionState::pending; });
+      draw_pending(false);
+      ends = {candidates.size()};
     } else {
-      // Nothing is known: from near to far, in parts that hide those behind them.
+      // Nothing is known of many: from near to far, in parts that hide those behind them.
       std::stable_sort(candidates.begin(), candidates.end(),
                        [](const Candidate& a, const Candidate& b) { return a.nearness > b.nearness; });
       for (const std::size_t share : {1, 3, 6, 10}) ends.push_back(candidates.size() * share / 10);
@@ -132,6 +141,12 @@ class Frame {
     work();
     counts().milliseconds +=
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  std::size_t triangles_of(const std::vector<Candidate>& candidates) const {
+    std::size_t triangles = 0;
+    for (const Candidate& c : candidates) triangles += sets_[c.set].mesh->nearby.clusters[c.cluster].count;
+    return triangles;
   }
 
   OcclusionCounts& counts() { return input_.state.occlusion_counts; }

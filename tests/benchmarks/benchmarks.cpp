@@ -6,6 +6,7 @@
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/obj.h"
+#include "render/gl/objects.h"
 #include "render/picture.h"
 #include "tests/support/made_scenes.h"
 
@@ -76,6 +77,104 @@ BENCHMARK_CAPTURE(frame, forward_buffer, Weights::buffer, Shading::forward)
     ->Arg(1)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+
+// Hidden triangles: drawn all the same, left out at rest, while the camera turns by a degree a frame, and in a picture
+// of which nothing is known. `inside`: nine mics, seen from among them.
+enum class Hidden { drawn, at_rest, turning, jumping };
+void hidden_triangles(benchmark::State& state, Hidden hidden, bool inside) {
+  static Renderer renderer;
+  static const auto tiled_subject = tiled(*subject());
+  View view;
+  if (inside) {
+    const Box box = tiled_subject->bounds();
+    view.camera.eye = box.center() + Vec3(0, 0.6, 0.2);
+    view.camera.target = view.camera.eye + Vec3(1, -0.2, 0.8);
+    view.camera.fov_degrees = 60;
+    view.camera.far_plane = 30;
+  } else {
+    view.camera.near_plane = 2;
+    view.camera.far_plane = 6;
+  }
+  const Scene scene = scene_of(inside ? tiled_subject : subject());
+  RenderOptions options;
+  options.occlusion = hidden == Hidden::drawn ? RenderOptions::Occlusion::off : RenderOptions::Occlusion::on;
+  const Vec3 away = view.camera.eye - view.camera.target;
+  double degrees = 0;
+  const auto turn = [&](double by) {
+    degrees += by;
+    view.camera.eye = view.camera.target + Eigen::AngleAxisd(degrees * 3.14159265358979 / 180, Vec3::UnitY()) * away;
+  };
+  renderer.time_frame(scene, view, options, false);
+  renderer.time_frame(scene, view, options, false);
+  for (auto _ : state) {
+    if (hidden == Hidden::turning) turn(1);
+    if (hidden == Hidden::jumping) turn(97);
+    renderer.time_frame(scene, view, options, false);
+  }
+}
+BENCHMARK_CAPTURE(hidden_triangles, drawn, Hidden::drawn, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(hidden_triangles, at_rest, Hidden::at_rest, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(hidden_triangles, turning, Hidden::turning, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(hidden_triangles, jumping, Hidden::jumping, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(hidden_triangles, inside_drawn, Hidden::drawn, true)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(hidden_triangles, inside_at_rest, Hidden::at_rest, true)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(hidden_triangles, inside_turning, Hidden::turning, true)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(hidden_triangles, inside_jumping, Hidden::jumping, true)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+// A hundred thousand nodes of one object of 20 triangles.
+void many_instances(benchmark::State& state) {
+  const auto one = made_object({.columns = 5, .rows = 2, .cell = 5, .radius = 0.03});
+  Scene scene;
+  scene.roots.reserve(100'000);
+  for (int k = 0; k < 100'000; ++k) {
+    Node node;
+    node.id = static_cast<NodeId>(k + 1);
+    node.name = std::to_string(k);
+    node.object = one;
+    node.to_parent.translation() = 0.1 * Vec3(k % 50 - 25, k / 50 % 50 - 25, k / 2500 - 20);
+    scene.roots.push_back(std::make_shared<const Node>(std::move(node)));
+  }
+  scene.next_id = 100'001;
+  View view;
+  view.camera.eye = {4, 3, 6};
+  Renderer renderer;
+  RenderOptions options;
+  options.occlusion = state.range(0) != 0 ? RenderOptions::Occlusion::on : RenderOptions::Occlusion::off;
+  for (auto _ : state) renderer.time_frame(scene, view, options, false);
+}
+BENCHMARK(many_instances)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// Megabytes on the GPU beside the picture, of a scene and of what is left when half of its triangles are deleted.
+void gpu_memory(benchmark::State& state) {
+  auto object = std::make_shared<BakedObject>(*subject());
+  if (state.range(0) != 0) {
+    const Soup& soup = object->sets[0].soup;
+    std::vector<double> along;
+    for (const Face& face : soup.faces()) along.push_back(soup.positions()[face[0]].x());
+    std::vector<double> sorted = along;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    TriangleSet keep(soup.triangle_count(), 0);
+    for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = along[f] < sorted[sorted.size() / 2] ? 1 : 0;
+    object->sets[0].soup = subset(soup, keep, 0, true);
+  }
+  View view;
+  view.width = view.height = 16;
+  std::uint64_t held = 0;
+  for (auto _ : state) {
+    const std::uint64_t before = gl::memory_use().now;
+    Renderer renderer;
+    renderer.time_frame(scene_of(object), view, {}, false);
+    held = gl::memory_use().now - before;
+  }
+  state.counters["megabytes"] = static_cast<double>(held) / 1e6;
+}
+BENCHMARK(gpu_memory)->Arg(0)->Arg(1)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // From an erased disk of texels to the next picture; and as if the whole texture were new.
 void erase_stroke(benchmark::State& state) {
