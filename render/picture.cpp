@@ -117,14 +117,15 @@ class Renderer::Impl {
 
   void say_occlusion() {
     const OcclusionCounts& c = state_.occlusion_counts;
-    share_ = c.triangles == 0 ? 0 : static_cast<double>(c.triangles_drawn) / static_cast<double>(c.triangles);
+    share_ = c.triangles == 0 ? 0 : static_cast<double>(c.triangles_shown) / static_cast<double>(c.triangles);
     frames_without_ = 0;
     for (PlannedPass& pass : passes_)
       if (pass.effect == &effects::occlusion)
         pass.why += fmt::format(
-            ": of {} clusters {} drawn, {} hidden, {} out of view; of {} triangles {} drawn{}; deciding took {:.1f} ms",
+            ": of {} clusters {} show, {} are hidden, {} out of view; of {} triangles {} were drawn, {} may show{}; "
+            "deciding took {:.1f} ms",
             c.clusters, c.clusters_drawn, c.clusters_hidden, c.clusters_out_of_view, c.triangles, c.triangles_drawn,
-            c.drawn_again ? ", and again in their order" : "", c.milliseconds);
+            c.triangles_shown, c.drawn_again ? " and were drawn again, in their order" : "", c.milliseconds);
   }
 
   static constexpr double worthwhile_share = 0.7;

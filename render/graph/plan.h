@@ -49,8 +49,9 @@ struct DeviceFacts {
 struct OcclusionCounts {
   std::size_t clusters = 0, clusters_drawn = 0, clusters_hidden = 0, clusters_out_of_view = 0;
   std::size_t triangles = 0, triangles_drawn = 0;
-  double milliseconds = 0;   ///< that deciding took
-  bool drawn_again = false;  ///< in the scene's order, since samples were equally near
+  std::size_t triangles_shown = 0;  ///< that were not found to be hidden
+  double milliseconds = 0;          ///< that deciding took
+  bool drawn_again = false;         ///< in the scene's order: much was missing, or samples were equally near
 };
 
 /// How the samples of some nodes feed a decoder. Nodes that agree share one.

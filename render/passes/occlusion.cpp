@@ -19,11 +19,15 @@ namespace rebake {
 struct OcclusionState {
   /// Bits of a face's flags.
   static constexpr std::uint8_t shown = 1;    ///< in the last frame that looked
-  static constexpr std::uint8_t drawn = 2;    ///< in this frame
-  static constexpr std::uint8_t pending = 4;  ///< to be drawn next
+  static constexpr std::uint8_t pending = 2;  ///< to be drawn next
 
-  using Key = std::pair<NodeId, std::size_t>;      ///< node, first triangle of the set
-  std::map<Key, std::vector<std::uint8_t>> faces;  ///< flags; which ones show is a guess that may be wrong
+  using Key = std::pair<NodeId, std::size_t>;  ///< node, first triangle of the set
+  /// What showed from a camera: a guess for the next frame from near there, which may be wrong.
+  struct Memory {
+    Camera camera;
+    std::map<Key, std::vector<std::uint8_t>> faces;  ///< flags
+  };
+  std::vector<Memory> memories;  ///< the last used one last
   std::vector<float> depth;
   DepthPyramid pyramid;
   std::vector<std::uint8_t> blocks;  ///< of the picture: 1 where something may have been drawn
@@ -33,16 +37,39 @@ struct OcclusionState {
 namespace {
 
 constexpr int block_pixels = 16;
-// Triangles in view of which nothing is known, from which drawing them in parts pays: each part is drawn twice, to ask
-// whether samples are equally near. On the mic (82,421) parts lose a quarter, on nine of them they win a tenth.
-constexpr std::size_t worth_parts = 200'000;
-constexpr auto not_shown = static_cast<std::uint8_t>(~OcclusionState::shown);
+// Up to a quarter as many triangles as were drawn are added to them; where more are missing, all that show are drawn
+// again.
+constexpr std::size_t few_missing = 4;
 
 struct Candidate {
   std::uint32_t set;
   std::uint32_t cluster;
-  float nearness;
 };
+
+// Whether what showed from one camera says much of what shows from another.
+bool near_by(const Camera& a, const Camera& b) {
+  const Vec3 to_a = a.target - a.eye, to_b = b.target - b.eye;
+  constexpr double most_turned = 0.9;  // cosine, 26 degrees
+  constexpr double most_moved = 0.25;  // of the distance to what is looked at
+  return to_a.dot(to_b) > most_turned * to_a.norm() * to_b.norm() &&
+         (a.eye - b.eye).norm() < most_moved * std::max(to_a.norm(), to_b.norm()) &&
+         a.orthographic() == b.orthographic();
+}
+
+// What is remembered of a camera near this one; nothing where there is none. A few are kept, so that views may
+// alternate.
+OcclusionState::Memory recalled(std::vector<OcclusionState::Memory>& memories, const Camera& camera) {
+  constexpr std::size_t most = 3;
+  OcclusionState::Memory found;
+  for (std::size_t k = memories.size(); k-- > 0;) {
+    if (!near_by(memories[k].camera, camera)) continue;
+    found = std::move(memories[k]);
+    memories.erase(memories.begin() + static_cast<std::ptrdiff_t>(k));
+    break;
+  }
+  if (memories.size() > most) memories.erase(memories.begin());
+  return found;
+}
 
 // A set in this frame.
 struct Set {
@@ -63,19 +90,20 @@ class Frame {
     state_.block_columns = (input.plan.view.width + block_pixels - 1) / block_pixels;
     const int rows = (input.plan.view.height + block_pixels - 1) / block_pixels;
     state_.blocks.assign(static_cast<std::size_t>(state_.block_columns) * static_cast<std::size_t>(rows), 0);
-    std::map<OcclusionState::Key, std::vector<std::uint8_t>> kept;
+    OcclusionState::Memory before = recalled(state_.memories, input.plan.view.camera);
+    OcclusionState::Memory& now = state_.memories.emplace_back();
+    now.camera = input.plan.view.camera;
     for (const Draw& draw : input.plan.draws) {
       const GpuMesh& mesh = input.gpu.mesh(draw.set);
       const GpuSurface& surface = input.gpu.surface(draw.set);
       const OcclusionState::Key key{draw.node, draw.first_triangle};
-      auto node = state_.faces.extract(key);
-      std::vector<std::uint8_t>& flags = kept[key];
+      auto node = before.faces.extract(key);
+      std::vector<std::uint8_t>& flags = now.faces[key];
       if (!node.empty()) flags = std::move(node.mapped());
       // Of another object by now, whose faces have other numbers.
       if (flags.size() != surface.shown.faces->size()) flags.assign(surface.shown.faces->size(), 0);
       sets_.push_back({&draw, &mesh, &surface, bounder(draw), &flags});
     }
-    state_.faces = std::move(kept);
   }
 
   void draw(const std::function<void()>& clear) {
@@ -83,53 +111,44 @@ class Frame {
     std::vector<Candidate> candidates;
     timed([&] { candidates = in_view(); });
     bool remembered = false;
-    for (const Candidate& c : candidates) {
+    for (const Candidate& c : candidates)
       for_faces(c, [&](std::uint32_t, std::uint8_t& flags) {
         if ((flags & OcclusionState::shown) == 0) return;
         flags |= OcclusionState::pending;
         remembered = true;
       });
-    }
-    std::vector<std::size_t> ends;  // of batches of candidates
-    if (remembered) {
-      draw_pending(false);
-      ends = {candidates.size()};
-    } else if (triangles_of(candidates) < worth_parts) {
-      // Nothing is known: all of it, and then what of it shows.
+    // Nothing is known: all of it, and then what of it shows.
+    if (!remembered)
       for (const Candidate& c : candidates)
         for_faces(c, [](std::uint32_t, std::uint8_t& flags) { flags |= OcclusionState::pending; });
-      draw_pending(false);
-      ends = {candidates.size()};
-    } else {
-      // Nothing is known of many: from near to far, in parts that hide those behind them.
-      std::stable_sort(candidates.begin(), candidates.end(),
-                       [](const Candidate& a, const Candidate& b) { return a.nearness > b.nearness; });
-      for (const std::size_t share : {1, 3, 6, 10}) ends.push_back(candidates.size() * share / 10);
-      for (std::size_t k = 0; k < ends[0]; ++k) {
-        const ScreenBounds box = box_of(candidates[k]);
-        mark(box.where, box.samples);
-        for_faces(candidates[k],
-                  [](std::uint32_t, std::uint8_t& flags) { flags |= OcclusionState::pending | OcclusionState::shown; });
-      }
-      draw_pending(false);
+    const std::size_t first = gather(OcclusionState::pending).back();
+    draw_gathered();
+    glFinish();  // so that only what looking adds is counted
+    timed([&] {
+      read_depth();
+      look(candidates);
+    });
+    const std::size_t missing = gather(OcclusionState::pending).back();
+    bool any_tie_found = false;
+    if (missing > 0 && missing <= first / few_missing) {
+      timed([&] { any_tie_found = any_tie(); });
+      draw_gathered();
     }
-    for (std::size_t k = remembered ? 0 : 1; k < ends.size(); ++k) {
-      glFinish();  // so that only what looking adds is counted
-      timed([&] {
-        read_depth();
-        look(candidates, k == 0 ? 0 : ends[k - 1], ends[k]);
-      });
-      draw_pending(true);
+    counts().triangles_drawn = first + missing;
+    // In the scene's order. Where much was missing that is sooner done than asking, and drawing what is hidden.
+    if (any_tie_found || missing > first / few_missing) {
+      gather(OcclusionState::shown);
+      clear();
+      draw_gathered();
+      counts().drawn_again = true;
     }
-    counts().clusters_drawn = 0;
     for (const Candidate& c : candidates) {
-      bool any = false;
-      for_faces(c,
-                [&](std::uint32_t, const std::uint8_t& flags) { any = any || (flags & OcclusionState::drawn) != 0; });
-      counts().clusters_drawn += any ? 1 : 0;
+      std::size_t shows = 0;
+      for_faces(c, [&](std::uint32_t, const std::uint8_t& flags) { shows += flags != 0 ? 1 : 0; });
+      counts().triangles_shown += shows;
+      counts().clusters_drawn += shows > 0 ? 1 : 0;
     }
     counts().clusters_hidden = candidates.size() - counts().clusters_drawn;
-    if (ties_) draw_again(clear);
     for (const Set& set : sets_)
       for (std::uint8_t& flags : *set.flags) flags &= OcclusionState::shown;
   }
@@ -141,12 +160,6 @@ class Frame {
     work();
     counts().milliseconds +=
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  }
-
-  std::size_t triangles_of(const std::vector<Candidate>& candidates) const {
-    std::size_t triangles = 0;
-    for (const Candidate& c : candidates) triangles += sets_[c.set].mesh->nearby.clusters[c.cluster].count;
-    return triangles;
   }
 
   OcclusionCounts& counts() { return input_.state.occlusion_counts; }
@@ -187,10 +200,7 @@ class Frame {
                         [&](std::size_t k) { bounds[k] = sets_[s].bounder.box(clusters[k].bounds); });
       for (std::size_t k = 0; k < clusters.size(); ++k)
         if (bounds[k].where != ScreenBounds::Where::outside)
-          candidates.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(k),
-                                bounds[k].where == ScreenBounds::Where::inside
-                                    ? bounds[k].nearness
-                                    : std::numeric_limits<float>::infinity()});
+          candidates.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(k)});
     }
     counts().clusters_out_of_view = counts().clusters - candidates.size();
     return candidates;
@@ -219,16 +229,16 @@ class Frame {
     state_.pyramid.build(rect_, state_.depth);
   }
 
-  // Finds what of candidates [first, last) is not hidden by what was drawn so far.
-  void look(const std::vector<Candidate>& candidates, std::size_t first, std::size_t last) {
+  // Finds what of the candidates is not hidden by what was drawn: that shows, and is pending where it was not drawn.
+  void look(const std::vector<Candidate>& candidates) {
     using Where = ScreenBounds::Where;
-    tbb::parallel_for(first, last, [&](std::size_t k) {
+    tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
       const Set& set = sets_[candidates[k].set];
       const ScreenBounds box = box_of(candidates[k]);
       const bool hidden = box.where == Where::outside ||
                           (box.where == Where::inside && state_.pyramid.hides(box.samples, box.nearness));
       if (hidden) {
-        for_faces(candidates[k], [](std::uint32_t, std::uint8_t& flags) { flags &= not_shown; });
+        for_faces(candidates[k], [](std::uint32_t, std::uint8_t& flags) { flags = 0; });
         return;
       }
       ClusterBounds triangles;
@@ -237,19 +247,19 @@ class Frame {
       for_faces(candidates[k], [&](std::uint32_t, std::uint8_t& flags) {
         const std::size_t i = number++;
         const auto where = static_cast<Where>(triangles.where[i]);
-        flags &= not_shown;
+        const bool is_drawn = (flags & OcclusionState::pending) != 0;
+        flags = 0;
         if (where == Where::outside) return;
         if (where == Where::inside && state_.pyramid.hides(triangles.samples(i), triangles.nearness[i])) return;
-        flags |= OcclusionState::shown;
-        if ((flags & OcclusionState::drawn) == 0) flags |= OcclusionState::pending;
+        flags = is_drawn ? OcclusionState::shown : OcclusionState::shown | OcclusionState::pending;
         mark(where, triangles.samples(i));
       });
     });
   }
 
-  // Faces with a flag, in their order, as indices; where those of each set end.
-  std::vector<std::size_t> gather(std::uint8_t flag) {
-    std::vector<std::size_t> ends;
+  // Faces with a flag, in their order, as indices; the result is where those of each set end.
+  const std::vector<std::size_t>& gather(std::uint8_t flag) {
+    ends_.assign(1, 0);
     indices_.clear();
     for (const Set& set : sets_) {
       const std::vector<std::uint8_t>& flags = *set.flags;
@@ -268,19 +278,22 @@ class Frame {
           take(k + 8);
       }
       take(flags.size());
-      ends.push_back(indices_.size());
+      ends_.push_back(indices_.size());
     }
-    return ends;
+    glBindVertexArray(0);
+    buffer_ = indices_.empty() ? gl::Buffer()
+                               : gl::make_buffer(GL_ARRAY_BUFFER, indices_.data(), indices_.size() * sizeof(Face));
+    return ends_;
   }
 
-  void draw_indices(const std::vector<std::size_t>& ends, const gl::Buffer& buffer) {
-    std::size_t first = 0;
-    for (std::size_t s = 0; s < sets_.size(); first = ends[s], ++s) {
-      if (ends[s] == first) continue;
+  void draw_gathered() {
+    for (std::size_t s = 0; s < sets_.size(); ++s) {
+      const std::size_t first = ends_[s], count = ends_[s + 1] - first;
+      if (count == 0) continue;
       const gl::Program& program = use_(*sets_[s].draw);
       bind_set(input_, *sets_[s].draw, program);
-      glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer.name());
-      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>((ends[s] - first) * 3), GL_UNSIGNED_INT,
+      glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer_.name());
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(first * sizeof(Face)));
       // The vertex array remembers it.
       glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, sets_[s].surface->indices.name());
@@ -288,25 +301,9 @@ class Frame {
     }
   }
 
-  // `after`: something was drawn before, and what comes now stands before some of it in the scene's order.
-  void draw_pending(bool after) {
-    const std::vector<std::size_t> ends = gather(OcclusionState::pending);
-    if (indices_.empty()) return;
-    glBindVertexArray(0);
-    const gl::Buffer buffer = gl::make_buffer(GL_ARRAY_BUFFER, indices_.data(), indices_.size() * sizeof(Face));
-    if (after && !ties_) timed([&] { ties_ = any_tie(ends, buffer); });
-    // What is drawn again later need not be drawn right, but deep enough to hide.
-    draw_indices(ends, buffer);
-    counts().triangles_drawn += indices_.size();
-    for (const Set& set : sets_)
-      for (std::uint8_t& flags : *set.flags)
-        if ((flags & OcclusionState::pending) != 0)
-          flags = static_cast<std::uint8_t>((flags & ~OcclusionState::pending) | OcclusionState::drawn);
-  }
-
   // Whether a sample is as near as what is there: of two that are equally near the later one in the scene's order
   // shows, which is not always the one that is drawn later here.
-  bool any_tie(const std::vector<std::size_t>& ends, const gl::Buffer& buffer) {
+  bool any_tie() {
     GLuint query = 0;
     glGenQueries(1, &query);
     GLint function = GL_LEQUAL;
@@ -315,7 +312,7 @@ class Frame {
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_EQUAL);
     glBeginQuery(GL_ANY_SAMPLES_PASSED, query);
-    draw_indices(ends, buffer);
+    draw_gathered();
     glEndQuery(GL_ANY_SAMPLES_PASSED);
     glDepthFunc(static_cast<GLenum>(function));
     glDepthMask(GL_TRUE);
@@ -326,15 +323,6 @@ class Frame {
     return any != 0;
   }
 
-  void draw_again(const std::function<void()>& clear) {
-    const std::vector<std::size_t> ends = gather(OcclusionState::drawn);
-    glBindVertexArray(0);
-    const gl::Buffer buffer = gl::make_buffer(GL_ARRAY_BUFFER, indices_.data(), indices_.size() * sizeof(Face));
-    clear();
-    draw_indices(ends, buffer);
-    counts().drawn_again = true;
-  }
-
   const PassInput& input_;
   const std::function<const gl::Program&(const Draw&)>& use_;
   OcclusionState& state_;
@@ -342,7 +330,8 @@ class Frame {
   SampleRect rect_;
   std::vector<Set> sets_;
   std::vector<Face> indices_;
-  bool ties_ = false;
+  std::vector<std::size_t> ends_;
+  gl::Buffer buffer_;
 };
 
 }  // namespace

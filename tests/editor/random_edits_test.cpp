@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tests/support/document_fixture.h"
+#include "tests/support/thorough.h"
 
 namespace rebake::test {
 namespace {
@@ -32,7 +33,7 @@ void expect_sound(const Scene& scene) {
   }
 }
 
-TEST_F(RandomEdits, TenThousandRandomEditsKeepEveryInvariantAndUndoToTheStart) {
+TEST_F(RandomEdits, ThousandsOfRandomEditsKeepEveryInvariantAndUndoToTheStart) {
   export_scene(scene_of(made_object({.columns = 6, .rows = 4, .cell = 4})), path("sources/small"), {});
   Document document({}, 256 << 20);  // less than all scenes need
   std::mt19937 random(3);
@@ -109,7 +110,7 @@ TEST_F(RandomEdits, TenThousandRandomEditsKeepEveryInvariantAndUndoToTheStart) {
         return json{{"op", "select"}, {"sphere", {{"center", point()}, {"radius", number(0.1, 1)}}}};
       }};
   std::size_t done = 0, refused = 0;
-  for (int k = 0; k < 10000; ++k) {
+  for (int k = 0; k < 1250 * thorough; ++k) {
     json line;
     std::size_t triangles = 0;
     for (const PlacedNode& placed : placed_nodes(document.scene()))
@@ -133,8 +134,8 @@ TEST_F(RandomEdits, TenThousandRandomEditsKeepEveryInvariantAndUndoToTheStart) {
     if (k % 10 == 0) expect_sound(document.scene());
     if (HasFatalFailure()) FAIL() << line.dump();
   }
-  EXPECT_GT(done, 3000U);
-  EXPECT_GT(refused, 100U);
+  EXPECT_GT(done, 375U * thorough);
+  EXPECT_GT(refused, 12U * thorough);
   while (document.undo()) expect_sound(document.scene());
   EXPECT_TRUE(document.scene().roots.empty());
   EXPECT_EQ(document.history().undo_count(), 0U);

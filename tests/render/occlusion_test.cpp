@@ -186,6 +186,22 @@ TEST(Occlusion, ChangesNoByteOfTheRealMic) {
   }
 }
 
+// As two windows on one scene do.
+TEST(Occlusion, RemembersViewsThatAlternate) {
+  const Scene scene = crowd();
+  const View views[] = {view_of({3, 1, 0}, {0, 0, 0}), view_of({-1, 2, -3}, {0, 0, 0})};
+  std::size_t last[2] = {};
+  for (int k = 0; k < 6; ++k) {
+    renderers().expect_same(scene, views[k % 2], fmt::format("{}", k));
+    std::size_t drawn = 0;
+    const std::string said = renderers().said();
+    ASSERT_EQ(std::sscanf(said.c_str() + said.find("; of "), "; of %*u triangles %zu were drawn", &drawn), 1) << said;
+    if (k < 2) last[k] = drawn;
+    if (k < 4) continue;
+    EXPECT_LT(drawn, last[k % 2] * 7 / 10) << "the first time all of it was drawn: " << said;
+  }
+}
+
 TEST(Occlusion, OneTriangleAndNone) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 4}));
   TriangleSet one(object->triangle_count(), 0);
@@ -214,7 +230,7 @@ TEST(Occlusion, LeavesOutWhatASphereHides) {
       if (pass.effect == &effects::occlusion) {
         std::size_t all = 0, some = 0;
         const std::size_t at = pass.why.find("; of ");
-        EXPECT_EQ(std::sscanf(pass.why.c_str() + at, "; of %zu triangles %zu drawn", &all, &some), 2) << pass.why;
+        EXPECT_EQ(std::sscanf(pass.why.c_str() + at, "; of %zu triangles %zu were drawn", &all, &some), 2) << pass.why;
         return static_cast<double>(some) / static_cast<double>(all);
       }
     return 1.0;
