@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "render/gl/shader_library.h"
+
 namespace rebake {
 
 namespace {
@@ -15,6 +17,21 @@ void check_declared(const Effect& effect, std::span<const Use> uses, Target targ
 }
 
 }  // namespace
+
+const gl::Program& ProgramCache::get(const std::string& vertex, const std::string& fragment,
+                                     const std::string& preamble) {
+  const std::string key = vertex + '\n' + fragment + '\n' + preamble;
+  auto found = entries_.find(key);
+  if (found == entries_.end()) {
+    gl::Program program = gl::make_program(gl::shader_source(vertex, preamble), gl::shader_source(fragment, preamble));
+    if (entries_.size() >= most)
+      entries_.erase(std::min_element(entries_.begin(), entries_.end(),
+                                      [](const auto& a, const auto& b) { return a.second.used < b.second.used; }));
+    found = entries_.emplace(key, Entry{std::move(program), 0}).first;
+  }
+  found->second.used = ++clock_;
+  return found->second.program;
+}
 
 unsigned PassInput::read(Target target) const {
   check_declared(effect, effect.reads, target, "reads");

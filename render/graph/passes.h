@@ -9,6 +9,31 @@
 
 namespace rebake {
 
+/// Programs by their full source, the most recently used ones: a decoder that comes back is not compiled again, and
+/// those of decoders long gone do not pile up.
+class ProgramCache {
+ public:
+  /// The program made of two shader files behind a preamble.
+  const gl::Program& get(const std::string& vertex, const std::string& fragment, const std::string& preamble);
+  std::size_t size() const { return entries_.size(); }
+
+ private:
+  static constexpr std::size_t most = 64;
+  struct Entry {
+    gl::Program program;
+    std::uint64_t used = 0;
+  };
+  std::map<std::string, Entry> entries_;
+  std::uint64_t clock_ = 0;
+};
+
+/// Weights as literals, as text for shaders; made once for a set of decoders.
+struct DecoderText {
+  std::vector<std::shared_ptr<const Decoder>> decoders;
+  RenderOptions::Precision precision = RenderOptions::Precision::full;
+  std::string text;
+};
+
 /// Decoder weights on the GPU when they are fetched from buffers.
 struct DecoderTables {
   std::vector<std::shared_ptr<const Decoder>> decoders;
@@ -32,7 +57,8 @@ struct OcclusionState;
 
 /// Lives as long as the renderer: shaders and buffers that frames share.
 struct PassState {
-  std::map<std::string, gl::Program> programs;  ///< by their full source
+  ProgramCache programs;
+  DecoderText text;
   TargetPool targets;
   DecoderTables tables;
   std::map<SelectionKey, SelectedFaces> selected;

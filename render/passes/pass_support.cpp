@@ -7,7 +7,6 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <numbers>
 
-#include "render/gl/shader_library.h"
 #include "render/passes/decoder_glsl.h"
 
 namespace rebake {
@@ -76,18 +75,17 @@ Vec2 nearness_of_depth() { return reversed_depth() ? Vec2(1, 0) : Vec2(-0.5, 0.5
 
 const gl::Program& program(PassState& state, const std::string& vertex, const std::string& fragment,
                            const std::string& preamble) {
-  const std::string key = vertex + '\n' + fragment + '\n' + preamble;
-  const auto found = state.programs.find(key);
-  if (found != state.programs.end()) return found->second;
-  return state.programs
-      .emplace(key, gl::make_program(gl::shader_source(vertex, preamble), gl::shader_source(fragment, preamble)))
-      .first->second;
+  return state.programs.get(vertex, fragment, preamble);
 }
 
 std::string decoder_preamble(const PassInput& input) {
   const FramePlan& plan = input.plan;
-  if (plan.options.weights == RenderOptions::Weights::constants)
-    return decoder_constants_glsl(plan.decoders, plan.options.precision);
+  if (plan.options.weights == RenderOptions::Weights::constants) {
+    DecoderText& made = input.state.text;
+    if (made.text.empty() || made.decoders != plan.decoders || made.precision != plan.options.precision)
+      made = {plan.decoders, plan.options.precision, decoder_constants_glsl(plan.decoders, plan.options.precision)};
+    return made.text;
+  }
   DecoderTables& tables = input.state.tables;
   if (!tables.weights || tables.decoders != plan.decoders || tables.precision != plan.options.precision) {
     const DecoderBuffers buffers = decoder_buffers(plan.decoders, plan.options.precision);
