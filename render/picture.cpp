@@ -117,7 +117,9 @@ class Renderer::Impl {
 
   void say_occlusion() {
     const OcclusionCounts& c = state_.occlusion_counts;
-    share_ = c.triangles == 0 ? 0 : static_cast<double>(c.triangles_shown) / static_cast<double>(c.triangles);
+    share_ = c.triangles_in_view == 0
+                 ? 0
+                 : static_cast<double>(c.triangles_shown) / static_cast<double>(c.triangles_in_view);
     frames_without_ = 0;
     for (PlannedPass& pass : passes_)
       if (pass.effect == &effects::occlusion)

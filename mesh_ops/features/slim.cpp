@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "mesh_ops/base/elementary.h"
 #include "mesh_ops/features/feature_network.h"
@@ -34,13 +36,22 @@ class ShownPoints {
     // Texels whose centre lies inside, and those that reach in from beside: their nearest points.
     const Vec2 low = uv_[0].cwiseMin(uv_[1]).cwiseMin(uv_[2]), high = uv_[0].cwiseMax(uv_[1]).cwiseMax(uv_[2]);
     if (!(low.allFinite() && high.allFinite())) return;
+    Dice dice(f);
+    std::size_t number = 0;
     const auto within = [](double at, int size) { return std::clamp(static_cast<int>(std::floor(at)), 0, size - 1); };
     for (int y = within(low.y(), texels_.height()); y <= within(high.y(), texels_.height()); ++y)
       for (int x = within(low.x(), texels_.width()); x <= within(high.x(), texels_.width()); ++x) {
         if (!texels_.at(x, y).opaque()) continue;
         const Vec2 nearest = nearest_inside({x + 0.5, y + 0.5});
-        if ((nearest - Vec2(x + 0.5, y + 0.5)).cwiseAbs().maxCoeff() <= 0.5)
-          places_.push_back(at(barycentric(uv_, nearest)));
+        // As far as a texel's corners reach.
+        if ((nearest - Vec2(x + 0.5, y + 0.5)).squaredNorm() > 0.5) continue;
+        // An even choice of all (reservoir sampling, Vitter 1985).
+        const Vec3 place = at(barycentric(uv_, nearest));
+        if (places_.size() < most_places)
+          places_.push_back(place);
+        else if (const std::size_t k = dice.below(number + 1); k < most_places)
+          places_[k] = place;
+        ++number;
       }
   }
 
@@ -76,6 +87,7 @@ class ShownPoints {
     return nearest;
   }
 
+  static constexpr std::size_t most_places = 1024;
   const FeatureTexture& texels_;
   std::array<Vec2, 3> uv_;
   std::array<Vec3, 3> corners_;
@@ -98,12 +110,22 @@ Texel rounded(Texel texel, const FeatureBits& bits) {
   return texel;
 }
 
+// `change(x, y, texel)` says what a texel becomes.
 template <class Change>
-std::shared_ptr<const FeatureTexture> changed(const FeatureTexture& texels, Change change) {
-  return std::make_shared<const FeatureTexture>(
-      FeatureTexture::from_rows(texels.width(), texels.height(), texels.alpha_code(), [&](int y, Texel* row) {
-        for (int x = 0; x < texels.width(); ++x) row[x] = change(texels.at(x, y));
+std::shared_ptr<const FeatureTexture> changed(const std::shared_ptr<const FeatureTexture>& texels, Change change) {
+  std::atomic<bool> any = false;
+  auto made = std::make_shared<const FeatureTexture>(
+      FeatureTexture::from_rows(texels->width(), texels->height(), texels->alpha_code(), [&](int y, Texel* row) {
+        bool differs = false;
+        for (int x = 0; x < texels->width(); ++x) {
+          const Texel& was = texels->at(x, y);
+          row[x] = change(x, y, was);
+          differs = differs || !(row[x] == was);
+        }
+        if (differs) any = true;
       }));
+  if (any) return made;
+  return texels;
 }
 
 // Texels of an object and how they look along a few directions.
@@ -155,59 +177,75 @@ double squared_loss(const ColorSample& sample, const Decoder& decoder, const Fea
 
 }  // namespace
 
-double most_missed(int rays) { return 3.0 / rays; }
+double most_missed(std::size_t triangles, int rays) {
+  return 1 - std::pow(0.05 / static_cast<double>(std::max<std::size_t>(1, triangles)), 1.0 / std::max(1, rays));
+}
 
-Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int rays, const Progress& progress) {
+Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_rays, const Progress& progress) {
   const auto tree = rays_of(object);
   const double size = object.bounds().diagonal().norm();
-  Sightings found;
-  found.unseen.assign(object.triangle_count(), 0);
-  struct Count {
-    std::uint32_t sent = 0, through = 0;
+  struct Sent {
+    std::size_t set, face;  ///< the set's
+    int rays = 0, through = 0;
+    bool shows = true;
   };
-  std::vector<Count> counts(object.triangle_count());
-  std::atomic<std::size_t> done = 0;
-  std::size_t first = 0;
-  for (const TextureSet& set : object.sets) {
-    tbb::parallel_for(std::size_t{0}, set.soup.triangle_count(), [&](std::size_t f) {
-      const ShownPoints points(set, f);
-      Count& count = counts[first + f];
-      Dice dice(first + f);
-      for (int k = 0; !points.none() && k < rays && count.through < enough; ++k) {
-        const Vec3 point = points.random(dice);
-        Vec3 eye;
-        if (!eyes.standpoints.empty()) {
-          const Standpoint& from = eyes.standpoints[dice.below(eyes.standpoints.size())];
-          eye = from.back.isZero(0) ? from.eye : Vec3(point + 1.5 * size * from.back);
-        } else if (eyes.box) {
-          const Vec3 share(dice.share(), dice.share(), dice.share());
-          eye = eyes.world_to_object * Vec3(eyes.box->min() + share.cwiseProduct(eyes.box->sizes()));
-        } else {
-          eye = point + 1.5 * size * random_direction(dice);
-        }
-        ++count.sent;
-        // Stops short of the point by more than the tree's rounding.
-        const Vec3 way = point - eye;
-        const double distance = way.norm();
-        if (distance > 0 && tree->blocked(eye, way, 0, 1 - 1e-5 * std::max(1.0, size / distance))) continue;
-        ++count.through;
+  std::vector<Sent> all;
+  for (std::size_t s = 0; s < object.sets.size(); ++s)
+    for (std::size_t f = 0; f < object.sets[s].soup.triangle_count(); ++f) all.push_back({s, f});
+  const auto send = [&](std::size_t triangle, int until) {
+    Sent& sent = all[triangle];
+    const ShownPoints points(object.sets[sent.set], sent.face);
+    sent.shows = !points.none();
+    // Other dice each time it is called.
+    Dice dice(triangle * 64 + static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(sent.rays))));
+    while (sent.shows && sent.rays < until && sent.through < enough) {
+      const Vec3 point = points.random(dice);
+      Vec3 eye;
+      if (!eyes.standpoints.empty()) {
+        const Standpoint& from = eyes.standpoints[dice.below(eyes.standpoints.size())];
+        eye = from.back.isZero(0) ? from.eye : Vec3(point + 1.5 * size * from.back);
+      } else if (eyes.box) {
+        const Vec3 share(dice.share(), dice.share(), dice.share());
+        eye = eyes.world_to_object * Vec3(eyes.box->min() + share.cwiseProduct(eyes.box->sizes()));
+      } else {
+        eye = point + 1.5 * size * random_direction(dice);
       }
+      ++sent.rays;
+      // Stops short of the point by more than the tree's rounding.
+      const Vec3 way = point - eye;
+      const double distance = way.norm();
+      if (distance > 0 && tree->blocked(eye, way, 0, 1 - 1e-5 * size / distance)) continue;
+      ++sent.through;
+    }
+  };
+  std::vector<std::size_t> open(all.size());  // not known to be seen
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  constexpr int first_rays = 1024;
+  int until = std::min(first_rays, most_rays);
+  for (bool more = true; more;) {
+    std::atomic<std::size_t> done = 0, found = 0;
+    tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t k) {
+      send(open[k], until);
+      if (all[open[k]].through > 0) ++found;
       const std::size_t now = ++done;
-      if (now % 1024 == 0)
-        progress.at("looking for what is seen", static_cast<double>(now) / static_cast<double>(counts.size()));
+      if (now % 256 == 0)
+        progress.at("looking for what is seen", static_cast<double>(now) / static_cast<double>(open.size()));
     });
-    first += set.soup.triangle_count();
+    std::erase_if(open, [&](std::size_t k) { return all[k].through > 0 || !all[k].shows; });
+    // The first round finds what is plainly seen; only what a further one does not find either is taken as unseen.
+    more = !open.empty() && until < most_rays && (found > 0 || until == first_rays);
+    if (more) until = std::min(2 * until, most_rays);
   }
-  for (std::size_t f = 0; f < counts.size(); ++f) {
-    const Count& count = counts[f];
-    found.rays += count.sent;
-    found.unseen[f] = count.through == 0 ? 1 : 0;
-    if (count.through == 0) continue;
-    found.smallest_opening =
-        std::min(found.smallest_opening, static_cast<double>(count.through) / static_cast<double>(count.sent));
-    found.seen_once += count.through == 1 ? 1 : 0;
+  Sightings seen;
+  seen.rays_each = until;
+  for (const Sent& sent : all) {
+    seen.rays += static_cast<std::uint64_t>(sent.rays);
+    seen.unseen.push_back(sent.through == 0 ? 1 : 0);
+    if (sent.through == 0) continue;
+    seen.smallest_opening = std::min(seen.smallest_opening, static_cast<double>(sent.through) / sent.rays);
+    seen.seen_once += sent.through == 1 ? 1 : 0;
   }
-  return found;
+  return seen;
 }
 
 BitsFound fewest_bits(const BakedObject& object, double psnr_db, const Progress& progress) {
@@ -239,13 +277,32 @@ BitsFound fewest_bits(const BakedObject& object, double psnr_db, const Progress&
   }
 }
 
-std::shared_ptr<const FeatureTexture> with_bits(const FeatureTexture& texels, const FeatureBits& bits) {
-  return changed(texels, [&](const Texel& texel) { return texel.opaque() ? rounded(texel, bits) : texel; });
+std::shared_ptr<const FeatureTexture> with_bits(const std::shared_ptr<const FeatureTexture>& texels,
+                                                const FeatureBits& bits) {
+  return changed(texels, [&](int, int, const Texel& texel) { return texel.opaque() ? rounded(texel, bits) : texel; });
 }
 
-std::shared_ptr<const FeatureTexture> with_empty_rest(const FeatureTexture& texels) {
-  return changed(texels, [empty = empty_texel(texels.alpha_code())](const Texel& texel) {
-    return texel.opaque() ? texel : empty;
+std::shared_ptr<const FeatureTexture> with_empty_rest(const TextureSet& set) {
+  const int width = set.texels->width(), height = set.texels->height();
+  std::vector<std::uint8_t> shown(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  for (std::size_t f = 0; f < set.soup.triangle_count(); ++f) {
+    const std::array<Vec2, 3> uv = texel_corners(set, f);
+    const Vec2 low = uv[0].cwiseMin(uv[1]).cwiseMin(uv[2]), high = uv[0].cwiseMax(uv[1]).cwiseMax(uv[2]);
+    if (!(low.allFinite() && high.allFinite())) return set.texels;
+    // With a texel of room, for rounding.
+    const auto within = [](double at, int size) {
+      return std::clamp(static_cast<int>(std::floor(std::clamp(at, -2.0, size + 2.0))), 0, size - 1);
+    };
+    const int left = within(low.x() - 1, width), right = within(high.x() + 1, width);
+    for (int y = within(low.y() - 1, height); y <= within(high.y() + 1, height); ++y)
+      std::fill_n(shown.begin() + static_cast<std::ptrdiff_t>(y) * width + left, right - left + 1, 1);
+  }
+  return changed(set.texels, [&, empty = empty_texel(set.texels->alpha_code())](int x, int y, const Texel& texel) {
+    return texel.opaque() &&
+                   shown[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] !=
+                       0
+               ? texel
+               : empty;
   });
 }
 

@@ -21,6 +21,7 @@ struct EyeRegion {
 /// What was found by rays from random opaque texels of each triangle to random eyes.
 struct Sightings {
   TriangleSet unseen;
+  int rays_each = 0;       ///< that each of the unseen sent
   std::uint64_t rays = 0;  ///< in all
   /// Of the triangles that are seen the least share of rays that got through: the smallest opening found. 1 where none
   /// is seen.
@@ -28,12 +29,13 @@ struct Sightings {
   std::size_t seen_once = 0;  ///< triangles that one ray in all got through to
 };
 
-/// Sends up to `rays` rays from each triangle, fewer where four have got through. A triangle that a share s of all
-/// lines of sight reaches is taken for unseen with probability (1 − s)^rays. Triangles hide each other as their opaque
-/// texels do; without an opaque texel a triangle is unseen. The same at any number of threads.
-Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int rays, const Progress& progress = {});
-/// The share of lines of sight that at most reach what `rays` rays did not, with 95 % confidence (the rule of three).
-double most_missed(int rays);
+/// Sends rays from each triangle until four have got through. What a thousand do not reach is sent twice as many, again
+/// and again, until doubling finds nothing more or `most_rays` were sent. Without an opaque texel a triangle is unseen.
+/// Triangles hide each other as their opaque texels do. The same at any number of threads.
+Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_rays, const Progress& progress = {});
+/// The share of a triangle's lines of sight that at most reach any of so many triangles that `rays` rays each did not,
+/// with 95 % confidence: (1 - share)^rays = 0.05 / triangles.
+double most_missed(std::size_t triangles, int rays);
 
 /// Bits that each of the 8 features is rounded to; 8: as it is.
 using FeatureBits = std::array<int, 8>;
@@ -44,10 +46,13 @@ struct BitsFound {
 /// The fewest bits with which a sample of an object's texels, seen along a sample of directions, keeps this PSNR: one
 /// bit after another is taken from the feature that loses least by it.
 BitsFound fewest_bits(const BakedObject& object, double psnr_db, const Progress& progress = {});
-/// The texture with its opaque texels' features rounded; opaque ones stay opaque.
-std::shared_ptr<const FeatureTexture> with_bits(const FeatureTexture& texels, const FeatureBits& bits);
+/// The texture with its opaque texels' features rounded; opaque ones stay opaque. The same one where nothing changes,
+/// as below.
+std::shared_ptr<const FeatureTexture> with_bits(const std::shared_ptr<const FeatureTexture>& texels,
+                                                const FeatureBits& bits);
 
-/// The texture with all texels that are not opaque empty: they show nothing, and compress better alike.
-std::shared_ptr<const FeatureTexture> with_empty_rest(const FeatureTexture& texels);
+/// A set's texture with all texels empty that show nothing: those that are not opaque, and those beside the rectangles
+/// that hold its triangles' texels.
+std::shared_ptr<const FeatureTexture> with_empty_rest(const TextureSet& set);
 
 }  // namespace rebake

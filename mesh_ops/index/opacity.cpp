@@ -17,6 +17,8 @@ struct Edge {
 };
 
 bool shows_opaque(const FeatureTexture& texels, std::array<Vec2, 3> p) {
+  // Where is not known: it may show anything.
+  if (!(p[0].allFinite() && p[1].allFinite() && p[2].allFinite())) return true;
   const Vec2 low = p[0].cwiseMin(p[1]).cwiseMin(p[2]), high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
   if (!(low.minCoeff() >= 0 && high.x() <= texels.width() && high.y() <= texels.height())) return true;
   const double doubled_area = (p[1] - p[0]).x() * (p[2] - p[0]).y() - (p[1] - p[0]).y() * (p[2] - p[0]).x();

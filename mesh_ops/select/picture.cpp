@@ -171,6 +171,11 @@ std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, 
   return flags;
 }
 
+Standpoint standpoint_of(const Camera& camera, const Affine& to_object) {
+  const Vec3 back = to_object.linear() * world_to_camera(camera).row(2).transpose();
+  return {to_object * camera.eye, camera.orthographic() ? Vec3(back.normalized()) : Vec3::Zero()};
+}
+
 TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standpoint>& standpoints) {
   const auto rays = rays_of(object);
   const double size = object.bounds().diagonal().norm();
@@ -199,7 +204,7 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standp
           // Stops short of the point by more than the tree's rounding.
           const Vec3 way = point - eye;
           const double distance = way.norm();
-          if (distance > 0 && rays->blocked(eye, way, 0, 1 - 1e-5 * std::max(1.0, size / distance))) continue;
+          if (distance > 0 && rays->blocked(eye, way, 0, 1 - 1e-5 * size / distance)) continue;
           seen = true;
           break;
         }

@@ -69,6 +69,9 @@ struct Standpoint {
   Vec3 back{0, 0, 0};  ///< of parallel rays the way to where they come from, of length 1; else 0
 };
 
+/// A camera's, in the space that `to_object` leads to from the world.
+Standpoint standpoint_of(const Camera& camera, const Affine& to_object);
+
 /// Triangles of which no opaque part (up to 16 texels of each are tried) is seen from any of the standpoints.
 /// Errs on the side of seen only as far as those texels reach: a triangle seen through a gap smaller than their spacing
 /// counts as unseen.

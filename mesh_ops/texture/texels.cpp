@@ -36,26 +36,24 @@ std::array<double, 8> decode_features(const Texel& texel, AlphaCode code) {
           texel.feat1[0] / 255.0, texel.feat1[1] / 255.0, texel.feat1[2] / 255.0, alpha(texel.feat1[3])};
 }
 
-void FeatureTexture::set_tile_row(int tile_row, int count, const Texel* rows, std::size_t stride) {
+void FeatureTexture::set_tile(int tile_row, int column, int count, const Texel* rows) {
   const Texel empty = empty_texel(code_);
-  tbb::parallel_for(0, tile_columns(), [&](int column) {
-    const int left = column * TexelTile::size, columns = std::min(TexelTile::size, width_ - left);
-    std::shared_ptr<TexelTile> tile;
-    for (int y = 0; y < count; ++y) {
-      const Texel* begin = rows + static_cast<std::size_t>(y) * stride + left;
-      const Texel* end = begin + columns;
-      if (!tile) {
-        if (std::all_of(begin, end, [&](const Texel& t) { return t == empty; })) continue;
-        tile = std::make_shared<TexelTile>(*shared_empty_tile(code_));
-      }
-      std::copy(begin, end, tile->texels.begin() + y * TexelTile::size);
-      tile->opaque_count +=
-          static_cast<std::uint32_t>(std::count_if(begin, end, [](const Texel& t) { return t.opaque(); }));
+  const int left = column * TexelTile::size, columns = std::min(TexelTile::size, width_ - left);
+  std::shared_ptr<TexelTile> tile;
+  for (int y = 0; y < count; ++y) {
+    const Texel* begin = rows + static_cast<std::ptrdiff_t>(y) * width_ + left;
+    const Texel* end = begin + columns;
+    if (!tile) {
+      if (std::all_of(begin, end, [&](const Texel& t) { return t == empty; })) continue;
+      tile = std::make_shared<TexelTile>(*shared_empty_tile(code_));
     }
-    tiles_[static_cast<std::size_t>(tile_row) * static_cast<std::size_t>(tile_columns()) +
-           static_cast<std::size_t>(column)] =
-        tile ? std::shared_ptr<const TexelTile>(std::move(tile)) : shared_empty_tile(code_);
-  });
+    std::copy(begin, end, tile->texels.begin() + y * TexelTile::size);
+    tile->opaque_count +=
+        static_cast<std::uint32_t>(std::count_if(begin, end, [](const Texel& t) { return t.opaque(); }));
+  }
+  tiles_[static_cast<std::size_t>(tile_row) * static_cast<std::size_t>(tile_columns()) +
+         static_cast<std::size_t>(column)] =
+      tile ? std::shared_ptr<const TexelTile>(std::move(tile)) : shared_empty_tile(code_);
 }
 
 FeatureTexture FeatureTexture::from_rows(int width, int height, AlphaCode code,
@@ -63,10 +61,11 @@ FeatureTexture FeatureTexture::from_rows(int width, int height, AlphaCode code,
   FeatureTexture texture(width, height, code);
   tbb::parallel_for(0, texture.tile_rows(), [&](int tile_row) {
     const int first = tile_row * TexelTile::size, count = std::min(TexelTile::size, height - first);
-    const auto stride = static_cast<std::size_t>(width);
-    std::vector<Texel> rows(stride * static_cast<std::size_t>(count));
-    for (int y = 0; y < count; ++y) fill_row(first + y, &rows[static_cast<std::size_t>(y) * stride]);
-    texture.set_tile_row(tile_row, count, rows.data(), stride);
+    std::vector<Texel> rows(static_cast<std::size_t>(width) * static_cast<std::size_t>(count));
+    for (int y = 0; y < count; ++y)
+      fill_row(first + y, &rows[static_cast<std::size_t>(y) * static_cast<std::size_t>(width)]);
+    for (int column = 0; column < texture.tile_columns(); ++column)
+      texture.set_tile(tile_row, column, count, rows.data());
   });
   return texture;
 }
@@ -74,12 +73,13 @@ FeatureTexture FeatureTexture::from_rows(int width, int height, AlphaCode code,
 FeatureTexture FeatureTexture::from_parts(int width, int height, AlphaCode code,
                                           const std::function<void(int, int, Texel*)>& fill_rows) {
   FeatureTexture texture(width, height, code);
-  const auto stride = static_cast<std::size_t>(width);
-  std::vector<Texel> rows(stride * static_cast<std::size_t>(std::min(TexelTile::size, height)));
+  std::vector<Texel> rows(static_cast<std::size_t>(width) *
+                          static_cast<std::size_t>(std::min(TexelTile::size, height)));
   for (int tile_row = 0; tile_row < texture.tile_rows(); ++tile_row) {
     const int first = tile_row * TexelTile::size, count = std::min(TexelTile::size, height - first);
     fill_rows(first, count, rows.data());
-    texture.set_tile_row(tile_row, count, rows.data(), stride);
+    tbb::parallel_for(0, texture.tile_columns(),
+                      [&](int column) { texture.set_tile(tile_row, column, count, rows.data()); });
   }
   return texture;
 }

@@ -93,8 +93,8 @@ class FeatureTexture {
         height_(height),
         code_(code),
         tiles_(static_cast<std::size_t>(tile_columns()) * static_cast<std::size_t>(tile_rows())) {}
-  /// Makes the tiles of a row of tiles from `count` rows of texels that lie `stride` apart.
-  void set_tile_row(int tile_row, int count, const Texel* rows, std::size_t stride);
+  /// Makes a tile from `count` rows of texels of its row of tiles, which lie the texture's width apart.
+  void set_tile(int tile_row, int column, int count, const Texel* rows);
 
   int width_ = 0;
   int height_ = 0;

@@ -87,6 +87,7 @@ PreparedMesh prepared(const TextureSet& set, const ShownFaces& shown) {
   const Soup& soup = set.soup;
   PreparedMesh made;
   made.source = set;
+  made.shown = shown.faces;
   if (!soup.bounds().isEmpty()) made.center = soup.bounds().center();
   made.positions.resize(soup.positions().size());
   tbb::parallel_for(std::size_t{0}, made.positions.size(),
@@ -106,7 +107,9 @@ PreparedMesh prepared(const TextureSet& set, const ShownFaces& shown) {
 PreparedMesh GpuScene::take_mesh(const TextureSet& set) {
   {
     const std::lock_guard lock(mutex_);
-    if (auto node = prepared_meshes_.extract(mesh_key(set))) return std::move(node.mapped().made);
+    if (auto node = prepared_meshes_.extract(mesh_key(set));
+        node && node.mapped().made.shown == surface(set).shown.faces)
+      return std::move(node.mapped().made);
   }
   return prepared(set, surface(set).shown);
 }
@@ -211,7 +214,7 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
     taken_over[*held] = key;
     change.released_surfaces.erase(held);
     node.key() = key;
-    take_over(node.mapped(), set);
+    texels_uploaded_ += take_over(node.mapped(), set);
     surfaces_.insert(std::move(node));
     return true;
   });
@@ -237,13 +240,18 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
     held = std::find_if(released.begin(), released.end(),
                         [&](const MeshKey& other) { return differs_in_place(now(other), key); });
     if (held == released.end()) return false;
-    move_vertices(rekeyed(held, set), take_mesh(set));
+    PreparedMesh made = take_mesh(set);
+    move_vertices(rekeyed(held, set), std::move(made));
     return true;
   });
   // Before what comes needs the room.
   for (const MeshKey& key : change.released_meshes) meshes_.erase(key);
   for (const SurfaceKey& key : change.released_surfaces) surfaces_.erase(key);
-  for (const TextureSet& set : change.surfaces) surfaces_.emplace(surface_key(set), rebake::upload(take_surface(set)));
+  for (const TextureSet& set : change.surfaces) {
+    const GpuSurface& made = surfaces_.emplace(surface_key(set), rebake::upload(take_surface(set))).first->second;
+    texels_uploaded_ +=
+        static_cast<std::uint64_t>(made.packing->width) * static_cast<std::uint64_t>(made.packing->height);
+  }
   for (const TextureSet& set : change.meshes) meshes_.emplace(mesh_key(set), upload(take_mesh(set), surface(set)));
   const std::lock_guard lock(mutex_);
   held_meshes_.clear();

@@ -23,6 +23,8 @@ struct GpuCluster {
 /// What is uploaded of where a set's vertices are, worked out beforehand: floats relative to `center`.
 struct PreparedMesh {
   TextureSet source;  ///< keeps the arrays alive, so that their addresses stay identities
+  /// What its clusters are of. One surface may show more faces than another of the same texels.
+  std::shared_ptr<const std::vector<Face>> shown;
   Vec3 center{0, 0, 0};
   std::vector<Eigen::Vector3f> positions;
   std::vector<float> turns;  ///< 9 a vertex; empty where none is turned
@@ -62,6 +64,8 @@ class GpuScene {
 
   const GpuMesh& mesh(const TextureSet& set) const { return meshes_.at(mesh_key(set)); }
   const GpuSurface& surface(const TextureSet& set) const { return surfaces_.at(surface_key(set)); }
+  /// So far.
+  std::uint64_t texels_uploaded() const { return texels_uploaded_; }
   const GpuLight& light(const std::shared_ptr<const LightMap>& map) const { return lights_.at(map.get()); }
 
  private:
@@ -73,6 +77,7 @@ class GpuScene {
   std::map<MeshKey, GpuMesh> meshes_;
   std::map<SurfaceKey, GpuSurface> surfaces_;
   std::map<const LightMap*, GpuLight> lights_;
+  std::uint64_t texels_uploaded_ = 0;
   // Shared with prepare():
   std::mutex mutex_;
   /// Of what is on the GPU; sources keep what the keys are made of alive.

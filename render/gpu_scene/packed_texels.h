@@ -22,8 +22,8 @@ struct TexelPacking {
   int width = 1, height = 1;  ///< of what is on the GPU
   bool whole = false;         ///< texels lie where they do in the texture: packing would save too little
   std::vector<PackedRect> rects;
-  /// For each vertex its rectangle; `rects.size()` where its triangles show nothing: then texel (0, 0) stands for it,
-  /// which is not opaque.
+  /// For each vertex its rectangle; `rects.size()` where its triangles show nothing: then texel (0, 0) stands for it
+  /// where texels are packed, which is not opaque.
   std::vector<std::uint32_t> rect_of_vertex;
 };
 

@@ -23,14 +23,27 @@ void upload_rows(const TexelPacking& packing, const FeatureTexture& texels) {
   }
 }
 
-void upload_rect(const FeatureTexture& texels, const PackedRect& rect, std::vector<Texel>& rows) {
-  TexelPacking one;
-  one.width = rect.width;
-  one.height = rect.height;
-  one.rects.push_back({rect.x, rect.y, rect.width, rect.height, 0, 0});
-  fill_packed_rows(one, texels, 0, rect.height, rows);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, rect.place_x, rect.place_y, rect.width, rect.height, GL_RG_INTEGER, GL_UNSIGNED_INT,
-                  rows.data());
+// The parts of a rectangle that lie in changed tiles. Returns how many texels that is.
+std::uint64_t upload_changed(const FeatureTexture& texels, const std::vector<std::uint8_t>& changed,
+                             const PackedRect& rect, std::vector<Texel>& rows) {
+  constexpr int size = TexelTile::size;
+  std::uint64_t uploaded = 0;
+  for (int row = rect.y / size; row <= (rect.y + rect.height - 1) / size; ++row)
+    for (int column = rect.x / size; column <= (rect.x + rect.width - 1) / size; ++column) {
+      if (changed[static_cast<std::size_t>(row) * static_cast<std::size_t>(texels.tile_columns()) +
+                  static_cast<std::size_t>(column)] == 0)
+        continue;
+      const int left = std::max<int>(rect.x, column * size), top = std::max<int>(rect.y, row * size);
+      const int width = std::min(rect.x + rect.width, (column + 1) * size) - left,
+                height = std::min(rect.y + rect.height, (row + 1) * size) - top;
+      rows.clear();
+      for (int y = top; y < top + height; ++y)
+        rows.insert(rows.end(), texels.row_part(left, y), texels.row_part(left, y) + width);
+      glTexSubImage2D(GL_TEXTURE_2D, 0, rect.place_x + left - rect.x, rect.place_y + top - rect.y, width, height,
+                      GL_RG_INTEGER, GL_UNSIGNED_INT, rows.data());
+      uploaded += rows.size();
+    }
+  return uploaded;
 }
 
 }  // namespace
@@ -55,7 +68,13 @@ PreparedSurface prepared_surface(const TextureSet& set) {
     SurfaceVertex& vertex = made.vertices[v];
     vertex = {{static_cast<float>(uv.x() * width), static_cast<float>((1 - uv.y()) * height)}, {}, {}, {}};
     const std::uint32_t number = packing->rect_of_vertex[v];
-    if (number == packing->rects.size()) return;
+    if (number == packing->rects.size()) {
+      if (!packing->whole) return;
+      // Its own texels are there too.
+      vertex.last_texel[0] = static_cast<std::uint16_t>(packing->width - 1);
+      vertex.last_texel[1] = static_cast<std::uint16_t>(packing->height - 1);
+      return;
+    }
     const PackedRect& rect = packing->rects[number];
     vertex.first_texel[0] = rect.x;
     vertex.first_texel[1] = rect.y;
@@ -89,36 +108,20 @@ bool serves(const std::shared_ptr<const FeatureTexture>& made_for, const Texture
          !newly_opaque(*made_for, *set.texels);
 }
 
-void take_over(GpuSurface& surface, const TextureSet& set) {
+std::uint64_t take_over(GpuSurface& surface, const TextureSet& set) {
   const FeatureTexture &before = *surface.source.texels, &after = *set.texels;
   const std::vector<std::uint8_t> changed = changed_tiles(before, after);
-  const int columns = after.tile_columns();
   glBindTexture(GL_TEXTURE_2D, surface.texels.name());
   std::vector<Texel> rows;
-  constexpr int size = TexelTile::size;
-  if (surface.packing->whole) {
-    for (std::size_t k = 0; k < changed.size(); ++k) {
-      if (changed[k] == 0) continue;
-      const int x = static_cast<int>(k) % columns * size, y = static_cast<int>(k) / columns * size;
-      const auto at_x = static_cast<std::uint16_t>(x), at_y = static_cast<std::uint16_t>(y);
-      upload_rect(after,
-                  {at_x, at_y, static_cast<std::uint16_t>(std::min(size, after.width() - x)),
-                   static_cast<std::uint16_t>(std::min(size, after.height() - y)), at_x, at_y},
-                  rows);
-    }
-  } else {
-    for (const PackedRect& rect : surface.packing->rects) {
-      bool any = false;
-      for (int y = rect.y / size; y <= (rect.y + rect.height - 1) / size; ++y)
-        for (int x = rect.x / size; x <= (rect.x + rect.width - 1) / size; ++x)
-          any =
-              any ||
-              changed[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x)] !=
-                  0;
-      if (any) upload_rect(after, rect, rows);
-    }
-  }
+  std::uint64_t uploaded = 0;
+  if (surface.packing->whole)
+    uploaded = upload_changed(
+        after, changed,
+        {0, 0, static_cast<std::uint16_t>(after.width()), static_cast<std::uint16_t>(after.height()), 0, 0}, rows);
+  else
+    for (const PackedRect& rect : surface.packing->rects) uploaded += upload_changed(after, changed, rect, rows);
   surface.source = set;
+  return uploaded;
 }
 
 }  // namespace rebake

@@ -46,7 +46,7 @@ GpuSurface upload(PreparedSurface made);
 
 /// Whether a surface is good for a set with the same triangles: no texel has become opaque, and sizes are the same.
 bool serves(const std::shared_ptr<const FeatureTexture>& made_for, const TextureSet& source, const TextureSet& set);
-/// Makes it that set's, for which it serves: uploads what changed of the texels.
-void take_over(GpuSurface& surface, const TextureSet& set);
+/// Makes it that set's, for which it serves: uploads what changed of the texels, and returns how many it uploaded.
+std::uint64_t take_over(GpuSurface& surface, const TextureSet& set);
 
 }  // namespace rebake

@@ -46,7 +46,7 @@ struct DecoderTables {
 /// The selected faces of a texture set on the GPU.
 struct SelectedFaces {
   std::shared_ptr<const TriangleSet> selection;
-  Soup source;  ///< with the selection keeps the key's addresses alive
+  TextureSet source;  ///< with the selection keeps the key's addresses alive
   gl::VertexArray array;
   gl::Buffer indices;
   std::size_t count = 0;
@@ -63,7 +63,7 @@ struct PassState {
   DecoderTables tables;
   std::map<SelectionKey, SelectedFaces> selected;
   gl::VertexArray empty_array;
-  std::shared_ptr<OcclusionState> occlusion;  ///< what `occlusion` knows of the last frame; null before its first
+  std::shared_ptr<OcclusionState> occlusion;  ///< what `occlusion` knows of earlier frames; null before its first
   OcclusionCounts occlusion_counts;           ///< of this frame, where it ran
 };
 

@@ -41,14 +41,15 @@ struct RenderOptions {
 /// What a plan is to know of where it is carried out.
 struct DeviceFacts {
   std::size_t occlusion_from = 20'000;  ///< triangles in view from which looking for hidden ones pays
-  /// Where the last look found that too little is hidden: the share of triangles that had to be drawn; else 0.
+  /// Where the last look found that too little is hidden: the share of triangles in view that showed; else 0.
   double shown_share = 0;
 };
 
 /// What looking for hidden triangles found in a frame.
 struct OcclusionCounts {
   std::size_t clusters = 0, clusters_drawn = 0, clusters_hidden = 0, clusters_out_of_view = 0;
-  std::size_t triangles = 0, triangles_drawn = 0;
+  std::size_t triangles = 0, triangles_in_view = 0;
+  std::size_t triangles_drawn = 0;  ///< at first, and those that were found missing
   std::size_t triangles_shown = 0;  ///< that were not found to be hidden
   double milliseconds = 0;          ///< that deciding took
   bool drawn_again = false;         ///< in the scene's order: much was missing, or samples were equally near

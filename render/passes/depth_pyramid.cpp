@@ -48,7 +48,9 @@ void DepthPyramid::build(const SampleRect& rect, const std::vector<float>& nearn
 }
 
 bool DepthPyramid::hides(const SampleRect& samples, float nearness) const {
-  if (samples.right < rect_.left || samples.top < rect_.bottom) return true;
+  if (samples.right < rect_.left || samples.top < rect_.bottom || samples.left >= rect_.right ||
+      samples.bottom >= rect_.top)
+    return true;
   unsigned left = static_cast<unsigned>(std::max(samples.left - rect_.left, 0)) / block,
            bottom = static_cast<unsigned>(std::max(samples.bottom - rect_.bottom, 0)) / block,
            right = static_cast<unsigned>(std::min(samples.right, rect_.right - 1) - rect_.left) / block,

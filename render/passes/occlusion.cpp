@@ -67,7 +67,7 @@ OcclusionState::Memory recalled(std::vector<OcclusionState::Memory>& memories, c
     memories.erase(memories.begin() + static_cast<std::ptrdiff_t>(k));
     break;
   }
-  if (memories.size() > most) memories.erase(memories.begin());
+  if (memories.size() >= most) memories.erase(memories.begin());
   return found;
 }
 
@@ -184,11 +184,6 @@ class Frame {
     }
   }
 
-  ScreenBounds box_of(const Candidate& candidate) const {
-    const Set& set = sets_[candidate.set];
-    return set.bounder.box(set.mesh->nearby.clusters[candidate.cluster].bounds);
-  }
-
   std::vector<Candidate> in_view() {
     std::vector<Candidate> candidates;
     for (std::size_t s = 0; s < sets_.size(); ++s) {
@@ -199,8 +194,10 @@ class Frame {
       tbb::parallel_for(std::size_t{0}, clusters.size(),
                         [&](std::size_t k) { bounds[k] = sets_[s].bounder.box(clusters[k].bounds); });
       for (std::size_t k = 0; k < clusters.size(); ++k)
-        if (bounds[k].where != ScreenBounds::Where::outside)
+        if (bounds[k].where != ScreenBounds::Where::outside) {
+          counts().triangles_in_view += clusters[k].count;
           candidates.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(k)});
+        }
     }
     counts().clusters_out_of_view = counts().clusters - candidates.size();
     return candidates;
@@ -234,13 +231,6 @@ class Frame {
     using Where = ScreenBounds::Where;
     tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
       const Set& set = sets_[candidates[k].set];
-      const ScreenBounds box = box_of(candidates[k]);
-      const bool hidden = box.where == Where::outside ||
-                          (box.where == Where::inside && state_.pyramid.hides(box.samples, box.nearness));
-      if (hidden) {
-        for_faces(candidates[k], [](std::uint32_t, std::uint8_t& flags) { flags = 0; });
-        return;
-      }
       ClusterBounds triangles;
       set.bounder.triangles(set.mesh->nearby.corners[candidates[k].cluster], triangles);
       std::size_t number = 0;
@@ -304,22 +294,38 @@ class Frame {
   // Whether a sample is as near as what is there: of two that are equally near the later one in the scene's order
   // shows, which is not always the one that is drawn later here.
   bool any_tie() {
-    GLuint query = 0;
-    glGenQueries(1, &query);
     GLint function = GL_LEQUAL;
     glGetIntegerv(GL_DEPTH_FUNC, &function);
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    glDepthMask(GL_FALSE);
-    glDepthFunc(GL_EQUAL);
-    glBeginQuery(GL_ANY_SAMPLES_PASSED, query);
+    // Undone also where drawing throws: later frames would draw nothing.
+    struct Quiet {
+      GLuint query = 0;
+      GLenum function;
+      explicit Quiet(GLenum usual) : function(usual) {
+        glGenQueries(1, &query);
+        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        glDepthMask(GL_FALSE);
+        glDepthFunc(GL_EQUAL);
+        glBeginQuery(GL_ANY_SAMPLES_PASSED, query);
+      }
+      void end() {
+        if (!ended) glEndQuery(GL_ANY_SAMPLES_PASSED);
+        ended = true;
+      }
+      ~Quiet() {
+        end();
+        glDepthFunc(function);
+        glDepthMask(GL_TRUE);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glDeleteQueries(1, &query);
+      }
+      Quiet(const Quiet&) = delete;
+      Quiet& operator=(const Quiet&) = delete;
+      bool ended = false;
+    } quiet(static_cast<GLenum>(function));
     draw_gathered();
-    glEndQuery(GL_ANY_SAMPLES_PASSED);
-    glDepthFunc(static_cast<GLenum>(function));
-    glDepthMask(GL_TRUE);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    quiet.end();
     GLuint any = 0;
-    glGetQueryObjectuiv(query, GL_QUERY_RESULT, &any);
-    glDeleteQueries(1, &query);
+    glGetQueryObjectuiv(quiet.query, GL_QUERY_RESULT, &any);
     return any != 0;
   }
 
@@ -385,7 +391,7 @@ std::optional<Decision> decide(const FrameFacts& facts) {
       return Decision{false, fmt::format("{} are drawn sooner than looked at; here it pays from {} on",
                                          plural(plan.triangles, "triangle", "triangles"), facts.device.occlusion_from)};
     if (facts.device.shown_share > 0)
-      return Decision{false, fmt::format("when it was looked, {:.0f} % of the triangles had to be drawn",
+      return Decision{false, fmt::format("when it was looked, {:.0f} % of the triangles in view showed",
                                          100 * facts.device.shown_share)};
   }
   return Decision{true, "hidden triangles are left out"};

@@ -8,7 +8,7 @@ namespace rebake {
 
 /// Draws all sets of a plan in their order, with the same result as if all their triangles were drawn. `use` makes
 /// ready to draw a set and returns the program; `clear` empties the targets. Where the plan runs `occlusion`: what
-/// showed in the last frame first, then what its depth does not hide.
+/// showed when it was last looked from near by (all, where it was not) first, then what its depth does not hide.
 void draw_sets(const PassInput& input, const std::function<const gl::Program&(const Draw&)>& use,
                const std::function<void()>& clear);
 

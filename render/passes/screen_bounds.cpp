@@ -87,10 +87,6 @@ ScreenBounds ScreenBounder::box(const Box& box) const {
   const Vec3 room_on_screen = error.cwiseProduct(half).array() + snapping;
   bounds = covered((low.x() + 1) * half.x() - room_on_screen.x(), (low.y() + 1) * half.y() - room_on_screen.y(),
                    (high.x() + 1) * half.x() + room_on_screen.x(), (high.y() + 1) * half.y() + room_on_screen.y());
-  const double near_end = std::max(low.z() * factor_, high.z() * factor_) + offset_;
-  // Steep triangles come nearer than their corners by what a corner's rounding moves their plane: by less than their
-  // own depth where they are higher than that, and they are a small part of the box.
-  bounds.nearness = static_cast<float>(near_end + (high.z() - low.z() + 2 * error.z()) * std::abs(factor_));
   return bounds;
 }
 
@@ -115,6 +111,7 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
   for (std::size_t k = 0; k < count; ++k) {
     beyond[k] = 63;
     w[k] = std::numeric_limits<float>::infinity();
+    extent[k] = 0;
   }
   // Simple loops over all faces, which compilers turn into vector instructions.
   for (int c = 0; c < 3; ++c) {
@@ -136,6 +133,8 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
       x[c][k] = cx * over_w;
       y[c][k] = cy * over_w;
       z[c][k] = cz * over_w;
+      // Of what is no number, or too large for one, none comes out.
+      extent[k] += std::abs(x[c][k]) + std::abs(y[c][k]) + std::abs(z[c][k]);
     }
   }
   const auto least = [](float a, float b) { return a < b ? a : b; };
@@ -156,7 +155,6 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
     edges[1][k] = (y0 + 1) * half_height - y_error - 0.5F;
     edges[2][k] = (x1 + 1) * half_width + x_error + 0.5F;
     edges[3][k] = (y1 + 1) * half_height + y_error + 0.5F;
-    extent[k] = (x1 - x0) + (y1 - y0) + std::abs(z1 - z0);
     // The plane through the corners, in samples and nearness.
     const float abx = (x[1][k] - x[0][k]) * half_width, acx = (x[2][k] - x[0][k]) * half_width;
     const float aby = (y[1][k] - y[0][k]) * half_height, acy = (y[2][k] - y[0][k]) * half_height;

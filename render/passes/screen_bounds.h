@@ -9,7 +9,7 @@
 
 namespace rebake {
 
-/// Which samples of a raster something may cover, and how near it may come there.
+/// Which samples of a raster something may cover.
 struct ScreenBounds {
   enum class Where : std::int32_t {
     outside,   ///< of the raster's rectangle, or between its samples
@@ -18,10 +18,9 @@ struct ScreenBounds {
   };
   Where where = Where::anywhere;
   SampleRect samples;  ///< right and top included
-  float nearness = 1;
 };
 
-/// The same of a cluster's triangles, each in an array of its own.
+/// The same of a cluster's triangles, and how near they may come there, each in an array of its own.
 struct ClusterBounds {
   template <class T>
   using Each = std::array<T, faces_a_face_cluster>;
@@ -41,7 +40,8 @@ class ScreenBounder {
   ScreenBounder(const Eigen::Matrix4d& to_clip, const Box& bounds, const Vec2& nearness_of_depth, int width, int height,
                 const SampleRect& rect);
 
-  /// Of triangles within the box, in object space.
+  /// Where triangles within the box may be drawn, in object space. How near they come does not follow from their box:
+  /// on triangles that are seen edge-on drivers extrapolate depth.
   ScreenBounds box(const Box& box) const;
   /// Of triangles given relative to the centre of what is drawn.
   void triangles(const ClusterCorners& corners, ClusterBounds& bounds) const;

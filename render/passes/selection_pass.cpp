@@ -12,7 +12,7 @@ namespace {
 SelectedFaces upload(const Draw& draw, const GpuMesh& mesh, const GpuSurface& surface) {
   SelectedFaces selected;
   selected.selection = draw.selection;
-  selected.source = draw.set.soup;
+  selected.source = draw.set;
   std::vector<Face> faces;
   for (std::size_t f = 0; f < draw.set.soup.triangle_count(); ++f)
     if ((*draw.selection)[draw.first_triangle + f] != 0) faces.push_back(draw.set.soup.faces()[f]);

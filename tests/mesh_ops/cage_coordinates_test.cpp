@@ -145,7 +145,7 @@ TEST(MeanValue, EveryVectorWidthGivesTheSameBits) {
   for (const auto& [name, cage] : hard_cages()) {
     std::vector<Vec3> points;
     for (const Vec3& point : hard_points(cage))
-      if (points.size() < 1200) points.push_back(point);
+      if (points.size() < std::size_t{150} * thorough) points.push_back(point);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> any(-0.4, 0.4);
     for (int k = 0; k < 400; ++k) points.emplace_back(any(random), any(random), any(random));
@@ -187,7 +187,7 @@ TEST(MeanValue, PointsThatAreNoNumbersLeaveTheirNeighboursAlone) {
   const Cage cage = dented();
   std::vector<Vec3> points;
   for (const Vec3& point : hard_points(cage))
-    if (points.size() < 1600) points.push_back(point);
+    if (points.size() < std::size_t{200} * thorough) points.push_back(point);
   std::vector<Vec3> moved = cage.vertices;
   for (Vec3& v : moved) v.x() += 0.3 * v.y() * v.y();
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e300}) {

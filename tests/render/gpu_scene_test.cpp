@@ -7,6 +7,7 @@
 #include <thread>
 #include <tuple>
 
+#include "render/gl/context.h"
 #include "render/gpu_scene/surface.h"
 #include "render/picture.h"
 #include "tests/support/made_scenes.h"
@@ -157,6 +158,44 @@ TEST(GpuScene, WhatWasErasedIsDrawnAsIfItWereNew) {
   expect_new(moved, "a stroke and a bend at once");
   expect_new(erased(scene, 100, 700, true), "holes are filled: more triangles show than before");
   expect_new(scene, "and are there again");
+}
+
+// A stroke uploads the texels around it, not the texture; and prepared meshes go with the faces that they were made
+// for.
+TEST(GpuScene, UploadsWhatAStrokeTouched) {
+  const auto context = gl::make_headless_context();
+  const gl::Current current(*context);
+  const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
+  GpuScene gpu;
+  gpu.update(scene);
+  const std::uint64_t all = gpu.texels_uploaded();
+  EXPECT_GT(all, 0U);
+  gpu.update(bent(scene, 0.2));
+  EXPECT_EQ(gpu.texels_uploaded(), all) << "a bend changes no texel";
+  const Scene stroke = erased(scene, 0, 20);
+  gpu.update(stroke);
+  const std::uint64_t touched = gpu.texels_uploaded() - all;
+  EXPECT_GT(touched, 0U);
+  EXPECT_LT(touched, all / 2);
+  gpu.update(stroke);
+  EXPECT_EQ(gpu.texels_uploaded(), all + touched) << "nothing changed";
+}
+
+TEST(GpuScene, WhatWasPreparedForFewerFacesIsNotUsedForMore) {
+  const Scene full = scene_of(made_object({.columns = 64, .rows = 40}));
+  const Scene holes = erased(full, 0, 600);
+  View view;
+  view.width = view.height = 150;
+  view.camera.eye = {0.5, 1, 4};
+  view.camera.near_plane = 0.1;
+  Renderer kept;
+  kept.render({}, view);
+  const Scene bent_holes = bent(holes, 0.3);
+  kept.prepare(bent_holes);  // clusters of the faces that still show something
+  kept.render(full, view);   // whose surface then stands for that of the holes
+  RenderOptions options;
+  options.occlusion = RenderOptions::Occlusion::on;
+  EXPECT_EQ(kept.render(bent_holes, view, options).rgb, Renderer().render(bent_holes, view).rgb);
 }
 
 // A texel that a triangle may show lies on the GPU where the shader looks for it, and what none shows is not there.

@@ -39,11 +39,7 @@ Scene apply(const Scene& scene, const SelectUnneeded& edit) {
     if (edit.duplicates) add(flags, duplicate_triangles(object));
     std::vector<Standpoint> eyes;
     if (edit.unseen > 0) eyes = eyes_around(object.bounds(), edit.unseen, edit.distance);
-    for (const Camera& camera : cameras) {
-      const Affine to_object = placed.to_world.inverse();
-      const Vec3 back = to_object.linear() * world_to_camera(camera).row(2).transpose();
-      eyes.push_back({to_object * camera.eye, camera.orthographic() ? Vec3(back.normalized()) : Vec3::Zero()});
-    }
+    for (const Camera& camera : cameras) eyes.push_back(standpoint_of(camera, placed.to_world.inverse()));
     if (!eyes.empty()) add(flags, triangles_unseen(object, eyes));
     return flags;
   });

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 
 #include "editor/edits/describe.h"
 #include "editor/edits/select/selecting.h"
@@ -22,11 +22,7 @@ EyeRegion eyes_for(const PlacedNode& placed, const std::vector<Camera>& cameras,
   EyeRegion eyes;
   eyes.world_to_object = placed.to_world.inverse();
   if (edit.eyes) eyes.box = Box(edit.eyes->min, edit.eyes->max);
-  for (const Camera& camera : cameras) {
-    const Vec3 back = eyes.world_to_object.linear() * world_to_camera(camera).row(2).transpose();
-    eyes.standpoints.push_back(
-        {eyes.world_to_object * camera.eye, camera.orthographic() ? Vec3(back.normalized()) : Vec3::Zero()});
-  }
+  for (const Camera& camera : cameras) eyes.standpoints.push_back(standpoint_of(camera, eyes.world_to_object));
   return eyes;
 }
 
@@ -37,24 +33,27 @@ std::uint64_t texel_area(const BakedObject& object) {
   return area;
 }
 
-// Packed, with what shows nothing emptied; as it was where its texels cannot be moved.
-std::vector<TextureSet> packed(const BakedObject& object, const std::string& name, std::vector<std::string>& lines) {
-  std::vector<TextureSet> sets = object.sets;
-  if (!std::all_of(sets.begin(), sets.end(), can_pack)) {
-    lines.push_back(fmt::format("{}: textures keep their size: some UVs lie outside 0 … 1", name));
-  } else {
-    std::vector<TextureSet> smaller = pack(sets, largest_side, sets.front().texels->alpha_code()).sets;
-    BakedObject made;
-    made.sets = smaller;
-    // Textures that are full already only gain borders.
-    if (texel_area(made) < texel_area(object)) sets = std::move(smaller);
-  }
-  for (TextureSet& set : sets) set.texels = with_empty_rest(*set.texels);
-  return sets;
+std::uint64_t opaque_texels(const BakedObject& object) {
+  std::uint64_t opaque = 0;
+  for (const TextureSet& set : object.sets) opaque += set.texels->opaque_count();
+  return opaque;
+}
+
+// Packed where that is worth it; nothing where it is not, or where texels cannot be moved.
+std::optional<std::vector<TextureSet>> packed(const BakedObject& object) {
+  if (!std::all_of(object.sets.begin(), object.sets.end(), can_pack)) return std::nullopt;
+  int side = largest_side;
+  for (const TextureSet& set : object.sets) side = std::max({side, set.texels->width(), set.texels->height()});
+  BakedObject made;
+  made.sets = pack(object.sets, side, object.sets.front().texels->alpha_code()).sets;
+  // Patches in another order compress a little worse.
+  constexpr double worth_it = 0.95;
+  if (static_cast<double>(texel_area(made)) > worth_it * static_cast<double>(texel_area(object))) return std::nullopt;
+  return made.sets;
 }
 
 std::string bits_words(const BitsFound& found) {
-  if (!std::isfinite(found.psnr_db)) return "all features keep their 8 bits";
+  if (found.bits == FeatureBits{8, 8, 8, 8, 8, 8, 8, 8}) return "all features keep their 8 bits";
   std::string words;
   int sum = 0;
   for (const int bits : found.bits) {
@@ -65,10 +64,81 @@ std::string bits_words(const BitsFound& found) {
                      found.psnr_db);
 }
 
+struct Slimmed {
+  std::shared_ptr<const BakedObject> object;  ///< null where nothing is seen
+  TriangleSet dropped;
+  bool shows_nothing = false, reordered = false;
+  std::vector<std::string> lines;
+};
+
+Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>& placements,
+                       const std::vector<Camera>& cameras, const Slim& edit, const Progress& progress) {
+  Slimmed result;
+  result.dropped = duplicate_triangles(before);
+  const std::size_t duplicates = count(result.dropped), all = result.dropped.size();
+  const std::shared_ptr<const BakedObject> single =
+      duplicates == 0 ? std::make_shared<const BakedObject>(before) : triangles_of(before, result.dropped, false);
+  // All around is the same for all placements.
+  const bool around = !edit.eyes && cameras.empty();
+  TriangleSet unseen(single->triangle_count(), 1);
+  std::uint64_t rays = 0;
+  int rays_each = 0;
+  double opening = 1;
+  std::size_t once = 0;
+  for (const PlacedNode& placed : placements) {
+    const Sightings seen = look_from(*single, eyes_for(placed, cameras, edit), edit.rays, progress);
+    for (std::size_t f = 0; f < unseen.size(); ++f) unseen[f] &= seen.unseen[f];
+    rays += seen.rays;
+    rays_each = std::max(rays_each, seen.rays_each);
+    opening = std::min(opening, seen.smallest_opening);
+    once += seen.seen_once;
+    if (around) break;
+  }
+  if (count(unseen) == unseen.size()) {
+    result.shows_nothing = opaque_texels(before) == 0;
+    return result;
+  }
+  std::size_t number = 0;
+  for (std::uint8_t& dropped : result.dropped)
+    if (dropped == 0) dropped = unseen[number++];
+  auto made = std::make_shared<BakedObject>(count(unseen) == 0 ? *single : *triangles_of(*single, unseen, false));
+  // It counts as baked without what nobody sees.
+  made->bodies = before.bodies;
+  if (auto smaller = packed(*made)) {
+    made->sets = std::move(*smaller);
+    result.reordered = true;
+  }
+  bool changed = result.reordered || count(result.dropped) > 0;
+  BitsFound bits;
+  if (edit.psnr > 0) bits = fewest_bits(*made, edit.psnr, progress);
+  for (TextureSet& set : made->sets) {
+    const auto was = set.texels;
+    set.texels = with_empty_rest(set);
+    if (edit.psnr > 0) set.texels = with_bits(set.texels, bits.bits);
+    changed = changed || set.texels != was;
+  }
+  const std::size_t removed = count(unseen);
+  result.lines.push_back(
+      fmt::format("{} of {} triangles removed ({} unseen, {} duplicates), opaque texels {} → {}, {:.2f} → "
+                  "{:.2f} million texels in all",
+                  removed + duplicates, all, removed, duplicates, opaque_texels(before), opaque_texels(*made),
+                  static_cast<double>(texel_area(before)) / 1e6, static_cast<double>(texel_area(*made)) / 1e6));
+  if (removed > 0)
+    result.lines.push_back(fmt::format(
+        "{} rays, {} from each triangle before it was removed: at most {:.2g} % of the lines of sight to any of them "
+        "are "
+        "open (95 % sure); the smallest opening found lets {:.2g} % through, {} triangles were seen by one ray only",
+        rays, rays_each, 100 * most_missed(removed, rays_each), 100 * opening, once));
+  if (edit.psnr > 0) result.lines.push_back(bits_words(bits));
+  // Where nothing changes, all stays shared.
+  result.object = changed ? made : placements.front().node->object;
+  return result;
+}
+
 }  // namespace
 
 Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
-  if (edit.rays < 16 || edit.rays > 65536) throw FieldError("rays", "must lie between 16 and 65536");
+  if (edit.rays < 16 || edit.rays > 1 << 20) throw FieldError("rays", "must lie between 16 and 1048576");
   if (edit.psnr != 0 && !(edit.psnr >= 20 && edit.psnr <= 80))
     throw FieldError("psnr", "must lie between 20 and 80 dB, or be 0: nothing may be lost");
   if (edit.eyes && !edit.views.empty()) throw FieldError("eyes", "either eyes or views, not both");
@@ -76,49 +146,45 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
     throw FieldError("eyes", "its min must not lie above its max");
   std::vector<Camera> cameras;
   for (const std::string& name : edit.views) cameras.push_back(stored_view(scene, name, "views"));
+  // Nodes that share an object go on sharing it: what any of them shows stays.
+  std::vector<std::vector<PlacedNode>> groups;
+  for (const PlacedNode& placed : selectable(scene, edit.node)) {
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& other) {
+      return other.front().node->object == placed.node->object;
+    });
+    if (group == groups.end())
+      groups.push_back({placed});
+    else
+      group->push_back(placed);
+  }
   Scene result = scene;
   std::vector<std::string> lines;
-  const std::vector<PlacedNode> targets = selectable(scene, edit.node);
-  for (const PlacedNode& placed : targets) {
-    const BakedObject& before = *placed.node->object;
-    const std::string& name = placed.node->name;
-    const Sightings seen = look_from(before, eyes_for(placed, cameras, edit), edit.rays, progress);
-    const TriangleSet twins = duplicate_triangles(before);
-    TriangleSet dropped = seen.unseen;
-    std::size_t duplicates = 0;
-    for (std::size_t f = 0; f < dropped.size(); ++f) {
-      duplicates += dropped[f] == 0 && twins[f] != 0 ? 1 : 0;
-      dropped[f] |= twins[f];
+  for (const std::vector<PlacedNode>& group : groups) {
+    const BakedObject& before = *group.front().node->object;
+    const Slimmed slimmed = slimmed_object(before, group, cameras, edit, progress);
+    const std::string name = "\"" + group.front().node->name + "\"" +
+                             (group.size() == 1 ? "" : fmt::format(" and {} that share it", group.size() - 1));
+    if (!slimmed.object) {
+      const std::string why = slimmed.shows_nothing ? "has no opaque texel: remove it" : "is not seen from there";
+      if (groups.size() == 1) throw EditError(fmt::format("{} {}; nothing was changed", name, why));
+      lines.push_back(fmt::format("{} {}; it was left as it is", name, why));
+      continue;
     }
-    if (count(dropped) == dropped.size())
-      throw EditError(
-          fmt::format("nothing of \"{}\" is seen from there: name other views or eyes, or remove it", name));
-    auto made = std::make_shared<BakedObject>(*triangles_of(before, dropped, false));
-    // What is hidden shades nothing that is seen any less: light stays as it was baked.
-    made->bodies = before.bodies;
-    made->sets = packed(*made, name, lines);
-    lines.push_back(
-        fmt::format("{}: {} of {} triangles removed ({} unseen, {} duplicates), texels {:.1f} → {:.1f} million, memory "
-                    "{:.0f} → {:.0f} MB",
-                    name, count(dropped), dropped.size(), count(seen.unseen), duplicates,
-                    static_cast<double>(texel_area(before)) / 1e6, static_cast<double>(texel_area(*made)) / 1e6,
-                    static_cast<double>(before.memory()) / 1e6, static_cast<double>(made->memory()) / 1e6));
-    lines.push_back(fmt::format(
-        "{}: {} rays; what was removed is reached by at most {:.2g} % of the lines of sight (95 % sure); the smallest "
-        "opening found lets {:.2g} % through, {} triangles were seen by one ray only",
-        name, seen.rays, 100 * most_missed(edit.rays), 100 * seen.smallest_opening, seen.seen_once));
-    if (edit.psnr > 0) {
-      const BitsFound found = fewest_bits(*made, edit.psnr, progress);
-      for (TextureSet& set : made->sets) set.texels = with_bits(*set.texels, found.bits);
-      lines.push_back(fmt::format("{}: {}", name, bits_words(found)));
-    }
-    if (!placed.node->saved_selections.empty())
-      lines.push_back(fmt::format("{}: its stored selections are gone, since triangles have other numbers", name));
-    result = with_changed(result, placed.node->id, [&](Node& node) {
-      node.object = made;
-      node.selection = nullptr;
-      node.saved_selections.clear();
-    });
+    for (const std::string& line : slimmed.lines) lines.push_back(name + ": " + line);
+    if (slimmed.object.get() == &before) continue;
+    bool lost = false;
+    for (const PlacedNode& placed : group)
+      result = with_changed(result, placed.node->id, [&](Node& node) {
+        // Stored selections follow as long as triangles keep their order.
+        if (count(slimmed.dropped) > 0) keep_triangles(node, slimmed.dropped, false);
+        lost = lost || (slimmed.reordered && !node.saved_selections.empty());
+        if (slimmed.reordered) node.saved_selections.clear();
+        node.object = slimmed.object;
+        node.selection = nullptr;
+      });
+    if (lost) lines.push_back(name + ": its stored selections are gone, since triangles are in another order");
+    if (count(slimmed.dropped) > 0 && (scene.light || !before.bodies.empty()))
+      lines.push_back(name + ": light that follows edits takes what was slimmed for removed; slim a scene without it");
   }
   return {std::move(result), {std::move(lines)}};
 }
@@ -138,7 +204,8 @@ REBAKE_DESCRIBE_EDIT(
             "sent from each triangle before it counts as unseen: 300 leave at most 1 % of its lines of sight (95 % "
             "sure)");
       visit("psnr", edit.psnr, Need::optional,
-            "dB that texels' colours keep while features lose bits; 0: nothing of what is seen is lost");
+            "dB that texels' colours keep, against those as they are now, while features lose bits; 0: nothing of what "
+            "is seen is lost");
     })
 
 }  // namespace rebake
