@@ -94,8 +94,9 @@ TEST(Slim, KeepsWhatASmallOpeningShows) {
   const Scene scene = scene_of(object);
   const Scene slim = apply(scene, Edit(edit)).scene;
   // Straight through the opening.
-  const Face& face = nested()->sets[0].soup.faces()[outer / 2];
-  const Vec3 middle = nested()->sets[0].soup.positions()[face[0]].normalized();
+  const auto whole = nested();
+  const Soup& soup = whole->sets[0].soup;
+  const Vec3 middle = soup.positions()[soup.faces()[outer / 2][0]].normalized();
   Renderer renderer;
   const View through = view_from(3 * middle);
   EXPECT_LE(differing(renderer.render(scene, through), renderer.render(slim, through)), most_differing);

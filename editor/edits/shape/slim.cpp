@@ -162,15 +162,16 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
   for (const std::vector<PlacedNode>& group : groups) {
     const BakedObject& before = *group.front().node->object;
     const Slimmed slimmed = slimmed_object(before, group, cameras, edit, progress);
-    const std::string name = "\"" + group.front().node->name + "\"" +
-                             (group.size() == 1 ? "" : fmt::format(" and {} that share it", group.size() - 1));
+    const std::string& first = group.front().node->name;
+    const std::string name = group.size() == 1 ? fmt::format("\"{}\"", first)
+                                               : fmt::format("\"{}\" and {} that share it", first, group.size() - 1);
     if (!slimmed.object) {
       const std::string why = slimmed.shows_nothing ? "has no opaque texel: remove it" : "is not seen from there";
       if (groups.size() == 1) throw EditError(fmt::format("{} {}; nothing was changed", name, why));
       lines.push_back(fmt::format("{} {}; it was left as it is", name, why));
       continue;
     }
-    for (const std::string& line : slimmed.lines) lines.push_back(name + ": " + line);
+    for (const std::string& line : slimmed.lines) lines.push_back(fmt::format("{}: {}", name, line));
     if (slimmed.object.get() == &before) continue;
     bool lost = false;
     for (const PlacedNode& placed : group)
@@ -182,9 +183,11 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
         node.object = slimmed.object;
         node.selection = nullptr;
       });
-    if (lost) lines.push_back(name + ": its stored selections are gone, since triangles are in another order");
+    if (lost)
+      lines.push_back(fmt::format("{}: its stored selections are gone, since triangles are in another order", name));
     if (count(slimmed.dropped) > 0 && (scene.light || !before.bodies.empty()))
-      lines.push_back(name + ": light that follows edits takes what was slimmed for removed; slim a scene without it");
+      lines.push_back(fmt::format(
+          "{}: light that follows edits takes what was slimmed for removed; slim a scene without it", name));
   }
   return {std::move(result), {std::move(lines)}};
 }
