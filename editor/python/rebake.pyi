@@ -382,13 +382,13 @@ class Document:
         size: the picture's size, in whose pixels points are given
         through: in a picture: hidden texels too
         """
-    def slim(self, *, node: Node | None = None, views: Sequence[str] | None = None, eyes: Box | None = None, rays: int = 65536, psnr: float = 0.0) -> None:
+    def slim(self, *, node: Node | None = None, views: Sequence[str] | None = None, eyes: Box | None = None, rays: int = 16384, psnr: float = 0.0) -> None:
         """Removes triangles that nobody sees and duplicates, packs the texels that are left, and, where psnr is given, keeps fewer bits of the features: smaller folders, faster pictures.
 
         node: only this node and those inside it; left out: all that is visible. Objects hide themselves only
         views: names of stored views: what none of their eyes sees goes
         eyes: box in the world: what no eye in it sees goes; with neither, what no eye outside the object sees
-        rays: sent from each triangle before it counts as unseen: 300 leave at most 1 % of its lines of sight (95 % sure)
+        rays: at most, from each triangle before it counts as unseen: 1024, doubled until that finds nothing more
         psnr: dB that texels' colours keep, against those as they are now, while features lose bits; 0: nothing of what is seen is lost
         """
     def cage(self, *, moves: Sequence[dict[str, Any]], node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, lattice: Sequence[int] | None = None, wrap: float | None = None, mesh: str | dict[str, Any] | None = None, coordinates: Literal["mean_value", "green", "harmonic"] = "mean_value", resolution: int = 32) -> None:

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "editor/commands/plain_scene.h"
 #include "editor/studies/study.h"
@@ -37,13 +37,13 @@ std::size_t triangles_in(const Scene& scene) {
 }  // namespace
 
 StudyTable study_slim(const StudyInput& input) {
-  StudyTable table{
-      {"megabytes", "PSNR dB in pictures (70: equal)", "milliseconds a frame", "worst picture dB", "triangles"},
-      {},
-      0,
-      1,
-      false,
-      false};
+  StudyTable table{{"megabytes", "PSNR dB in pictures (70: above, or equal)", "milliseconds a frame",
+                    "worst picture dB", "triangles"},
+                   {},
+                   0,
+                   1,
+                   false,
+                   false};
   table.second_x = 2;
   // Pictures without a difference have no PSNR that can be plotted.
   constexpr double equal_db = 70;

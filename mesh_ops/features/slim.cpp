@@ -38,9 +38,8 @@ class ShownPoints {
     if (!(low.allFinite() && high.allFinite())) return;
     Dice dice(f);
     std::size_t number = 0;
-    const auto within = [](double at, int size) { return std::clamp(static_cast<int>(std::floor(at)), 0, size - 1); };
-    for (int y = within(low.y(), texels_.height()); y <= within(high.y(), texels_.height()); ++y)
-      for (int x = within(low.x(), texels_.width()); x <= within(high.x(), texels_.width()); ++x) {
+    for (int y = texel_within(low.y(), texels_.height()); y <= texel_within(high.y(), texels_.height()); ++y)
+      for (int x = texel_within(low.x(), texels_.width()); x <= texel_within(high.x(), texels_.width()); ++x) {
         if (!texels_.at(x, y).opaque()) continue;
         const Vec2 nearest = nearest_inside({x + 0.5, y + 0.5});
         // As far as a texel's corners reach.
@@ -63,8 +62,8 @@ class ShownPoints {
       if (a + b > 1) a = 1 - a, b = 1 - b;
       const Vec3 weights(1 - a - b, a, b);
       const Vec2 uv = uv_[0] * weights[0] + uv_[1] * weights[1] + uv_[2] * weights[2];
-      const auto within = [](double at, int size) { return std::clamp(static_cast<int>(std::floor(at)), 0, size - 1); };
-      if (texels_.at(within(uv.x(), texels_.width()), within(uv.y(), texels_.height())).opaque()) return at(weights);
+      if (texels_.at(texel_within(uv.x(), texels_.width()), texel_within(uv.y(), texels_.height())).opaque())
+        return at(weights);
     }
     return places_[dice.below(places_.size())];
   }
@@ -290,11 +289,8 @@ std::shared_ptr<const FeatureTexture> with_empty_rest(const TextureSet& set) {
     const Vec2 low = uv[0].cwiseMin(uv[1]).cwiseMin(uv[2]), high = uv[0].cwiseMax(uv[1]).cwiseMax(uv[2]);
     if (!(low.allFinite() && high.allFinite())) return set.texels;
     // With a texel of room, for rounding.
-    const auto within = [](double at, int size) {
-      return std::clamp(static_cast<int>(std::floor(std::clamp(at, -2.0, size + 2.0))), 0, size - 1);
-    };
-    const int left = within(low.x() - 1, width), right = within(high.x() + 1, width);
-    for (int y = within(low.y() - 1, height); y <= within(high.y() + 1, height); ++y)
+    const int left = texel_within(low.x() - 1, width), right = texel_within(high.x() + 1, width);
+    for (int y = texel_within(low.y() - 1, height); y <= texel_within(high.y() + 1, height); ++y)
       std::fill_n(shown.begin() + static_cast<std::ptrdiff_t>(y) * width + left, right - left + 1, 1);
   }
   return changed(set.texels, [&, empty = empty_texel(set.texels->alpha_code())](int x, int y, const Texel& texel) {

@@ -71,7 +71,9 @@ FeatureTexture read_feature_pngs(std::string_view feat0, const std::filesystem::
                            second.height(), name0.filename().string(), first.width(), first.height()));
   return FeatureTexture::from_parts(first.width(), first.height(), code, [&](int y, int count, Texel* rows) {
     const std::uint8_t *a = nullptr, *b = nullptr;
-    tbb::parallel_invoke([&] { a = first.read(y, count).data(); }, [&] { b = second.read(y, count).data(); });
+    // Of its own: where other files are read beside these and one of them fails, this would return with nothing read.
+    tbb::task_group_context whole(tbb::task_group_context::isolated);
+    tbb::parallel_invoke([&] { a = first.read(y, count).data(); }, [&] { b = second.read(y, count).data(); }, whole);
     const std::size_t texels = static_cast<std::size_t>(first.width()) * static_cast<std::size_t>(count);
     for (std::size_t k = 0; k < texels; ++k) {
       std::copy_n(a + k * 4, 4, rows[k].feat0.begin());

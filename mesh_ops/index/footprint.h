@@ -19,6 +19,11 @@ inline std::array<Vec2, 3> texel_corners(const TextureSet& set, std::size_t face
   return corners;
 }
 
+/// The texel that holds a coordinate in texels, clamped to a texture of `size`. Any number but NaN may be asked for.
+inline int texel_within(double coordinate, int size) {
+  return static_cast<int>(std::clamp(std::floor(coordinate), 0.0, size - 1.0));
+}
+
 /// Calls visit(y, begin, end) for the rows of texels, begin ≤ x < end, whose centres lie in the triangle, clamped to
 /// the texture. A centre on an edge that two triangles share counts for one or both.
 template <class Visit>

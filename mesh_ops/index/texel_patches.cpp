@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "mesh_ops/base/union_find.h"
+#include "mesh_ops/index/footprint.h"
 
 namespace rebake {
 
@@ -21,10 +22,8 @@ TexelRect rect_of(const TextureSet& set, const Face& face) {
     low_v = std::min(low_v, uv.y());
     high_v = std::max(high_v, uv.y());
   }
-  const auto texel = [](double share, int size) {
-    return std::clamp(static_cast<int>(std::floor(share * size)), 0, size - 1);
-  };
-  return {texel(low_u, width), texel(1 - high_v, height), texel(high_u, width), texel(1 - low_v, height)};
+  return {texel_within(low_u * width, width), texel_within((1 - high_v) * height, height),
+          texel_within(high_u * width, width), texel_within((1 - low_v) * height, height)};
 }
 
 }  // namespace

@@ -56,17 +56,24 @@ void FeatureTexture::set_tile(int tile_row, int column, int count, const Texel* 
       tile ? std::shared_ptr<const TexelTile>(std::move(tile)) : shared_empty_tile(code_);
 }
 
+// Textures are made within other parallel work too. Where that is stopped, by an error of another part of it, work
+// nested in it returns with tiles missing; so these loops are in contexts of their own.
+
 FeatureTexture FeatureTexture::from_rows(int width, int height, AlphaCode code,
                                          const std::function<void(int, Texel*)>& fill_row) {
   FeatureTexture texture(width, height, code);
-  tbb::parallel_for(0, texture.tile_rows(), [&](int tile_row) {
-    const int first = tile_row * TexelTile::size, count = std::min(TexelTile::size, height - first);
-    std::vector<Texel> rows(static_cast<std::size_t>(width) * static_cast<std::size_t>(count));
-    for (int y = 0; y < count; ++y)
-      fill_row(first + y, &rows[static_cast<std::size_t>(y) * static_cast<std::size_t>(width)]);
-    for (int column = 0; column < texture.tile_columns(); ++column)
-      texture.set_tile(tile_row, column, count, rows.data());
-  });
+  tbb::task_group_context whole(tbb::task_group_context::isolated);
+  tbb::parallel_for(
+      0, texture.tile_rows(),
+      [&](int tile_row) {
+        const int first = tile_row * TexelTile::size, count = std::min(TexelTile::size, height - first);
+        std::vector<Texel> rows(static_cast<std::size_t>(width) * static_cast<std::size_t>(count));
+        for (int y = 0; y < count; ++y)
+          fill_row(first + y, &rows[static_cast<std::size_t>(y) * static_cast<std::size_t>(width)]);
+        for (int column = 0; column < texture.tile_columns(); ++column)
+          texture.set_tile(tile_row, column, count, rows.data());
+      },
+      whole);
   return texture;
 }
 
@@ -78,8 +85,9 @@ FeatureTexture FeatureTexture::from_parts(int width, int height, AlphaCode code,
   for (int tile_row = 0; tile_row < texture.tile_rows(); ++tile_row) {
     const int first = tile_row * TexelTile::size, count = std::min(TexelTile::size, height - first);
     fill_rows(first, count, rows.data());
-    tbb::parallel_for(0, texture.tile_columns(),
-                      [&](int column) { texture.set_tile(tile_row, column, count, rows.data()); });
+    tbb::task_group_context whole(tbb::task_group_context::isolated);
+    tbb::parallel_for(
+        0, texture.tile_columns(), [&](int column) { texture.set_tile(tile_row, column, count, rows.data()); }, whole);
   }
   return texture;
 }

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "mesh_ops/base/union_find.h"
+#include "mesh_ops/index/footprint.h"
 
 namespace rebake {
 
@@ -18,10 +19,9 @@ struct Range {
   int left = widest, top = widest, right = -1, bottom = -1;  ///< all included
 };
 
-// The texel that the shaders fetch at a coordinate, as they work it out.
+// The texel that the shaders fetch at a coordinate, which they are given as a float.
 int texel_at(double coordinate, int size) {
-  return std::clamp(static_cast<int>(std::floor(static_cast<float>(std::clamp(coordinate, -2.0, widest + 2.0)))), 0,
-                    size - 1);
+  return texel_within(static_cast<double>(static_cast<float>(coordinate)), size);
 }
 
 // Rows of rectangles, the highest first. Returns the height.

@@ -135,7 +135,7 @@ TEST_F(RandomEdits, ThousandsOfRandomEditsKeepEveryInvariantAndUndoToTheStart) {
     if (HasFatalFailure()) FAIL() << line.dump();
   }
   EXPECT_GT(done, 375U * thorough);
-  EXPECT_GT(refused, 12U * thorough);
+  EXPECT_GT(refused, 13U * thorough);
   while (document.undo()) expect_sound(document.scene());
   EXPECT_TRUE(document.scene().roots.empty());
   EXPECT_EQ(document.history().undo_count(), 0U);

@@ -2,6 +2,7 @@
 // name.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <fstream>
@@ -203,6 +204,32 @@ TEST(Folder, FeaturePngsCarryBytesAndNoColourChunks) {
   const FeatureTexture back = read_feature_pngs(png, "a", write_feature_png(*texture, 1), "b", AlphaCode::halved);
   for (int y = 0; y < back.height(); ++y)
     for (int x = 0; x < back.width(); ++x) ASSERT_EQ(back.at(x, y), texture->at(x, y));
+}
+
+// What reads folders stops all its work when one file is bad; a texture that is being made meanwhile was once left with
+// tiles that did not exist.
+TEST(Folder, TexturesAreWholeWhereWorkAroundThemIsStopped) {
+  const auto texture = made_object()->sets[0].texels;
+  const std::string feat0 = write_feature_png(*texture, 0), feat1 = write_feature_png(*texture, 1);
+  std::optional<FeatureTexture> read, made;
+  tbb::task_group_context around;
+  tbb::parallel_for(
+      0, 1,
+      [&](int) {
+        around.cancel_group_execution();
+        read = read_feature_pngs(feat0, "a", feat1, "b", texture->alpha_code());
+        made = FeatureTexture::from_rows(texture->width(), texture->height(), texture->alpha_code(),
+                                         [&](int y, Texel* row) {
+                                           for (int x = 0; x < texture->width(); ++x) row[x] = texture->at(x, y);
+                                         });
+      },
+      around);
+  ASSERT_TRUE(read && made);
+  for (int y = 0; y < texture->height(); ++y)
+    for (int x = 0; x < texture->width(); ++x) {
+      ASSERT_EQ(read->at(x, y), texture->at(x, y));
+      ASSERT_EQ(made->at(x, y), texture->at(x, y));
+    }
 }
 
 std::string png_of(int width, int height, int channels, OIIO::TypeDesc type) {

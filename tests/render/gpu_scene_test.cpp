@@ -15,6 +15,14 @@
 namespace rebake::test {
 namespace {
 
+View small_view() {
+  View view;
+  view.width = view.height = 150;
+  view.camera.eye = {0.5, 1, 4};
+  view.camera.near_plane = 0.1;
+  return view;
+}
+
 // The object with its corners moved, and turned where `turns`, and all else shared: as while something is dragged.
 Scene bent(const Scene& scene, double amount, bool turns = false) {
   return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
@@ -36,10 +44,7 @@ Scene bent(const Scene& scene, double amount, bool turns = false) {
 // As the window does it: what the next picture uploads is worked out on another thread meanwhile.
 TEST(GpuScene, WhatWasPreparedIsDrawnAlike) {
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
-  View view;
-  view.width = view.height = 100;
-  view.camera.eye = {0.5, 1, 4};
-  view.camera.near_plane = 0.1;
+  const View view = small_view();
   Renderer kept;
   kept.render(scene, view);
   for (const bool turns : {false, true})
@@ -72,10 +77,7 @@ TEST(GpuScene, WhatWasPreparedForTexelsThatAreGoneIsNotUsed) {
       node.object = object;
     });
   };
-  View view;
-  view.width = view.height = 100;
-  view.camera.eye = {0.5, 1, 4};
-  view.camera.near_plane = 0.1;
+  const View view = small_view();
   Renderer kept;
   kept.render({}, view);
   for (int k = 0; k < 8; ++k) {
@@ -88,10 +90,7 @@ TEST(GpuScene, WhatWasPreparedForTexelsThatAreGoneIsNotUsed) {
 
 TEST(GpuScene, WhatOnlyMovedIsDrawnAsIfItWereNew) {
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
-  View view;
-  view.width = view.height = 150;
-  view.camera.eye = {0.5, 1, 4};
-  view.camera.near_plane = 0.1;
+  const View view = small_view();
   Renderer kept;
   const Image first = kept.render(scene, view);
   EXPECT_EQ(bent(scene, 0.3).roots[0]->object->sets[0].soup.uvs(), scene.roots[0]->object->sets[0].soup.uvs());
@@ -138,10 +137,7 @@ Scene erased(const Scene& scene, int first_row, int last_row, bool opaque = fals
 
 TEST(GpuScene, WhatWasErasedIsDrawnAsIfItWereNew) {
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
-  View view;
-  view.width = view.height = 150;
-  view.camera.eye = {0.5, 1, 4};
-  view.camera.near_plane = 0.1;
+  const View view = small_view();
   Renderer kept;
   const Image first = kept.render(scene, view);
   const auto expect_new = [&](const Scene& next, const char* what) {
@@ -184,10 +180,7 @@ TEST(GpuScene, UploadsWhatAStrokeTouched) {
 TEST(GpuScene, WhatWasPreparedForFewerFacesIsNotUsedForMore) {
   const Scene full = scene_of(made_object({.columns = 64, .rows = 40}));
   const Scene holes = erased(full, 0, 600);
-  View view;
-  view.width = view.height = 150;
-  view.camera.eye = {0.5, 1, 4};
-  view.camera.near_plane = 0.1;
+  const View view = small_view();
   Renderer kept;
   kept.render({}, view);
   const Scene bent_holes = bent(holes, 0.3);

@@ -126,8 +126,8 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
   if (removed > 0)
     result.lines.push_back(fmt::format(
         "{} rays, {} from each triangle before it was removed: at most {:.2g} % of the lines of sight to any of them "
-        "are "
-        "open (95 % sure); the smallest opening found lets {:.2g} % through, {} triangles were seen by one ray only",
+        "are open (95 % sure); the smallest opening found lets {:.2g} % through, {} triangles were seen by one ray "
+        "only",
         rays, rays_each, 100 * most_missed(removed, rays_each), 100 * opening, once));
   if (edit.psnr > 0) result.lines.push_back(bits_words(bits));
   // Where nothing changes, all stays shared.
@@ -195,8 +195,7 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
 REBAKE_DESCRIBE_EDIT(
     Slim,
     "Removes triangles that nobody sees and duplicates, packs the texels that are left, and, where psnr is given, "
-    "keeps "
-    "fewer bits of the features: smaller folders, faster pictures.",
+    "keeps fewer bits of the features: smaller folders, faster pictures.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
             "only this node and those inside it; left out: all that is visible. Objects hide themselves only");
@@ -204,8 +203,7 @@ REBAKE_DESCRIBE_EDIT(
       visit("eyes", edit.eyes, Need::optional,
             "box in the world: what no eye in it sees goes; with neither, what no eye outside the object sees");
       visit("rays", edit.rays, Need::optional,
-            "sent from each triangle before it counts as unseen: 300 leave at most 1 % of its lines of sight (95 % "
-            "sure)");
+            "at most, from each triangle before it counts as unseen: 1024, doubled until that finds nothing more");
       visit("psnr", edit.psnr, Need::optional,
             "dB that texels' colours keep, against those as they are now, while features lose bits; 0: nothing of what "
             "is seen is lost");

@@ -11,7 +11,7 @@ struct Slim {
   std::optional<NodeRef> node;
   std::vector<std::string> views;
   std::optional<BoxRegion> eyes;
-  int rays = 65536;
+  int rays = 16384;
   double psnr = 0;
 };
 template <>
