@@ -56,9 +56,7 @@ struct LocalRay {
 
 class RayTree::Impl {
  public:
-  explicit Impl(const BakedObject& object)
-      // The same instructions on every processor, so that the same triangles are found at silhouettes too.
-      : device_(rtcNewDevice("isa=sse2")), scene_(nullptr) {
+  explicit Impl(const BakedObject& object) : device_(rtcNewDevice(instructions())), scene_(nullptr) {
     if (device_ == nullptr) throw DeviceError("Embree cannot be started; is its library whole?");
     rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
     scene_ = rtcNewScene(device_);
@@ -153,6 +151,15 @@ class RayTree::Impl {
   }
 
  private:
+  // The same triangles at silhouettes and shared corners on every processor: SSE 4.2 finds bit for bit what SSE 2 does,
+  // a fifth faster; with AVX one of several triangles at one distance may be another, with AVX 2 distances too.
+  static const char* instructions() {
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("sse4.2")) return "isa=sse4.2";
+#endif
+    return "isa=sse2";
+  }
+
   void add_triangles(RTCGeometry geometry, const Soup& soup) {
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), soup.positions().size()));
@@ -169,18 +176,20 @@ class RayTree::Impl {
   LocalRay local_ray(const Vec3& origin, const Vec3& direction, double near, double far) const {
     LocalRay ray;
     const Vec3 d = direction * scale_, o = (origin - center_) * scale_;
-    ray.length = d.stableNorm();
+    const double squared = d.squaredNorm();
+    ray.length = squared > 1e-200 && squared < 1e200 ? std::sqrt(squared) : d.stableNorm();
     if (!(far >= near) || !(ray.length > 0) || !std::isfinite(ray.length) || !o.allFinite()) return ray;
-    // Where it enters and leaves the box.
+    // Where it enters and leaves the box. Most rays start within it.
     double enters = near, leaves = far;
+    const bool within = near >= 0 && (o.cwiseAbs().array() <= half_.array()).all();
     for (int axis = 0; axis < 3; ++axis) {
       if (d[axis] == 0) {
         if (std::abs(o[axis]) > half_[axis]) return ray;
         continue;
       }
-      const double a = (-half_[axis] - o[axis]) / d[axis], b = (half_[axis] - o[axis]) / d[axis];
-      enters = std::max(enters, std::min(a, b));
-      leaves = std::min(leaves, std::max(a, b));
+      const double side = std::copysign(half_[axis], d[axis]);
+      if (!within) enters = std::max(enters, (-side - o[axis]) / d[axis]);
+      leaves = std::min(leaves, (side - o[axis]) / d[axis]);
     }
     if (!(enters <= leaves)) return ray;
     ray.meets = true;
