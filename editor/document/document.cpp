@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/document/project.h"
-#include "editor/edits/nodes/import.h"
 #include "mesh_ops/base/files.h"
 
 namespace rebake {
@@ -83,13 +82,13 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
     const auto make = [&] {
       for (json one : edits_in(entry)) {
         const Scene& before = made.empty() ? result.document.scene() : made.back().second;
-        if (one.value("op", "") == Import::op) {
-          const fs::path imported = one.at("path").get<std::string>();
+        if (json* const source = source_field(one)) {
+          const fs::path imported = source->get<std::string>();
           if (const std::string trouble = trouble_with(imported, one.value("content", ""), links); !trouble.empty()) {
             result.gone.push_back({imported, trouble});
             throw FileError(imported, trouble);
           }
-          one["path"] = relinked(imported, links).string();
+          *source = relinked(imported, links).string();
         }
         Edit edit = read_edit(one, before);
         Scene scene = rebake::apply(before, edit, progress).scene;
@@ -108,8 +107,8 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
   };
   std::vector<fs::path> imports;
   for (const std::string& text : contents.entries)
-    for (const json& one : edits_in(json::parse(text)))
-      if (one.value("op", "") == Import::op) imports.emplace_back(one.value("path", ""));
+    for (json one : edits_in(json::parse(text)))
+      if (const json* const source = source_field(one)) imports.emplace_back(source->get<std::string>());
   check_links(links, imports);
   std::size_t line = 1;
   for (const std::string& text : contents.entries) {

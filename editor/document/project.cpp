@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "editor/edits/nodes/import.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
@@ -60,12 +59,12 @@ void write_project(const fs::path& path, const std::vector<Edit>& edits, const s
   for (std::size_t k = 0; k < edits.size(); ++k) {
     progress.at("saving", static_cast<double>(k) / static_cast<double>(edits.size()));
     root["edits"].push_back(to_json(edits[k]));
-    const auto* import = edits[k].as<Import>();
-    if (import == nullptr) continue;
-    const fs::path source = fs::weakly_canonical(import->path);
+    const auto read = source_of(edits[k]);
+    if (!read) continue;
+    const fs::path source = fs::weakly_canonical(read->path);
     const std::string relative = source.lexically_proximate(folder).generic_string();
-    root["edits"].back()["path"] = relative;
-    const json entry = {{"path", relative}, {"content", import->content}};
+    *source_field(root["edits"].back()) = relative;
+    const json entry = {{"path", relative}, {"content", read->content}};
     if (std::find(root["sources"].begin(), root["sources"].end(), entry) == root["sources"].end())
       root["sources"].push_back(entry);
   }
@@ -104,10 +103,9 @@ ReadProject read_project(const fs::path& path, const Relinked& links, const Prog
     for (json line : root.at("edits")) {
       progress.at("opening", static_cast<double>(number++) / static_cast<double>(root.at("edits").size()));
       try {
-        if (line.is_object() && line.value("op", "") == Import::op)
-          line["path"] = source_path(folder, line.at("path"), links).string();
+        if (json* const source = source_field(line)) *source = source_path(folder, *source, links).string();
         project.edits.push_back(read_edit(line, scene));
-        if (const auto* import = project.edits.back().as<Import>(); import != nullptr && import->content.empty())
+        if (const auto source = source_of(project.edits.back()); source && source->content.empty())
           throw FieldError("content", "is missing: without it a changed source would not be noticed");
         scene = rebake::apply(scene, project.edits.back(), progress).scene;
       } catch (const Cancelled&) {

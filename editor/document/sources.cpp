@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "editor/edits/nodes/import.h"
+#include "editor/edits/nodes/light.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/scene_files.h"
@@ -56,30 +57,67 @@ void check_links(const Relinked& links, const std::vector<fs::path>& sources) {
   }
 }
 
+namespace {
+
+std::string content_at(const fs::path& path) {
+  std::error_code error;
+  return hash_text(fs::is_directory(scene_folder_of(path), error) ? folder_hash(path) : content_hash(read_file(path)));
+}
+
+}  // namespace
+
+std::optional<EditSource> source_of(const Edit& edit) {
+  if (const auto* import = edit.as<Import>()) return EditSource{import->path, import->content};
+  if (const auto* light = edit.as<LightEdit>(); light != nullptr && !light->picture.empty())
+    return EditSource{light->picture, light->content};
+  return std::nullopt;
+}
+
+nlohmann::json* source_field(nlohmann::json& edit) {
+  if (!edit.is_object()) return nullptr;
+  const std::string op = edit.value("op", "");
+  const char* const field = op == Import::op ? "path" : op == LightEdit::op ? "picture" : "";
+  const auto found = edit.find(field);
+  return found == edit.end() || *found == "" ? nullptr : &*found;
+}
+
 std::string trouble_with(const fs::path& source, const std::string& content, const Relinked& links) {
   const fs::path where = relinked(source, links);
   const std::string at = where == source ? "" : fmt::format(" (looked for at {})", where.string());
   std::error_code error;
   if (!fs::exists(where, error)) return at.empty() ? "is not there any more" : "is not there" + at;
-  if (hash_text(folder_hash(where)) == content) return "";
+  if (content_at(where) == content) return "";
   return at.empty() ? "has changed since it was imported" : "is not what was imported" + at;
 }
 
 Edit completed(const Edit& edit) {
-  if (!edit.is<Import>()) return edit;
-  Import import = *edit.as<Import>();
-  if (import.path.empty()) throw FieldError("path", "is empty");
-  import.path = absolute_path(import.path).string();
+  if (edit.is<Import>() && edit.as<Import>()->path.empty()) throw FieldError("path", "is empty");
+  const std::optional<EditSource> source = source_of(edit);
+  if (!source) return edit;
+  const std::string path = absolute_path(source->path).string();
+  const auto content = [&](bool there) {
+    // What is not there is reported by the edit itself.
+    return source->content.empty() && there ? content_at(path) : source->content;
+  };
   std::error_code error;
-  // What is not there is reported by the import itself.
-  if (import.content.empty() && fs::is_directory(scene_folder_of(import.path), error))
-    import.content = hash_text(folder_hash(import.path));
-  return import;
+  if (const auto* import = edit.as<Import>()) {
+    Import whole = *import;
+    whole.path = path;
+    whole.content = content(fs::is_directory(scene_folder_of(path), error));
+    return whole;
+  }
+  LightEdit whole = *edit.as<LightEdit>();
+  whole.picture = path;
+  whole.content = content(fs::is_regular_file(path, error));
+  return whole;
 }
 
 void add_sources(SourceGuard& guard, const std::vector<Edit>& edits) {
   for (const Edit& edit : edits)
-    if (const auto* import = edit.as<Import>()) guard.add(scene_folder_of(import->path));
+    if (const auto* import = edit.as<Import>())
+      guard.add(scene_folder_of(import->path));
+    else if (const auto source = source_of(edit))
+      guard.add_file(source->path);
 }
 
 void add_sources(SourceGuard& guard, const Scene& scene) {

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,15 @@ std::filesystem::path relinked(const std::filesystem::path& source, const Relink
 /// Throws FieldError, naming the sources there are, for a link whose old path none of them lies at or in.
 void check_links(const Relinked& links, const std::vector<std::filesystem::path>& sources);
 
+/// What an edit reads: a folder that is imported, or a picture of light.
+struct EditSource {
+  std::filesystem::path path;
+  std::string content;  ///< hash of what is there
+};
+std::optional<EditSource> source_of(const Edit& edit);
+/// Where an edit's JSON says it; null for an edit that reads nothing.
+nlohmann::json* source_field(nlohmann::json& edit);
+
 /// Sources that are not as they were: moved, removed or changed.
 class SourcesGone : public FileError {
  public:
@@ -34,8 +45,8 @@ class SourcesGone : public FileError {
 /// What is wrong with a source of this content where the links say it lies; empty when it is as it was.
 std::string trouble_with(const std::filesystem::path& source, const std::string& content, const Relinked& links);
 
-/// The edit with everything it needs to be repeated later: an import gets its absolute path and the hash of what lies
-/// there now. Throws FileError.
+/// The edit with everything it needs to be repeated later: its source's absolute path and the hash of what lies there
+/// now. Throws FileError.
 Edit completed(const Edit& edit);
 
 /// Adds what edits imported.

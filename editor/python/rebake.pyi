@@ -193,17 +193,20 @@ class Document:
 
         color: display red, green and blue (share)
         """
-    def light(self, *, effects: Sequence[str] = ["auto"], source: str = "estimated", zenith: Vector = [0.75,0.88,1.1], ground: Vector = [0.34,0.3,0.27], sun: Vector = [0.5,0.8,0.45], sun_color: Vector = [1.15,1.05,0.9], sun_degrees: float = 5.0, bounce: Vector = [0.0,0.0,0.0], budget: float = 1.0, rays: int = 256) -> None:
+    def light(self, *, effects: Sequence[str] = ["auto"], source: str = "estimated", zenith: Vector = [0.75,0.88,1.1], ground: Vector = [0.34,0.3,0.27], sun: Vector = [0.5,0.8,0.45], sun_color: Vector = [1.15,1.05,0.9], sun_degrees: float = 5.0, picture: str = "", picture_degrees: float = 0.0, content: str = "", bounce: Vector = [0.0,0.0,0.0], budget: float = 1.0, rays: int = 256) -> None:
         """Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone.
 
         effects: auto: self, cast and removed, each where it would be seen; or some of them, and match: all objects in one light; none: colours stay as baked
-        source: of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground and a sun, about the objects' own upright axis
+        source: of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground and a sun, about the objects' own upright axis; picture: of all directions
         zenith: uniform and sky: linear radiance from above, red, green and blue
         ground: sky: the same from below
         sun: sky: direction towards the sun, in the objects' own space as they were read; with match in the world
         sun_color: sky: linear, what the sun sends back from a white surface that faces it; 0, 0, 0: none
         sun_degrees: sky: the sun's radius as seen, which softens shadows (degrees)
-        bounce: uniform and sky: linear radiance of surfaces that hide it
+        picture: file with an equirectangular picture: OpenEXR, Radiance HDR, PNG, JPEG; its middle towards -z
+        picture_degrees: by which it is turned about the upright axis (degrees)
+        content: hash of the picture as projects and journals record it: anything else there is refused
+        bounce: given light: linear radiance of surfaces that hide it
         budget: how far colours may be off for what is left out, of 255
         rays: from each point, 16 to 16384: 4 % off at 64, 1.3 % at 256
         """

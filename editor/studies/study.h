@@ -50,6 +50,7 @@ StudyTable study_rotation(const StudyInput& input);
 StudyTable study_wrap(const StudyInput& input);
 StudyTable study_fuse(const StudyInput& input);
 StudyTable study_transfer(const StudyInput& input);
+StudyTable study_light(const StudyInput& input);
 StudyTable study_slim(const StudyInput& input);
 
 /// The one table of studies.
@@ -62,6 +63,7 @@ inline constexpr Study study_table[] = {
     {"wrap", "coarseness of the wrap around what shows something", study_wrap},
     {"fuse", "one decoder for several: how it is made, its width, bits a feature", study_fuse},
     {"transfer", "what a bent body sees of the sky: turned along, learnt, traced", study_transfer},
+    {"light", "the light of a bake, found again, by views and albedos", study_light},
     {"slim", "what nobody sees removed, and fewer bits a feature: size, pictures, frame", study_slim},
 };
 

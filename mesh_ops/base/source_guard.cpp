@@ -27,28 +27,33 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 void SourceGuard::add(const fs::path& source) {
   std::error_code error;
   const bool file = fs::is_regular_file(source, error) || source.filename() == "scene.json";
-  const fs::path folder = plain_path(file ? fs::absolute(source).parent_path() : source);
-  if (std::find(folders_.begin(), folders_.end(), folder) == folders_.end()) folders_.push_back(folder);
+  add_path(plain_path(file ? fs::absolute(source).parent_path() : source));
+}
+
+void SourceGuard::add_file(const fs::path& source) { add_path(plain_path(source)); }
+
+void SourceGuard::add_path(fs::path path) {
+  if (std::find(sources_.begin(), sources_.end(), path) == sources_.end()) sources_.push_back(std::move(path));
 }
 
 void SourceGuard::check_file(const fs::path& path) const {
   const fs::path wanted = plain_path(path);
-  for (const fs::path& folder : folders_)
-    if (lies_in(wanted, folder))
-      throw FileError(path, "would be written into the source \"" + folder.string() +
+  for (const fs::path& source : sources_)
+    if (lies_in(wanted, source))
+      throw FileError(path, "would be written into the source \"" + source.string() +
                                 "\", which undo, journals and projects read again; choose another place");
 }
 
 void SourceGuard::check_folder(const fs::path& path) const {
   const fs::path wanted = plain_path(path);
-  for (const fs::path& folder : folders_) {
-    if (wanted == folder)
+  for (const fs::path& source : sources_) {
+    if (wanted == source)
       throw FileError(path,
                       "is a source of what is open, which undo, journals and projects read again; write to another "
                       "folder");
-    if (lies_in(folder, wanted))
+    if (lies_in(source, wanted))
       throw FileError(
-          path, "holds the source \"" + folder.string() + "\", which would be lost with it; write to another folder");
+          path, "holds the source \"" + source.string() + "\", which would be lost with it; write to another folder");
   }
   check_file(path);
 }

@@ -6,14 +6,17 @@
 
 namespace rebake {
 
-/// Folders that nothing may be written to: what is open came from there, and undo, journals and projects want it again.
+/// Folders and files that nothing may be written to: what is open came from there, and undo, journals and projects want
+/// it again.
 class SourceGuard {
  public:
   SourceGuard() = default;
 
   /// Adds a folder, or the folder of a file such as scene.json. What is not there is kept by its name.
   void add(const std::filesystem::path& source);
-  bool empty() const { return folders_.empty(); }
+  /// Adds a file, not what lies beside it.
+  void add_file(const std::filesystem::path& source);
+  bool empty() const { return sources_.empty(); }
 
   /// Throws FileError when writing a file at `path` would put it into a source.
   void check_file(const std::filesystem::path& path) const;
@@ -22,7 +25,8 @@ class SourceGuard {
   void check_folder(const std::filesystem::path& path) const;
 
  private:
-  std::vector<std::filesystem::path> folders_;  ///< canonical
+  void add_path(std::filesystem::path path);
+  std::vector<std::filesystem::path> sources_;  ///< canonical
 };
 
 }  // namespace rebake

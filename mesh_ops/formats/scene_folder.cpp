@@ -44,28 +44,78 @@ json node_json(const Node& node, const std::map<const BakedObject*, std::string>
 }
 
 // Words for SceneLight::Source.
-constexpr std::array<const char*, 3> source_words{"estimated", "uniform", "sky"};
+constexpr std::array<const char*, 4> source_words{"estimated", "uniform", "sky", "picture"};
 
 json color_json(const Vec3& color) { return {color.x(), color.y(), color.z()}; }
 
+json sun_json(const Sun& sun) {
+  return {{"direction", color_json(sun.direction)}, {"radius", sun.radius}, {"irradiance", color_json(sun.irradiance)}};
+}
+
+// Its light itself, so that the scene needs no file beside it.
+json picture_json(const LightPicture& picture, double turn) {
+  json out{
+      {"path", picture.path},      {"content", picture.content}, {"turn", turn}, {"side", picture.light.sky.side()},
+      {"radiance", json::array()}, {"suns", json::array()}};
+  for (const Eigen::Vector3f& texel : picture.light.sky.texels())
+    for (const float c : texel) out["radiance"].push_back(c);
+  for (const Sun& sun : picture.light.suns) out["suns"].push_back(sun_json(sun));
+  return out;
+}
+
 json light_json(const SceneLight& light) {
-  return {{"self", light.self},
-          {"cast", light.cast},
-          {"removed", light.removed},
-          {"match", light.match},
-          {"budget", light.budget},
-          {"rays", light.rays},
-          {"source", source_words[static_cast<std::size_t>(light.source)]},
-          {"zenith", color_json(light.zenith)},
-          {"ground", color_json(light.ground)},
-          {"bounce", color_json(light.bounce)},
-          {"sun",
-           {{"direction", color_json(light.sun.direction)},
-            {"radius", light.sun.radius},
-            {"irradiance", color_json(light.sun.irradiance)}}}};
+  json out{{"self", light.self},
+           {"cast", light.cast},
+           {"removed", light.removed},
+           {"match", light.match},
+           {"budget", light.budget},
+           {"rays", light.rays},
+           {"source", source_words[static_cast<std::size_t>(light.source)]},
+           {"zenith", color_json(light.zenith)},
+           {"ground", color_json(light.ground)},
+           {"bounce", color_json(light.bounce)},
+           {"sun", sun_json(light.sun)}};
+  if (light.picture) out["picture"] = picture_json(*light.picture, light.picture_turn);
+  return out;
 }
 
 // Numbers out of range become ones that are in it: a damaged file's light is a look, not the work.
+Vec3 read_color(const json& list) {
+  Vec3 result;
+  for (std::size_t c = 0; c < 3; ++c)
+    result[static_cast<Eigen::Index>(c)] = std::clamp(list.at(c).get<double>(), 0.0, 1e6);
+  return result;
+}
+
+Sun read_sun(const json& value) {
+  Sun sun;
+  for (std::size_t c = 0; c < 3; ++c)
+    sun.direction[static_cast<Eigen::Index>(c)] = value.at("direction").at(c).get<double>();
+  if (!(sun.direction.stableNorm() > 0)) throw FieldError("light", "has a sun without a direction");
+  sun.radius = std::clamp(value.at("radius").get<double>(), 1e-4, 0.8);
+  sun.irradiance = read_color(value.at("irradiance"));
+  return sun;
+}
+
+LightPicture read_picture(const json& value) {
+  LightPicture picture;
+  picture.path = value.at("path").get<std::string>();
+  picture.content = value.at("content").get<std::string>();
+  const int side = value.at("side").get<int>();
+  const json& radiance = value.at("radiance");
+  if (side < 1 || side > 1024 || radiance.size() != static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * 3)
+    throw FieldError("light", "has a picture whose radiances do not fill it");
+  picture.light.sky = SkyMap(side, [&, at = std::size_t{0}](const Vec3&) mutable {
+    at += 3;
+    return read_color({radiance[at - 3], radiance[at - 2], radiance[at - 1]});
+  });
+  for (const json& sun : value.at("suns")) {
+    picture.light.suns.push_back(read_sun(sun));
+    picture.light.suns.back().direction.stableNormalize();
+  }
+  return picture;
+}
+
 SceneLight read_light(const json& value) {
   SceneLight light;
   light.self = value.at("self").get<bool>();
@@ -78,21 +128,16 @@ SceneLight read_light(const json& value) {
   const auto found = std::find(source_words.begin(), source_words.end(), word);
   if (found == source_words.end()) throw FieldError("light", "has the unknown source \"" + word + "\"");
   light.source = static_cast<SceneLight::Source>(found - source_words.begin());
-  const auto color = [](const json& list) {
-    Vec3 result;
-    for (std::size_t c = 0; c < 3; ++c)
-      result[static_cast<Eigen::Index>(c)] = std::clamp(list.at(c).get<double>(), 0.0, 1e6);
-    return result;
-  };
-  light.zenith = color(value.at("zenith"));
-  light.ground = color(value.at("ground"));
-  light.bounce = color(value.at("bounce"));
-  const json& sun = value.at("sun");
-  for (std::size_t c = 0; c < 3; ++c)
-    light.sun.direction[static_cast<Eigen::Index>(c)] = sun.at("direction").at(c).get<double>();
-  if (!(light.sun.direction.stableNorm() > 0)) throw FieldError("light", "has a sun without a direction");
-  light.sun.radius = std::clamp(sun.at("radius").get<double>(), 1e-4, 0.8);
-  light.sun.irradiance = color(sun.at("irradiance"));
+  light.zenith = read_color(value.at("zenith"));
+  light.ground = read_color(value.at("ground"));
+  light.bounce = read_color(value.at("bounce"));
+  light.sun = read_sun(value.at("sun"));
+  if (value.contains("picture")) {
+    light.picture = std::make_shared<const LightPicture>(read_picture(value.at("picture")));
+    light.picture_turn = value.at("picture").at("turn").get<double>();
+  }
+  if (light.source == SceneLight::Source::picture && !light.picture)
+    throw FieldError("light", "is of a picture, but holds none");
   return light;
 }
 

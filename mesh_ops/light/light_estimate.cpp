@@ -146,11 +146,29 @@ class Fit {
     for (std::size_t i = 0; i < samples_.size(); ++i) sum += weight_[i] * residual(i).squaredNorm();
     return sum;
   }
-  // The same when one more sun may shine, all else refitted; albedos stay.
-  double error_with(const Eigen::VectorXd& sun) {
-    Fit other = *this;
-    other.run_light(sun);
-    return other.error();
+  // The same when one more sun may shine, light refitted; albedos stay. Many suns are tried, so that what is the same
+  // with all of them is worked out once: hold_still() before.
+  double error_with(const Eigen::VectorXd& sun) const {
+    double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Equations& held = held_[c];
+      const Eigen::Index n = held.rows.cols();
+      const Eigen::VectorXd column = held.scale.cwiseProduct(sun);
+      Eigen::MatrixXd squares(n + 1, n + 1);
+      squares.topLeftCorner(n, n) = held.squares;
+      squares.col(n).head(n) = held.rows.transpose() * column;
+      squares.row(n).head(n) = squares.col(n).head(n).transpose();
+      squares(n, n) = column.squaredNorm() + held.damping;
+      Eigen::VectorXd right(n + 1), x = Eigen::VectorXd::Zero(n + 1);
+      right << held.right, column.dot(held.wanted);
+      x.head(n) = x_[c];
+      x = non_negative(squares, right, x);
+      sum += (held.rows * x.head(n) + column * x[n] - held.wanted).squaredNorm();
+    }
+    return sum;
+  }
+  void hold_still() {
+    for (std::size_t c = 0; c < 3; ++c) held_[c] = equations(static_cast<int>(c));
   }
   double explained() const {
     // Against one radiance a cluster.
@@ -177,30 +195,34 @@ class Fit {
       r[own.size() + static_cast<Eigen::Index>(s)] = suns_[s][static_cast<Eigen::Index>(i)];
     return r;
   }
-  void solve(int c) {
+  // Of one channel, with the weights and albedos there are.
+  struct Equations {
+    Eigen::MatrixXd rows, squares;         // squares: with what holds lobes together and away from infinity
+    Eigen::VectorXd scale, wanted, right;  // scale: of each row, against what light gives the sample
+    double damping = 0;
+  };
+  Equations equations(int c) const {
     const Eigen::Index n = x_[0].size();
     const auto count = static_cast<Eigen::Index>(samples_.size());
-    Eigen::MatrixXd rows(count, n);
-    Eigen::VectorXd wanted(count);
+    Equations made{Eigen::MatrixXd(count, n), {}, Eigen::VectorXd(count), Eigen::VectorXd(count), {}};
     for (Eigen::Index i = 0; i < count; ++i) {
       const Sample& sample = samples_[static_cast<std::size_t>(i)];
       const double root = std::sqrt(weight_[static_cast<std::size_t>(i)]);
-      rows.row(i) = root * albedo_[sample.cluster][c] * row(static_cast<std::size_t>(i)).transpose();
-      wanted[i] = root * colors_[sample.site][c];
+      made.scale[i] = root * albedo_[sample.cluster][c];
+      made.rows.row(i) = made.scale[i] * row(static_cast<std::size_t>(i)).transpose();
+      made.wanted[i] = root * colors_[sample.site][c];
     }
-    Eigen::MatrixXd squares = rows.transpose() * rows;
-    const Eigen::VectorXd right = rows.transpose() * wanted;
-    const double usual = squares.diagonal().head(smoothness_.rows()).mean();
-    squares.topLeftCorner(smoothness_.rows(), smoothness_.rows()) += smooth * usual * smoothness_;
-    squares.diagonal().array() += 1e-3 * usual;
-    x_[c] = non_negative(squares, right, x_[c]);
+    made.squares = made.rows.transpose() * made.rows;
+    made.right = made.rows.transpose() * made.wanted;
+    const double usual = made.squares.diagonal().head(smoothness_.rows()).mean();
+    made.damping = 1e-3 * usual;
+    made.squares.topLeftCorner(smoothness_.rows(), smoothness_.rows()) += smooth * usual * smoothness_;
+    made.squares.diagonal().array() += made.damping;
+    return made;
   }
-  void run_light(const Eigen::VectorXd& sun) {
-    suns_.push_back(sun);
-    for (int c = 0; c < 3; ++c) {
-      x_[c].conservativeResizeLike(Eigen::VectorXd::Zero(x_[c].size() + 1));
-      solve(c);
-    }
+  void solve(int c) {
+    const Equations made = equations(c);
+    x_[c] = non_negative(made.squares, made.right, x_[c]);
   }
   Radiance predicted(std::size_t i) const {
     const Eigen::VectorXd r = row(i);
@@ -254,6 +276,7 @@ class Fit {
   std::vector<Radiance> albedo_;
   std::vector<double> weight_;
   Eigen::MatrixXd smoothness_;
+  std::array<Equations, 3> held_;
 };
 
 // What a sun of irradiance 1 gives each sample.
@@ -342,6 +365,7 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
     FoundSun best;
     best.direction = lobes.center(static_cast<std::size_t>(brightest));
     const double without = fit.error();
+    fit.hold_still();
     constexpr double first_step = 0.16;  // radians
     for (const double step : {first_step, 0.06, 0.025}) {
       const Vec3 center = best.direction, u = center.unitOrthogonal(), v = center.cross(u);

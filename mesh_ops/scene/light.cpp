@@ -41,6 +41,15 @@ Radiance SkyMap::at(const Vec3& direction) const {
       .cast<double>();
 }
 
+SkyMap SkyMap::coarser(int factor) const {
+  SkyMap result(side_ / factor);
+  for (int y = 0; y < side_; ++y)
+    for (int x = 0; x < side_; ++x)
+      result.texels_[static_cast<std::size_t>(y / factor * result.side_ + x / factor)] +=
+          texels_[static_cast<std::size_t>(y * side_ + x)] / static_cast<float>(factor * factor);
+  return result;
+}
+
 bool SkyMap::black() const {
   return std::all_of(texels_.begin(), texels_.end(), [](const Eigen::Vector3f& t) { return t.isZero(0); });
 }
@@ -82,6 +91,17 @@ std::shared_ptr<const Light> given_light(const SceneLight& settings) {
     return std::make_shared<const Light>(sky_and_sun(settings.ground, settings.zenith, sun, settings.bounce));
   }
   auto light = std::make_shared<Light>();
+  if (settings.source == SceneLight::Source::picture) {
+    if (!settings.picture) return nullptr;
+    *light = settings.picture->light;
+    light->bounce = settings.bounce;
+    if (settings.picture_turn == 0) return light;
+    const Mat3 turn = Eigen::AngleAxisd(settings.picture_turn, Vec3::UnitY()).toRotationMatrix();
+    light->sky =
+        SkyMap(light->sky.side(), [&, sky = light->sky](const Vec3& d) { return sky.at(turn.transpose() * d); });
+    for (Sun& sun : light->suns) sun.direction = turn * sun.direction;
+    return light;
+  }
   light->sky = SkyMap(settings.zenith);
   light->bounce = settings.bounce;
   return light;

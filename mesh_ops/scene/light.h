@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "mesh_ops/base/types.h"
@@ -29,6 +30,8 @@ class SkyMap {
   /// The most of each channel.
   Radiance brightest() const;
   int side() const { return side_; }
+  /// Means of `factor`² texels each; `factor` divides the side.
+  SkyMap coarser(int factor) const;
   const std::vector<Eigen::Vector3f>& texels() const { return texels_; }
   /// Of a texel's centre.
   Vec3 direction(std::size_t texel) const;
@@ -57,6 +60,14 @@ struct Light {
   bool operator==(const Light&) const = default;
 };
 
+/// Light of an equirectangular picture, as it was read.
+struct LightPicture {
+  std::string path;
+  std::string content;  ///< hash of the file
+  Light light;          ///< its middle towards −z, its upper edge +y
+  bool operator==(const LightPicture&) const = default;
+};
+
 /// What light does in a scene whose light follows edits.
 struct SceneLight {
   bool self = true;           ///< triangles that moved are shaded anew
@@ -66,16 +77,18 @@ struct SceneLight {
   double budget = 1.0 / 255;  ///< of display colours, by which a picture may be off for what is left out
   int rays = 256;             ///< from each point of a surface, 16 … 16384
 
-  enum class Source { estimated, uniform, sky };
+  enum class Source { estimated, uniform, sky, picture };
   Source source =
       Source::estimated;  ///< from each object's colours, or given in the objects' own spaces as they were read:
+  std::shared_ptr<const LightPicture> picture;         ///< of that source
+  double picture_turn = 0;                             ///< of it, about +y, radians
   Radiance zenith{0.75, 0.88, 1.1};                    ///< uniform and sky: from above
   Radiance ground{0.34, 0.3, 0.27};                    ///< sky: from below
   Sun sun{{0.5, 0.8, 0.45}, 0.09, {1.15, 1.05, 0.9}};  ///< sky; of any length
   Radiance bounce{0, 0, 0};                            ///< of what hides the sky
   bool operator==(const SceneLight&) const = default;
 };
-/// The given light; null where it is estimated.
+/// The given light; null where it is estimated, and of a picture that is not there.
 std::shared_ptr<const Light> given_light(const SceneLight& settings);
 
 /// Sky colours below, at the horizon's level and above (a linear blend over height), and a sun.

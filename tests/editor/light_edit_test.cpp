@@ -6,6 +6,7 @@
 
 #include "editor/commands/plain_scene.h"
 #include "editor/commands/session.h"
+#include "editor/document/project.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "mesh_ops/index/index.h"
@@ -16,6 +17,7 @@
 #include "render/picture.h"
 #include "tests/support/document_fixture.h"
 #include "tests/support/edits.h"
+#include "tests/support/light_pictures.h"
 #include "tests/support/lit_objects.h"
 #include "tests/support/made_scenes.h"
 
@@ -23,6 +25,7 @@ namespace rebake::test {
 namespace {
 
 using nlohmann::json;
+namespace fs = std::filesystem;
 
 struct Remembered final : Results {
   std::map<std::string, std::string> held;
@@ -95,7 +98,9 @@ TEST(LightEdit, NamesTheFieldThatIsWrong) {
                                                                               {"budget", -1},
                                                                               {"sun", {0, 0, 0}},
                                                                               {"sun_degrees", 90},
-                                                                              {"zenith", {-1, 0, 0}}}) {
+                                                                              {"zenith", {-1, 0, 0}},
+                                                                              {"picture_degrees", nullptr},
+                                                                              {"content", "0"}}) {
     try {
       json line = {{"op", "light"}, {"source", "sky"}};
       line[field] = value;
@@ -120,6 +125,66 @@ TEST_F(DocumentTest, LightIsUndoneAndSavedWithTheScene) {
   const Scene back = read_scene_folder(path("lit"), {});
   ASSERT_NE(back.light, nullptr);
   EXPECT_EQ(*back.light, *scene.light);
+}
+
+TEST_F(DocumentTest, PictureOfLightIsASourceLikeWhatIsImported) {
+  write_light_picture(path("sky.exr"), 64, [](const Vec3& d) { return Radiance(1 + d.x(), 1 + d.y(), 1); });
+  Document document;
+  document.keep_journal(path("journal"));
+  import(document);
+  act(document, {{"op", "light"}, {"source", "picture"}, {"picture", path("sky.exr").string()}});
+  const SceneLight light = *document.scene().light;
+  // Turned by a quarter, +x comes to lie where −z was.
+  act(document,
+      {{"op", "light"}, {"source", "picture"}, {"picture", path("sky.exr").string()}, {"picture_degrees", 90}});
+  EXPECT_NEAR(given_light(*document.scene().light)->sky.at({0, 0, -1})[0], given_light(light)->sky.at({1, 0, 0})[0],
+              0.02);
+  document.undo();
+  EXPECT_THROW(document.save(path("sky.exr")), FileError);
+  document.save(path("beside.rebake"));
+  EXPECT_EQ(*read_project(path("beside.rebake")).scenes.back().light->picture, *light.picture);
+
+  fs::create_directory(path("elsewhere"));
+  fs::rename(path("sky.exr"), path("elsewhere/sky.exr"));
+  try {
+    read_project(path("beside.rebake"));
+    ADD_FAILURE() << "opened without its picture";
+  } catch (const SourcesGone& gone) {
+    ASSERT_EQ(gone.sources.size(), 1U);
+    EXPECT_EQ(gone.sources[0].path, path("sky.exr"));
+  }
+  const Relinked links{{path("sky.exr"), path("elsewhere/sky.exr")}};
+  EXPECT_EQ(read_project(path("beside.rebake"), links).scenes.back().light->picture->light, light.picture->light);
+  document = Document();
+  EXPECT_EQ(Document::recover(path("journal")).gone.size(), 1U);
+  EXPECT_TRUE(Document::recover(path("journal"), links).gone.empty());
+  EXPECT_THROW(act(document, {{"op", "light"}, {"source", "picture"}}), FieldError);
+  EXPECT_THROW(act(document, {{"op", "light"}, {"source", "picture"}, {"picture", path("sky.exr").string()}}),
+               FileError);
+  // Another picture of that name is not the one that was taken.
+  write_light_picture(path("sky.exr"), 64, [](const Vec3&) { return Radiance(1, 1, 1); });
+  EXPECT_THROW(read_project(path("beside.rebake")), SourcesGone);
+}
+
+TEST_F(DocumentTest, SavedScenesHoldThePictureOfTheirLight) {
+  write_light_picture(path("sky.exr"), 512, [](const Vec3& d) {
+    return d.dot(Vec3(0.6, 0.8, 0)) > 0.9998 ? Radiance(2000, 2000, 1000) : Radiance(1 + d.x(), 1 + d.y(), 1);
+  });
+  Scene scene = scene_of(made_object());
+  scene =
+      apply(
+          scene,
+          read_edit(
+              {{"op", "light"}, {"source", "picture"}, {"picture", path("sky.exr").string()}, {"picture_degrees", 30}},
+              scene))
+          .scene;
+  ASSERT_EQ(scene.light->picture->light.suns.size(), 1U);
+  format_named("rebake").write(scene, path("lit"), {}, {});
+  fs::remove(path("sky.exr"));
+  const Scene back = read_scene_folder(path("lit"), {});
+  ASSERT_TRUE(back.light && back.light->picture);
+  EXPECT_EQ(*back.light->picture, *scene.light->picture);
+  EXPECT_EQ(*given_light(*back.light), *given_light(*scene.light));
 }
 
 // What deletes, moves, erases, separates and joins: light knows what there was when it was baked.

@@ -166,6 +166,32 @@ class ViewTest(WindowCase):
         editor.until_ops("import", "light", "bend", "light")
         self.assertEqual(editor.last_edit()["effects"], ["self", "cast"])
 
+    def test_a_picture_is_taken_as_light(self):
+        sky = self.folder / "sky.png"
+        subprocess.run(["convert", "-size", "64x32", "gradient:white-#302820", sky], check=True)
+        editor = self.open_ficus()
+        editor.click("status/Light")
+        editor.click("tabs/light/Follows edits")
+        editor.click("tabs/light/Picture")
+        editor.answer(str(self.folder))
+        editor.until(lambda state: "dialog/problem" in state["items"], "a folder is no picture")
+        editor.click("dialog/path")
+        editor.answer(str(sky))
+        editor.until_ops("import", "light", "light")
+        self.assertEqual(editor.last_edit()["source"], "picture")
+        editor.settle()
+        editor.click("tabs/light/turn")
+        editor.key("ctrl+a")
+        editor.type("90")
+        editor.key("Return")
+        editor.until_ops("import", "light", "light", "light")
+        self.assertAlmostEqual(editor.last_edit()["picture_degrees"], 90, places=5)
+        # Without a picture to go to, it is one that was chosen before.
+        editor.click("tabs/light/Sky")
+        editor.click("tabs/light/Picture")
+        editor.until_ops("import", "light", "light", "light", "light", "light")
+        self.assertEqual(editor.last_edit()["picture"], str(sky))
+
     def test_the_sheet_of_keys_holds_keys_back(self):
         editor = self.open_ficus()
         self.select_branch()

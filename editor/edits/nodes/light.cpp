@@ -1,13 +1,19 @@
 #include "editor/edits/nodes/light.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numbers>
 
 #include "editor/edits/describe.h"
+#include "mesh_ops/formats/light_picture.h"
 
 namespace rebake {
 
 namespace {
+
+// Of SceneLight::Source.
+constexpr std::array<std::string_view, 4> source_words{"estimated", "uniform", "sky", "picture"};
 
 void check_light(const Vec3& color, const char* field) {
   if (!color.allFinite() || (color.array() < 0).any()) throw FieldError(field, "must be finite and not negative");
@@ -36,6 +42,23 @@ bool choose_effects(const std::vector<std::string>& words, SceneLight& light) {
   return true;
 }
 
+// Read once as long as the scene holds it.
+std::shared_ptr<const LightPicture> picture_of(const LightEdit& edit, const Scene& scene) {
+  if (edit.picture.empty()) {
+    if (edit.source == "picture") throw FieldError("picture", "is missing: name an equirectangular picture");
+    if (!edit.content.empty()) throw FieldError("content", "is of a picture, but none is named");
+    return nullptr;
+  }
+  if (!std::isfinite(edit.picture_degrees)) throw FieldError("picture_degrees", "must be a number");
+  if (scene.light && scene.light->picture && scene.light->picture->path == edit.picture &&
+      scene.light->picture->content == edit.content)
+    return scene.light->picture;
+  LightPicture read = read_light_picture(edit.picture);
+  if (!edit.content.empty() && read.content != edit.content)
+    throw EditError(edit.picture + ": has changed since it was taken as light; put it back as it was");
+  return std::make_shared<const LightPicture>(std::move(read));
+}
+
 }  // namespace
 
 Scene apply(const Scene& scene, const LightEdit& edit) {
@@ -58,16 +81,35 @@ Scene apply(const Scene& scene, const LightEdit& edit) {
     throw FieldError("sun_degrees", "must be above 0 and at most 45");
   light->sun.radius = edit.sun_degrees * std::numbers::pi / 180;
   light->sun.direction.stableNormalize();
-  if (edit.source == "estimated")
-    light->source = SceneLight::Source::estimated;
-  else if (edit.source == "uniform")
-    light->source = SceneLight::Source::uniform;
-  else if (edit.source == "sky")
-    light->source = SceneLight::Source::sky;
-  else
-    throw FieldError("source", "\"" + edit.source + "\" is not known: use estimated, uniform or sky");
+  const auto word = std::find(source_words.begin(), source_words.end(), edit.source);
+  if (word == source_words.end())
+    throw FieldError("source", "\"" + edit.source + "\" is not known: use estimated, uniform, sky or picture");
+  light->source = static_cast<SceneLight::Source>(word - source_words.begin());
+  light->picture = picture_of(edit, scene);
+  light->picture_turn = edit.picture_degrees * std::numbers::pi / 180;
   result.light = std::move(light);
   return result;
+}
+
+LightEdit light_edit(const SceneLight& light) {
+  LightEdit edit;
+  edit.light = light;
+  edit.source = source_words[static_cast<std::size_t>(light.source)];
+  edit.budget = light.budget * 255;
+  edit.sun_degrees = light.sun.radius * 180 / std::numbers::pi;
+  if (light.picture) edit.picture = light.picture->path, edit.content = light.picture->content;
+  edit.picture_degrees = light.picture_turn * 180 / std::numbers::pi;
+  edit.effects.clear();
+  if (light.self && light.cast && light.removed) {
+    edit.effects.emplace_back("auto");
+  } else {
+    if (light.self) edit.effects.emplace_back("self");
+    if (light.cast) edit.effects.emplace_back("cast");
+    if (light.removed) edit.effects.emplace_back("removed");
+  }
+  if (light.match) edit.effects.emplace_back("match");
+  if (edit.effects.empty()) edit.effects = {"none"};
+  return edit;
 }
 
 REBAKE_DESCRIBE_EDIT(
@@ -78,7 +120,7 @@ REBAKE_DESCRIBE_EDIT(
             "light; none: colours stay as baked");
       visit("source", edit.source, Need::optional,
             "of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground "
-            "and a sun, about the objects' own upright axis");
+            "and a sun, about the objects' own upright axis; picture: of all directions");
       visit("zenith", edit.light.zenith, Need::optional,
             "uniform and sky: linear radiance from above, red, green and blue");
       visit("ground", edit.light.ground, Need::optional, "sky: the same from below");
@@ -88,7 +130,13 @@ REBAKE_DESCRIBE_EDIT(
             "sky: linear, what the sun sends back from a white surface that faces it; 0, 0, 0: none");
       visit("sun_degrees", edit.sun_degrees, Need::optional, "sky: the sun's radius as seen, which softens shadows",
             Unit::degrees);
-      visit("bounce", edit.light.bounce, Need::optional, "uniform and sky: linear radiance of surfaces that hide it");
+      visit("picture", edit.picture, Need::optional,
+            "file with an equirectangular picture: OpenEXR, Radiance HDR, PNG, JPEG; its middle towards -z");
+      visit("picture_degrees", edit.picture_degrees, Need::optional, "by which it is turned about the upright axis",
+            Unit::degrees);
+      visit("content", edit.content, Need::optional,
+            "hash of the picture as projects and journals record it: anything else there is refused");
+      visit("bounce", edit.light.bounce, Need::optional, "given light: linear radiance of surfaces that hide it");
       visit("budget", edit.budget, Need::optional, "how far colours may be off for what is left out, of 255");
       visit("rays", edit.light.rays, Need::optional, "from each point, 16 to 16384: 4 % off at 64, 1.3 % at 256");
     })

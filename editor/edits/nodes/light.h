@@ -11,11 +11,16 @@ struct LightEdit {
   std::string source = "estimated";
   double sun_degrees = 5;
   double budget = 1;  ///< of 255
-  SceneLight light;   ///< the rest
+  std::string picture, content;
+  double picture_degrees = 0;
+  SceneLight light;  ///< the rest
 };
 template <>
 const EditType& edit_type<LightEdit>();
 
 Scene apply(const Scene& scene, const LightEdit& edit);
+
+/// The edit that makes a scene's light this.
+LightEdit light_edit(const SceneLight& light);
 
 }  // namespace rebake

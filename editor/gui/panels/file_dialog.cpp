@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "editor/document/sample_folder.h"
+#include "editor/edits/nodes/light.h"
 #include "editor/edits/stored_view.h"
 #include "editor/edits/support.h"
 #include "editor/gui/ui/announce.h"
@@ -31,11 +32,12 @@ struct Question {
   PathQuestion kind;
   const char* title;
   const char* hint;
-  const char* action;  ///< of its primary button
-  const char* ending;  ///< that a file's name gets where it has none
+  const char* action;           ///< of its primary button
+  const char* ending;           ///< that a file's name gets where it has none
+  const char* listed = ending;  ///< endings of the files that are shown
 };
 constexpr Question questions[] = {
-    {PathQuestion::open, "Open", "A baked scene, a scene folder, or a project (.rebake).", "Open", ""},
+    {PathQuestion::open, "Open", "A baked scene, a scene folder, or a project (.rebake).", "Open", "", ".rebake"},
     {PathQuestion::save_project, "Save project", "A file that keeps all steps.", "Save", ".rebake"},
     {PathQuestion::save_scene, "Save scene folder", "A folder that keeps every node, not the steps.", "Save", ""},
     {PathQuestion::export_folder, "Export", "A folder that MobileNeRF viewers open.", "Export", ""},
@@ -44,6 +46,8 @@ constexpr Question questions[] = {
     {PathQuestion::camera_path, "Camera path", "A folder for pictures on a way through the stored views.", "Write", ""},
     {PathQuestion::save_script, "Save as script", "A file with a line an edit.", "Save", ".jsonl"},
     {PathQuestion::run_script, "Run script", "A file with a line an edit.", "Run", ".jsonl"},
+    {PathQuestion::light_picture, "Picture of light", "All directions in one picture, twice as wide as high.", "Take",
+     "", ".exr .hdr .png .jpg .jpeg .tif .tiff"},
 };
 
 const Question& question_of(PathQuestion kind) {
@@ -52,13 +56,20 @@ const Question& question_of(PathQuestion kind) {
   return questions[0];
 }
 
+bool reads(PathQuestion asked) {
+  return asked == PathQuestion::open || asked == PathQuestion::run_script || asked == PathQuestion::light_picture;
+}
+
 // What is wrong with a path before anything is tried, empty for nothing.
-std::string problem_with(const fs::path& path, bool writes) {
+std::string problem_with(const fs::path& path, PathQuestion asked) {
+  const bool writes = !reads(asked);
   std::error_code error;
   if (path.empty()) return "Type or choose a path.";
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (writes && !fs::is_directory(parent, error)) return "There is no folder " + parent.string() + ".";
   if (!writes && !fs::exists(path, error)) return "There is nothing at " + path.string() + ".";
+  if (asked == PathQuestion::light_picture)
+    return fs::is_regular_file(path, error) ? "" : path.filename().string() + " is not a file.";
   if (!writes && fs::is_directory(path, error) && !holds_scene(path))
     return path.filename().string() + " holds no scene that can be read.";
   return "";
@@ -134,12 +145,11 @@ void FileDialog::begin(const Desk& desk) {
   height_ = desk.view.height;
   std::error_code gone;
   const bool kept = desk.asking.path == PathQuestion::save_project && !desk.project.path.empty();
-  const bool reads = asked_ == PathQuestion::open || asked_ == PathQuestion::run_script;
-  const fs::path last = reads ? desk.settings.opened_from : desk.settings.written_to;
+  const fs::path last = reads(asked_) ? desk.settings.opened_from : desk.settings.written_to;
   const fs::path start = fs::is_directory(last, gone) ? last : fs::current_path(gone);
   path_ = kept ? desk.project.path.string() : (start / "").string();
   problem_.clear();
-  if (kept || reads || desk.scene().roots.empty()) return;
+  if (kept || reads(asked_) || desk.scene().roots.empty()) return;
   // A name to begin with.
   const std::string title = desk.scene().roots.front()->name;
   const std::string ending = question_of(asked_).ending;
@@ -150,8 +160,7 @@ void FileDialog::begin(const Desk& desk) {
 
 void FileDialog::carry_out(Desk& desk, const fs::path& path) {
   if (makes_film(desk.asking.path) && desk.jobs.film) throw Error("a film is still being made; Esc ends it");
-  const bool reads = desk.asking.path == PathQuestion::open || desk.asking.path == PathQuestion::run_script;
-  (reads ? desk.settings.opened_from : desk.settings.written_to) = path.parent_path().string();
+  (reads(desk.asking.path) ? desk.settings.opened_from : desk.settings.written_to) = path.parent_path().string();
   if (makes_film(desk.asking.path) || desk.asking.path == PathQuestion::screenshot)
     desk.jobs.pictured = wanted_nodes(desk);
   switch (desk.asking.path) {
@@ -189,13 +198,21 @@ void FileDialog::carry_out(Desk& desk, const fs::path& path) {
     case PathQuestion::save_script:
       desk.project.save_script(path);
       break;
+    case PathQuestion::light_picture: {
+      LightEdit edit = light_edit(desk.scene().light ? *desk.scene().light : SceneLight{});
+      edit.source = "picture";
+      edit.picture = path.string();
+      edit.content.clear();
+      desk.edit(edit);
+      break;
+    }
     default:
       desk.project.run_script(path);
   }
 }
 
 // To the left of the answers, the dialog that people know from elsewhere.
-void FileDialog::draw_desktop_buttons(const Desk& desk, bool reads, const std::string& ending) {
+void FileDialog::draw_desktop_buttons(const Desk& desk, const std::string& ending) {
   if (!DesktopFileDialog::there()) return;
   using Kind = DesktopFileDialog::Kind;
   const Question& question = question_of(desk.asking.path);
@@ -216,9 +233,9 @@ void FileDialog::draw_desktop_buttons(const Desk& desk, bool reads, const std::s
     offer("Project...", Kind::open_file, "The desktop's dialog, for a project.", ".rebake");
   } else {
     offer("Browse...",
-          reads            ? Kind::open_file
-          : ending.empty() ? Kind::save_folder
-                           : Kind::save_file,
+          reads(desk.asking.path) ? Kind::open_file
+          : ending.empty()        ? Kind::save_folder
+                                  : Kind::save_file,
           "The desktop's dialog.", ending);
   }
 }
@@ -324,10 +341,9 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("entries", {0, high}, true);
-  list_.look_at(folder, opens ? ".rebake" : ending);
+  list_.look_at(folder, ending.empty() ? question.listed : ending);
   // What is typed to be written is a new name, not one that is looked for.
-  const bool reads = opens || desk.asking.path == PathQuestion::run_script;
-  list_.filter(reads ? typed.filename().string() : "");
+  list_.filter(reads(desk.asking.path) ? typed.filename().string() : "");
   if (const FolderList::Taken taken = list_.draw(thumbnails, opens, opens); !taken.path.empty()) {
     path_ = taken.path.string();
     done = done || taken.at_once;
@@ -380,7 +396,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   fs::path path(path_);
   if (!path.has_filename()) path = path.parent_path();
   if (!ending.empty() && path.extension() != ending) path += ending;
-  const bool writes = !reads;
+  const bool writes = !reads(desk.asking.path);
   const bool filled = fs::is_directory(path, error) && !fs::is_empty(path, error);
   const bool replaces = writes && path != desk.project.path && (fs::is_regular_file(path, error) || filled);
   const bool asks = replaces && replacing_ == path;
@@ -391,7 +407,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
     announce::item("problem");
   } else
     ImGui::TextUnformatted("");
-  draw_desktop_buttons(desk, reads, ending);
+  draw_desktop_buttons(desk, ending);
   const float width = px(120);
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * width - ImGui::GetStyle().ItemSpacing.x);
   const bool cancelled = ui::button("Cancel", {width, 0});
@@ -401,7 +417,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   done = ui::primary_button(action.c_str(), {width, 0}) || done;
   if (done) {
     problem_of_ = path_;
-    problem_ = problem_with(path, writes);
+    problem_ = problem_with(path, desk.asking.path);
     // Before it is asked whether to replace something.
     if (problem_.empty() && writes) try {
         const bool file = !ending.empty();

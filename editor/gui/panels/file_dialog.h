@@ -28,7 +28,7 @@ class FileDialog {
  private:
   void begin(const Desk& desk);
   std::vector<NodeRef> wanted_nodes(const Desk& desk) const;
-  void draw_desktop_buttons(const Desk& desk, bool reads, const std::string& ending);
+  void draw_desktop_buttons(const Desk& desk, const std::string& ending);
   void take_answer(Desk& desk);
   static int on_key(ImGuiInputTextCallbackData* data);
   void carry_out(Desk& desk, const std::filesystem::path& path);

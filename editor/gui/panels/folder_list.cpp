@@ -34,10 +34,20 @@ bool holds_scene(const fs::path& folder) {
   }
 }
 
-void FolderList::look_at(const fs::path& folder, const std::string& ending, bool again) {
-  if (folder_ == folder && ending_ == ending && !again) return;
+namespace {
+
+bool has_ending(const fs::path& path, const std::string& endings) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return !ending.empty() && (" " + endings + " ").find(" " + ending + " ") != std::string::npos;
+}
+
+}  // namespace
+
+void FolderList::look_at(const fs::path& folder, const std::string& endings, bool again) {
+  if (folder_ == folder && endings_ == endings && !again) return;
   folder_ = folder;
-  ending_ = ending;
+  endings_ = endings;
   entries_.clear();
   chosen_.clear();
   last_.clear();
@@ -46,7 +56,7 @@ void FolderList::look_at(const fs::path& folder, const std::string& ending, bool
     if (at->path().filename().string().starts_with('.')) continue;
     std::error_code unknown;
     const bool is_folder = at->is_directory(unknown);
-    if (!is_folder && (ending.empty() || at->path().extension() != ending)) continue;
+    if (!is_folder && !has_ending(at->path(), endings)) continue;
     entries_.push_back({at->path(), is_folder, is_folder && holds_scene(at->path())});
   }
   std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {

@@ -9,7 +9,7 @@
 
 namespace rebake {
 
-/// What lies in a folder, to choose from: scenes, folders, and files of one ending.
+/// What lies in a folder, to choose from: scenes, folders, and files of some endings.
 class FolderList {
  public:
   struct Entry {
@@ -17,8 +17,8 @@ class FolderList {
     bool is_folder = false, is_scene = false;
   };
 
-  /// Reads the folder, where it is another one or `again`.
-  void look_at(const std::filesystem::path& folder, const std::string& ending, bool again = false);
+  /// Reads the folder, where it is another one or `again`. `endings` of files, such as ".png .jpg".
+  void look_at(const std::filesystem::path& folder, const std::string& endings, bool again = false);
   /// Shows only what holds the text in its name, whatever the case; all where nothing does, or one has that very name.
   void filter(const std::string& name);
 
@@ -38,7 +38,7 @@ class FolderList {
 
  private:
   std::filesystem::path folder_;
-  std::string ending_;
+  std::string endings_;
   std::vector<Entry> entries_;
   std::vector<const Entry*> shown_;
   std::set<std::filesystem::path> chosen_;

@@ -15,29 +15,9 @@ namespace rebake {
 
 namespace {
 
-constexpr const char* source_words[] = {"estimated", "uniform", "sky"};
-
-// The edit that makes the scene's light this.
 LightEdit edit_for(const SceneLight& light, bool on) {
-  LightEdit edit;
-  edit.light = light;
-  edit.source = source_words[static_cast<std::size_t>(light.source)];
-  edit.budget = light.budget * 255;
-  edit.sun_degrees = light.sun.radius * 180 / std::numbers::pi;
-  edit.effects.clear();
-  if (!on) {
-    edit.effects = {"none"};
-    return edit;
-  }
-  if (light.self && light.cast && light.removed) {
-    edit.effects.emplace_back("auto");
-  } else {
-    if (light.self) edit.effects.emplace_back("self");
-    if (light.cast) edit.effects.emplace_back("cast");
-    if (light.removed) edit.effects.emplace_back("removed");
-  }
-  if (light.match) edit.effects.emplace_back("match");
-  if (edit.effects.empty()) edit.effects = {"none"};
+  LightEdit edit = light_edit(light);
+  if (!on) edit.effects = {"none"};
   return edit;
 }
 
@@ -145,14 +125,18 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
   }
   int source = static_cast<int>(light.source);
   ui::label("Light");
-  if (ui::choice("source", source, {"Estimated", "Uniform", "Sky"})) {
+  if (ui::choice("source", source, {"Estimated", "Uniform", "Sky", "Picture"})) {
     SceneLight changed = light;
     changed.source = static_cast<SceneLight::Source>(source);
-    commit(changed);
+    if (changed.source == SceneLight::Source::picture && !changed.picture)
+      desk.asking.path = PathQuestion::light_picture;
+    else
+      commit(changed);
   }
   if (!dragging_) {
     budget_ = light.budget * 255;
     sun_ = light.sun.direction;
+    turn_ = light.picture_turn * 180 / std::numbers::pi;
   }
   bool now_dragging = false;
   const auto field = [&](const char* id, double& value, const char* format, double step, double low, double high) {
@@ -182,6 +166,21 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
       changed.sun.direction = sun_;
       commit(changed);
     }
+  }
+  if (light.source == SceneLight::Source::picture && light.picture) {
+    ui::label("Picture");
+    const std::string name = std::filesystem::path(light.picture->path).filename().string();
+    if (ui::button((ui::shortened(name, px(130)) + "###another picture").c_str()))
+      desk.asking.path = PathQuestion::light_picture;
+    announce::item("another picture");
+    ui::tip("Another picture", "", light.picture->path);
+    ImGui::SameLine();
+    if (field("turn", turn_, "{:.0f}°", 1, -360, 360)) {
+      SceneLight changed = light;
+      changed.picture_turn = turn_ * std::numbers::pi / 180;
+      commit(changed);
+    }
+    ui::tip("Turn", "", "Of the picture, about the upright axis.");
   }
   dragging_ = now_dragging || (dragging_ && ImGui::IsMouseDown(ImGuiMouseButton_Left));
 }

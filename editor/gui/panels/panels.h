@@ -82,7 +82,7 @@ class LightPanel {
   std::shared_ptr<const Light> ball_of_;
   SceneLight last_;           ///< what it was while it was on
   Vec3 sun_{0.5, 0.8, 0.45};  ///< while it is dragged
-  double budget_ = 1;
+  double budget_ = 1, turn_ = 0;
   bool dragging_ = false;
 };
 

@@ -15,7 +15,8 @@ enum class PathQuestion {
   turntable,
   camera_path,
   save_script,
-  run_script
+  run_script,
+  light_picture
 };
 
 /// What the window asks people just now.

@@ -1,0 +1,172 @@
+#include "mesh_ops/formats/light_picture.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using std::numbers::pi;
+
+constexpr int largest_width = 32768;
+constexpr int kept_width = 2048;  // finer than a sun is wide
+
+// Radiances over all directions, by rows from the top.
+struct Panorama {
+  int width = 0, height = 0;
+  std::vector<Eigen::Vector3f> pixels;
+
+  Eigen::Vector3f& at(int x, int y) {
+    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+  }
+  const Eigen::Vector3f& at(int x, int y) const { return const_cast<Panorama&>(*this).at(x, y); }
+  // Of a row's pixels, in steradians.
+  double solid_angle(int y) const {
+    return 2 * pi / width * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height));
+  }
+  Vec3 direction(int x, int y) const {
+    const double down = pi * (y + 0.5) / height, right = 2 * pi * ((x + 0.5) / width - 0.5);
+    return {std::sin(down) * std::sin(right), std::cos(down), -std::sin(down) * std::cos(right)};
+  }
+  const Eigen::Vector3f& towards(const Vec3& d) const {
+    const double right = std::atan2(d.x(), -d.z()) / (2 * pi) + 0.5,
+                 down = std::acos(std::clamp(d.y(), -1.0, 1.0)) / pi;
+    return at(std::clamp(static_cast<int>(right * width), 0, width - 1),
+              std::clamp(static_cast<int>(down * height), 0, height - 1));
+  }
+};
+
+double luminance(const Eigen::Vector3f& c) {
+  return static_cast<double>(0.2126F * c[0] + 0.7152F * c[1] + 0.0722F * c[2]);  // of BT.709's primaries
+}
+
+// Reads it part by part, averaging blocks of pixels of what is wider than is kept.
+Panorama read_panorama(const fs::path& path) {
+  const auto input = OIIO::ImageInput::open(path.string());
+  if (!input)
+    throw FileError(path,
+                    "cannot be read as a picture: " + OIIO::geterror() + "; use OpenEXR, Radiance HDR, PNG or JPEG");
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.width != 2 * spec.height || spec.width < 4)
+    throw FileError(path, fmt::format("is {}×{} pixels; a picture of all directions is twice as wide as high",
+                                      spec.width, spec.height));
+  if (spec.width > largest_width)
+    throw FileError(path, fmt::format("is {} pixels wide; at most {} can be read", spec.width, largest_width));
+  const bool display =
+      spec.format.basetype == OIIO::TypeDesc::UINT8 || spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
+  const int block = (spec.width + kept_width - 1) / kept_width, channels = spec.nchannels;
+  Panorama result;
+  result.width = spec.width / block;
+  result.height = spec.height / block;
+  result.pixels.assign(static_cast<std::size_t>(result.width) * static_cast<std::size_t>(result.height),
+                       Eigen::Vector3f::Zero());
+  const int rows_at_once = spec.tile_height > 0 ? spec.tile_height : block;
+  std::vector<float> rows(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(rows_at_once) *
+                          static_cast<std::size_t>(channels));
+  for (int first = 0; first < spec.height; first += rows_at_once) {
+    const int count = std::min(rows_at_once, spec.height - first);
+    const bool read = spec.tile_height > 0
+                          ? input->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + first + count,
+                                              0, 1, 0, channels, OIIO::TypeDesc::FLOAT, rows.data())
+                          : input->read_scanlines(0, 0, spec.y + first, spec.y + first + count, 0, 0, channels,
+                                                  OIIO::TypeDesc::FLOAT, rows.data());
+    if (!read) throw FileError(path, "cannot be decoded, it may be truncated: " + input->geterror());
+    for (int y = first; y < first + count; ++y)
+      for (int x = 0; x < result.width * block && y / block < result.height; ++x) {
+        const float* pixel = &rows[(static_cast<std::size_t>(y - first) * static_cast<std::size_t>(spec.width) +
+                                    static_cast<std::size_t>(x)) *
+                                   static_cast<std::size_t>(channels)];
+        Eigen::Vector3f color(pixel[0], pixel[channels >= 3 ? 1 : 0], pixel[channels >= 3 ? 2 : 0]);
+        for (float& c : color) {
+          if (!(c > 0)) c = 0;  // below 0 and no number
+          c = std::min(c, 1e6F);
+          if (display) c = static_cast<float>(to_linear(static_cast<double>(c)));
+        }
+        result.at(x / block, y / block) += color / static_cast<float>(block * block);
+      }
+  }
+  return result;
+}
+
+double mean_luminance(const Panorama& panorama) {
+  double sum = 0;
+  for (int y = 0; y < panorama.height; ++y)
+    for (int x = 0; x < panorama.width; ++x) sum += panorama.solid_angle(y) * luminance(panorama.at(x, y));
+  return sum / (4 * pi);
+}
+
+// Takes what is very bright out of the picture, as a disk that sends as much.
+std::vector<Sun> suns_of(Panorama& panorama) {
+  constexpr std::size_t most = 4;
+  constexpr double outshines = 30, left = 10, reach = 0.1;  // of the mean; of the mean; radians
+  std::vector<Sun> suns;
+  while (suns.size() < most) {
+    const auto brightest = std::max_element(
+        panorama.pixels.begin(), panorama.pixels.end(),
+        [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return luminance(a) < luminance(b); });
+    const auto number = static_cast<int>(brightest - panorama.pixels.begin());
+    const Vec3 middle = panorama.direction(number % panorama.width, number / panorama.width);
+    // What the sun itself adds must not hide it.
+    double near = 0, all = mean_luminance(panorama) * 4 * pi;
+    const auto for_each_near = [&](auto visit) {
+      for (int y = 0; y < panorama.height; ++y)
+        for (int x = 0; x < panorama.width; ++x)
+          if (const Vec3 d = panorama.direction(x, y); d.dot(middle) > std::cos(reach))
+            visit(panorama.at(x, y), d, panorama.solid_angle(y));
+    };
+    for_each_near([&](const Eigen::Vector3f& c, const Vec3&, double angle) { near += angle * luminance(c); });
+    const double mean = (all - near) / (4 * pi);
+    if (!(luminance(*brightest) > outshines * mean)) break;
+    Sun sun;
+    sun.direction = Vec3::Zero();
+    double sent = 0, spread = 0;
+    for_each_near([&](const Eigen::Vector3f& c, const Vec3& d, double angle) {
+      const double excess = luminance(c) - left * mean;
+      if (excess <= 0) return;
+      sun.irradiance += c.cast<double>() * (angle / pi * excess / luminance(c));
+      sun.direction += angle * excess * d;
+      sent += angle * excess;
+    });
+    sun.direction.normalize();
+    for_each_near([&](Eigen::Vector3f& c, const Vec3& d, double angle) {
+      const double excess = luminance(c) - left * mean;
+      if (excess <= 0) return;
+      spread += angle * excess * (d - sun.direction).squaredNorm();
+      c *= static_cast<float>(left * mean / luminance(c));
+    });
+    // An even disk's points lie, squared, half its radius squared off its middle.
+    sun.radius = std::clamp(std::sqrt(2 * spread / sent), 0.002, reach);
+    // What adds next to nothing is as well left out as traced.
+    if (sent > 0.005 * all) suns.push_back(sun);
+  }
+  return suns;
+}
+
+}  // namespace
+
+LightPicture read_light_picture(const fs::path& path) {
+  LightPicture result;
+  result.path = path.string();
+  result.content = hash_text(content_hash(read_file(path)));
+  Panorama panorama = read_panorama(path);
+  result.light.suns = suns_of(panorama);
+  constexpr int side = 64;
+  const int finer = std::clamp(panorama.width / (2 * side), 2, 16);
+  result.light.sky =
+      SkyMap(side * finer, [&](const Vec3& d) { return panorama.towards(d).cast<double>(); }).coarser(finer);
+  return result;
+}
+
+}  // namespace rebake

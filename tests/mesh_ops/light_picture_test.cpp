@@ -1,0 +1,118 @@
+// Pictures of all directions as light: what lies where, what becomes a sun, and files that are refused by name.
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/light_picture.h"
+#include "tests/support/light_pictures.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::numbers::pi;
+
+class LightPictureTest : public ::testing::Test {
+ protected:
+  fs::path path(const std::string& name) const { return folder_.path() / name; }
+  LightPicture read(const std::string& name) const { return read_light_picture(path(name)); }
+  TemporaryFolder folder_;
+};
+
+TEST_F(LightPictureTest, MiddleLiesTowardsMinusZAndTheRightQuarterTowardsX) {
+  // Around each axis a colour of its own.
+  const auto color = [](const Vec3& d) -> Radiance {
+    Eigen::Index axis = 0;
+    d.cwiseAbs().maxCoeff(&axis);
+    return Radiance::Constant(d[axis] > 0 ? 0.2 : 0.1) + 0.5 * Radiance::Unit(axis);
+  };
+  write_light_picture(path("axes.exr"), 128, color);
+  const LightPicture picture = read("axes.exr");
+  EXPECT_TRUE(picture.light.suns.empty());
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      const Vec3 d = sign * Vec3::Unit(axis);
+      EXPECT_LT((picture.light.sky.at(d) - color(d)).norm(), 1e-6) << d.transpose();
+    }
+}
+
+TEST_F(LightPictureTest, SkyIsThePicturesOnTheWholeAndDirectionByDirection) {
+  const auto blend = [](const Vec3& d) -> Radiance {
+    return {0.5 + 0.4 * d.y(), 0.5 + 0.3 * d.x(), 0.5 - 0.2 * d.z()};
+  };
+  for (const int width : {64, 512, 2304}) {
+    write_light_picture(path("blend.exr"), width, blend);
+    const LightPicture picture = read("blend.exr");
+    EXPECT_LT((picture.light.sky.mean() - Radiance::Constant(0.5)).norm(), 2e-3) << width;
+    for (int k = 0; k < 200; ++k) {
+      const Vec3 d = Vec3(std::sin(k * 1.3), std::cos(k * 2.1), std::sin(k * 0.7 + 1)).normalized();
+      // Pixels of the smallest are 0.1 radians wide, texels of the sky 0.05.
+      EXPECT_LT((picture.light.sky.at(d) - blend(d)).cwiseAbs().maxCoeff(), width == 64 ? 0.05 : 0.02) << width;
+    }
+  }
+}
+
+// Rays would miss a disk of half a degree; as a sun it is aimed at.
+TEST_F(LightPictureTest, BrightDiskBecomesASunThatSendsAsMuch) {
+  // Also where the picture is cut open, and about its upper edge.
+  for (const auto& [towards, radius] : {std::pair(Vec3(0.5, 0.8, 0.45), 0.01), std::pair(Vec3(0, 0.2, 1), 0.03),
+                                        std::pair(Vec3(0.02, 1, 0.01), 0.02)}) {
+    const Vec3 direction = towards.normalized();
+    const Radiance sky(0.2, 0.3, 0.5), disk(900, 800, 600);
+    write_light_picture(path("sun.exr"), 2048,
+                        [&](const Vec3& d) { return (d - direction).norm() < radius ? disk : sky; });
+    const LightPicture picture = read("sun.exr");
+    ASSERT_EQ(picture.light.suns.size(), 1U);
+    const Sun& sun = picture.light.suns.front();
+    EXPECT_LT((sun.direction - direction).norm(), 0.002);
+    EXPECT_NEAR(sun.radius, radius, 0.1 * radius);
+    // Over π, of a disk of angular radius r: sin² r of its radiance.
+    const Radiance sent = std::pow(std::sin(radius), 2) * disk;
+    EXPECT_LT((sun.irradiance - sent).cwiseQuotient(sent).cwiseAbs().maxCoeff(), 0.04);
+    EXPECT_LT((picture.light.sky.at(-direction) - sky).norm(), 1e-6);
+    EXPECT_LT(picture.light.sky.brightest().maxCoeff(), 6);
+  }
+}
+
+TEST_F(LightPictureTest, BytesAreDisplayColours) {
+  write_light_picture(path("grey.png"), 64, [](const Vec3&) { return Radiance::Constant(to_display(0.2)); });
+  EXPECT_LT((read("grey.png").light.sky.at({0, 1, 0}) - Radiance::Constant(0.2)).norm(), 0.005);
+}
+
+TEST_F(LightPictureTest, BlackOnesAndThoseWithBadNumbersAreRead) {
+  write_light_picture(path("black.exr"), 64, [](const Vec3&) { return Radiance::Zero(); });
+  EXPECT_TRUE(read("black.exr").light.sky.black());
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  write_light_picture(path("none.exr"), 64, [&](const Vec3& d) -> Radiance {
+    return d.y() > 0 ? Radiance(1, 1, 1) : Radiance(none, -1, std::numeric_limits<double>::infinity());
+  });
+  const LightPicture picture = read("none.exr");
+  EXPECT_TRUE(picture.light.sky.mean().allFinite());
+  EXPECT_GE(picture.light.sky.mean().minCoeff(), 0);
+}
+
+TEST_F(LightPictureTest, FilesThatAreNoPicturesOfAllDirectionsAreRefusedByName) {
+  write_text(path("text.exr"), "not a picture");
+  write_light_picture(path("whole.exr"), 64, [](const Vec3& d) { return Radiance(d.cwiseAbs()); });
+  const std::string bytes = read_file(path("whole.exr"));
+  write_text(path("cut.exr"), bytes.substr(0, bytes.size() / 2));
+  const auto out = OIIO::ImageOutput::create("png");
+  ASSERT_TRUE(out->open(path("square.png").string(), OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8)));
+  const std::vector<std::uint8_t> zeros(192);
+  out->write_image(OIIO::TypeDesc::UINT8, zeros.data());
+  out->close();
+  for (const char* name : {"text.exr", "cut.exr", "square.png", "missing.exr", "."}) try {
+      read(name);
+      ADD_FAILURE() << name << " was read";
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find(path(name).string()), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace rebake::test
