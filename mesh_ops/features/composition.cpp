@@ -40,10 +40,10 @@ TextureSet in_world(const TextureSet& set, const TriangleSet& flags, const Affin
   for (Vec3& p : *positions) p = to_world * p;
   Attributes vertices;
   if (bent) {
-    std::vector<Mat3> turns(positions->size(), Mat3::Identity());
+    std::vector<Turn> turns(positions->size());
     for (std::size_t v = 0; v < turns.size(); ++v)
-      turns[v] = node_turn * (*some.rotations())[v] * node_turn.transpose();
-    vertices = vertices.with(Soup::rotation, Values<Mat3>::of(std::move(turns)));
+      turns[v] = Turn(node_turn * (*some.rotations())[v].matrix() * node_turn.transpose());
+    vertices = vertices.with(Soup::rotation, Values<Turn>::of(std::move(turns)));
   }
   if (light != nullptr) vertices = vertices.with(light_attribute, some.vertex_attributes().shared(light_attribute));
   const Attributes faces = Attributes().with(
@@ -52,7 +52,7 @@ TextureSet in_world(const TextureSet& set, const TriangleSet& flags, const Affin
 }
 
 Mat3 turn_of(const Soup& soup, std::uint32_t vertex) {
-  return soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*soup.rotations())[vertex];
+  return soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*soup.rotations())[vertex].matrix();
 }
 
 // Sets in which no texel is used by triangles that are turned far apart.

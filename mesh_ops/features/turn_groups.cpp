@@ -15,7 +15,7 @@ TurnGroups turn_groups(const BakedObject& object) {
   for (const TextureSet& set : object.sets)
     for (const Face& face : set.soup.faces()) {
       const auto turn = [&](std::size_t k) {
-        return set.soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.rotations())[face[k]];
+        return set.soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.rotations())[face[k]].matrix();
       };
       const Mat3 first = turn(0);
       if ((turn(1) - first).norm() > same_to_the_eye || (turn(2) - first).norm() > same_to_the_eye) {

@@ -11,6 +11,7 @@
 #include "mesh_ops/formats/feature_png.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
+#include "mesh_ops/formats/turns_file.h"
 #include "mesh_ops/formats/turns_json.h"
 
 namespace rebake {
@@ -161,8 +162,10 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
     object->sets.push_back(std::move(set));
   }
   object->origin = origin;
-  if (const fs::path turns = folder / "turns.json"; fs::exists(turns))
-    read_turns_json(read_file(turns), turns, object->sets);
+  if (const fs::path turns = folder / "turns.bin"; fs::exists(turns))
+    read_turns(read_file(turns), turns, object->sets);
+  else if (const fs::path text = folder / "turns.json"; fs::exists(text))
+    read_turns_json(read_file(text), text, object->sets);
   return object;
 }
 

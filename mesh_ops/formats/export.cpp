@@ -17,16 +17,16 @@ namespace rebake {
 
 namespace {
 
-bool same_turn(const Soup& soup, std::size_t face, const Mat3& turn) {
-  return soup.rotations() == nullptr ? turn.isIdentity(0) : (*soup.rotations())[soup.faces()[face][0]] == turn;
+bool same_turn(const Soup& soup, std::size_t face, const Turn& turn) {
+  return soup.rotations() == nullptr ? turn.is_identity() : (*soup.rotations())[soup.faces()[face][0]] == turn;
 }
 
 // Of an object without bent faces.
-std::vector<Mat3> distinct_turns(const BakedObject& object) {
-  std::vector<Mat3> turns;
+std::vector<Turn> distinct_turns(const BakedObject& object) {
+  std::vector<Turn> turns;
   for (const TextureSet& set : object.sets)
     for (const Face& face : set.soup.faces()) {
-      const Mat3 turn = set.soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*set.soup.rotations())[face[0]];
+      const Turn turn = set.soup.rotations() == nullptr ? Turn() : (*set.soup.rotations())[face[0]];
       if (turns.empty() || turns.back() != turn)
         if (std::find(turns.begin(), turns.end(), turn) == turns.end()) turns.push_back(turn);
       if (set.soup.rotations() == nullptr) break;
@@ -45,12 +45,12 @@ Mat3 stand_in(const BakedObject& object, const TurnGroups& groups) {
   Mat3 sum = Mat3::Zero();
   for (const TextureSet& set : object.sets)
     if (set.soup.rotations() != nullptr)
-      for (const Mat3& turn : *set.soup.rotations()) sum += turn;
+      for (const Turn& turn : *set.soup.rotations()) sum += turn.matrix();
   return local_rotation(sum).rotation;
 }
 
 // Triangles of one turn, in world space and without turns. The arrays are shared where nothing changes.
-std::vector<TextureSet> world_sets(const BakedObject& object, const Mat3& turn, bool all, const Affine& to_world) {
+std::vector<TextureSet> world_sets(const BakedObject& object, const Turn& turn, bool all, const Affine& to_world) {
   std::vector<TextureSet> sets;
   for (const TextureSet& set : object.sets) {
     Soup soup = set.soup;
@@ -117,10 +117,10 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
     } catch (const std::invalid_argument& error) {
       throw EditError(fmt::format("node \"{}\": {}", placed.node->name, error.what()));
     }
-    const std::vector<Mat3> turns = distinct_turns(object);
-    for (const Mat3& turn : turns) {
+    const std::vector<Turn> turns = distinct_turns(object);
+    for (const Turn& turn : turns) {
       std::vector<TextureSet> sets = world_sets(object, turn, turns.size() == 1, placed.to_world);
-      const Mat3 whole = node_turn * turn;
+      const Mat3 whole = node_turn * turn.matrix();
       // Fold into the axes of a group that is there already, where the weights then agree.
       const auto folded_into = [&](Axes axes) {
         if (whole.isIdentity(0) && axes == object.axes) return object.decoder;

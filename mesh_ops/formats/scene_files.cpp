@@ -53,7 +53,7 @@ void add_baked_files(const fs::path& root, const fs::path& folder, std::vector<f
     return true;
   };
   if (!add("mlp.json")) return;
-  add("turns.json");
+  for (const char* name : {"turns.bin", "turns.json"}) add(name);
   const json mlp = json::parse(read_file(root / folder / "mlp.json"), nullptr, false);
   const bool unsplit = !mlp.is_object() || !mlp.contains("obj_num") || !mlp.at("obj_num").is_number_unsigned();
   const std::size_t sets = unsplit ? 1 : std::min<std::size_t>(mlp.at("obj_num").get<std::size_t>(), most_texture_sets);
@@ -68,7 +68,7 @@ void add_baked_files(const fs::path& root, const fs::path& folder, std::vector<f
 }  // namespace
 
 bool is_format_file_name(const std::string& name) {
-  if (name == "mlp.json" || name == "scene.json" || name == "turns.json") return true;
+  if (name == "mlp.json" || name == "scene.json" || name == "turns.bin" || name == "turns.json") return true;
   std::string_view rest = name;
   if (!rest.starts_with("shape")) return false;
   rest.remove_prefix(5);

@@ -13,7 +13,7 @@
 #include "mesh_ops/formats/feature_png.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
-#include "mesh_ops/formats/turns_json.h"
+#include "mesh_ops/formats/turns_file.h"
 
 namespace rebake {
 
@@ -167,7 +167,7 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
     mlp = write_mlp_json(file);
   }
   out.write(folder / "mlp.json", *mlp);
-  if (object.any_rotations()) out.write(folder / "turns.json", write_turns_json(sets));
+  if (object.any_rotations()) out.write(folder / "turns.bin", write_turns(sets));
   progress.at("writing", 1);
 }
 

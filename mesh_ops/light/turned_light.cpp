@@ -54,8 +54,8 @@ std::vector<Mat3> node_turns(const TextureSet& from, const TextureSet& to, const
       Mat3 mean = Mat3::Zero();
       for (std::size_t k = 0; k < 3; ++k) {
         const double weight = static_cast<double>(node.weights[static_cast<Eigen::Index>(k)]);
-        mean += before != nullptr ? Mat3(weight * (*after)[now[k]] * (*before)[face[k]].transpose())
-                                  : Mat3(weight * (*after)[now[k]]);
+        mean += before != nullptr ? Mat3(weight * (*after)[now[k]].matrix() * (*before)[face[k]].matrix().transpose())
+                                  : Mat3(weight * (*after)[now[k]].matrix());
       }
       // Corners turned by half a turn against each other have nothing between them.
       if (const Mat3 turn = rotation_near(mean); turn.determinant() > least_volume) turns[i] = turn;

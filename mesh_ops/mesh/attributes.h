@@ -38,9 +38,7 @@ class Values final : public Attribute {
   explicit Values(std::vector<T> values) : values_(std::move(values)) {}
 
   static T neutral() {
-    if constexpr (std::is_same_v<T, Mat3>)
-      return Mat3::Identity();
-    else if constexpr (requires { T::Zero(); })
+    if constexpr (requires { T::Zero(); })
       return T::Zero();
     else
       return T{};

@@ -25,7 +25,7 @@ Soup::Soup(Positions positions, Uvs uvs, Faces faces, Attributes vertex_attribut
       faces_(std::move(faces)),
       vertex_attributes_(std::move(vertex_attributes)),
       face_attributes_(std::move(face_attributes)),
-      rotations_(vertex_attributes_.find<Mat3>(rotation)) {
+      rotations_(vertex_attributes_.find<Turn>(rotation)) {
   const std::size_t count = positions_->size();
   if (uvs_->size() != count) throw std::invalid_argument("a soup needs as many UVs as positions");
   for (const auto& [name, attribute] : vertex_attributes_)
@@ -141,8 +141,7 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
 
   auto positions = std::make_shared<std::vector<Vec3>>(soup.positions());
   auto uvs = std::make_shared<std::vector<Vec2>>(soup.uvs());
-  std::vector<Mat3> rotations =
-      soup.rotations() != nullptr ? *soup.rotations() : std::vector<Mat3>(positions->size(), Mat3::Identity());
+  std::vector<Turn> rotations = soup.rotations() != nullptr ? *soup.rotations() : std::vector<Turn>(positions->size());
 
   const auto* displaced_before = soup.vertex_attributes().find<Eigen::Vector3f>(Soup::displacement);
   std::vector<Eigen::Vector3f> displacements =
@@ -156,9 +155,11 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
     if (by_changed[v] == 0) continue;
     changed_vertex[v] = v;
     Vec3 position = soup.positions()[v];
-    Mat3 rotation = rotations[v];
+    const Mat3 rotation_before = rotations[v].matrix();
+    Mat3 rotation = rotation_before;
     change(v, position, rotation);
-    const bool moves = position != soup.positions()[v], rotates = rotation != rotations[v];
+    const bool moves = position != soup.positions()[v], rotates = rotation != rotation_before;
+    const Turn turn = rotates ? Turn(rotation) : rotations[v];
     if (!moves && !rotates) continue;
     any_position = any_position || moves;
     any_rotation = any_rotation || rotates;
@@ -168,11 +169,11 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
       old_vertex.push_back(v);
       positions->push_back(position);
       uvs->push_back(soup.uvs()[v]);
-      rotations.push_back(rotation);
+      rotations.push_back(turn);
       displacements.push_back(displacement);
     } else {
       (*positions)[v] = position;
-      rotations[v] = rotation;
+      rotations[v] = turn;
       displacements[v] = displacement;
     }
   }
@@ -186,7 +187,7 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
   const Attributes attributes = split ? soup.vertex_attributes().picked(old_vertex) : soup.vertex_attributes();
   return Soup(any_position || split ? Soup::Positions(positions) : soup.shared_positions(),
               split ? Soup::Uvs(uvs) : soup.shared_uvs(), split ? Soup::Faces(faces) : soup.shared_faces(),
-              attributes.with(Soup::rotation, Values<Mat3>::of(std::move(rotations)))
+              attributes.with(Soup::rotation, Values<Turn>::of(std::move(rotations)))
                   .with(Soup::displacement, Values<Eigen::Vector3f>::of(std::move(displacements))),
               soup.face_attributes());
 }

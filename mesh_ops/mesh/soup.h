@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "mesh_ops/base/turn.h"
 #include "mesh_ops/base/types.h"
 #include "mesh_ops/mesh/attributes.h"
 
@@ -21,7 +22,7 @@ class Soup {
 
   Soup();
   /// The vertex attribute that is the rotation field: by which orthogonal matrix an edit turned each vertex against its
-  /// object (Mat3).
+  /// object (Turn).
   static constexpr const char* rotation = "rotation";
   /// The vertex attribute that says how far edits moved each vertex from where it was when its light was baked
   /// (Eigen::Vector3f, object space).
@@ -36,7 +37,7 @@ class Soup {
   const std::vector<Vec2>& uvs() const { return *uvs_; }
   const std::vector<Face>& faces() const { return *faces_; }
   /// Null where nothing was turned.
-  const std::vector<Mat3>* rotations() const { return rotations_; }
+  const std::vector<Turn>* rotations() const { return rotations_; }
   const Attributes& vertex_attributes() const { return vertex_attributes_; }
   const Attributes& face_attributes() const { return face_attributes_; }
   /// With other attributes of the faces.
@@ -66,7 +67,7 @@ class Soup {
   Faces faces_;
   Attributes vertex_attributes_;
   Attributes face_attributes_;
-  const std::vector<Mat3>* rotations_ = nullptr;  ///< one of vertex_attributes_
+  const std::vector<Turn>* rotations_ = nullptr;  ///< one of vertex_attributes_
   Box bounds_;
   std::shared_ptr<const Lineage> lineage_;
 };

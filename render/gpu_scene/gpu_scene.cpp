@@ -96,7 +96,8 @@ PreparedMesh prepared(const TextureSet& set, const ShownFaces& shown) {
     const auto& rotations = *soup.rotations();
     made.turns.resize(rotations.size() * 9);
     tbb::parallel_for(std::size_t{0}, rotations.size(), [&](std::size_t v) {
-      for (std::size_t k = 0; k < 9; ++k) made.turns[v * 9 + k] = static_cast<float>(rotations[v].data()[k]);
+      const Mat3 turn = rotations[v].matrix();
+      for (std::size_t k = 0; k < 9; ++k) made.turns[v * 9 + k] = static_cast<float>(turn.data()[k]);
     });
   }
   made.clusters = clusters_of(soup, *shown.faces);

@@ -233,8 +233,8 @@ TEST_F(DeformScript, ExportKeepsWhatItCanOfTurns) {
 {"op": "bend", "node": "read", "degrees": 5, "box": {"min": [0, 0, 0], "max": [1, 0.1, 1]}, "frame": "bounds"})");
   const Scene flat = without_bends(session.scene());
   std::size_t quarter = 0;
-  for (const Mat3& turn : *find(flat, "read")->object->sets[0].soup.rotations())
-    quarter += std::abs(turn(0, 2)) > 0.99 ? 1 : 0;
+  for (const Turn& turn : *find(flat, "read")->object->sets[0].soup.rotations())
+    quarter += std::abs(turn.matrix()(0, 2)) > 0.99 ? 1 : 0;
   EXPECT_GT(quarter, 500U);
 }
 

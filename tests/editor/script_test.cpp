@@ -265,7 +265,7 @@ TEST_F(Script, TurningAllTrianglesOfAStretchedNodeTurnsItsColoursLikeTheNode) {
       R"({"op": "transform", "node": "ball", "selection": true, "rotate": {"axis": [0, 1, 0], "degrees": 60}})");
   const Mat3 turn = Eigen::AngleAxisd(EIGEN_PI / 3, Vec3::UnitY()).toRotationMatrix();
   const Mat3 wanted = orthogonal_factor(before).transpose() * orthogonal_factor(turn * before);
-  for (const Mat3& t : *node("ball")->object->sets[0].soup.rotations()) ASSERT_TRUE(t.isApprox(wanted, 1e-12));
+  for (const Turn& t : *node("ball")->object->sets[0].soup.rotations()) ASSERT_TRUE(t.matrix().isApprox(wanted, 1e-12));
 }
 
 TEST_F(Script, WhatWouldBeLostIsRefused) {

@@ -8,6 +8,7 @@
 #include "mesh_ops/formats/camera_json.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
+#include "mesh_ops/formats/turns_file.h"
 #include "mesh_ops/formats/turns_json.h"
 
 namespace rebake::fuzz {
@@ -47,6 +48,11 @@ void read_json_bytes(std::string_view bytes) {
   try {
     std::vector<TextureSet> sets = small_scene().roots[0]->object->sets;
     read_turns_json(bytes, "turns.json", sets);
+  } catch (const Error&) {
+  }
+  try {
+    std::vector<TextureSet> sets = small_scene().roots[0]->object->sets;
+    read_turns(bytes, "turns.bin", sets);
   } catch (const Error&) {
   }
   try {

@@ -159,9 +159,9 @@ TEST(Deform, FoldsAreCountedAndNothingBecomesNaN) {
     for (const TextureSet& set : flat.object->sets) {
       for (const Vec3& p : set.soup.positions()) EXPECT_TRUE(p.allFinite());
       if (set.soup.rotations() == nullptr) continue;
-      for (const Mat3& turn : *set.soup.rotations()) {
-        EXPECT_TRUE(turn.isUnitary(1e-12));
-        EXPECT_GT(turn.determinant(), 0);
+      for (const Turn& turn : *set.soup.rotations()) {
+        EXPECT_TRUE(turn.matrix().isUnitary(1e-12));
+        EXPECT_GT(turn.matrix().determinant(), 0);
       }
     }
   }
@@ -186,13 +186,14 @@ TEST(Deform, RotationsAccumulateOverSeveralBends) {
   const Mat3 quarter = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
   const DeformedObject once = deformed(*object, Affine::Identity(), all(*object), 0, affine(quarter));
   const DeformedObject twice = deformed(*once.object, Affine::Identity(), all(*object), 0, affine(quarter));
-  for (const Mat3& turn : *twice.object->sets[0].soup.rotations()) EXPECT_LE((turn - quarter * quarter).norm(), 1e-14);
+  for (const Turn& turn : *twice.object->sets[0].soup.rotations())
+    EXPECT_LE((turn.matrix() - quarter * quarter).norm(), 1e-14);
   // Seen from the object's own frame, in a node that is turned and scaled unevenly.
   const Affine placed = Eigen::AngleAxisd(1.1, Vec3(1, 1, 0).normalized()) * Eigen::Scaling(1.0, 3.0, 0.5);
   const DeformedObject turned = deformed(*object, placed, all(*object), 0, affine(quarter));
   const Mat3 frame = orthogonal_factor(placed.linear());
-  for (const Mat3& turn : *turned.object->sets[0].soup.rotations())
-    EXPECT_LE((turn - frame.transpose() * quarter * frame).norm(), 1e-12);
+  for (const Turn& turn : *turned.object->sets[0].soup.rotations())
+    EXPECT_LE((turn.matrix() - frame.transpose() * quarter * frame).norm(), 1e-12);
 }
 
 TEST(Wrap, EnclosesEveryTriangleAndIsClosed) {

@@ -33,11 +33,12 @@ TEST(Soup, TurnsAccumulateAndScaleDoesNotCount) {
   const Affine quarter(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()) * Eigen::Scaling(3.0));
   Soup soup = moved_faces(square(), {1, 0}, 0, quarter);
   ASSERT_NE(soup.rotations(), nullptr);
-  EXPECT_TRUE(
-      (*soup.rotations())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
-  EXPECT_TRUE((*soup.rotations())[3].isIdentity(0));
+  EXPECT_TRUE((*soup.rotations())[0].matrix().isApprox(
+      Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
+  EXPECT_TRUE((*soup.rotations())[3].is_identity());
   soup = moved_faces(soup, {1, 0}, 0, quarter);
-  EXPECT_TRUE((*soup.rotations())[0].isApprox(Eigen::AngleAxisd(EIGEN_PI, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
+  EXPECT_TRUE(
+      (*soup.rotations())[0].matrix().isApprox(Eigen::AngleAxisd(EIGEN_PI, Vec3::UnitZ()).toRotationMatrix(), 1e-14));
 }
 
 TEST(Soup, SubsetKeepsOrderAndDropsUnusedVertices) {
@@ -66,7 +67,7 @@ TEST(Soup, AttributesFollowTheirVerticesAndFaces) {
   const Soup both = united(moved, plain);
   EXPECT_EQ(*both.face_attributes().find<int>("label"), (std::vector<int>{7, 8, 0, 0}));
   EXPECT_EQ(light(both, static_cast<std::uint32_t>(moved.positions().size())), 0.0F);
-  EXPECT_TRUE(both.rotations()->back().isIdentity(0));
+  EXPECT_TRUE(both.rotations()->back().is_identity());
   // Parts make the whole again, with all of it.
   const Soup whole = united(subset(soup, {0, 1}, 0, false), part);
   EXPECT_EQ(whole.vertex_attributes(), soup.vertex_attributes());

@@ -80,7 +80,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
     const double weight[3] = {1 - u - v, u, v};
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 corner_ray = surface.world_to_object * (context.parallel ? context.ray : surface.corners[face[k]]);
-      sum += weight[k] * ((*soup.rotations())[face[k]].transpose() * corner_ray);
+      sum += weight[k] * ((*soup.rotations())[face[k]].matrix().transpose() * corner_ray);
     }
     direction = sum;
   }

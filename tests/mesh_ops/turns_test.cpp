@@ -1,0 +1,190 @@
+// Turns of vertices: what 20 bytes keep of a matrix, and the file beside a folder that holds them.
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/turn.h"
+#include "mesh_ops/formats/baked_folder.h"
+#include "mesh_ops/formats/scene_folder.h"
+#include "mesh_ops/formats/turns_file.h"
+#include "mesh_ops/formats/turns_json.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+Mat3 about(const Vec3& axis, double angle) { return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(); }
+
+TEST(Turn, KeepsRotationsAndMirrorsToTheLastBits) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const auto check = [](const Mat3& m) {
+    const Turn turn(m);
+    EXPECT_LE((turn.matrix() - m).cwiseAbs().maxCoeff(), 2e-15) << m;
+    EXPECT_EQ(Turn(turn.bytes()), turn);
+  };
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 axis(normal(random), normal(random), normal(random));
+    // Near nothing, near half a turn, and anywhere.
+    for (const double angle :
+         std::initializer_list<double>{1e-12, 1e-7, 1.0, std::numbers::pi - 1e-9, std::numbers::pi, 4.0 + 0.001 * k}) {
+      check(about(axis, angle));
+      check(-about(axis, angle));
+    }
+  }
+}
+
+TEST(Turn, WhatMapsAxesOntoAxesIsExact) {
+  EXPECT_TRUE(Turn().is_identity());
+  EXPECT_TRUE(Turn(Mat3::Identity()).is_identity());
+  EXPECT_EQ(Turn().matrix(), Mat3::Identity());
+  int number = 0;
+  const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  for (const auto& order : orders)
+    for (int signs = 0; signs < 8; ++signs) {
+      Mat3 m = Mat3::Zero();
+      for (int row = 0; row < 3; ++row) m(row, order[row]) = (signs >> row & 1) != 0 ? -1 : 1;
+      EXPECT_EQ(Turn(m).matrix(), m);
+      ++number;
+    }
+  EXPECT_EQ(number, 48);
+}
+
+TEST(Turn, AnyBytesAreATurn) {
+  std::mt19937 random(5);
+  for (int k = 0; k < 2000; ++k) {
+    std::array<std::uint8_t, Turn::size> bytes{};
+    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(k == 0 ? 0xFF : random());
+    EXPECT_TRUE(Turn(bytes).matrix().isUnitary(1e-12));
+  }
+}
+
+// A chunked object, some faces of which are bent, one turned rigidly, most of them as they were.
+std::vector<TextureSet> bent_sets() {
+  const auto object = made_object({.columns = 24, .rows = 12});
+  std::vector<TextureSet> sets = object->sets;
+  const Soup& soup = sets[0].soup;
+  std::vector<std::uint8_t> flags(soup.triangle_count());
+  for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = f % 7 < 3 ? 1 : 0;
+  Soup bent = change_vertices(soup, flags, 0, [](std::uint32_t vertex, Vec3& position, Mat3& turn) {
+    position += Vec3(0, 0.1, 0);
+    turn = about({1, 0.2, 0}, 0.01 * vertex);
+  });
+  flags.assign(flags.size(), 0);
+  flags[4] = 1;
+  sets[0].soup = move_faces(bent, flags, 0, Affine(Eigen::AngleAxisd(2, Vec3::UnitZ())), about({0, 0, 1}, 2));
+  return sets;
+}
+std::vector<TextureSet> unturned(std::vector<TextureSet> sets) {
+  for (TextureSet& set : sets)
+    set.soup = Soup(set.soup.shared_positions(), set.soup.shared_uvs(), set.soup.shared_faces());
+  return sets;
+}
+void expect_same_turns(const std::vector<TextureSet>& a, const std::vector<TextureSet>& b) {
+  for (std::size_t s = 0; s < a.size(); ++s) {
+    ASSERT_NE(b[s].soup.rotations(), nullptr);
+    EXPECT_EQ(*a[s].soup.rotations(), *b[s].soup.rotations());
+  }
+}
+
+TEST(TurnsFile, HoldsTurnsBitForBit) {
+  const std::vector<TextureSet> sets = bent_sets();
+  const std::string bytes = write_turns(sets);
+  std::vector<TextureSet> back = unturned(sets);
+  read_turns(bytes, "turns.bin", back);
+  expect_same_turns(sets, back);
+}
+
+// Of quads with corners of their own, as they are baked, every place turned by another angle.
+TEST(TurnsFile, TakesLessThanTwentyBytesABentVertex) {
+  std::vector<Vec3> positions;
+  std::vector<Face> faces;
+  constexpr int side = 40;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const auto first = static_cast<std::uint32_t>(positions.size());
+      for (int corner = 0; corner < 4; ++corner) positions.emplace_back(x + corner % 2, y + corner / 2, 0);
+      faces.push_back({first, first + 1, first + 2});
+      faces.push_back({first + 2, first + 1, first + 3});
+    }
+  std::vector<TextureSet> sets = made_object()->sets;
+  sets.resize(1);
+  const std::vector<Vec2> uvs(positions.size(), Vec2(0, 0));
+  sets[0].soup = change_vertices(Soup(positions, uvs, faces), std::vector<std::uint8_t>(faces.size(), 1), 0,
+                                 [](std::uint32_t, Vec3& position, Mat3& turn) {
+                                   turn = about({1, position.x(), 2}, 0.1 + 0.01 * position.y());
+                                   position.z() += 1;
+                                 });
+  const std::string bytes = write_turns(sets);
+  EXPECT_LE(bytes.size(), 20 * positions.size() / 2);
+  std::vector<TextureSet> back = unturned(sets);
+  read_turns(bytes, "turns.bin", back);
+  expect_same_turns(sets, back);
+}
+
+TEST(TurnsFile, FoldersWithTheTextThatCameBeforeAreStillRead) {
+  const std::vector<TextureSet> sets = bent_sets();
+  nlohmann::json runs = nlohmann::json::array();
+  const Soup& soup = sets[0].soup;
+  for (std::size_t f = 0; f < soup.triangle_count(); ++f) {
+    nlohmann::json turns = nlohmann::json::array();
+    for (const std::uint32_t vertex : soup.faces()[f]) {
+      const Mat3 m = (*soup.rotations())[vertex].matrix();
+      turns.push_back({m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)});
+    }
+    runs.push_back({f, 1, turns});
+  }
+  const nlohmann::json text = {{"rebake_turns", 1}, {"sets", {{{"set", 0}, {"runs", runs}}}}};
+  std::vector<TextureSet> back = unturned(sets);
+  read_turns_json(text.dump(), "turns.json", back);
+  for (std::size_t v = 0; v < soup.positions().size(); ++v)
+    EXPECT_LE(((*back[0].soup.rotations())[v].matrix() - (*soup.rotations())[v].matrix()).norm(), 4e-15);
+  // In a folder, until it is written anew.
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 24, .rows = 12}));
+  object->sets = sets;
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "scene";
+  save_scene_folder(scene_of(object), path, {});
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
+    if (entry.path().filename() == "turns.bin") {
+      std::filesystem::remove(entry.path());
+      write_text(entry.path().parent_path() / "turns.json", text.dump());
+      break;
+    }
+  const Scene scene = read_scene_folder(path, {});
+  EXPECT_TRUE(scene.roots[0]->object->any_rotations());
+}
+
+TEST(TurnsFile, CutChangedOrForeignOnesAreRefusedByName) {
+  const std::vector<TextureSet> sets = bent_sets();
+  const std::string bytes = write_turns(sets);
+  const auto refused = [&](const std::string& changed) {
+    std::vector<TextureSet> back = unturned(sets);
+    try {
+      read_turns(changed, "some/turns.bin", back);
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("some/turns.bin"), std::string::npos);
+      return true;
+    }
+    return false;
+  };
+  for (std::size_t length = 0; length < bytes.size(); length += 17) EXPECT_TRUE(refused(bytes.substr(0, length)));
+  for (std::size_t at = 0; at < bytes.size(); at += 13) {
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 0x10);
+    EXPECT_TRUE(refused(changed)) << at;
+  }
+  EXPECT_TRUE(refused(bytes + "x"));
+  std::vector<TextureSet> other = made_object({.columns = 4, .rows = 2})->sets;
+  EXPECT_THROW(read_turns(bytes, "turns.bin", other), FileError);
+  std::vector<TextureSet> none;
+  EXPECT_THROW(read_turns(bytes, "turns.bin", none), FileError);
+}
+
+}  // namespace
+}  // namespace rebake::test
