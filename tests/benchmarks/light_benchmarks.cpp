@@ -12,6 +12,7 @@
 #include "mesh_ops/light/lighting.h"
 #include "mesh_ops/light/transfer.h"
 #include "mesh_ops/light/transfer_model.h"
+#include "render/picture.h"
 
 namespace rebake::test {
 namespace {
@@ -109,6 +110,36 @@ BENCHMARK(DraggedBranch)
     ->ArgsProduct({{10, 40, 70}, {0, 1}})
     ->ArgNames({"degrees", "learnt"})
     ->Unit(benchmark::kMillisecond);
+
+// What light adds to a frame of the window while the branch is dragged: vertices that move, and maps that are others in
+// each frame. 0: without light, 1: light that stays, 2: light that goes along.
+void DraggedFrame(benchmark::State& state) {
+  const Scene rest = with(ficus(), {in_sky});
+  const NodeId node = rest.roots.front()->id;
+  const Lighting start = lighting_of(rest, {.rays = 64, .turning = {node}});
+  const bool follows = state.range(0) == 2;
+  std::vector<Scene> scenes;
+  std::vector<Lighting> lights;
+  for (int k = 0; k < 8; ++k) {
+    scenes.push_back(with(rest, {bent_by(30 + k)}));
+    lights.push_back(*turned_lighting(rest, start, scenes[follows ? static_cast<std::size_t>(k) : 0]));
+  }
+  View view;
+  view.camera.eye = {0.7, 1.2, 5.6};
+  view.camera.near_plane = 0.5;
+  view.camera.far_plane = 20;
+  view.width = 1280;
+  view.height = 800;
+  view.samples = 1;
+  Renderer renderer;
+  std::size_t k = 0;
+  for (auto _ : state) {
+    ++k;
+    benchmark::DoNotOptimize(
+        renderer.render(scenes[k % 8], view, {}, state.range(0) == 0 ? nullptr : &lights[k % 8]).rgb.data());
+  }
+}
+BENCHMARK(DraggedFrame)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace rebake::test

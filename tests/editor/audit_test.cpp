@@ -59,6 +59,7 @@ struct Case {
   const char* name;
   std::vector<json> edits;
   bool leaves_out = false;  ///< something that is seen, at one of the budgets
+  friend void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 };
 const Case cases[] = {
     {"nothing", {}},
