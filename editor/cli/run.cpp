@@ -12,6 +12,7 @@
 #include "editor/cli/terminal.h"
 #include "editor/commands/export.h"
 #include "editor/commands/session.h"
+#include "editor/document/sources.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
@@ -31,12 +32,13 @@ std::string line_of(const char* what, const std::filesystem::path& path, std::ui
          '\n';
 }
 
-// What the result of a script rests on beside the script itself, imports and files of cages, and what it exported.
+// What the result of a script rests on beside the script itself (imports, pictures of light, files of cages), and what
+// it exported.
 std::string file_list(const Session& session, const std::string& script,
                       const std::map<std::string, std::string>& variables) {
   std::string lines;
   for (const Edit& edit : session.document.history().edits())
-    if (const auto* import = edit.as<Import>()) lines += line_of("read", import->path, folder_hash(import->path));
+    if (const auto source = source_of(edit)) lines += line_of("read", source->path, content_at(source->path));
   for (std::size_t begin = 0; begin < script.size();) {
     const std::size_t end = std::min(script.find('\n', begin), script.size());
     const json line = json::parse(script.begin() + static_cast<std::ptrdiff_t>(begin),

@@ -52,23 +52,28 @@ void check_links(const Relinked& links, const std::vector<fs::path>& sources) {
     std::string known;
     for (const fs::path& source : std::set(sources.begin(), sources.end())) known += "\n  " + source.string();
     if (!used)
-      throw FieldError("source", fmt::format("nothing was imported from \"{}\"{}", link.first.string(),
+      throw FieldError("source", fmt::format("nothing was read from \"{}\"{}", link.first.string(),
                                              known.empty() ? "" : "; these were:" + known));
   }
 }
 
 namespace {
 
-std::string content_at(const fs::path& path) {
-  std::error_code error;
-  return hash_text(fs::is_directory(scene_folder_of(path), error) ? folder_hash(path) : content_hash(read_file(path)));
+// A light that is switched off needs no picture.
+bool has_picture(const LightEdit& light) {
+  return !light.picture.empty() && light.effects != std::vector<std::string>{"none"};
 }
 
 }  // namespace
 
+std::uint64_t content_at(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(scene_folder_of(path), error) ? folder_hash(path) : content_hash(read_file(path));
+}
+
 std::optional<EditSource> source_of(const Edit& edit) {
   if (const auto* import = edit.as<Import>()) return EditSource{import->path, import->content};
-  if (const auto* light = edit.as<LightEdit>(); light != nullptr && !light->picture.empty())
+  if (const auto* light = edit.as<LightEdit>(); light != nullptr && has_picture(*light))
     return EditSource{light->picture, light->content};
   return std::nullopt;
 }
@@ -76,7 +81,8 @@ std::optional<EditSource> source_of(const Edit& edit) {
 nlohmann::json* source_field(nlohmann::json& edit) {
   if (!edit.is_object()) return nullptr;
   const std::string op = edit.value("op", "");
-  const char* const field = op == Import::op ? "path" : op == LightEdit::op ? "picture" : "";
+  const bool off = edit.contains("effects") && edit.at("effects") == nlohmann::json::array({"none"});
+  const char* const field = op == Import::op ? "path" : op == LightEdit::op && !off ? "picture" : "";
   const auto found = edit.find(field);
   return found == edit.end() || *found == "" ? nullptr : &*found;
 }
@@ -86,8 +92,8 @@ std::string trouble_with(const fs::path& source, const std::string& content, con
   const std::string at = where == source ? "" : fmt::format(" (looked for at {})", where.string());
   std::error_code error;
   if (!fs::exists(where, error)) return at.empty() ? "is not there any more" : "is not there" + at;
-  if (content_at(where) == content) return "";
-  return at.empty() ? "has changed since it was imported" : "is not what was imported" + at;
+  if (hash_text(content_at(where)) == content) return "";
+  return at.empty() ? "has changed since it was read" : "is not what was read" + at;
 }
 
 Edit completed(const Edit& edit) {
@@ -97,7 +103,7 @@ Edit completed(const Edit& edit) {
   const std::string path = absolute_path(source->path).string();
   const auto content = [&](bool there) {
     // What is not there is reported by the edit itself.
-    return source->content.empty() && there ? content_at(path) : source->content;
+    return source->content.empty() && there ? hash_text(content_at(path)) : source->content;
   };
   std::error_code error;
   if (const auto* import = edit.as<Import>()) {

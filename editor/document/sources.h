@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
@@ -21,12 +22,14 @@ std::filesystem::path relinked(const std::filesystem::path& source, const Relink
 /// Throws FieldError, naming the sources there are, for a link whose old path none of them lies at or in.
 void check_links(const Relinked& links, const std::vector<std::filesystem::path>& sources);
 
-/// What an edit reads: a folder that is imported, or a picture of light.
+/// What an edit reads: a folder that is imported, or the picture of a light that is on.
 struct EditSource {
   std::filesystem::path path;
   std::string content;  ///< hash of what is there
 };
 std::optional<EditSource> source_of(const Edit& edit);
+/// Hash of what lies there now: a file, or a folder's scene. Throws FileError.
+std::uint64_t content_at(const std::filesystem::path& path);
 /// Where an edit's JSON says it; null for an edit that reads nothing.
 nlohmann::json* source_field(nlohmann::json& edit);
 
@@ -49,7 +52,7 @@ std::string trouble_with(const std::filesystem::path& source, const std::string&
 /// now. Throws FileError.
 Edit completed(const Edit& edit);
 
-/// Adds what edits imported.
+/// Adds what edits read.
 void add_sources(SourceGuard& guard, const std::vector<Edit>& edits);
 /// Adds the folders that a scene's objects were read from.
 void add_sources(SourceGuard& guard, const Scene& scene);

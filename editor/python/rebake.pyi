@@ -203,7 +203,7 @@ class Document:
         sun: sky: direction towards the sun, in the objects' own space as they were read; with match in the world
         sun_color: sky: linear, what the sun sends back from a white surface that faces it; 0, 0, 0: none
         sun_degrees: sky: the sun's radius as seen, which softens shadows (degrees)
-        picture: file with an equirectangular picture: OpenEXR, Radiance HDR, PNG, JPEG; its middle towards -z
+        picture: file with an equirectangular picture, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF; its middle towards -z; bright spots in it become suns
         picture_degrees: by which it is turned about the upright axis (degrees)
         content: hash of the picture as projects and journals record it: anything else there is refused
         bounce: given light: linear radiance of surfaces that hide it

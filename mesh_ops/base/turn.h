@@ -27,13 +27,14 @@ struct TurnBits {
 
 /// An orthogonal matrix in 20 bytes: a unit quaternion by its three smaller parts in 52 bits each, which of the four is
 /// the largest, and whether the matrix mirrors: whether it is −1 times a rotation. Within 2e-15 of the matrix it was
-/// made of; what maps axes onto axes (identity, quarter turns, mirrors) is exact.
+/// made of,
+/// where that is orthogonal; what maps axes onto axes (identity, quarter turns, mirrors) is exact.
 class Turn {
  public:
   static constexpr std::size_t size = 20;
 
   Turn() = default;  ///< identity
-  /// `orthogonal` within 1e-6.
+  /// `orthogonal` within 1e-6; finite.
   explicit Turn(const Mat3& orthogonal);
   /// Of bytes(); all values of them are turns.
   explicit Turn(std::span<const std::uint8_t, size> bytes);

@@ -52,21 +52,30 @@ double luminance(const Eigen::Vector3f& c) {
   return static_cast<double>(0.2126F * c[0] + 0.7152F * c[1] + 0.0722F * c[2]);  // of BT.709's primaries
 }
 
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 // Reads it part by part, averaging blocks of pixels of what is wider than is kept.
 Panorama read_panorama(const fs::path& path) {
   const auto input = OIIO::ImageInput::open(path.string());
   if (!input)
-    throw FileError(path,
-                    "cannot be read as a picture: " + OIIO::geterror() + "; use OpenEXR, Radiance HDR, PNG or JPEG");
+    throw FileError(path, "cannot be read as a picture: " + first_line(OIIO::geterror()) +
+                              "; use OpenEXR, Radiance HDR, PNG, JPEG or TIFF");
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width != 2 * spec.height || spec.width < 4)
+  if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+      spec.height != spec.full_height)
+    throw FileError(path, fmt::format("holds {}×{} pixels of a picture of {}×{}; save it whole", spec.width,
+                                      spec.height, spec.full_width, spec.full_height));
+  if (spec.width % 2 != 0 || spec.width / 2 != spec.height || spec.width < 4)
     throw FileError(path, fmt::format("is {}×{} pixels; a picture of all directions is twice as wide as high",
                                       spec.width, spec.height));
   if (spec.width > largest_width)
     throw FileError(path, fmt::format("is {} pixels wide; at most {} can be read", spec.width, largest_width));
-  const bool display =
-      spec.format.basetype == OIIO::TypeDesc::UINT8 || spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
-  const int block = (spec.width + kept_width - 1) / kept_width, channels = spec.nchannels;
+  const std::string colors = spec.get_string_attribute("oiio:ColorSpace");
+  // Whole numbers are display colours unless they say otherwise, others radiances.
+  const bool display = spec.format.is_floating_point()
+                           ? colors == "sRGB"
+                           : colors.find("inear") == std::string::npos && colors.find("lin_") == std::string::npos;
+  const int block = (spec.width + kept_width - 1) / kept_width, channels = std::min(3, spec.nchannels);
   Panorama result;
   result.width = spec.width / block;
   result.height = spec.height / block;
@@ -82,7 +91,7 @@ Panorama read_panorama(const fs::path& path) {
                                               0, 1, 0, channels, OIIO::TypeDesc::FLOAT, rows.data())
                           : input->read_scanlines(0, 0, spec.y + first, spec.y + first + count, 0, 0, channels,
                                                   OIIO::TypeDesc::FLOAT, rows.data());
-    if (!read) throw FileError(path, "cannot be decoded, it may be truncated: " + input->geterror());
+    if (!read) throw FileError(path, "cannot be decoded, it may be truncated: " + first_line(input->geterror()));
     for (int y = first; y < first + count; ++y)
       for (int x = 0; x < result.width * block && y / block < result.height; ++x) {
         const float* pixel = &rows[(static_cast<std::size_t>(y - first) * static_cast<std::size_t>(spec.width) +
@@ -100,56 +109,67 @@ Panorama read_panorama(const fs::path& path) {
   return result;
 }
 
-double mean_luminance(const Panorama& panorama) {
-  double sum = 0;
-  for (int y = 0; y < panorama.height; ++y)
-    for (int x = 0; x < panorama.width; ++x) sum += panorama.solid_angle(y) * luminance(panorama.at(x, y));
-  return sum / (4 * pi);
+// What is within `reach` radians of a direction, with its pixels' solid angles.
+template <class Visit>
+void for_each_near(Panorama& panorama, const Vec3& middle, double reach, Visit visit) {
+  const double row = std::acos(std::clamp(middle.y(), -1.0, 1.0)) / pi * panorama.height,
+               rows = reach / pi * panorama.height + 1;
+  const int first = std::max(0, static_cast<int>(row - rows)),
+            last = std::min(panorama.height - 1, static_cast<int>(row + rows));
+  for (int y = first; y <= last; ++y)
+    for (int x = 0; x < panorama.width; ++x)
+      if (const Vec3 d = panorama.direction(x, y); d.dot(middle) > std::cos(reach))
+        visit(panorama.at(x, y), d, panorama.solid_angle(y));
 }
 
 // Takes what is very bright out of the picture, as a disk that sends as much.
 std::vector<Sun> suns_of(Panorama& panorama) {
   constexpr std::size_t most = 4;
+  constexpr int most_tried = 64;
   constexpr double outshines = 30, left = 10, reach = 0.1;  // of the mean; of the mean; radians
+  constexpr double worth = 0.005;                           // of all light: what sends less is as well left where it is
   std::vector<Sun> suns;
-  while (suns.size() < most) {
-    const auto brightest = std::max_element(
-        panorama.pixels.begin(), panorama.pixels.end(),
-        [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return luminance(a) < luminance(b); });
-    const auto number = static_cast<int>(brightest - panorama.pixels.begin());
+  // By luminance; 0 where it was looked at and stays.
+  std::vector<float> bright;
+  double all = 0;
+  for (int y = 0; y < panorama.height; ++y)
+    for (int x = 0; x < panorama.width; ++x) {
+      bright.push_back(static_cast<float>(luminance(panorama.at(x, y))));
+      all += panorama.solid_angle(y) * luminance(panorama.at(x, y));
+    }
+  for (int tried = 0; tried < most_tried && suns.size() < most; ++tried) {
+    const auto brightest = std::max_element(bright.begin(), bright.end());
+    const auto number = static_cast<int>(brightest - bright.begin());
     const Vec3 middle = panorama.direction(number % panorama.width, number / panorama.width);
     // What the sun itself adds must not hide it.
-    double near = 0, all = mean_luminance(panorama) * 4 * pi;
-    const auto for_each_near = [&](auto visit) {
-      for (int y = 0; y < panorama.height; ++y)
-        for (int x = 0; x < panorama.width; ++x)
-          if (const Vec3 d = panorama.direction(x, y); d.dot(middle) > std::cos(reach))
-            visit(panorama.at(x, y), d, panorama.solid_angle(y));
-    };
-    for_each_near([&](const Eigen::Vector3f& c, const Vec3&, double angle) { near += angle * luminance(c); });
+    double near = 0;
+    for_each_near(panorama, middle, reach,
+                  [&](const Eigen::Vector3f& c, const Vec3&, double angle) { near += angle * luminance(c); });
     const double mean = (all - near) / (4 * pi);
-    if (!(luminance(*brightest) > outshines * mean)) break;
+    if (!(static_cast<double>(*brightest) > outshines * mean)) break;
+    const auto excess = [&](const Eigen::Vector3f& c) { return std::max(0.0, luminance(c) - left * mean); };
     Sun sun;
     sun.direction = Vec3::Zero();
     double sent = 0, spread = 0;
-    for_each_near([&](const Eigen::Vector3f& c, const Vec3& d, double angle) {
-      const double excess = luminance(c) - left * mean;
-      if (excess <= 0) return;
-      sun.irradiance += c.cast<double>() * (angle / pi * excess / luminance(c));
-      sun.direction += angle * excess * d;
-      sent += angle * excess;
+    for_each_near(panorama, middle, reach, [&](const Eigen::Vector3f& c, const Vec3& d, double angle) {
+      if (excess(c) == 0) return;
+      sun.irradiance += c.cast<double>() * (angle / pi * excess(c) / luminance(c));
+      sun.direction += angle * excess(c) * d;
+      sent += angle * excess(c);
     });
+    const bool kept = sent > worth * all;
     sun.direction.normalize();
-    for_each_near([&](Eigen::Vector3f& c, const Vec3& d, double angle) {
-      const double excess = luminance(c) - left * mean;
-      if (excess <= 0) return;
-      spread += angle * excess * (d - sun.direction).squaredNorm();
+    for_each_near(panorama, middle, reach, [&](Eigen::Vector3f& c, const Vec3& d, double angle) {
+      bright[static_cast<std::size_t>(&c - panorama.pixels.data())] = 0;
+      if (!kept || excess(c) == 0) return;
+      spread += angle * excess(c) * (d - sun.direction).squaredNorm();
       c *= static_cast<float>(left * mean / luminance(c));
     });
+    if (!kept) continue;
     // An even disk's points lie, squared, half its radius squared off its middle.
     sun.radius = std::clamp(std::sqrt(2 * spread / sent), 0.002, reach);
-    // What adds next to nothing is as well left out as traced.
-    if (sent > 0.005 * all) suns.push_back(sun);
+    all -= sent;
+    suns.push_back(sun);
   }
   return suns;
 }
@@ -161,6 +181,8 @@ LightPicture read_light_picture(const fs::path& path) {
   result.path = path.string();
   result.content = hash_text(content_hash(read_file(path)));
   Panorama panorama = read_panorama(path);
+  if (hash_text(content_hash(read_file(path))) != result.content)
+    throw FileError(path, "changed while it was read; try again");
   result.light.suns = suns_of(panorama);
   constexpr int side = 64;
   const int finer = std::clamp(panorama.width / (2 * side), 2, 16);

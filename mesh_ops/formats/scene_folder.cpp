@@ -101,17 +101,24 @@ LightPicture read_picture(const json& value) {
   LightPicture picture;
   picture.path = value.at("path").get<std::string>();
   picture.content = value.at("content").get<std::string>();
+  if (!value.at("side").is_number_unsigned() || value.at("side").get<std::uint64_t>() > 1024)
+    throw FieldError("light", "has a picture without a size");
   const int side = value.at("side").get<int>();
   const json& radiance = value.at("radiance");
-  if (side < 1 || side > 1024 || radiance.size() != static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * 3)
+  if (side < 1 || radiance.size() != static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * 3)
     throw FieldError("light", "has a picture whose radiances do not fill it");
   picture.light.sky = SkyMap(side, [&, at = std::size_t{0}](const Vec3&) mutable {
     at += 3;
     return read_color({radiance[at - 3], radiance[at - 2], radiance[at - 1]});
   });
+  constexpr std::size_t most_suns = 16;
+  if (value.at("suns").size() > most_suns)
+    throw FieldError("light", fmt::format("has a picture with more than {} suns", most_suns));
   for (const json& sun : value.at("suns")) {
     picture.light.suns.push_back(read_sun(sun));
-    picture.light.suns.back().direction.stableNormalize();
+    // One of length 1 keeps its bits.
+    Vec3& direction = picture.light.suns.back().direction;
+    if (std::abs(direction.squaredNorm() - 1) > 1e-12) direction.stableNormalize();
   }
   return picture;
 }
@@ -123,7 +130,7 @@ SceneLight read_light(const json& value) {
   light.removed = value.at("removed").get<bool>();
   light.match = value.at("match").get<bool>();
   light.budget = std::clamp(value.at("budget").get<double>(), 0.0, 1.0);
-  light.rays = std::clamp(value.at("rays").get<int>(), 16, 16384);
+  light.rays = static_cast<int>(std::clamp(value.at("rays").get<double>(), 16.0, 16384.0));
   const auto word = value.at("source").get<std::string>();
   const auto found = std::find(source_words.begin(), source_words.end(), word);
   if (found == source_words.end()) throw FieldError("light", "has the unknown source \"" + word + "\"");

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cstdint>
+#include <limits>
 #include <map>
+#include <span>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
@@ -81,6 +85,8 @@ std::string turns_of(const Soup& soup) {
       }
   }
   std::string out;
+  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+  if (faces.size() > most) throw Error("turns of a texture set take more than 4 GB and cannot be written");
   put(out, static_cast<std::uint32_t>(all.size()));
   put(out, static_cast<std::uint32_t>(numbers.size()));
   put(out, static_cast<std::uint32_t>(faces.size()));
@@ -112,6 +118,7 @@ std::vector<Turn> read_set(Reader& reader, const Soup& soup, std::size_t number,
       }
   }
   if (!faces.rest().empty()) throw damaged("has more than its faces");
+  if (next != turn_count) throw damaged("has turns that no face has");
   return turns;
 }
 
@@ -139,11 +146,16 @@ void read_turns(std::string_view bytes, const std::filesystem::path& name, std::
   Reader reader(bytes, name);
   if (!bytes.starts_with(mark)) throw FileError(name, "is not a file of turns");
   reader.take(mark.size());
-  if (reader.take_number<std::uint32_t>() != version) throw FileError(name, "was written by a newer version of Rebake");
+  const auto its_version = reader.take_number<std::uint32_t>();
+  if (its_version > version) throw FileError(name, "was written by a newer version of Rebake");
+  if (its_version == 0) throw FileError(name, "is damaged: there is no version 0");
   if (const auto hash = reader.take_number<std::uint64_t>(); hash != content_hash(reader.rest()))
     throw FileError(name, "is damaged: its checksum does not fit");
+  std::uint64_t next = 0;
   for (auto count = reader.take_number<std::uint32_t>(); count > 0; --count) {
     const auto s = reader.take_number<std::uint32_t>();
+    if (s < next) throw FileError(name, fmt::format("is damaged: set {} is out of its order", s));
+    next = std::uint64_t{s} + 1;
     if (s >= sets.size()) throw FileError(name, fmt::format("names set {}, but the folder has {}", s, sets.size()));
     const Soup& soup = sets[s].soup;
     auto turns = Values<Turn>::of(read_set(reader, soup, s, name));

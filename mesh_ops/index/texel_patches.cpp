@@ -1,7 +1,6 @@
 #include "mesh_ops/index/texel_patches.h"
 
 #include <array>
-#include <cmath>
 #include <map>
 #include <unordered_map>
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace rebake {
 
@@ -81,6 +82,15 @@ Light sky_and_sun(const Radiance& ground, const Radiance& zenith, const Sun& sun
   if (!sun.irradiance.isZero(0)) light.suns.push_back(sun);
   light.bounce = bounce;
   return light;
+}
+
+bool SceneLight::operator==(const SceneLight& other) const {
+  const auto plain = [](const SceneLight& one) {
+    return std::tie(one.self, one.cast, one.removed, one.match, one.budget, one.rays, one.source, one.picture_turn,
+                    one.zenith, one.ground, one.sun, one.bounce);
+  };
+  if (plain(*this) != plain(other) || (picture == nullptr) != (other.picture == nullptr)) return false;
+  return picture == other.picture || *picture == *other.picture;
 }
 
 std::shared_ptr<const Light> given_light(const SceneLight& settings) {

@@ -86,7 +86,8 @@ struct SceneLight {
   Radiance ground{0.34, 0.3, 0.27};                    ///< sky: from below
   Sun sun{{0.5, 0.8, 0.45}, 0.09, {1.15, 1.05, 0.9}};  ///< sky; of any length
   Radiance bounce{0, 0, 0};                            ///< of what hides the sky
-  bool operator==(const SceneLight&) const = default;
+  /// Of pictures by what they hold.
+  bool operator==(const SceneLight& other) const;
 };
 /// The given light; null where it is estimated, and of a picture that is not there.
 std::shared_ptr<const Light> given_light(const SceneLight& settings);

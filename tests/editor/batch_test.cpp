@@ -5,6 +5,7 @@
 
 #include "editor/batch/batch.h"
 #include "mesh_ops/formats/export.h"
+#include "tests/support/light_pictures.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -95,6 +96,18 @@ TEST_F(Batch, ShardsShareTheScenes) {
   again.merge(run());
   EXPECT_EQ(again, (std::map<std::string, Status>{{"0", Status::done}, {"b", Status::skipped}, {"c", Status::skipped}}))
       << first;
+}
+
+TEST_F(Batch, ResumeLooksAtThePictureOfLightToo) {
+  const auto sky = folder_.path() / "sky.exr";
+  write_light_picture(sky, 16, [](const Vec3&) { return Radiance(1, 1, 1); });
+  write_text(options.script, R"({"op": "light", "source": "picture", "picture": "{sky}"})");
+  options.variables = {"sky=" + sky.string()};
+  options.resume = true;
+  EXPECT_EQ(run()["a"], Status::done);
+  EXPECT_EQ(run()["a"], Status::skipped);
+  write_light_picture(sky, 16, [](const Vec3&) { return Radiance(1, 1, 0); });
+  EXPECT_EQ(run()["a"], Status::done);
 }
 
 TEST_F(Batch, ResumeLooksAtEverythingThatWasReadAndWritten) {

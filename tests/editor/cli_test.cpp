@@ -99,7 +99,7 @@ TEST_F(Cli, RecoverWritesNoProjectOfNothingAndNamesWhatIsGone) {
   EXPECT_NE(gone.text.find("--source '" + in("ball") + "=NEW'"), std::string::npos) << gone.text;
   EXPECT_FALSE(std::filesystem::exists(in("p.rebake"))) << "it would stand in the way of the next attempt";
   const Outcome wrong = rebake_run("recover " + in("j") + " -o " + in("p.rebake --source ") + in("bal=") + in("moved"));
-  EXPECT_NE(wrong.text.find("nothing was imported from"), std::string::npos) << wrong.text;
+  EXPECT_NE(wrong.text.find("nothing was read from"), std::string::npos) << wrong.text;
   EXPECT_NE(wrong.text.find(in("ball")), std::string::npos) << wrong.text;
   const Outcome missed = rebake_run("recover " + in("j") + " -o " + in("p.rebake --source ") + in("ball=") + in("mov"));
   EXPECT_NE(missed.text.find("looked for at " + in("mov")), std::string::npos) << missed.text;

@@ -158,6 +158,8 @@ TEST_F(DocumentTest, PictureOfLightIsASourceLikeWhatIsImported) {
   document = Document();
   EXPECT_EQ(Document::recover(path("journal")).gone.size(), 1U);
   EXPECT_TRUE(Document::recover(path("journal"), links).gone.empty());
+  EXPECT_THROW(act(document, {{"op", "light"}, {"effects", {"none"}}, {"picture", path("sky.exr").string()}}),
+               FieldError);
   EXPECT_THROW(act(document, {{"op", "light"}, {"source", "picture"}}), FieldError);
   EXPECT_THROW(act(document, {{"op", "light"}, {"source", "picture"}, {"picture", path("sky.exr").string()}}),
                FileError);
@@ -184,6 +186,7 @@ TEST_F(DocumentTest, SavedScenesHoldThePictureOfTheirLight) {
   const Scene back = read_scene_folder(path("lit"), {});
   ASSERT_TRUE(back.light && back.light->picture);
   EXPECT_EQ(*back.light->picture, *scene.light->picture);
+  EXPECT_EQ(*back.light, *scene.light);
   EXPECT_EQ(*given_light(*back.light), *given_light(*scene.light));
 }
 

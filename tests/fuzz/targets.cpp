@@ -5,6 +5,7 @@
 #include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/camera_json.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
@@ -52,7 +53,11 @@ void read_json_bytes(std::string_view bytes) {
   }
   try {
     std::vector<TextureSet> sets = small_scene().roots[0]->object->sets;
-    read_turns(bytes, "turns.bin", sets);
+    // With a checksum that fits, else nothing but that would be tried.
+    const std::uint64_t hash = content_hash(bytes);
+    std::string file("rebaketn\1\0\0\0", 12);
+    for (int k = 0; k < 8; ++k) file += static_cast<char>(hash >> (8 * k) & 0xFF);
+    read_turns(file.append(bytes), "turns.bin", sets);
   } catch (const Error&) {
   }
   try {

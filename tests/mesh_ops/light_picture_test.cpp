@@ -2,6 +2,7 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -79,9 +80,73 @@ TEST_F(LightPictureTest, BrightDiskBecomesASunThatSendsAsMuch) {
   }
 }
 
+// Of small lamps and a lamp that is worth a sun, no light is lost.
+TEST_F(LightPictureTest, LampsKeepTheirLight) {
+  int number = 0;
+  double sum = 0, angles = 0;
+  const Vec3 large = Vec3(1, 1, 0).normalized();
+  write_light_picture(path("lamps.exr"), 1024, [&](const Vec3& d) {
+    const double level = (d - large).norm() < 0.02 ? 300 : number % 4001 == 0 ? 200 : 0.1;
+    const double angle = std::sqrt(1 - d.y() * d.y());
+    ++number;
+    sum += angle * level;
+    angles += angle;
+    return Radiance::Constant(level);
+  });
+  const LightPicture picture = read("lamps.exr");
+  ASSERT_EQ(picture.light.suns.size(), 1U);
+  EXPECT_LT((picture.light.suns[0].direction - large).norm(), 0.005);
+  EXPECT_NEAR(picture.light.sky.mean()[0] + picture.light.suns[0].irradiance[0] / 4, sum / angles, 0.02 * sum / angles);
+}
+
+// A night sky: none is worth a sun, and nobody waits for thousands of them to be looked at.
+TEST_F(LightPictureTest, ManyBrightPointsAreNoSuns) {
+  int number = 0;
+  write_light_picture(path("stars.exr"), 512,
+                      [&](const Vec3&) { return Radiance::Constant(++number % 97 == 0 ? 50 + number % 89 : 0.2); });
+  const auto start = std::chrono::steady_clock::now();
+  const LightPicture picture = read("stars.exr");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_LE(picture.light.suns.size(), 4U);
+  EXPECT_NEAR(picture.light.sky.mean()[0], 0.2 + 94.0 / 97, 0.15);
+}
+
 TEST_F(LightPictureTest, BytesAreDisplayColours) {
   write_light_picture(path("grey.png"), 64, [](const Vec3&) { return Radiance::Constant(to_display(0.2)); });
   EXPECT_LT((read("grey.png").light.sky.at({0, 1, 0}) - Radiance::Constant(0.2)).norm(), 0.005);
+}
+
+TEST_F(LightPictureTest, WholeNumbersAreDisplayColoursOthersRadiances) {
+  for (const char* name : {"grey8.tif", "grey16.tif", "grey16.png"}) {
+    const auto format =
+        std::string(name).find("16") == std::string::npos ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
+    const auto out = OIIO::ImageOutput::create(path(name).string());
+    ASSERT_TRUE(out->open(path(name).string(), OIIO::ImageSpec(8, 4, 1, format)));
+    const std::vector<float> half(32, 0.5F);
+    out->write_image(OIIO::TypeDesc::FLOAT, half.data());
+    out->close();
+    EXPECT_NEAR(read(name).light.sky.mean()[0], to_linear(0.5), 0.005) << name;
+  }
+  write_light_picture(path("half.exr"), 8, [](const Vec3&) { return Radiance::Constant(0.5); });
+  EXPECT_NEAR(read("half.exr").light.sky.mean()[0], 0.5, 1e-6);
+}
+
+TEST_F(LightPictureTest, TiledOnesAreReadAndPartsOfPicturesRefused) {
+  OIIO::ImageSpec spec(256, 128, 3, OIIO::TypeDesc::FLOAT);
+  const std::vector<float> pixels(std::size_t{256} * 128 * 3, 0.25F);
+  const auto write = [&](const char* name) {
+    const auto out = OIIO::ImageOutput::create(path(name).string());
+    ASSERT_TRUE(out->open(path(name).string(), spec)) << out->geterror();
+    out->write_image(OIIO::TypeDesc::FLOAT, pixels.data());
+    out->close();
+  };
+  spec.full_height = 256;
+  write("part.exr");
+  EXPECT_THROW(read("part.exr"), FileError);
+  spec.full_height = 128;
+  spec.tile_width = spec.tile_height = 32;
+  write("tiled.exr");
+  EXPECT_NEAR(read("tiled.exr").light.sky.mean()[0], 0.25, 1e-6);
 }
 
 TEST_F(LightPictureTest, BlackOnesAndThoseWithBadNumbersAreRead) {

@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/base/turn.h"
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/scene_folder.h"
@@ -101,7 +103,7 @@ TEST(TurnsFile, HoldsTurnsBitForBit) {
 }
 
 // Of quads with corners of their own, as they are baked, every place turned by another angle.
-TEST(TurnsFile, TakesLessThanTwentyBytesABentVertex) {
+TEST(TurnsFile, TakesAtMostTenBytesABentVertex) {
   std::vector<Vec3> positions;
   std::vector<Face> faces;
   constexpr int side = 40;
@@ -158,6 +160,53 @@ TEST(TurnsFile, FoldersWithTheTextThatCameBeforeAreStillRead) {
     }
   const Scene scene = read_scene_folder(path, {});
   EXPECT_TRUE(scene.roots[0]->object->any_rotations());
+}
+
+// Behind a checksum that fits, what no writer of ours makes.
+TEST(TurnsFile, WhatContradictsItselfIsRefused) {
+  std::vector<TextureSet> sets = made_object({.columns = 4, .rows = 2})->sets;
+  sets.resize(1);
+  const auto faces = static_cast<std::uint32_t>(sets[0].soup.triangle_count());
+  ASSERT_LT(faces, 64U);
+  const auto number = [](std::uint64_t value, int bytes) {
+    std::string out;
+    for (int k = 0; k < bytes; ++k) out += static_cast<char>(value >> (8 * k) & 0xFF);
+    return out;
+  };
+  const auto quarter = Turn(about({0, 0, 1}, 1)).bytes();
+  const std::string turn(quarter.begin(), quarter.end());
+  const auto set = [&](std::uint32_t which, std::uint32_t of, std::uint32_t turns, const std::string& table,
+                       const std::string& runs) {
+    return number(which, 4) + number(of, 4) + number(turns, 4) + number(runs.size(), 4) + table + runs;
+  };
+  const auto read = [&](std::uint32_t count, const std::string& body, std::uint32_t version = 1) {
+    const std::string counted = number(count, 4) + body;
+    std::vector<TextureSet> back = sets;
+    read_turns("rebaketn" + number(version, 4) + number(content_hash(counted), 8) + counted, "turns.bin", back);
+  };
+  // One face turned, the rest not.
+  const std::string one = std::string("\3\0\1\1", 4) + static_cast<char>(2 * (faces - 1));
+  EXPECT_NO_THROW(read(1, set(0, faces, 1, turn, one)));
+  const std::pair<const char*, std::function<void()>> wrong[] = {
+      {"version 0", [&] { read(1, set(0, faces, 1, turn, one), 0); }},
+      {"version 2", [&] { read(1, set(0, faces, 1, turn, one), 2); }},
+      {"a set that is not there", [&] { read(1, set(7, faces, 1, turn, one)); }},
+      {"a set twice", [&] { read(2, set(0, faces, 1, turn, one) + set(0, faces, 1, turn, one)); }},
+      {"other faces", [&] { read(1, set(0, faces + 1, 1, turn, one)); }},
+      {"more turns than follow", [&] { read(1, set(0, faces, 4000000000U, turn, one)); }},
+      {"turns that nothing has", [&] { read(1, set(0, faces, 2, turn + turn, one)); }},
+      {"a turn before the first", [&] { read(1, set(0, faces, 1, turn, std::string("\3\0\2\1", 4) + one.substr(4))); }},
+      {"a turn behind the last", [&] { read(1, set(0, faces, 1, turn, std::string("\3\0\0\1", 4) + one.substr(4))); }},
+      {"a run of no faces", [&] { read(1, set(0, faces, 0, "", std::string(1, '\0'))); }},
+      {"a run that is too long",
+       [&] { read(1, set(0, faces, 0, "", std::string(1, static_cast<char>(2 * faces + 2)))); }},
+      {"a number without an end", [&] { read(1, set(0, faces, 0, "", std::string(12, '\x80'))); }},
+      {"faces that stop early", [&] { read(1, set(0, faces, 0, "", "\2")); }},
+      {"more than the faces",
+       [&] { read(1, set(0, faces, 0, "", std::string(1, static_cast<char>(2 * faces)) + "\2")); }},
+      {"more than the sets", [&] { read(1, set(0, faces, 1, turn, one) + "x"); }},
+  };
+  for (const auto& [name, attempt] : wrong) EXPECT_THROW(attempt(), FileError) << name;
 }
 
 TEST(TurnsFile, CutChangedOrForeignOnesAreRefusedByName) {

@@ -63,6 +63,8 @@ std::shared_ptr<const LightPicture> picture_of(const LightEdit& edit, const Scen
 
 Scene apply(const Scene& scene, const LightEdit& edit) {
   Scene result = scene;
+  if (edit.effects == std::vector<std::string>{"none"} && !edit.picture.empty())
+    throw FieldError("picture", "is of a light that is off (effects none)");
   auto light = std::make_shared<SceneLight>(edit.light);
   if (!choose_effects(edit.effects, *light)) {
     result.light = nullptr;
@@ -131,7 +133,9 @@ REBAKE_DESCRIBE_EDIT(
       visit("sun_degrees", edit.sun_degrees, Need::optional, "sky: the sun's radius as seen, which softens shadows",
             Unit::degrees);
       visit("picture", edit.picture, Need::optional,
-            "file with an equirectangular picture: OpenEXR, Radiance HDR, PNG, JPEG; its middle towards -z");
+            "file with an equirectangular picture, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF; its "
+            "middle "
+            "towards -z; bright spots in it become suns");
       visit("picture_degrees", edit.picture_degrees, Need::optional, "by which it is turned about the upright axis",
             Unit::degrees);
       visit("content", edit.content, Need::optional,

@@ -160,7 +160,8 @@ void FileDialog::begin(const Desk& desk) {
 
 void FileDialog::carry_out(Desk& desk, const fs::path& path) {
   if (makes_film(desk.asking.path) && desk.jobs.film) throw Error("a film is still being made; Esc ends it");
-  (reads(desk.asking.path) ? desk.settings.opened_from : desk.settings.written_to) = path.parent_path().string();
+  if (desk.asking.path != PathQuestion::light_picture)
+    (reads(desk.asking.path) ? desk.settings.opened_from : desk.settings.written_to) = path.parent_path().string();
   if (makes_film(desk.asking.path) || desk.asking.path == PathQuestion::screenshot)
     desk.jobs.pictured = wanted_nodes(desk);
   switch (desk.asking.path) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include "editor/edits/nodes/light.h"
@@ -17,7 +18,11 @@ namespace {
 
 LightEdit edit_for(const SceneLight& light, bool on) {
   LightEdit edit = light_edit(light);
-  if (!on) edit.effects = {"none"};
+  if (on) return edit;
+  edit.effects = {"none"};
+  edit.source = "estimated";
+  edit.picture.clear();
+  edit.content.clear();
   return edit;
 }
 
