@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "mesh_ops/formats/formats.h"
 
 namespace rebake {
@@ -14,13 +12,6 @@ void run(Session& session, const SaveAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
   const ExportReport report =
       format_named("rebake").write(session.scene(), action.out, {{}, session.document.sources()}, session.progress);
-  const std::vector<PlacedNode> nodes = placed_nodes(session.scene());
-  if (session.scene().light && std::any_of(nodes.begin(), nodes.end(), [](const PlacedNode& placed) {
-        return placed.node->object && !placed.node->object->bodies.empty();
-      }))
-    session.say(
-        "note: opened again, colours count as baked where they are now; a project keeps what was bent, moved or "
-        "removed before");
   for (const std::string& note : report.notes) session.say("note: " + note);
   session.say(fmt::format("saved {}", action.out));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
@@ -18,6 +19,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 namespace {
+
+// What Rebake keeps beside a folder's own files.
+constexpr std::array<std::string_view, 3> side_names{"turns.bin", "turns.json", "baked.bin"};
 
 // Takes digits off the front, as many as there are.
 std::size_t skip_digits(std::string_view& text) {
@@ -36,7 +40,7 @@ std::set<std::string> named_folders(const fs::path& folder) {
   while (!open.empty()) {
     const json& value = *open.back();
     open.pop_back();
-    for (const char* key : {"nodes", "children"})
+    for (const char* key : {"nodes", "children", "bodies"})
       if (value.is_object() && value.contains(key) && value.at(key).is_array())
         for (const json& child : value.at(key)) open.push_back(&child);
     if (value.is_object() && value.contains("folder") && value.at("folder").is_string())
@@ -53,7 +57,7 @@ void add_baked_files(const fs::path& root, const fs::path& folder, std::vector<f
     return true;
   };
   if (!add("mlp.json")) return;
-  for (const char* name : {"turns.bin", "turns.json"}) add(name);
+  for (const std::string_view name : side_names) add(std::string(name));
   const json mlp = json::parse(read_file(root / folder / "mlp.json"), nullptr, false);
   const bool unsplit = !mlp.is_object() || !mlp.contains("obj_num") || !mlp.at("obj_num").is_number_unsigned();
   const std::size_t sets = unsplit ? 1 : std::min<std::size_t>(mlp.at("obj_num").get<std::size_t>(), most_texture_sets);
@@ -68,7 +72,8 @@ void add_baked_files(const fs::path& root, const fs::path& folder, std::vector<f
 }  // namespace
 
 bool is_format_file_name(const std::string& name) {
-  if (name == "mlp.json" || name == "scene.json" || name == "turns.bin" || name == "turns.json") return true;
+  if (name == "mlp.json" || name == "scene.json" || std::ranges::find(side_names, name) != side_names.end())
+    return true;
   std::string_view rest = name;
   if (!rest.starts_with("shape")) return false;
   rest.remove_prefix(5);

@@ -12,6 +12,7 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/formats/baked_folder.h"
+#include "mesh_ops/formats/baked_places_file.h"
 #include "mesh_ops/formats/camera_json.h"
 #include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/formats/write_baked_folder.h"
@@ -24,17 +25,29 @@ using nlohmann::json;
 namespace {
 
 constexpr int scene_version = 1;
+constexpr std::size_t most_bodies = 65536;  // as many as a face's number of one can say
 
-json node_json(const Node& node, const std::map<const BakedObject*, std::string>& folder_of) {
+json affine_json(const Affine& affine) {
   json rows = json::array();
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) rows.push_back(node.to_parent.matrix()(r, c));
-  json out = {{"name", node.name}, {"transform", rows}};
+    for (int c = 0; c < 4; ++c) rows.push_back(affine.matrix()(r, c));
+  return rows;
+}
+
+const char* axes_word(Axes axes) { return axes == Axes::forward ? "forward" : "360"; }
+
+json node_json(const Node& node, const std::map<const BakedObject*, std::string>& folder_of) {
+  json out = {{"name", node.name}, {"transform", affine_json(node.to_parent)}};
   if (!node.visible) out["visible"] = false;
   if (node.locked) out["locked"] = true;
   if (node.object) {
     out["folder"] = folder_of.at(node.object.get());
-    out["axes"] = node.object->axes == Axes::forward ? "forward" : "360";
+    out["axes"] = axes_word(node.object->axes);
+    for (const BakedBody& body : node.object->bodies)
+      if (const auto folder = folder_of.find(body.object.get()); folder != folder_of.end())
+        out["bodies"].push_back({{"folder", folder->second},
+                                 {"axes", axes_word(body.object->axes)},
+                                 {"transform", affine_json(body.to_object)}});
   }
   if (!node.children.empty()) {
     out["children"] = json::array();
@@ -148,6 +161,37 @@ SceneLight read_light(const json& value) {
   return light;
 }
 
+bool same_bytes(const SourceFile& a, const SourceFile& b) { return a.size == b.size && a.hash == b.hash; }
+
+// What was read from equal files is held once: light sees by that which texels are still what was baked.
+void share_with_bodies(BakedObject& object) {
+  auto origin = std::make_shared<Origin>(*object.origin);
+  for (std::size_t s = 0; s < object.sets.size(); ++s) {
+    TextureSet& set = object.sets[s];
+    Origin::Set& files = origin->sets[s];
+    for (const BakedBody& body : object.bodies) {
+      const Origin& its = *body.object->origin;
+      for (std::size_t t = 0; t < its.sets.size(); ++t) {
+        const TextureSet& other = body.object->sets[t];
+        if (other.texels->alpha_code() == set.texels->alpha_code() && same_bytes(its.sets[t].feat0, files.feat0) &&
+            same_bytes(its.sets[t].feat1, files.feat1)) {
+          set.texels = other.texels;
+          files.texels = other.texels;
+        }
+        if (std::equal(its.sets[t].geometry.begin(), its.sets[t].geometry.end(), files.geometry.begin(),
+                       files.geometry.end(), same_bytes)) {
+          set.soup = Soup(other.soup.shared_positions(), other.soup.shared_uvs(), other.soup.shared_faces(),
+                          set.soup.vertex_attributes(), set.soup.face_attributes());
+          files.positions = other.soup.shared_positions();
+          files.uvs = other.soup.shared_uvs();
+          files.faces = other.soup.shared_faces();
+        }
+      }
+    }
+  }
+  object.origin = origin;
+}
+
 class SceneReader {
  public:
   SceneReader(fs::path folder, const Progress& progress)
@@ -190,29 +234,50 @@ class SceneReader {
     node.name = value.at("name").get<std::string>();
     node.visible = value.value("visible", true);
     node.locked = value.value("locked", false);
-    if (value.contains("transform")) {
-      const json& rows = value.at("transform");
-      if (!rows.is_array() || rows.size() != 12)
-        throw FileError(name_, fmt::format("node \"{}\": \"transform\" must have 12 numbers (3 rows of 4)", node.name));
-      for (int i = 0; i < 12; ++i)
-        node.to_parent.matrix()(i / 4, i % 4) = rows.at(static_cast<std::size_t>(i)).get<double>();
-      if (!node.to_parent.matrix().allFinite())
-        throw FileError(name_, fmt::format("node \"{}\": \"transform\" is not finite", node.name));
-      try {
-        orthogonal_factor(node.to_parent.linear());
-      } catch (const std::invalid_argument& error) {
-        throw FileError(name_, fmt::format("node \"{}\": {}", node.name, error.what()));
-      }
-    }
-    if (value.contains("folder"))
-      node.object = read_object(value.at("folder").get<std::string>(), value.value("axes", "360"));
+    if (value.contains("transform")) node.to_parent = read_affine(value.at("transform"), node.name);
+    if (value.contains("folder")) node.object = read_object(value, node.name);
     if (value.contains("children"))
       for (const json& child : value.at("children"))
         node.children.push_back(std::make_shared<const Node>(read_node(child, depth + 1)));
     return node;
   }
 
-  std::shared_ptr<const BakedObject> read_object(const std::string& relative, const std::string& axes) {
+  Affine read_affine(const json& rows, const std::string& node) const {
+    if (!rows.is_array() || rows.size() != 12)
+      throw FileError(name_, fmt::format("node \"{}\": \"transform\" must have 12 numbers (3 rows of 4)", node));
+    Affine affine = Affine::Identity();
+    for (int i = 0; i < 12; ++i) affine.matrix()(i / 4, i % 4) = rows.at(static_cast<std::size_t>(i)).get<double>();
+    if (!affine.matrix().allFinite())
+      throw FileError(name_, fmt::format("node \"{}\": \"transform\" is not finite", node));
+    try {
+      orthogonal_factor(affine.linear());
+    } catch (const std::invalid_argument& error) {
+      throw FileError(name_, fmt::format("node \"{}\": {}", node, error.what()));
+    }
+    return affine;
+  }
+
+  std::shared_ptr<const BakedObject> read_object(const json& value, const std::string& node) {
+    const auto folder = value.at("folder").get<std::string>();
+    const auto read = read_folder(folder, value.value("axes", "360"));
+    if (!value.contains("bodies")) return read;
+    const json& bodies = value.at("bodies");
+    if (bodies.empty() || bodies.size() > most_bodies)
+      throw FileError(name_, fmt::format("node \"{}\": \"bodies\" must be a list of 1 to {}", node, most_bodies));
+    auto& known = edited_[folder];
+    if (known) return known;
+    auto object = std::make_shared<BakedObject>(*read);
+    for (const json& body : bodies)
+      object->bodies.push_back({read_folder(body.at("folder").get<std::string>(), body.value("axes", "360")),
+                                read_affine(body.at("transform"), node)});
+    share_with_bodies(*object);
+    if (const fs::path places = folder_ / fs::path(folder).lexically_normal() / "baked.bin"; fs::exists(places))
+      read_baked_places(read_file(places), places, bodies.size(), object->sets);
+    known = object;
+    return known;
+  }
+
+  std::shared_ptr<const BakedObject> read_folder(const std::string& relative, const std::string& axes) {
     if (axes != "360" && axes != "forward")
       throw FileError(name_, fmt::format("axes \"{}\" is neither 360 nor forward", axes));
     const fs::path path = fs::path(relative).lexically_normal();
@@ -227,7 +292,8 @@ class SceneReader {
   fs::path folder_;
   fs::path name_;
   const Progress& progress_;
-  std::map<std::string, std::shared_ptr<const BakedObject>> objects_;
+  std::map<std::string, std::shared_ptr<const BakedObject>> objects_;  ///< by folder and axes
+  std::map<std::string, std::shared_ptr<const BakedObject>> edited_;   ///< those with bodies, by folder
 };
 
 }  // namespace
@@ -267,13 +333,35 @@ std::vector<std::string> save_scene_folder(const Scene& scene, const fs::path& f
       notes.push_back(
           fmt::format("the stored selections of \"{}\" are left out; a project keeps them", placed.node->name));
   std::map<const BakedObject*, std::string> folder_of;
+  std::vector<std::shared_ptr<const BakedObject>> written;
   AtomicFolder out(folder, guard, refuse_foreign_content);
+  // What light was baked on is of use only where light follows edits.
+  const bool keeps_bodies = scene.light != nullptr;
+  const auto write = [&](const std::shared_ptr<const BakedObject>& object, const std::string& name) {
+    taken.push_back(folder_name(name, taken));
+    folder_of[object.get()] = taken.back();
+    written.push_back(object);
+    write_baked_folder(out, taken.back(), *object, object->layout, notes, progress, keeps_bodies);
+  };
   for (const PlacedNode& placed : placed_nodes(scene)) {
     const auto& object = placed.node->object;
     if (!object || folder_of.contains(object.get())) continue;
-    taken.push_back(folder_name(placed.node->name, taken));
-    folder_of[object.get()] = taken.back();
-    write_baked_folder(out, taken.back(), *object, object->layout, notes, progress);
+    write(object, placed.node->name);
+  }
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object || !keeps_bodies) continue;
+    for (const BakedBody& body : placed.node->object->bodies) {
+      if (folder_of.contains(body.object.get())) continue;
+      // What parts were separated of is one body in several copies, and may stand in the scene itself.
+      const auto same = std::find_if(written.begin(), written.end(), [&](const auto& other) {
+        return other->bodies.empty() && other->decoder == body.object->decoder && other->axes == body.object->axes &&
+               same_body({body.object, Affine::Identity()}, {other, Affine::Identity()});
+      });
+      if (same != written.end())
+        folder_of[body.object.get()] = folder_of.at(same->get());
+      else
+        write(body.object, placed.node->name + ".baked");
+    }
   }
   out.write("scene.json", write_scene_json(scene, folder_of));
   out.commit();

@@ -12,7 +12,8 @@ namespace rebake {
 Scene read_scene_folder(const std::filesystem::path& folder, const Progress& progress = {});
 
 /// Writes every node as it is: scene.json, and one MobileNeRF folder for each distinct object. Replaces the folder
-/// whole or not at all. Returns sentences for people. Throws FileError.
+/// whole or not at all. Where light follows edits, what objects were when their light was baked is written too, as
+/// folders of their own. Returns sentences for people. Throws FileError.
 std::vector<std::string> save_scene_folder(const Scene& scene, const std::filesystem::path& folder,
                                            const SourceGuard& guard, const Progress& progress = {});
 

@@ -10,6 +10,7 @@
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/features/atlas.h"
 #include "mesh_ops/formats/baked_folder.h"
+#include "mesh_ops/formats/baked_places_file.h"
 #include "mesh_ops/formats/feature_png.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
@@ -91,8 +92,11 @@ std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, std::ve
 Soup with_a_face_for_each_chunk(const Soup& soup) {
   if (soup.triangle_count() >= chunks_a_set) return soup;
   auto faces = std::make_shared<std::vector<Face>>(soup.faces());
-  while (faces->size() < chunks_a_set) faces->push_back((*faces)[faces->size() % soup.triangle_count()]);
-  return Soup(soup.shared_positions(), soup.shared_uvs(), faces, soup.vertex_attributes());
+  std::vector<std::uint32_t> from(chunks_a_set);
+  for (std::uint32_t f = 0; f < chunks_a_set; ++f) from[f] = f % static_cast<std::uint32_t>(soup.triangle_count());
+  for (std::size_t f = faces->size(); f < chunks_a_set; ++f) faces->push_back((*faces)[from[f]]);
+  return Soup(soup.shared_positions(), soup.shared_uvs(), faces, soup.vertex_attributes(),
+              soup.face_attributes().picked(from));
 }
 
 std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
@@ -111,7 +115,7 @@ std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
 int largest_texture_side(Layout layout) { return layout == Layout::unsplit ? 16384 : 4096; }
 
 void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedObject& object, Layout layout,
-                        std::vector<std::string>& notes, const Progress& progress) {
+                        std::vector<std::string>& notes, const Progress& progress, bool baked_places) {
   if (object.triangle_count() == 0) throw Error("an object without triangles cannot be written");
   BakedObject filled = object;
   std::erase_if(filled.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
@@ -168,6 +172,7 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
   }
   out.write(folder / "mlp.json", *mlp);
   if (object.any_rotations()) out.write(folder / "turns.bin", write_turns(sets));
+  if (baked_places && any_baked_places(sets)) out.write(folder / "baked.bin", write_baked_places(sets));
   progress.at("writing", 1);
 }
 

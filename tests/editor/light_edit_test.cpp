@@ -7,7 +7,9 @@
 #include "editor/commands/plain_scene.h"
 #include "editor/commands/session.h"
 #include "editor/document/project.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/light/irradiance.h"
@@ -242,6 +244,70 @@ TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
   const Lighting joined = lighting_of(two);
   EXPECT_FALSE(runs(joined, "self-shadow table"));
   EXPECT_FALSE(runs(joined, "removed shadow table"));
+}
+
+// A saved scene knows what light was baked on: opened again, light makes the same picture of it.
+TEST_F(DocumentTest, SavedScenesKeepWhatLightWasBakedOn) {
+  const Scene scene = with_light(table());
+  const json box = {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}};
+  const json separate = {{"op", "separate"}, {"node", "table"}, {"as", "box"}};
+  const std::map<std::string, std::vector<json>> edits = {
+      {"cut", {box, {{"op", "delete"}}}},
+      {"lifted", {box, {{"op", "transform"}, {"node", "table"}, {"selection", true}, {"translate", {0, 0.4, 0}}}}},
+      {"erased", {{{"op", "erase"}, {"box", {{"min", {-0.4, 0.3, -0.4}}, {"max", {0.4, 1, 0.4}}}}}}},
+      {"bent", {{{"op", "bend"}, {"node", "table"}, {"degrees", 40}, {"axis", {1, 0, 0}}, {"direction", {0, 1, 0}}}}},
+      {"apart", {box, separate}},
+      {"beside", {box, separate, {{"op", "transform"}, {"node", "box"}, {"translate", {0.5, 0, 0}}}}},
+      {"joined",
+       {{{"op", "duplicate"}, {"node", "table"}, {"translate", {0.7, 0, 0}}},
+        {{"op", "merge"}, {"nodes", {"table", "table.2"}}}}},
+      {"whole", {}}};
+  View view;
+  view.camera.eye = {0, 2, 2};
+  view.camera.near_plane = 0.1;
+  view.camera.far_plane = 10;
+  view.width = view.height = 64;
+  view.samples = 4;
+  Renderer renderer;
+  for (const auto& [name, lines] : edits) {
+    SCOPED_TRACE(name);
+    Scene made = scene;
+    for (const json& line : lines) made = apply(made, read_edit(line, made)).scene;
+    format_named("rebake").write(made, path(name), {}, {});
+    const Scene back = read_scene_folder(path(name), {});
+    const Lighting before = lighting_of(made), after = lighting_of(back);
+    EXPECT_EQ(before.maps.size(), after.maps.size());
+    const Image lit = renderer.render(made, view, {}, &before), again = renderer.render(back, view, {}, &after);
+    // Where texels were packed anew, light's points are others, and 64 rays say a little else of them.
+    int most = 0;
+    double sum = 0;
+    for (std::size_t k = 0; k < lit.rgb.size(); ++k) {
+      const int off = std::abs(int{lit.rgb[k]} - int{again.rgb[k]});
+      most = std::max(most, off);
+      sum += off;
+    }
+    EXPECT_LE(most, 6);
+    EXPECT_LE(sum / static_cast<double>(lit.rgb.size()), 0.2);
+    // Written once more, it is the same, and nothing is there twice.
+    format_named("rebake").write(back, path(name + " again"), {}, {});
+    EXPECT_EQ(scene_files(path(name)), scene_files(path(name + " again")));
+    for (const fs::path& file : scene_files(path(name)))
+      EXPECT_EQ(read_file(path(name) / file), read_file(path(name + " again") / file)) << file;
+  }
+  const auto folders = [&](const std::string& name) {
+    return std::count_if(fs::directory_iterator(path(name)), fs::directory_iterator(),
+                         [](const auto& entry) { return entry.is_directory(); });
+  };
+  EXPECT_EQ(folders("whole"), 1) << "nothing was edited";
+  EXPECT_EQ(folders("cut"), 2);
+  EXPECT_EQ(folders("apart"), 3) << "two parts of one body";
+  EXPECT_EQ(folders("joined"), 2) << "two bodies of one shape";
+  // Where light does not follow edits, nothing of that is written.
+  Scene unlit = apply(scene, read_edit({{"op", "light"}, {"effects", {"none"}}}, scene)).scene;
+  for (const json& line : edits.at("lifted")) unlit = apply(unlit, read_edit(line, unlit)).scene;
+  format_named("rebake").write(unlit, path("unlit"), {}, {});
+  EXPECT_EQ(folders("unlit"), 1);
+  EXPECT_FALSE(fs::exists(path("unlit/table/baked.bin")));
 }
 
 TEST(LightEdit, APlainFolderShowsWhatLightMakesOfColours) {

@@ -6,6 +6,7 @@
 #include "editor/script/script.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/baked_places_file.h"
 #include "mesh_ops/formats/camera_json.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
@@ -27,6 +28,15 @@ Scene small_scene() {
   node.name = "a";
   node.object = object;
   return with_added({}, node, NodeId::none, 0);
+}
+
+// With a checksum that fits, else nothing but that would be tried.
+std::string side_file(std::string_view mark, std::string_view counted) {
+  const std::uint64_t hash = content_hash(counted);
+  std::string file(mark);
+  file.append("\1\0\0\0", 4);
+  for (int k = 0; k < 8; ++k) file += static_cast<char>(hash >> (8 * k) & 0xFF);
+  return file.append(counted);
 }
 
 }  // namespace
@@ -53,11 +63,12 @@ void read_json_bytes(std::string_view bytes) {
   }
   try {
     std::vector<TextureSet> sets = small_scene().roots[0]->object->sets;
-    // With a checksum that fits, else nothing but that would be tried.
-    const std::uint64_t hash = content_hash(bytes);
-    std::string file("rebaketn\1\0\0\0", 12);
-    for (int k = 0; k < 8; ++k) file += static_cast<char>(hash >> (8 * k) & 0xFF);
-    read_turns(file.append(bytes), "turns.bin", sets);
+    read_turns(side_file("rebaketn", bytes), "turns.bin", sets);
+  } catch (const Error&) {
+  }
+  try {
+    std::vector<TextureSet> sets = small_scene().roots[0]->object->sets;
+    read_baked_places(side_file("rebakebp", bytes), "baked.bin", 2, sets);
   } catch (const Error&) {
   }
   try {

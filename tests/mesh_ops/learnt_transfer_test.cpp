@@ -16,9 +16,9 @@
 namespace rebake::test {
 namespace {
 
-constexpr int side = 12;
+constexpr int sheet_side = 12;
 
-ProxyMesh grid(const std::function<Vec3(double x, double y)>& place, int count = side) {
+ProxyMesh grid(const std::function<Vec3(double x, double y)>& place, int count = sheet_side) {
   const DiskChart chart = grid_chart(count);
   ProxyMesh mesh;
   mesh.faces = chart.faces;
@@ -153,7 +153,7 @@ TEST(ProxyMesh, TurnsAlongAtAllScales) {
 
 TEST(GeometryImage, GivesBackWhatIsLinearOverTheSquare) {
   const ProxyMesh mesh = flat();
-  const GeometryImage image(grid_chart(side), 64);
+  const GeometryImage image(grid_chart(sheet_side), 64);
   std::vector<float> plane;
   for (const GeometryImage::Texel& texel : image.texels()) {
     Vec3 p = Vec3::Zero();
@@ -303,7 +303,7 @@ TEST(Unet, LearnsWhereTorchIs) {
   // Folding batch normalisation away must leave what was trained: on the poses that it saw it is far better than the
   // mean over them, which turning along gives.
   const ProxyMesh rest = flat();
-  UnetTransfer::Training training(rest, GeometryImage(grid_chart(side), 64));
+  UnetTransfer::Training training(rest, GeometryImage(grid_chart(sheet_side), 64));
   struct Seen {
     std::vector<LightSite> sites;
     std::vector<Mat3> turns;
