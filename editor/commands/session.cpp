@@ -9,13 +9,13 @@ Session::~Session() = default;
 
 void Session::edit(const Edit& edit) { edits({edit}); }
 
-void Session::edits(const std::vector<Edit>& edits) {
-  for (const Report& done : document.edits(edits, progress))
+void Session::edits(const std::vector<Edit>& edits, const CarriedOut* made) {
+  for (const Report& done : document.edits(edits, progress, made))
     for (const std::string& line : done.lines) report(line);
 }
 
-void Session::adjust(const std::vector<Edit>& edits) {
-  for (const Report& done : document.adjust(edits, progress))
+void Session::adjust(const std::vector<Edit>& edits, const CarriedOut* made) {
+  for (const Report& done : document.adjust(edits, progress, made))
     for (const std::string& line : done.lines) report(line);
 }
 

@@ -21,10 +21,10 @@ class Session {
   const Scene& scene() const { return document.scene(); }
   /// Carries an edit out and says in numbers what became of selections and triangles.
   void edit(const Edit& edit);
-  /// All of them, to be undone together, or none where one throws.
-  void edits(const std::vector<Edit>& edits);
+  /// All of them, to be undone together, or none where one throws. `made` as Document::edits() takes it.
+  void edits(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
   /// In place of the last step.
-  void adjust(const std::vector<Edit>& edits);
+  void adjust(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
 
   std::vector<std::string> exports;  ///< folders that export wrote
   Progress progress;

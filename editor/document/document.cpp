@@ -171,49 +171,39 @@ void Document::keep_journal(const fs::path& path) {
 
 void Document::edit(const Edit& edit, const Progress& progress) { edits({edit}, progress); }
 
-Document::Done Document::done(const std::vector<Edit>& edits, const Progress& progress) const {
-  Done done;
-  for (const Edit& edit : edits) {
-    const Scene& before = done.scenes.empty() ? scene() : done.scenes.back();
-    // What is carried out is what journals and projects will read, to the last bit: nothing can be accepted now and
-    // refused, or done otherwise, later.
-    done.edits.push_back(read_edit(to_json(completed(edit)), before));
-    Outcome outcome = rebake::apply(before, done.edits.back(), progress);
-    done.scenes.push_back(std::move(outcome.scene));
-    done.reports.push_back(std::move(outcome.report));
-  }
-  return done;
+CarriedOut Document::done(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) const {
+  return made != nullptr && made->is_of(scene(), edits) ? *made : carried_out(scene(), edits, progress);
 }
 
-std::vector<Report> Document::take_in(Done done) {
+std::vector<Report> Document::take_in(CarriedOut done) {
   add_sources(imported_, done.edits);
   for (std::size_t k = 0; k < done.edits.size(); ++k)
     history_.add(std::move(done.edits[k]), std::move(done.scenes[k]), k > 0);
   return std::move(done.reports);
 }
 
-std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progress& progress) {
+std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
   if (edits.empty()) return {};
-  Done made = done(edits, progress);
-  if (journal_) journal_->append(entry_of(made.edits));
-  return take_in(std::move(made));
+  CarriedOut taken = done(edits, progress, made);
+  if (journal_) journal_->append(entry_of(taken.edits));
+  return take_in(std::move(taken));
 }
 
-std::vector<Report> Document::adjust(const std::vector<Edit>& edits, const Progress& progress) {
+std::vector<Report> Document::adjust(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
   const std::size_t last = history_.undo_step();
   if (last == 0 || edits.empty()) throw EditError("there is no step to adjust, or nothing to do in its place");
   const Scene present = scene();
   history_.undo(last, progress);
-  Done made;
+  CarriedOut taken;
   try {
-    made = done(edits, progress);
+    taken = done(edits, progress, made);
     // One line: however the program ends, the step is there as it was, or as it is now.
-    if (journal_) journal_->append({{"adjust", {{"undo", last}, {"edits", entry_of(made.edits, true).at("edits")}}}});
+    if (journal_) journal_->append({{"adjust", {{"undo", last}, {"edits", entry_of(taken.edits, true).at("edits")}}}});
   } catch (...) {
     history_.return_to(last, present);
     throw;
   }
-  return take_in(std::move(made));
+  return take_in(std::move(taken));
 }
 
 bool Document::undo(std::size_t edits, const Progress& progress) {

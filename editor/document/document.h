@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "editor/document/carried_out.h"
 #include "editor/document/history.h"
 #include "editor/document/journal.h"
 #include "editor/document/sources.h"
@@ -39,10 +40,14 @@ class Document {
   bool keeps_journal() const { return journal_.has_value(); }
 
   void edit(const Edit& edit, const Progress& progress = {});
-  /// All of them, to be undone together, or none where one throws. What each did.
-  std::vector<Report> edits(const std::vector<Edit>& edits, const Progress& progress = {});
-  /// In place of the last step, or nothing where one throws: that step stays then. Throws EditError without one.
-  std::vector<Report> adjust(const std::vector<Edit>& edits, const Progress& progress = {});
+  /// All of them, to be undone together, or none where one throws. What each did. Where `made` is of the present scene
+  /// and these edits, that is taken, and nothing is done twice.
+  std::vector<Report> edits(const std::vector<Edit>& edits, const Progress& progress = {},
+                            const CarriedOut* made = nullptr);
+  /// In place of the last step, or nothing where one throws: that step stays then; `made` is of the scene before it.
+  /// Throws EditError without one.
+  std::vector<Report> adjust(const std::vector<Edit>& edits, const Progress& progress = {},
+                             const CarriedOut* made = nullptr);
   /// So many edits back or forth, or none; false where there are fewer.
   bool undo(std::size_t edits = 1, const Progress& progress = {});
   bool redo(std::size_t edits = 1, const Progress& progress = {});
@@ -56,13 +61,8 @@ class Document {
   void discard_journal();
 
  private:
-  struct Done {
-    std::vector<Edit> edits;    ///< as journals and projects read them
-    std::vector<Scene> scenes;  ///< after each
-    std::vector<Report> reports;
-  };
-  Done done(const std::vector<Edit>& edits, const Progress& progress) const;
-  std::vector<Report> take_in(Done done);
+  CarriedOut done(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) const;
+  std::vector<Report> take_in(CarriedOut done);
 
   bool starts_empty_;
   History history_;

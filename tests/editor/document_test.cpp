@@ -52,6 +52,40 @@ TEST_F(DocumentTest, UndoAndRedoWalkTheSameScenes) {
   EXPECT_FALSE(document.redo()) << "a new edit forgets what was undone";
 }
 
+// What a preview carried out is committed as it is; of another scene or other edits it is done anew.
+TEST_F(DocumentTest, WhatIsCarriedOutAlreadyIsNotDoneAgain) {
+  Document document;
+  document.keep_journal(path("journal"));
+  import(document);
+  const auto bend = [&](double degrees) {
+    return std::vector<Edit>{read_edit(
+        {{"op", "bend"}, {"node", "ball"}, {"degrees", degrees}, {"direction", {0, 1, 0}}, {"axis", {1, 0, 0}}},
+        document.scene())};
+  };
+  const Scene start = document.scene();
+  const CarriedOut made = carried_out(start, bend(30));
+  document.edits(bend(30), {}, &made);
+  EXPECT_EQ(document.scene().roots, made.scenes.back().roots);
+  document.adjust(bend(30), {}, &made);
+  EXPECT_EQ(document.scene().roots, made.scenes.back().roots) << "the step before it is what that was made of";
+  const auto bent = exported(document.scene());
+  document.undo();
+  document.edits(bend(30));
+  EXPECT_EQ(exported(document.scene()), bent) << "the same bytes either way";
+  EXPECT_NE(document.scene().roots, made.scenes.back().roots);
+  document.edits(bend(30), {}, &made);
+  EXPECT_NE(document.scene().roots, made.scenes.back().roots) << "it stands on another scene";
+  document.undo(2);
+  document.edits(bend(31), {}, &made);
+  EXPECT_NE(document.scene().roots, made.scenes.back().roots) << "another edit was wanted";
+  document = Document();
+  const Scene back = Document::recover(path("journal")).document.scene();
+  Document other;
+  import(other);
+  act(other, {{"op", "bend"}, {"node", "ball"}, {"degrees", 31}, {"direction", {0, 1, 0}}, {"axis", {1, 0, 0}}});
+  EXPECT_EQ(exported(back), exported(other.scene()));
+}
+
 TEST_F(DocumentTest, AThrownEditLeavesEverything) {
   Document document;
   import(document);

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <thread>
 
+#include "editor/edits/deform/bend.h"
 #include "editor/edits/nodes/hide.h"
 #include "editor/edits/nodes/rename.h"
 #include "editor/edits/nodes/transform.h"
@@ -198,6 +199,44 @@ TEST_F(DeskTest, AnAdjustedStepStaysOneStepAndAFailureLeavesIt) {
   EXPECT_EQ(find(desk->scene(), id("box"))->to_parent.translation().x(), 3) << "refused: what was there stays";
   EXPECT_EQ(desk->now->steps_done, steps);
   EXPECT_FALSE(desk->messages.shown().empty());
+}
+
+TEST_F(DeskTest, AReleaseTakesThePreviewsScene) {
+  Bend bend;
+  bend.target.node = NodeRef{id("box")};
+  bend.axis.axis = Vec3(1, 0, 0);
+  bend.direction = Vec3(0, 1, 0);
+  const auto drag = [&](double degrees) {
+    bend.degrees = degrees;
+    desk->show_preview({bend});
+  };
+  for (const double degrees : {5.0, 10.0, 20.0}) drag(degrees);
+  desk->edits({bend});  // the preview of it may still have to be made, and is waited for
+  wait();
+  EXPECT_EQ(desk->now->done.back().as<Bend>()->degrees, 20);
+  drag(30);
+  wait();
+  ASSERT_TRUE(desk->preview);
+  const std::vector<NodePtr> previewed = desk->preview->scene.roots;
+  desk->edits({bend});
+  wait();
+  EXPECT_EQ(desk->scene().roots, previewed);
+  // What was not asked for is carried out.
+  drag(40);
+  wait();
+  bend.degrees = 41;
+  desk->edits({bend});
+  wait();
+  const auto* last = desk->now->done.back().as<Bend>();
+  ASSERT_NE(last, nullptr);
+  EXPECT_EQ(last->degrees, 41);
+  // What is dropped is waited for by nobody.
+  drag(50);
+  desk->drop_preview();
+  bend.degrees = 50;
+  desk->edits({bend});
+  wait();
+  EXPECT_EQ(desk->now->steps_done, desk->now->steps.size());
 }
 
 TEST_F(DeskTest, TitlesSayWhatWasDoneAndNeverChange) {

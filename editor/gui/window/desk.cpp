@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -22,6 +23,18 @@
 namespace rebake {
 
 namespace {
+
+// What a preview makes, once it has; null where it was dropped, or failed. Throws Cancelled.
+std::shared_ptr<const CarriedOut> waited_for(const std::shared_future<std::shared_ptr<const CarriedOut>>& made,
+                                             const Progress& progress) {
+  constexpr std::chrono::milliseconds look{20};
+  while (made.wait_for(look) != std::future_status::ready) progress.at("waiting for what is shown", 0);
+  try {
+    return made.get();
+  } catch (const std::future_error&) {
+    return nullptr;  // another was asked for before it was begun
+  }
+}
 
 bool makes_nodes(const Edit& edit) {
   return edit.is<Import>() || edit.is<Duplicate>() || edit.is<Separate>() || edit.is<Merge>() || edit.is<Group>();
@@ -107,12 +120,25 @@ void Desk::pick_new(const std::vector<PlacedNode>& before) {
 }
 
 void Desk::show_preview(std::vector<Edit> list, std::optional<Scene> from) {
+  const auto done = std::make_shared<std::promise<std::shared_ptr<const CarriedOut>>>();
+  asked_ = Asked{list, done->get_future().share()};
   previews.request(scene().roots,
-                   [from = from ? *std::move(from) : scene(), list = std::move(list)](const Progress& progress) {
-                     Scene made = from;
-                     for (const Edit& one : list) made = rebake::apply(made, one, progress).scene;
-                     return made;
+                   [from = from ? *std::move(from) : scene(), list = std::move(list), done](const Progress& progress) {
+                     try {
+                       const auto made = std::make_shared<const CarriedOut>(carried_out(from, list, progress));
+                       done->set_value(made);
+                       return made->scenes.empty() ? from : made->scenes.back();
+                     } catch (...) {
+                       done->set_value(nullptr);
+                       throw;
+                     }
                    });
+}
+
+std::optional<Desk::Asked> Desk::asked_for(const std::vector<Edit>& list) const {
+  const auto same = [](const Edit& a, const Edit& b) { return &a.type() == &b.type() && to_json(a) == to_json(b); };
+  if (asked_ && std::equal(asked_->list.begin(), asked_->list.end(), list.begin(), list.end(), same)) return asked_;
+  return std::nullopt;
 }
 
 // The preview that stood for a job; what was begun since goes on.
@@ -124,6 +150,7 @@ void Desk::end_preview(std::size_t shown) {
 }
 
 void Desk::drop_preview() {
+  asked_.reset();
   previews.drop();
   preview.reset();
 }
@@ -143,17 +170,21 @@ void Desk::change(std::string title, Worker::Job job, std::function<void()> then
 
 void Desk::edits(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
   if (list.empty()) return;
-  change(
-      list.front().type().op, [list](Session& session) { session.edits(list); }, std::move(then), std::move(otherwise));
+  const auto job = [list, asked = asked_for(list)](Session& session) {
+    const auto made = asked ? waited_for(asked->made, session.progress) : nullptr;
+    session.edits(list, made.get());
+  };
+  change(list.front().type().op, job, std::move(then), std::move(otherwise));
 }
 
 void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
   if (now->done.empty()) return;
-  const auto job = [list, last = now->done.back()](Session& session) {
+  const auto job = [list, last = now->done.back(), asked = asked_for(list)](Session& session) {
     const std::vector<Edit> done = session.document.history().edits();
     if (done.empty() || done.back().value() != last.value())
       throw EditError("another step was done meanwhile; nothing was changed");
-    session.adjust(list);
+    const auto made = asked ? waited_for(asked->made, session.progress) : nullptr;
+    session.adjust(list, made.get());
   };
   change("adjust", job, std::move(then), std::move(otherwise));
 }

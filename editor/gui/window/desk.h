@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <set>
@@ -111,9 +112,17 @@ struct Desk {
   /// A job that changes the document, for which the present preview stands until it has ended.
   void change(std::string title, Worker::Job job, std::function<void()> then, std::function<void()> otherwise);
   void end_preview(std::size_t shown);
+  /// Edits that a preview was asked for of, and what it makes of them; null where it made nothing.
+  struct Asked {
+    std::vector<Edit> list;
+    std::shared_future<std::shared_ptr<const CarriedOut>> made;
+  };
+  /// Those edits as they were asked for last, else nothing.
+  std::optional<Asked> asked_for(const std::vector<Edit>& list) const;
   void pick_new(const std::vector<PlacedNode>& before);
   /// Titles of the steps that undoing (negative) or redoing so many passes.
   std::string title_of_steps(int steps) const;
+  std::optional<Asked> asked_;
   std::size_t selected_ = 0;
   bool at_rest_ = false;
   bool fresh_ = true;  ///< nothing was shown yet: the first scene is framed
