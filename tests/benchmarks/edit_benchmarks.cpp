@@ -124,6 +124,27 @@ void undo_and_redo(benchmark::State& state) {
     document.redo();
   }
 }
+// Letting go of half of the triangles, bent: the second argument says whether the preview had carried that out.
+void release(benchmark::State& state) {
+  Scene scene = scene_at(state.range(0));
+  Select half;
+  half.half_space = HalfSpaceRegion{Vec3(0.5, 0.5, 0.5), Vec3(1, 0.1, 0)};
+  half.frame = CoordinateFrame::bounds;
+  scene = rebake::apply(scene, half);
+  Bend bend;
+  bend.target.node = NodeRef{scene.roots[0]->id};
+  bend.target.selection = true;
+  bend.degrees = 30;
+  const std::vector<Edit> edits{bend};
+  const CarriedOut made = carried_out(scene, edits);
+  for (auto _ : state) {
+    state.PauseTiming();
+    Document document(scene);
+    state.ResumeTiming();
+    document.edits(edits, {}, state.range(1) != 0 ? &made : nullptr);
+  }
+}
+BENCHMARK(release)->ArgsProduct({{1, 9}, {0, 1}})->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(undo_and_redo)->Arg(1)->Arg(9)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // One edit with its journal line on the disk.

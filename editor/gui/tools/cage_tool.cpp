@@ -211,10 +211,19 @@ void CageTool::preview(Desk& desk) {
   };
   std::size_t places = 0;
   for (const std::vector<Vec3>& some : bound_->places) places += some.size();
-  if (static_cast<double>(places * bound_->cage.faces.size()) <= most_exact)
-    desk.previews.request(desk.scene().roots, made(true));
-  else
-    desk.previews.request(desk.scene().roots, made(false), made(true));
+  const bool at_once = static_cast<double>(places * bound_->cage.faces.size()) <= most_exact;
+  const CageDeform edit = edit_for(moved_);
+  // What is bound here would be found anew by the edit: there the preview is not what is committed.
+  if (edit.cage.wrap || edit.coordinates == CageCoordinates::harmonic) {
+    if (at_once)
+      desk.previews.request(desk.scene().roots, made(true));
+    else
+      desk.previews.request(desk.scene().roots, made(false), made(true));
+    return;
+  }
+  std::vector<Edit> list;
+  if (!edit.moves.empty()) list.emplace_back(edit);
+  desk.show_preview(std::move(list), bound_->scene, made(at_once));
 }
 
 std::vector<std::uint8_t> CageTool::in_front(const Lens& lens) const {

@@ -119,20 +119,24 @@ void Desk::pick_new(const std::vector<PlacedNode>& before) {
   active = {tops.begin(), tops.end()};
 }
 
-void Desk::show_preview(std::vector<Edit> list, std::optional<Scene> from) {
+void Desk::show_preview(std::vector<Edit> list, std::optional<Scene> from, Previews::Make quick) {
   const auto done = std::make_shared<std::promise<std::shared_ptr<const CarriedOut>>>();
   asked_ = Asked{list, done->get_future().share()};
-  previews.request(scene().roots,
-                   [from = from ? *std::move(from) : scene(), list = std::move(list), done](const Progress& progress) {
-                     try {
-                       const auto made = std::make_shared<const CarriedOut>(carried_out(from, list, progress));
-                       done->set_value(made);
-                       return made->scenes.empty() ? from : made->scenes.back();
-                     } catch (...) {
-                       done->set_value(nullptr);
-                       throw;
-                     }
-                   });
+  Previews::Make exact = [from = from ? *std::move(from) : scene(), list = std::move(list),
+                          done](const Progress& progress) {
+    try {
+      const auto made = std::make_shared<const CarriedOut>(carried_out(from, list, progress));
+      done->set_value(made);
+      return made->scenes.empty() ? from : made->scenes.back();
+    } catch (...) {
+      done->set_value(nullptr);
+      throw;
+    }
+  };
+  if (quick)
+    previews.request(scene().roots, std::move(quick), std::move(exact));
+  else
+    previews.request(scene().roots, std::move(exact));
 }
 
 std::optional<Desk::Asked> Desk::asked_for(const std::vector<Edit>& list) const {

@@ -50,8 +50,9 @@ struct Desk {
   /// Drawn in place of the scene that it was made of, while something is dragged or typed, and until the job that
   /// carries it out has ended.
   std::optional<Preview> preview;
-  /// Has what edits would make of a scene (left out: the present one) shown in its place, as soon as it is made.
-  void show_preview(std::vector<Edit> list, std::optional<Scene> from = {});
+  /// Has what edits would make of a scene (left out: the present one) shown in its place, as soon as it is made; before
+  /// that what `quick` makes, where there is one. Where these very edits are made then, nothing is carried out again.
+  void show_preview(std::vector<Edit> list, std::optional<Scene> from = {}, Previews::Make quick = {});
   void drop_preview();
   /// What the viewport draws.
   const Scene& shown() const { return preview && preview->of == scene().roots ? preview->scene : scene(); }
