@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "render/gl/context.h"
 #include "render/gpu_scene/gpu_scene.h"
 #include "render/graph/passes.h"
+#include "render/graph/variants.h"
 
 namespace rebake {
 
@@ -56,32 +58,43 @@ class Renderer::Impl {
     if (frame_plan.frames.size() > 65535)
       throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
     gpu_->update(scene, lighting);
-    state_.targets.fit(frame_plan);
-    if (!frame_plan.runs(effects::selection)) state_.selected.clear();
-    glBindFramebuffer(GL_FRAMEBUFFER, picture_buffer());
-    glDisable(GL_SCISSOR_TEST);
-    const Color& b = frame_plan.background;
-    const float background[4] = {static_cast<float>(b.x()), static_cast<float>(b.y()), static_cast<float>(b.z()), 1};
-    glClearBufferfv(GL_COLOR, 0, background);
-    FrameTimes times;
-    for (const Effect* pass : effect_table()) {
-      if (pass->execute == nullptr || !frame_plan.runs(*pass)) continue;
-      if (each_pass) glFinish();
-      const Clock::time_point pass_start = Clock::now();
-      pass->execute({frame_plan, *gpu_, state_, *pass});
-      if (!each_pass) continue;
-      glFinish();
-      times.pass_ms[pass->name] = milliseconds_since(pass_start);
-    }
-    glFinish();
-    times.frame_ms = milliseconds_since(start);
+    const std::size_t made_before = state_.programs.made();
+    FrameTimes times = carry_out(frame_plan, each_pass, start);
+    if (state_.programs.made() != made_before) ++compiled_;
+    remember(variant_of(frame_plan));
     passes_ = frame_plan.passes;
     if (frame_plan.runs(effects::occlusion)) say_occlusion();
-    if (const GLenum error = glGetError(); error != GL_NO_ERROR)
-      throw DeviceError(error == GL_OUT_OF_MEMORY ? "the GPU's memory is out; use fewer samples or a smaller picture"
-                                                  : "OpenGL reports error " + std::to_string(error));
     return times;
   }
+
+  bool make_ahead(const Scene& scene, const View& view, const RenderOptions& options, const Lighting* lighting) {
+    const gl::Current current(*context_);
+    for (FrameToCome& frame : frames_to_come(scene, view, options, lighting)) {
+      RenderOptions all_drawn = options;
+      all_drawn.occlusion = RenderOptions::Occlusion::off;
+      const FramePlan frame_plan = plan(frame.scene, frame.view, all_drawn, nullptr, lighting, device_facts());
+      if (!remember(variant_of(frame_plan))) continue;
+      gpu_->update(scene, lighting);
+      // With targets of its own: what is shown stays.
+      PassState other;
+      other.empty_array = gl::make_vertex_array();
+      const auto exchange = [&] {
+        std::swap(other, state_);
+        std::swap(other.programs, state_.programs);
+      };
+      exchange();
+      try {
+        carry_out(frame_plan, false, Clock::now());
+      } catch (...) {
+        exchange();
+        throw;
+      }
+      exchange();
+      return true;
+    }
+    return false;
+  }
+  std::size_t frames_that_compiled() const { return compiled_; }
 
   void prepare(const Scene& scene) { gpu_->prepare(scene); }
   const std::string& device() const { return device_; }
@@ -106,6 +119,44 @@ class Renderer::Impl {
   }
 
  private:
+  // Draws what is on the GPU as planned, into the targets of the plan.
+  FrameTimes carry_out(const FramePlan& frame_plan, bool each_pass, Clock::time_point start) {
+    state_.targets.fit(frame_plan);
+    if (!frame_plan.runs(effects::selection)) state_.selected.clear();
+    glBindFramebuffer(GL_FRAMEBUFFER, picture_buffer());
+    glDisable(GL_SCISSOR_TEST);
+    const Color& b = frame_plan.background;
+    const float background[4] = {static_cast<float>(b.x()), static_cast<float>(b.y()), static_cast<float>(b.z()), 1};
+    glClearBufferfv(GL_COLOR, 0, background);
+    FrameTimes times;
+    for (const Effect* pass : effect_table()) {
+      if (pass->execute == nullptr || !frame_plan.runs(*pass)) continue;
+      if (each_pass) glFinish();
+      const Clock::time_point pass_start = Clock::now();
+      pass->execute({frame_plan, *gpu_, state_, *pass});
+      if (!each_pass) continue;
+      glFinish();
+      times.pass_ms[pass->name] = milliseconds_since(pass_start);
+    }
+    glFinish();
+    times.frame_ms = milliseconds_since(start);
+    if (const GLenum error = glGetError(); error != GL_NO_ERROR)
+      throw DeviceError(error == GL_OUT_OF_MEMORY ? "the GPU's memory is out; use fewer samples or a smaller picture"
+                                                  : "OpenGL reports error " + std::to_string(error));
+    return times;
+  }
+
+  // True where none like it was drawn before, as far back as programs are kept.
+  bool remember(ProgramVariant variant) {
+    constexpr std::size_t most = 32;
+    const auto known = std::find(drawn_.begin(), drawn_.end(), variant);
+    const bool fresh = known == drawn_.end();
+    if (!fresh) drawn_.erase(known);
+    drawn_.push_back(std::move(variant));
+    if (drawn_.size() > most) drawn_.erase(drawn_.begin());
+    return fresh;
+  }
+
   DeviceFacts device_facts() {
     DeviceFacts facts;
     // A GPU draws triangles some hundred times faster than a processor, which tests them no faster beside it.
@@ -142,6 +193,8 @@ class Renderer::Impl {
   std::string device_;
   bool software_ = false;
   std::vector<PlannedPass> passes_;
+  std::vector<ProgramVariant> drawn_;  ///< the latest last
+  std::size_t compiled_ = 0;
   double share_ = 0;
   int frames_without_ = 0;
 };
@@ -149,6 +202,12 @@ class Renderer::Impl {
 Renderer::Renderer() : Renderer(gl::make_headless_context()) {}
 Renderer::Renderer(std::unique_ptr<gl::Context> context) : impl_(std::make_unique<Impl>(std::move(context))) {}
 Renderer::~Renderer() = default;
+
+bool Renderer::make_ahead(const Scene& scene, const View& view, const RenderOptions& options,
+                          const Lighting* lighting) {
+  return impl_->make_ahead(scene, view, options, lighting);
+}
+std::size_t Renderer::frames_that_compiled() const { return impl_->frames_that_compiled(); }
 
 void Renderer::prepare(const Scene& scene) { impl_->prepare(scene); }
 

@@ -36,6 +36,12 @@ class Renderer {
   Image render(const Scene& scene, const View& view, const RenderOptions& options = {},
                const Lighting* lighting = nullptr);
 
+  /// Makes the next of the programs that other views of this scene would want, and were not made yet: a driver may take
+  /// a tenth of a second for one. False where there are none. Changes nothing that is shown.
+  bool make_ahead(const Scene& scene, const View& view, const RenderOptions& options, const Lighting* lighting);
+  /// How often a frame had to have programs made, of all that were drawn to be seen.
+  std::size_t frames_that_compiled() const;
+
   /// Works out what the next picture of a scene will upload, so that it takes less time. From any thread.
   void prepare(const Scene& scene);
 

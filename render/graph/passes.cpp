@@ -27,6 +27,7 @@ const gl::Program& ProgramCache::get(const std::string& vertex, const std::strin
     if (entries_.size() >= most)
       entries_.erase(std::min_element(entries_.begin(), entries_.end(),
                                       [](const auto& a, const auto& b) { return a.second.used < b.second.used; }));
+    ++made_;
     found = entries_.emplace(key, Entry{std::move(program), 0}).first;
   }
   found->second.used = ++clock_;

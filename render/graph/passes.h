@@ -16,6 +16,8 @@ class ProgramCache {
   /// The program made of two shader files behind a preamble.
   const gl::Program& get(const std::string& vertex, const std::string& fragment, const std::string& preamble);
   std::size_t size() const { return entries_.size(); }
+  /// How many were compiled so far.
+  std::size_t made() const { return made_; }
 
  private:
   static constexpr std::size_t most = 64;
@@ -25,6 +27,7 @@ class ProgramCache {
   };
   std::map<std::string, Entry> entries_;
   std::uint64_t clock_ = 0;
+  std::size_t made_ = 0;
 };
 
 /// Weights as literals, as text for shaders; made once for a set of decoders.

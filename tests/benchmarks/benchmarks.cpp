@@ -205,6 +205,32 @@ void erase_stroke(benchmark::State& state) {
 }
 BENCHMARK(erase_stroke)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+// The first picture of an object that the camera turns to, whose decoder was not in view before; the argument says
+// whether its programs were made ahead. Drivers that keep programs on the disk must not (MESA_SHADER_CACHE_DISABLE=1).
+void first_look(benchmark::State& state) {
+  Scene scene = scene_of(made_object({.seed = 1}));
+  Node other;
+  other.object = made_object({.seed = 2});
+  other.to_parent.translation() = Vec3(100, 0, 0);
+  scene = with_added(scene, other, NodeId::none, 9);
+  View there;
+  there.camera.eye += other.to_parent.translation();
+  there.camera.target += other.to_parent.translation();
+  for (auto _ : state) {
+    state.PauseTiming();
+    auto renderer = std::make_unique<Renderer>();
+    renderer->time_frame(scene, {}, {}, false);
+    while (state.range(0) != 0 && renderer->make_ahead(scene, {}, {}, nullptr)) {
+    }
+    state.ResumeTiming();
+    renderer->time_frame(scene, there, {}, false);
+    state.PauseTiming();
+    renderer.reset();
+    state.ResumeTiming();
+  }
+}
+BENCHMARK(first_look)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void export_unedited(benchmark::State& state) {
   const TemporaryFolder out;
   Node node;

@@ -74,6 +74,22 @@ double Viewport::next_frame_in(const Desk& desk) const {
   return std::chrono::duration<double>(settle_time).count();
 }
 
+bool Viewport::wants_ahead() const {
+  if (!made_ || texture_ == 0 || moving() || made_->guides.inspect != Guides::Inspect::none) return false;
+  return !ahead_of_ || !same_scene(ahead_of_->scene, made_->scene) || ahead_of_->lighting != made_->lighting ||
+         ahead_of_->view.samples != made_->view.samples;
+}
+
+void Viewport::make_ahead(const Desk& desk) {
+  try {
+    const View view{made_->view.camera, desk.view.width, desk.view.height, desk.view.samples};
+    if (renderer_.make_ahead(made_->scene, view, {}, made_->lighting.get())) return;
+  } catch (const std::exception&) {
+    // The frame that wants it says what is wrong.
+  }
+  ahead_of_ = made_;
+}
+
 void Viewport::fly(Desk& desk) {
   const ImGuiIO& io = ImGui::GetIO();
   const auto held = [&](int key, char letter) {

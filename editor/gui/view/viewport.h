@@ -27,6 +27,10 @@ class Viewport {
 
   /// Seconds until there is something to draw without any event; negative for never.
   double next_frame_in(const Desk& desk) const;
+  /// Whether programs may be missing that other views of what is shown would want, while nothing moves.
+  bool wants_ahead() const;
+  /// Makes one of them, where nothing else is to be done.
+  void make_ahead(const Desk& desk);
   /// How long the whole frame took of the window in which the last picture was drawn.
   void frame_took(double ms);
   const FrameReport& report() const { return report_; }
@@ -72,6 +76,7 @@ class Viewport {
   Camera last_camera_;
   FrameReport report_;
   std::optional<Made> made_;
+  std::optional<Made> ahead_of_;  ///< a picture of which no program is missing from other views
   unsigned before_texture_ = 0;
   ToolKind last_tool_ = ToolKind::pick;
   unsigned texture_ = 0;

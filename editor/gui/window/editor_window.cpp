@@ -30,6 +30,8 @@ namespace {
 
 // Frames that Dear ImGui needs after an event until hovering, popups and focus have settled.
 constexpr int frames_after_event = 4;
+// Seconds without an event before a program is made that another view may want.
+constexpr double before_making_ahead = 0.3;
 
 /// The loop: events, keys, frames, and what lives on the GPU.
 class EditorWindow {
@@ -50,10 +52,14 @@ class EditorWindow {
   void run() {
     frames_ = frames_after_event;
     while (!dialogs_.may_quit()) {
-      const double pause = frames_ > 0 ? 0 : desk_.jobs.worker.busy() || dialogs_.waits() ? 0.1 : next_frame_in();
+      const bool works = desk_.jobs.worker.busy() || dialogs_.waits();
+      const bool rests = frames_ == 0 && !works && next_frame_in() < 0 && viewport().wants_ahead();
+      const double pause = frames_ > 0 ? 0 : works ? 0.1 : rests ? before_making_ahead : next_frame_in();
       const auto waits = std::chrono::steady_clock::now();
       if (window().wait(pause))
         frames_ = frames_after_event;
+      else if (rests)
+        viewport().make_ahead(desk_);
       else if (desk_.jobs.worker.busy() || dialogs_.waits())
         frames_ = std::max(frames_, 1);  // one that shows how far it is, and a pause
       if (pause == 0) paused(waits);
