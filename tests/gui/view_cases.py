@@ -1,9 +1,10 @@
 """Views, pictures and films of them, and the window itself."""
 
+import json
 import subprocess
 
 from screen import until
-from window_case import WindowCase, PROGRAM, green
+from window_case import FICUS, KETTLE, PROGRAM, WindowCase, green
 
 
 class ViewTest(WindowCase):
@@ -47,6 +48,27 @@ class ViewTest(WindowCase):
         editor.until_ops("import", "view", "view", "rename_view", "remove_view")
         self.assertIn("tabs/views/front/picture", editor.state()["items"])
         self.assertNotIn("tabs/views/view 2/picture", editor.state()["items"])
+
+    def test_what_the_camera_turns_to_is_not_compiled_for(self):
+        # Each of two objects fills one of two views.
+        script = self.folder / "apart.jsonl"
+        view = {"fov": 39, "near": 0.1, "far": 500}
+        script.write_text("\n".join(map(json.dumps, [
+            {"op": "import", "path": str(FICUS), "as": "ficus"},
+            {"op": "import", "path": str(KETTLE), "as": "kettle"},
+            {"op": "transform", "node": "kettle", "translate": [100, 0, 0]},
+            {"op": "view", "name": "at the ficus", "camera": {"eye": [0, 1, 4], "target": [0, 0, 0], **view}},
+            {"op": "view", "name": "at the kettle", "camera": {"eye": [100, 1, 4], "target": [100, 0, 0], **view}},
+            {"op": "save", "out": str(self.folder / "apart")}])))
+        subprocess.run([PROGRAM, "run", script], check=True, capture_output=True)
+        editor = self.open(self.folder / "apart")
+        editor.command("at the ficus")
+        until(lambda: editor.state().get("programs", {}).get("all_made"), "programs made ahead")
+        seen, waited = editor.viewport(), editor.state()["programs"]["frames_waited"]
+        editor.command("at the kettle")
+        self.assertGreater((abs(editor.viewport() - seen).max(axis=2) > 30).sum(), 5000)
+        editor.drag([editor.in_viewport(0.4, 0.8), editor.in_viewport(0.6, 0.6)], button=2)
+        self.assertEqual(editor.state()["programs"]["frames_waited"], waited)
 
     def test_axis_knobs_and_menus(self):
         editor = self.open_ficus()

@@ -74,10 +74,13 @@ double Viewport::next_frame_in(const Desk& desk) const {
   return std::chrono::duration<double>(settle_time).count();
 }
 
+bool Viewport::all_made() const {
+  return made_ && ahead_of_ && same_scene(ahead_of_->scene, made_->scene) && ahead_of_->lighting == made_->lighting &&
+         ahead_of_->view.samples == made_->view.samples;
+}
+
 bool Viewport::wants_ahead() const {
-  if (!made_ || texture_ == 0 || moving() || made_->guides.inspect != Guides::Inspect::none) return false;
-  return !ahead_of_ || !same_scene(ahead_of_->scene, made_->scene) || ahead_of_->lighting != made_->lighting ||
-         ahead_of_->view.samples != made_->view.samples;
+  return made_ && texture_ != 0 && !moving() && made_->guides.inspect == Guides::Inspect::none && !all_made();
 }
 
 void Viewport::make_ahead(const Desk& desk) {

@@ -27,7 +27,9 @@ class Viewport {
 
   /// Seconds until there is something to draw without any event; negative for never.
   double next_frame_in(const Desk& desk) const;
-  /// Whether programs may be missing that other views of what is shown would want, while nothing moves.
+  /// Whether no program is missing that other views of what is shown would want.
+  bool all_made() const;
+  /// Whether some may be, and nothing moves.
   bool wants_ahead() const;
   /// Makes one of them, where nothing else is to be done.
   void make_ahead(const Desk& desk);

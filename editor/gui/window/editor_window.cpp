@@ -286,6 +286,8 @@ class EditorWindow {
     state["asks"] = asks();
     state["scale"] = scale_;
     state["window"] = {window().width(), window().height()};
+    state["programs"] = {{"all_made", viewport().all_made()},
+                         {"frames_waited", graphics_->renderer.frames_that_compiled()}};
     state["longest_pause_ms"] = std::lround(longest_pause_ms_);
     announce::frame(state);
   }
