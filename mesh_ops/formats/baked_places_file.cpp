@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "mesh_ops/formats/side_file.h"
 
@@ -22,14 +24,19 @@ const Displacements* displacements_of(const Soup& soup) {
 }
 const Bodies* bodies_of(const Soup& soup) { return soup.face_attributes().find<std::uint16_t>(BakedObject::body); }
 
+// What moved farther than a float can say is said to be at its end; zero is neutral, whatever its sign.
+float finite(float value) {
+  constexpr float most = std::numeric_limits<float>::max();
+  return std::isnan(value) ? 0 : std::clamp(value, -most, most) + 0.0F;
+}
+
 std::string places_of(const Soup& soup) {
   const Displacements* displaced = displacements_of(soup);
   std::string values;
   values.reserve(soup.positions().size() * displacement_size);
   for (std::size_t v = 0; v < soup.positions().size(); ++v)
     for (int c = 0; c < 3; ++c)
-      // Zero is neutral, whatever its sign.
-      put_word(values, std::bit_cast<std::uint32_t>((displaced != nullptr ? (*displaced)[v][c] : 0.0F) + 0.0F));
+      put_word(values, std::bit_cast<std::uint32_t>(displaced != nullptr ? finite((*displaced)[v][c]) : 0.0F));
   std::string out = corner_values(soup.faces(), values, displacement_size, std::string(displacement_size, '\0'));
   const Bodies* bodies = bodies_of(soup);
   const auto body = [&](std::size_t face) { return bodies != nullptr ? (*bodies)[face] : std::uint16_t{0}; };

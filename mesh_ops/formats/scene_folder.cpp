@@ -25,7 +25,8 @@ using nlohmann::json;
 namespace {
 
 constexpr int scene_version = 1;
-constexpr std::size_t most_bodies = 65536;  // as many as a face's number of one can say
+constexpr std::size_t longest_folder_name = 200;  // file systems take 255 bytes, with a number too
+constexpr std::size_t most_bodies = 65536;        // as many as a face's number of one can say
 
 json affine_json(const Affine& affine) {
   json rows = json::array();
@@ -36,22 +37,24 @@ json affine_json(const Affine& affine) {
 
 const char* axes_word(Axes axes) { return axes == Axes::forward ? "forward" : "360"; }
 
-json node_json(const Node& node, const std::map<const BakedObject*, std::string>& folder_of) {
+json node_json(const Node& node, const std::map<const BakedObject*, std::string>& folder_of, bool with_bodies) {
   json out = {{"name", node.name}, {"transform", affine_json(node.to_parent)}};
   if (!node.visible) out["visible"] = false;
   if (node.locked) out["locked"] = true;
   if (node.object) {
     out["folder"] = folder_of.at(node.object.get());
     out["axes"] = axes_word(node.object->axes);
-    for (const BakedBody& body : node.object->bodies)
-      if (const auto folder = folder_of.find(body.object.get()); folder != folder_of.end())
-        out["bodies"].push_back({{"folder", folder->second},
+    if (with_bodies) {
+      for (const BakedBody& body : node.object->bodies)
+        out["bodies"].push_back({{"folder", folder_of.at(body.object.get())},
                                  {"axes", axes_word(body.object->axes)},
                                  {"transform", affine_json(body.to_object)}});
+      if (any_baked_places(node.object->sets)) out["baked_places"] = true;
+    }
   }
   if (!node.children.empty()) {
     out["children"] = json::array();
-    for (const NodePtr& child : node.children) out["children"].push_back(node_json(*child, folder_of));
+    for (const NodePtr& child : node.children) out["children"].push_back(node_json(*child, folder_of, with_bodies));
   }
   return out;
 }
@@ -161,37 +164,6 @@ SceneLight read_light(const json& value) {
   return light;
 }
 
-bool same_bytes(const SourceFile& a, const SourceFile& b) { return a.size == b.size && a.hash == b.hash; }
-
-// What was read from equal files is held once: light sees by that which texels are still what was baked.
-void share_with_bodies(BakedObject& object) {
-  auto origin = std::make_shared<Origin>(*object.origin);
-  for (std::size_t s = 0; s < object.sets.size(); ++s) {
-    TextureSet& set = object.sets[s];
-    Origin::Set& files = origin->sets[s];
-    for (const BakedBody& body : object.bodies) {
-      const Origin& its = *body.object->origin;
-      for (std::size_t t = 0; t < its.sets.size(); ++t) {
-        const TextureSet& other = body.object->sets[t];
-        if (other.texels->alpha_code() == set.texels->alpha_code() && same_bytes(its.sets[t].feat0, files.feat0) &&
-            same_bytes(its.sets[t].feat1, files.feat1)) {
-          set.texels = other.texels;
-          files.texels = other.texels;
-        }
-        if (std::equal(its.sets[t].geometry.begin(), its.sets[t].geometry.end(), files.geometry.begin(),
-                       files.geometry.end(), same_bytes)) {
-          set.soup = Soup(other.soup.shared_positions(), other.soup.shared_uvs(), other.soup.shared_faces(),
-                          set.soup.vertex_attributes(), set.soup.face_attributes());
-          files.positions = other.soup.shared_positions();
-          files.uvs = other.soup.shared_uvs();
-          files.faces = other.soup.shared_faces();
-        }
-      }
-    }
-  }
-  object.origin = origin;
-}
-
 class SceneReader {
  public:
   SceneReader(fs::path folder, const Progress& progress)
@@ -234,7 +206,14 @@ class SceneReader {
     node.name = value.at("name").get<std::string>();
     node.visible = value.value("visible", true);
     node.locked = value.value("locked", false);
-    if (value.contains("transform")) node.to_parent = read_affine(value.at("transform"), node.name);
+    if (value.contains("transform")) {
+      node.to_parent = read_affine(value.at("transform"), node.name);
+      try {
+        orthogonal_factor(node.to_parent.linear());
+      } catch (const std::invalid_argument& error) {
+        throw FileError(name_, fmt::format("node \"{}\": {}", node.name, error.what()));
+      }
+    }
     if (value.contains("folder")) node.object = read_object(value, node.name);
     if (value.contains("children"))
       for (const json& child : value.at("children"))
@@ -249,11 +228,6 @@ class SceneReader {
     for (int i = 0; i < 12; ++i) affine.matrix()(i / 4, i % 4) = rows.at(static_cast<std::size_t>(i)).get<double>();
     if (!affine.matrix().allFinite())
       throw FileError(name_, fmt::format("node \"{}\": \"transform\" is not finite", node));
-    try {
-      orthogonal_factor(affine.linear());
-    } catch (const std::invalid_argument& error) {
-      throw FileError(name_, fmt::format("node \"{}\": {}", node, error.what()));
-    }
     return affine;
   }
 
@@ -262,17 +236,19 @@ class SceneReader {
     const auto read = read_folder(folder, value.value("axes", "360"));
     if (!value.contains("bodies")) return read;
     const json& bodies = value.at("bodies");
-    if (bodies.empty() || bodies.size() > most_bodies)
+    if (!bodies.is_array() || bodies.empty() || bodies.size() > most_bodies)
       throw FileError(name_, fmt::format("node \"{}\": \"bodies\" must be a list of 1 to {}", node, most_bodies));
-    auto& known = edited_[folder];
+    const bool places = value.value("baked_places", false);
+    auto& known = edited_[fmt::format("{}\n{}\n{}", folder, places, bodies.dump())];
     if (known) return known;
     auto object = std::make_shared<BakedObject>(*read);
     for (const json& body : bodies)
       object->bodies.push_back({read_folder(body.at("folder").get<std::string>(), body.value("axes", "360")),
                                 read_affine(body.at("transform"), node)});
-    share_with_bodies(*object);
-    if (const fs::path places = folder_ / fs::path(folder).lexically_normal() / "baked.bin"; fs::exists(places))
-      read_baked_places(read_file(places), places, bodies.size(), object->sets);
+    if (places) {
+      const fs::path file = folder_ / fs::path(folder).lexically_normal() / "baked.bin";
+      read_baked_places(read_file(file), file, bodies.size(), object->sets);
+    }
     known = object;
     return known;
   }
@@ -285,15 +261,42 @@ class SceneReader {
       throw FileError(name_, fmt::format("folder \"{}\" must lie below the scene", relative));
     auto& known = objects_[relative + '\n' + axes];
     if (known) return known;
-    known = read_baked_folder(folder_ / path, axes == "forward" ? Axes::forward : Axes::y_up, progress_);
+    known = shared(*read_baked_folder(folder_ / path, axes == "forward" ? Axes::forward : Axes::y_up, progress_));
     return known;
+  }
+
+  // What stands in equal files is held once: light sees by that which texels are still what was baked.
+  std::shared_ptr<const BakedObject> shared(BakedObject object) {
+    auto origin = std::make_shared<Origin>(*object.origin);
+    const auto words = [](const SourceFile& file) { return fmt::format("{} {:016x}\n", file.size, file.hash); };
+    for (std::size_t s = 0; s < object.sets.size(); ++s) {
+      TextureSet& set = object.sets[s];
+      Origin::Set& files = origin->sets[s];
+      const std::string images = words(files.feat0) + words(files.feat1) +
+                                 (set.texels->alpha_code() == AlphaCode::halved ? "halved" : "plain");
+      set.texels = texels_.try_emplace(images, set.texels).first->second;
+      std::string geometry;
+      for (const SourceFile& file : files.geometry) geometry += words(file);
+      files.texels = set.texels;
+      const auto [same, fresh] = soups_.try_emplace(geometry, set.soup);
+      if (fresh) continue;
+      set.soup = Soup(same->second.shared_positions(), same->second.shared_uvs(), same->second.shared_faces(),
+                      set.soup.vertex_attributes(), set.soup.face_attributes());
+      files.positions = set.soup.shared_positions();
+      files.uvs = set.soup.shared_uvs();
+      files.faces = set.soup.shared_faces();
+    }
+    object.origin = origin;
+    return std::make_shared<const BakedObject>(std::move(object));
   }
 
   fs::path folder_;
   fs::path name_;
   const Progress& progress_;
-  std::map<std::string, std::shared_ptr<const BakedObject>> objects_;  ///< by folder and axes
-  std::map<std::string, std::shared_ptr<const BakedObject>> edited_;   ///< those with bodies, by folder
+  std::map<std::string, std::shared_ptr<const BakedObject>> objects_;    ///< by folder and axes
+  std::map<std::string, std::shared_ptr<const BakedObject>> edited_;     ///< those with bodies, by all that is said
+  std::map<std::string, std::shared_ptr<const FeatureTexture>> texels_;  ///< by their files
+  std::map<std::string, Soup> soups_;
 };
 
 }  // namespace
@@ -304,20 +307,22 @@ std::string folder_name(const std::string& name, const std::vector<std::string>&
     base += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' ? c : '_';
   while (!base.empty() && base.front() == '.') base.erase(0, 1);
   if (base.empty() || is_format_file_name(base)) base = "object_" + base;
+  base.resize(std::min(base.size(), longest_folder_name));
   std::string result = base;
   for (int n = 2; std::find(taken.begin(), taken.end(), result) != taken.end(); ++n)
     result = fmt::format("{}_{}", base, n);
   return result;
 }
 
-std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of) {
+std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of,
+                             bool with_bodies) {
   json root = {{"rebake_scene", scene_version},
                {"background", {scene.background.x(), scene.background.y(), scene.background.z()}},
                {"views", json::object()},
                {"nodes", json::array()}};
   if (scene.light) root["light"] = light_json(*scene.light);
   for (const auto& [name, camera] : scene.views) root["views"][name] = camera_json(camera);
-  for (const NodePtr& node : scene.roots) root["nodes"].push_back(node_json(*node, folder_of));
+  for (const NodePtr& node : scene.roots) root["nodes"].push_back(node_json(*node, folder_of, with_bodies));
   return root.dump(1) + '\n';
 }
 
@@ -363,7 +368,7 @@ std::vector<std::string> save_scene_folder(const Scene& scene, const fs::path& f
         write(body.object, placed.node->name + ".baked");
     }
   }
-  out.write("scene.json", write_scene_json(scene, folder_of));
+  out.write("scene.json", write_scene_json(scene, folder_of, keeps_bodies));
   out.commit();
   return notes;
 }

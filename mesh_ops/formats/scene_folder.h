@@ -17,10 +17,11 @@ Scene read_scene_folder(const std::filesystem::path& folder, const Progress& pro
 std::vector<std::string> save_scene_folder(const Scene& scene, const std::filesystem::path& folder,
                                            const SourceGuard& guard, const Progress& progress = {});
 
-/// The text of scene.json; `folder_of` names each object's folder.
-std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of);
+/// The text of scene.json; `folder_of` names each object's folder, and with `with_bodies` each body's.
+std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of,
+                             bool with_bodies = false);
 
-/// `name` as a folder name: letters, digits, dot, dash and underscore, different from all in `taken`.
+/// `name` as a folder name: letters, digits, dot, dash and underscore, at most 200, different from all in `taken`.
 std::string folder_name(const std::string& name, const std::vector<std::string>& taken);
 
 }  // namespace rebake

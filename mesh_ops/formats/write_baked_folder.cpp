@@ -46,7 +46,8 @@ std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFil
   return std::nullopt;
 }
 
-std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, std::vector<std::string>& notes) {
+std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, bool all_texels,
+                               std::vector<std::string>& notes) {
   const AlphaCode code = layout == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved;
   const int largest = largest_texture_side(layout);
   const bool converts = std::any_of(object.sets.begin(), object.sets.end(),
@@ -69,7 +70,7 @@ std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, std::ve
     const TextureSet same_or_converted{set.soup, with_alpha_code(set.texels, code)};
     const Origin::Set* source = source_set(object, set, false);
     const bool same_faces = source != nullptr && source->faces.lock() == set.soup.shared_faces();
-    if (same_faces || !can_pack(set)) {
+    if (all_texels || same_faces || !can_pack(set)) {
       kept.push_back(same_or_converted);
     } else {
       edited_area += static_cast<std::uint64_t>(set.texels->width()) * static_cast<std::uint64_t>(set.texels->height());
@@ -119,7 +120,7 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
   if (object.triangle_count() == 0) throw Error("an object without triangles cannot be written");
   BakedObject filled = object;
   std::erase_if(filled.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
-  std::vector<TextureSet> sets = fitted(filled, layout, notes);
+  std::vector<TextureSet> sets = fitted(filled, layout, baked_places, notes);
   if (layout == Layout::chunked)
     for (TextureSet& set : sets) set.soup = with_a_face_for_each_chunk(set.soup);
   const bool same_layout = object.origin && object.origin->layout == layout;

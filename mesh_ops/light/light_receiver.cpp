@@ -221,6 +221,7 @@ void LightReceiver::prepare(const Progress& progress) {
   if (!charts_.empty()) return;
   try {
     orthogonal_factor(to_world().linear());
+    for (const BakedBody& body : bodies_of(object())) orthogonal_factor(body.to_object.linear());
   } catch (const std::invalid_argument& error) {
     throw EditError(fmt::format("node \"{}\": {}", name(), error.what()));
   }

@@ -2,6 +2,7 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <set>
 #include <sstream>
@@ -237,6 +238,26 @@ TEST_F(DeskTest, AReleaseTakesThePreviewsScene) {
   desk->edits({bend});
   wait();
   EXPECT_EQ(desk->now->steps_done, desk->now->steps.size());
+}
+
+TEST_F(DeskTest, AReleaseThatWaitsForAPreviewCanBeStopped) {
+  std::atomic<bool> go_on = false;
+  desk->previews.request(desk->scene().roots, [&go_on, scene = desk->scene()](const Progress&) {
+    while (!go_on) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return scene;
+  });
+  Hide hide;
+  hide.node = NodeRef{id("box")};
+  const std::size_t steps = desk->now->steps_done;
+  desk->show_preview({hide});
+  desk->edits({hide});
+  desk->jobs.worker.cancel();
+  while (desk->jobs.worker.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  go_on = true;
+  wait();
+  EXPECT_EQ(desk->now->steps_done, steps);
+  EXPECT_TRUE(find(desk->scene(), id("box"))->visible);
+  EXPECT_FALSE(desk->preview) << "what was not done is not shown";
 }
 
 TEST_F(DeskTest, TitlesSayWhatWasDoneAndNeverChange) {

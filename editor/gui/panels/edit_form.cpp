@@ -73,7 +73,8 @@ void EditForm::show(Desk& desk) {
 
 void EditForm::draw(Desk& desk) {
   if (desk.asking.form.empty()) {
-    if (!op_.empty()) desk.drop_preview();
+    // What was applied is shown until it is done.
+    if (!op_.empty() && desk.at_rest()) desk.drop_preview();
     op_.clear();
     return;
   }

@@ -174,6 +174,7 @@ void Desk::change(std::string title, Worker::Job job, std::function<void()> then
 
 void Desk::edits(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
   if (list.empty()) return;
+  previews.drop_stale();
   const auto job = [list, asked = asked_for(list)](Session& session) {
     const auto made = asked ? waited_for(asked->made, session.progress) : nullptr;
     session.edits(list, made.get());
@@ -183,6 +184,7 @@ void Desk::edits(const std::vector<Edit>& list, std::function<void()> then, std:
 
 void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
   if (now->done.empty()) return;
+  previews.drop_stale();
   const auto job = [list, last = now->done.back(), asked = asked_for(list)](Session& session) {
     const std::vector<Edit> done = session.document.history().edits();
     if (done.empty() || done.back().value() != last.value())

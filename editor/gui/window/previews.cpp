@@ -34,6 +34,11 @@ void Previews::set_prepare(std::function<void(const Scene&)> prepare) {
   prepare_ = std::move(prepare);
 }
 
+void Previews::drop_stale() {
+  const std::lock_guard lock(mutex_);
+  if (running_ && wanted_) cancel_ = true;
+}
+
 void Previews::drop() {
   const std::lock_guard lock(mutex_);
   wanted_.reset();

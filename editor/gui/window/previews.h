@@ -33,6 +33,8 @@ class Previews {
   void request(std::vector<NodePtr> of, Make make, Make exact = {});
   /// Called with every preview before it can be taken, on their thread; null for none.
   void set_prepare(std::function<void(const Scene&)> prepare);
+  /// What is being made is stopped where something later was asked for: nobody wants to see it any more.
+  void drop_stale();
   /// Nothing is wanted any more; what is being made is stopped where it can be.
   void drop();
   /// How many were asked for so far.
