@@ -173,7 +173,7 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
   }
   out.write(folder / "mlp.json", *mlp);
   if (object.any_rotations()) out.write(folder / "turns.bin", write_turns(sets));
-  if (baked_places && any_baked_places(sets)) out.write(folder / "baked.bin", write_baked_places(sets));
+  if (baked_places && any_baked_places(object.sets)) out.write(folder / "baked.bin", write_baked_places(sets));
   progress.at("writing", 1);
 }
 
