@@ -48,6 +48,7 @@ struct Sample {
   std::uint32_t site;
   double facing = 0.5;
   std::uint32_t cluster = 0;
+  std::uint32_t part = 0;  // of the surface, that hangs together
   Eigen::VectorXd column;  // what a lobe of radiance 1 gives it; last: what hides the sky
 };
 
@@ -123,8 +124,13 @@ class Fit {
     }
     smoothness_ = differences.transpose() * differences;
     std::uint32_t clusters = 0;
-    for (const Sample& sample : samples) clusters = std::max(clusters, sample.cluster + 1);
+    std::uint32_t parts = 0;
+    for (const Sample& sample : samples) {
+      clusters = std::max(clusters, sample.cluster + 1);
+      parts = std::max(parts, sample.part + 1);
+    }
     albedo_.assign(clusters, Radiance::Constant(0.5));
+    tone_.assign(parts, 1);
     weight_.assign(samples.size(), 1);
   }
 
@@ -136,10 +142,14 @@ class Fit {
     for (int round = 0; round < rounds; ++round) {
       for (int c = 0; c < 3; ++c) solve(c);
       reweigh();
+      if (toned_) tones();
       albedos();
     }
   }
   Radiance light(Eigen::Index k) const { return {x_[0][k], x_[1][k], x_[2][k]}; }
+
+  // From now on parts may differ in tone.
+  void tell_parts_apart() { toned_ = true; }
 
   // Weighted squared error of the colours' sum.
   double error() const {
@@ -172,17 +182,18 @@ class Fit {
     for (std::size_t c = 0; c < 3; ++c) held_[c] = equations(static_cast<int>(c));
   }
   double explained() const {
-    // Against one radiance a cluster.
+    // Against one radiance a cluster, in its parts' tones.
     std::vector<Radiance> mean(albedo_.size(), Radiance::Zero());
     std::vector<double> count(albedo_.size(), 0);
     for (std::size_t i = 0; i < samples_.size(); ++i) {
-      mean[samples_[i].cluster] += weight_[i] * colors_[samples_[i].site];
-      count[samples_[i].cluster] += weight_[i];
+      const double tone = tone_[samples_[i].part];
+      mean[samples_[i].cluster] += weight_[i] * tone * colors_[samples_[i].site];
+      count[samples_[i].cluster] += weight_[i] * tone * tone;
     }
     double all = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const std::uint32_t k = samples_[i].cluster;
-      all += weight_[i] * (colors_[samples_[i].site] - mean[k] / count[k]).squaredNorm();
+      all += weight_[i] * (colors_[samples_[i].site] - tone_[samples_[i].part] * mean[k] / count[k]).squaredNorm();
     }
     return all > 0 ? std::clamp(1 - error() / all, 0.0, 1.0) : 0;
   }
@@ -209,7 +220,7 @@ class Fit {
     for (Eigen::Index i = 0; i < count; ++i) {
       const Sample& sample = samples_[static_cast<std::size_t>(i)];
       const double root = std::sqrt(weight_[static_cast<std::size_t>(i)]);
-      made.scale[i] = root * albedo_[sample.cluster][c];
+      made.scale[i] = root * albedo_of(sample)[c];
       made.rows.row(i) = made.scale[i] * row(static_cast<std::size_t>(i)).transpose();
       made.wanted[i] = root * colors_[sample.site][c];
     }
@@ -227,7 +238,7 @@ class Fit {
   }
   Radiance predicted(std::size_t i) const {
     const Eigen::VectorXd r = row(i);
-    return Radiance(r.dot(x_[0]), r.dot(x_[1]), r.dot(x_[2])).cwiseProduct(albedo_[samples_[i].cluster]);
+    return Radiance(r.dot(x_[0]), r.dot(x_[1]), r.dot(x_[2])).cwiseProduct(albedo_of(samples_[i]));
   }
   Radiance residual(std::size_t i) const { return colors_[samples_[i].site] - predicted(i); }
   // Errors count relative to what is expected, since albedos vary by factors; beyond the usual less (Huber): what lies
@@ -246,6 +257,32 @@ class Fit {
     const double usual = std::max(1e-12, 1.5 * median(sizes));
     for (std::size_t i = 0; i < samples_.size(); ++i)
       weight_[i] = std::min(1.0, usual / std::max(usual, sizes[i])) * mean * mean / (expected[i] * expected[i]);
+  }
+  Radiance albedo_of(const Sample& sample) const { return albedo_[sample.cluster] * tone_[sample.part]; }
+  // Each part's brightness beside its cluster's, drawn towards 1 as far as parts differ less than what lies within them
+  // (DerSimonian and Laird 1986).
+  void tones() {
+    std::vector<double> top(tone_.size(), 0), bottom(tone_.size(), 0);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const std::uint32_t k = samples_[i].part;
+      const Radiance usual = predicted(i) / tone_[k];
+      top[k] += weight_[i] * usual.dot(colors_[samples_[i].site]);
+      bottom[k] += weight_[i] * usual.squaredNorm();
+    }
+    double sum = 0, squares = 0, spread = 0, parts = 0;
+    for (std::size_t k = 0; k < tone_.size(); ++k) {
+      if (!(bottom[k] > 0)) continue;
+      sum += bottom[k];
+      squares += bottom[k] * bottom[k];
+      spread += bottom[k] * (top[k] / bottom[k] - 1) * (top[k] / bottom[k] - 1);
+      parts += 1;
+    }
+    const double within = error() / static_cast<double>(samples_.size()),
+                 between = (spread - within * parts) / (sum - squares / sum);
+    for (std::size_t k = 0; k < tone_.size(); ++k) {
+      const double held = between > 0 ? within / between : std::numeric_limits<double>::infinity();
+      tone_[k] = std::isfinite(held) && bottom[k] + held > 0 ? (top[k] + held) / (bottom[k] + held) : 1;
+    }
   }
   void albedos() {
     std::vector<Radiance> top(albedo_.size(), Radiance::Zero()), bottom = top;
@@ -274,7 +311,9 @@ class Fit {
   const std::vector<Radiance>& colors_;
   std::vector<Eigen::VectorXd> suns_;
   std::array<Eigen::VectorXd, 3> x_{Eigen::VectorXd::Zero(0), Eigen::VectorXd::Zero(0), Eigen::VectorXd::Zero(0)};
-  std::vector<Radiance> albedo_;
+  std::vector<Radiance> albedo_;  // of each cluster
+  std::vector<double> tone_;      // of each part, against its cluster's albedo
+  bool toned_ = false;
   std::vector<double> weight_;
   Eigen::MatrixXd smoothness_;
   std::array<Equations, 3> held_;
@@ -325,7 +364,8 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
   if (count < 8) return result;
   for (std::size_t k = 0; k < count; ++k)
     samples.push_back(
-        {usable[(k * usable.size() + mixed(k, 1, 2) % usable.size()) / count % usable.size()], 0.5, 0, {}});
+        {usable[(k * usable.size() + mixed(k, 1, 2) % usable.size()) / count % usable.size()], 0.5, 0, 0, {}});
+  for (Sample& sample : samples) sample.part = sites.part[sample.site];
   cluster(samples, colors);
 
   const Lobes lobes(options.lobes);
@@ -354,6 +394,9 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
     samples[i].column = samples[i].facing * sides[i][0] + (1 - samples[i].facing) * sides[i][1];
   }
   Fit fit(samples, colors, lobes);
+  fit.run({}, 12);
+  // Before a sun is looked for: brighter leaves would pass for lit ones, and lead it astray by degrees.
+  fit.tell_parts_apart();
   fit.run({}, 12);
   progress.at("estimating light", 0.7);
 
