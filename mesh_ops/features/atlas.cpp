@@ -59,7 +59,7 @@ std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<cons
       }));
 }
 
-PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code) {
+PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code, const ShownBy& shown_by) {
   std::vector<TexelPatches> patches;
   std::vector<Place> places;
   std::uint64_t area = 0;
@@ -72,6 +72,7 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
       if (rect.width() > largest_side || rect.height() > largest_side)
         throw Error(fmt::format("a patch of {}×{} texels does not fit into textures of {}²", rect.width(),
                                 rect.height(), largest_side));
+      if (!shown_by.empty() && shown_by[s][p] != PatchNumber{s, p}) continue;
       places.push_back({s, p});
       area += static_cast<std::uint64_t>(rect.width()) * static_cast<std::uint64_t>(rect.height());
       widest = std::max(widest, rect.width());
@@ -122,6 +123,12 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
                            static_cast<std::size_t>(place.x + column)] =
             converted(source.at(rect.left + column, rect.top + row), source.alpha_code(), code);
   }
+
+  for (std::size_t s = 0; s < shown_by.size(); ++s)
+    for (std::size_t p = 0; p < shown_by[s].size(); ++p) {
+      const Place& shown = place_of[shown_by[s][p].set][shown_by[s][p].patch];
+      place_of[s][p] = {s, p, shown.page, shown.x, shown.y};
+    }
 
   struct Building {
     std::vector<Vec3> positions;

@@ -15,11 +15,20 @@ struct PackedSets {
   std::uint64_t texel_area = 0;  ///< width × height over all new textures
 };
 
+/// A patch of a set.
+struct PatchNumber {
+  std::size_t set = 0, patch = 0;
+  bool operator==(const PatchNumber&) const = default;
+};
+/// For each set, for each patch (texel_patches): whose texels it is to show, which has the same size and shows its own.
+using ShownBy = std::vector<std::vector<PatchNumber>>;
+
 /// Moves the patches of texels that triangles use, whole and bit for bit, into new textures; drops the rest. UVs follow
 /// by whole texels, so nearest sampling finds the same texels. Positions, turns and the order of faces within a texture
 /// are kept. Textures of another alpha code than `code` are converted (halved from plain loses the alpha's lowest bit,
-/// as the published exporter does). Throws Error for a patch larger than `largest_side`, and for UVs outside [0, 1].
-PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code);
+/// as the published exporter does). With `shown_by` patches show others' texels, and their own are dropped. Throws
+/// Error for a patch larger than `largest_side`, and for UVs outside [0, 1].
+PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code, const ShownBy& shown_by = {});
 
 /// The texture with its alpha stored the other way; the same pointer when it already is.
 std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture,

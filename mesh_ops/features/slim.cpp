@@ -12,6 +12,7 @@
 
 #include "mesh_ops/base/elementary.h"
 #include "mesh_ops/features/feature_network.h"
+#include "mesh_ops/features/texel_colors.h"
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/index/index.h"
 
@@ -156,21 +157,27 @@ ColorSample sampled_colors(const BakedObject& object) {
           if (t->opaque() && number++ % step == 0) sample.texels.push_back({*t, set.texels->alpha_code()});
         x = end;
       }
-  sample.colors.resize(sample.texels.size() * directions);
   return sample;
 }
 
-// Mean square difference of colours with fewer bits.
-double squared_loss(const ColorSample& sample, const Decoder& decoder, const FeatureBits& bits) {
-  std::vector<double> sums(sample.texels.size());
-  tbb::parallel_for(std::size_t{0}, sample.texels.size(), [&](std::size_t k) {
-    const auto features = decode_features(rounded(sample.texels[k].texel, bits), sample.texels[k].code);
-    for (std::size_t d = 0; d < sample.directions.size(); ++d)
-      sums[k] += (decode(decoder, features, sample.directions[d]) - sample.colors[k * sample.directions.size() + d])
-                     .squaredNorm();
+std::vector<Color> colors_of(const ColorSample& sample, const TexelColors& looks, const FeatureBits& bits) {
+  std::vector<Color> colors(sample.texels.size() * looks.directions());
+  constexpr std::size_t block = 256;
+  tbb::parallel_for(std::size_t{0}, (sample.texels.size() + block - 1) / block, [&](std::size_t b) {
+    const std::size_t first = b * block, count = std::min(block, sample.texels.size() - first);
+    std::vector<TexelColors::Features> features;
+    for (std::size_t k = first; k < first + count; ++k)
+      features.push_back(decode_features(rounded(sample.texels[k].texel, bits), sample.texels[k].code));
+    looks.decode_into(features, std::span(colors).subspan(first * looks.directions(), count * looks.directions()));
   });
+  return colors;
+}
+
+// Mean square difference of colours with fewer bits.
+double squared_loss(const ColorSample& sample, const TexelColors& looks, const FeatureBits& bits) {
+  const std::vector<Color> colors = colors_of(sample, looks, bits);
   double sum = 0;
-  for (const double one : sums) sum += one;
+  for (std::size_t k = 0; k < colors.size(); ++k) sum += (colors[k] - sample.colors[k]).squaredNorm();
   return sum / (3 * static_cast<double>(sample.colors.size()));
 }
 
@@ -252,10 +259,8 @@ BitsFound fewest_bits(const BakedObject& object, double psnr_db, const Progress&
   found.psnr_db = std::numeric_limits<double>::infinity();
   ColorSample sample = sampled_colors(object);
   if (sample.texels.empty()) return found;
-  for (std::size_t k = 0; k < sample.texels.size(); ++k)
-    for (std::size_t d = 0; d < sample.directions.size(); ++d)
-      sample.colors[k * sample.directions.size() + d] =
-          decode(*object.decoder, decode_features(sample.texels[k].texel, sample.texels[k].code), sample.directions[d]);
+  const TexelColors looks(*object.decoder, sample.directions);
+  sample.colors = colors_of(sample, looks, found.bits);
   const double most = std::pow(10.0, -psnr_db / 10);
   for (int taken = 0;; ++taken) {
     progress.at("fewer bits", taken / 56.0);
@@ -265,7 +270,7 @@ BitsFound fewest_bits(const BakedObject& object, double psnr_db, const Progress&
       if (found.bits[k] == 1) continue;
       FeatureBits fewer = found.bits;
       --fewer[k];
-      const double loss = squared_loss(sample, *object.decoder, fewer);
+      const double loss = squared_loss(sample, looks, fewer);
       if (loss >= least) continue;
       least = loss;
       best = fewer;

@@ -9,9 +9,7 @@
 
 namespace rebake {
 
-namespace {
-
-TexelRect rect_of(const TextureSet& set, const Face& face) {
+TexelRect texel_rect(const TextureSet& set, const Face& face) {
   const int width = set.texels->width(), height = set.texels->height();
   double low_u = 2, high_u = -1, low_v = 2, high_v = -1;
   for (const std::uint32_t vertex : face) {
@@ -25,15 +23,13 @@ TexelRect rect_of(const TextureSet& set, const Face& face) {
           texel_within(high_u * width, width), texel_within((1 - low_v) * height, height)};
 }
 
-}  // namespace
-
 TexelPatches texel_patches(const TextureSet& set) {
   const auto& faces = set.soup.faces();
   std::map<TexelRect, std::size_t> known;
   std::vector<TexelRect> rects;
   std::vector<std::size_t> rect_of_face;
   for (const Face& face : faces) {
-    const TexelRect rect = rect_of(set, face);
+    const TexelRect rect = texel_rect(set, face);
     const auto [it, fresh] = known.try_emplace(rect, rects.size());
     if (fresh) rects.push_back(rect);
     rect_of_face.push_back(it->second);

@@ -33,4 +33,7 @@ struct TexelPatches {
 };
 TexelPatches texel_patches(const TextureSet& set);
 
+/// The rectangle that a face's texels lie in.
+TexelRect texel_rect(const TextureSet& set, const Face& face);
+
 }  // namespace rebake

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "mesh_ops/base/union_find.h"
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/index/texel_patches.h"
 
@@ -21,6 +23,43 @@ struct Patch {
   double step_x() const { return static_cast<double>(rect.width()) / std::max(1, columns - 1); }
   double step_y() const { return static_cast<double>(rect.height()) / std::max(1, rows - 1); }
 };
+
+// Surfaces that show the same texels lie in other light: for each face a number of what hangs together within its patch
+// of texels, by edges, in space and in the texture.
+std::vector<std::size_t> surfaces_of(const TextureSet& set, const TexelPatches& found) {
+  std::vector<std::vector<std::uint32_t>> faces(found.rects.size());
+  for (std::uint32_t f = 0; f < found.of_face.size(); ++f) faces[found.of_face[f]].push_back(f);
+  UnionFind surfaces(found.of_face.size());
+  using Corner = std::array<double, 5>;  // place and UV
+  struct Edge {
+    std::array<Corner, 2> ends;
+    std::uint32_t face;
+  };
+  std::vector<Edge> edges;
+  for (const std::vector<std::uint32_t>& patch : faces) {
+    edges.clear();
+    for (const std::uint32_t f : patch) {
+      std::array<Corner, 3> corners;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = set.soup.faces()[f][k];
+        const Vec3& p = set.soup.positions()[v];
+        const Vec2& uv = set.soup.uvs()[v];
+        corners[k] = {p.x(), p.y(), p.z(), uv.x(), uv.y()};
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Corner &a = corners[k], &b = corners[(k + 1) % 3];
+        // Around a pole triangles that have nothing in common share an edge without length.
+        if (!std::equal(a.begin(), a.begin() + 3, b.begin())) edges.push_back({{std::min(a, b), std::max(a, b)}, f});
+      }
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.ends < b.ends; });
+    for (std::size_t k = 1; k < edges.size(); ++k)
+      if (edges[k].ends == edges[k - 1].ends) surfaces.join(edges[k].face, edges[k - 1].face);
+  }
+  std::vector<std::size_t> result(found.of_face.size());
+  for (std::uint32_t f = 0; f < result.size(); ++f) result[f] = surfaces.root(f);
+  return result;
+}
 
 // Rows of patches, one below the other.
 void place(std::vector<Patch>& patches, LightChart& chart) {
@@ -71,11 +110,20 @@ bool any_opaque(const FeatureTexture& texels, const TexelRect& rect, double x, d
 LightChart light_chart(const TextureSet& set, double spacing) {
   const TexelPatches found = texel_patches(set);
   std::vector<Patch> patches;
-  for (const TexelRect& rect : found.rects) {
-    const auto nodes = [&](int texels) { return std::max(2, 1 + static_cast<int>(std::ceil((texels - 1) / spacing))); };
-    patches.push_back({rect, nodes(rect.width()), nodes(rect.height()), 0, 0, {}});
+  const auto nodes = [&](int texels) { return std::max(2, 1 + static_cast<int>(std::ceil((texels - 1) / spacing))); };
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> known;  // number of a patch of texels on a surface
+  const std::vector<std::size_t> surfaces = surfaces_of(set, found);
+  for (std::uint32_t f = 0; f < found.of_face.size(); ++f) {
+    const auto [it, fresh] = known.try_emplace({found.of_face[f], surfaces[f]}, patches.size());
+    const TexelRect rect = texel_rect(set, set.soup.faces()[f]);
+    if (fresh) patches.push_back({rect, 0, 0, 0, 0, {}});
+    patches[it->second].rect.join(rect);
+    patches[it->second].faces.push_back(f);
   }
-  for (std::uint32_t f = 0; f < found.of_face.size(); ++f) patches[found.of_face[f]].faces.push_back(f);
+  for (Patch& patch : patches) {
+    patch.columns = nodes(patch.rect.width());
+    patch.rows = nodes(patch.rect.height());
+  }
 
   LightChart chart;
   chart.uvs = set.soup.shared_uvs();

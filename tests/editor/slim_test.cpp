@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "editor/edits/nodes/view.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/features/slim.h"
+#include "mesh_ops/index/texel_patches.h"
+#include "mesh_ops/light/light_chart.h"
 #include "render/compare.h"
 #include "render/picture.h"
 #include "tests/support/made_scenes.h"
@@ -106,6 +109,7 @@ TEST(Slim, FromABoxOfEyesOrViewsTheFarSideGoes) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16, .holes = false}));
   Slim in_box;
   in_box.eyes = BoxRegion{{-0.5, -0.5, 2.5}, {0.5, 0.5, 3.5}};
+  in_box.rays = 2048;
   Renderer renderer;
   const Outcome boxed = apply(scene, Edit(in_box));
   const std::size_t all = scene.roots[0]->object->triangle_count();
@@ -122,6 +126,7 @@ TEST(Slim, FromABoxOfEyesOrViewsTheFarSideGoes) {
   Scene with_view = apply(scene, Edit(store)).scene;
   Slim by_view;
   by_view.views = {"front"};
+  by_view.rays = 2048;
   with_view = apply(with_view, Edit(by_view)).scene;
   EXPECT_LT(with_view.roots[0]->object->triangle_count(), all / 2);
   const View front = view_from({0, 0, 3});
@@ -150,6 +155,61 @@ TEST(Slim, LosesAsMuchAsItMay) {
   }
 }
 
+// A sphere all of whose patches show the first one's texels, but for a step up or down.
+std::shared_ptr<const BakedObject> alike_sphere() {
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 32, .rows = 16, .holes = false}));
+  TextureSet& set = object->sets[0];
+  const TexelPatches patches = texel_patches(set);
+  const TexelRect& first = patches.rects.front();
+  FeatureTexture::Change change(*set.texels);
+  for (std::size_t p = 1; p < patches.rects.size(); ++p) {
+    const TexelRect& rect = patches.rects[p];
+    for (int y = 0; y < rect.height(); ++y)
+      for (int x = 0; x < rect.width(); ++x) {
+        Texel texel = set.texels->at(first.left + x, first.top + y);
+        std::uint8_t& value = texel.feat1[p % 3];
+        value = static_cast<std::uint8_t>(std::clamp(value + (p % 2 == 0 ? 1 : -1), 1, 255));
+        change.at(rect.left + x, rect.top + y) = texel;
+      }
+  }
+  set.texels = change.finish();
+  return object;
+}
+
+TEST(Slim, PatchesThatLookAlikeShareTexels) {
+  const Scene scene = scene_of(alike_sphere());
+  Slim edit;
+  edit.psnr = 40;
+  const Outcome slim = apply(scene, Edit(edit));
+  const BakedObject &before = *scene.roots[0]->object, &after = *slim.scene.roots[0]->object;
+  EXPECT_EQ(after.triangle_count(), before.triangle_count());
+  EXPECT_LT(after.opaque_texel_count() * 100, before.opaque_texel_count()) << joined(slim.report);
+  EXPECT_NE(joined(slim.report).find("511 of 512 patches"), std::string::npos) << joined(slim.report);
+  Renderer renderer;
+  for (const Vec3& eye : {Vec3(1, 1, 3), Vec3(-2, 1, -2)}) {
+    const Difference d =
+        compare(renderer.render(scene, view_from(eye)), renderer.render(slim.scene, view_from(eye)), 2);
+    EXPECT_GE(d.psnr_db, 39);
+  }
+  // Of patches that differ nothing is shared.
+  const Scene other = scene_of(made_object({.columns = 16, .rows = 8, .holes = false}));
+  edit.psnr = 60;
+  EXPECT_EQ(joined(apply(other, Edit(edit)).report).find("look alike"), std::string::npos);
+}
+
+// Where two surfaces show the same texels, light falls on each of them.
+TEST(Slim, SurfacesThatShareTexelsLieInTheirOwnLight) {
+  Slim edit;
+  edit.psnr = 40;
+  const Scene slim = apply(scene_of(alike_sphere()), Edit(edit)).scene;
+  const TextureSet& set = slim.roots[0]->object->sets[0];
+  ASSERT_EQ(texel_patches(set).rects.size(), 1U);
+  const LightChart chart = light_chart(set, 4);
+  std::set<std::uint32_t> lit;
+  for (const LightChart::Node& node : chart.nodes) lit.insert(node.face / 2);
+  EXPECT_EQ(lit.size(), set.soup.triangle_count() / 2) << "each quad has nodes";
+}
+
 TEST(Slim, IsTheSameAtAnyNumberOfThreads) {
   const auto object = nested(2);
   const Sightings many = look_from(*object, {}, 64);
@@ -170,6 +230,7 @@ TEST(Slim, NodesThatShareAnObjectGoOnSharingIt) {
   // Eyes see the front of one and the back of the other: of the shared object both stay.
   Slim front;
   front.eyes = BoxRegion{{-0.1, -0.1, 3}, {0.1, 0.1, 3.1}};
+  front.rays = 512;
   const Scene both = apply(scene, Edit(front)).scene;
   Slim one = front;
   one.node = NodeRef{scene.roots[0]->id};

@@ -1,13 +1,17 @@
 #include "editor/edits/shape/slim.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "editor/edits/describe.h"
 #include "editor/edits/select/selecting.h"
 #include "editor/edits/stored_view.h"
+#include "mesh_ops/features/alike.h"
 #include "mesh_ops/features/atlas.h"
 #include "mesh_ops/features/slim.h"
 #include "mesh_ops/select/duplicates.h"
@@ -40,28 +44,62 @@ std::uint64_t opaque_texels(const BakedObject& object) {
 }
 
 // Packed where that is worth it; nothing where it is not, or where texels cannot be moved.
-std::optional<std::vector<TextureSet>> packed(const BakedObject& object) {
+std::optional<std::vector<TextureSet>> packed(const BakedObject& object, const ShownBy& shown_by) {
   if (!std::all_of(object.sets.begin(), object.sets.end(), can_pack)) return std::nullopt;
   int side = largest_side;
   for (const TextureSet& set : object.sets) side = std::max({side, set.texels->width(), set.texels->height()});
   BakedObject made;
-  made.sets = pack(object.sets, side, object.sets.front().texels->alpha_code()).sets;
+  made.sets = pack(object.sets, side, object.sets.front().texels->alpha_code(), shown_by).sets;
   // Patches in another order compress a little worse.
   constexpr double worth_it = 0.95;
   if (static_cast<double>(texel_area(made)) > worth_it * static_cast<double>(texel_area(object))) return std::nullopt;
   return made.sets;
 }
 
-std::string bits_words(const BitsFound& found) {
-  if (found.bits == FeatureBits{8, 8, 8, 8, 8, 8, 8, 8}) return "all features keep their 8 bits";
-  std::string words;
-  int sum = 0;
-  for (const int bits : found.bits) {
-    words += fmt::format("{}{}", words.empty() ? "" : ", ", bits);
-    sum += bits;
+double db_of(double squared_loss) { return -10 * std::log10(squared_loss); }
+double squared_loss_of(double db) { return std::pow(10.0, -db / 10); }
+
+// What is lost of texels' colours.
+struct Loss {
+  AlikePatches alike;
+  BitsFound bits;
+};
+
+int sum_of(const FeatureBits& bits) { return std::accumulate(bits.begin(), bits.end(), 0); }
+
+// Patches that look alike take a share of what may be lost, bits the rest: as leaves the fewest bits in all.
+Loss best_loss(const BakedObject& object, double psnr, const Progress& progress) {
+  const double may_lose = squared_loss_of(psnr);
+  const auto opaque = static_cast<double>(opaque_texels(object));
+  Loss best{{}, fewest_bits(object, psnr, progress)};
+  double least = opaque * sum_of(best.bits.bits);
+  for (const double share : {0.5, 0.1}) {
+    Loss loss{alike_patches(object, share * may_lose, progress), {}};
+    if (loss.alike.merged == 0) break;
+    loss.bits = fewest_bits(object, db_of(may_lose - loss.alike.squared_loss), progress);
+    const double left = (opaque - static_cast<double>(loss.alike.texels)) * sum_of(loss.bits.bits);
+    if (left >= least) continue;
+    least = left;
+    best = std::move(loss);
   }
-  return fmt::format("features keep {} bits ({:.1f} on average): texels' colours at {:.1f} dB", words, sum / 8.0,
-                     found.psnr_db);
+  return best;
+}
+
+std::string loss_words(const Loss& loss) {
+  const AlikePatches& alike = loss.alike;
+  const BitsFound& found = loss.bits;
+  std::string words;
+  if (alike.merged > 0)
+    words =
+        fmt::format("{} of {} patches of texels show those of others that look alike, ", alike.merged, alike.patches);
+  if (found.bits == FeatureBits{8, 8, 8, 8, 8, 8, 8, 8}) {
+    words += "all features keep their 8 bits";
+  } else {
+    words +=
+        fmt::format("features keep {} bits ({:.1f} on average)", fmt::join(found.bits, ", "), sum_of(found.bits) / 8.0);
+  }
+  const double lost = alike.squared_loss + squared_loss_of(found.psnr_db);
+  return lost > 0 ? fmt::format("{}: texels' colours at {:.1f} dB", words, db_of(lost)) : words;
 }
 
 struct Slimmed {
@@ -104,17 +142,19 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
   auto made = std::make_shared<BakedObject>(count(unseen) == 0 ? *single : *triangles_of(*single, unseen, false));
   // It counts as baked without what nobody sees.
   made->bodies = before.bodies;
-  if (auto smaller = packed(*made)) {
+  Loss loss;
+  if (edit.psnr > 0) loss = best_loss(*made, edit.psnr, progress);
+  if (auto smaller = packed(*made, loss.alike.shown_by)) {
     made->sets = std::move(*smaller);
     result.reordered = true;
+  } else if (loss.alike.merged > 0) {
+    loss = {{}, fewest_bits(*made, edit.psnr, progress)};
   }
   bool changed = result.reordered || count(result.dropped) > 0;
-  BitsFound bits;
-  if (edit.psnr > 0) bits = fewest_bits(*made, edit.psnr, progress);
   for (TextureSet& set : made->sets) {
     const auto was = set.texels;
     set.texels = with_empty_rest(set);
-    if (edit.psnr > 0) set.texels = with_bits(set.texels, bits.bits);
+    if (edit.psnr > 0) set.texels = with_bits(set.texels, loss.bits.bits);
     changed = changed || set.texels != was;
   }
   const std::size_t removed = count(unseen);
@@ -129,7 +169,7 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
         "are open (95 % sure); the smallest opening found lets {:.2g} % through, {} triangles were seen by one ray "
         "only",
         rays, rays_each, 100 * most_missed(removed, rays_each), 100 * opening, once));
-  if (edit.psnr > 0) result.lines.push_back(bits_words(bits));
+  if (edit.psnr > 0) result.lines.push_back(loss_words(loss));
   // Where nothing changes, all stays shared.
   result.object = changed ? made : placements.front().node->object;
   return result;
@@ -195,7 +235,7 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
 REBAKE_DESCRIBE_EDIT(
     Slim,
     "Removes triangles that nobody sees and duplicates, packs the texels that are left, and, where psnr is given, "
-    "keeps fewer bits of the features: smaller folders, faster pictures.",
+    "lets patches that look alike share texels and keeps fewer bits of the features: smaller folders, faster pictures.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
             "only this node and those inside it; left out: all that is visible. Objects hide themselves only");
@@ -205,8 +245,8 @@ REBAKE_DESCRIBE_EDIT(
       visit("rays", edit.rays, Need::optional,
             "at most, from each triangle before it counts as unseen: 1024, doubled until that finds nothing more");
       visit("psnr", edit.psnr, Need::optional,
-            "dB that texels' colours keep, against those as they are now, while features lose bits; 0: nothing of what "
-            "is seen is lost");
+            "dB that texels' colours keep, against those as they are now, while patches that look alike become one (so "
+            "that erasing in one erases in all of them) and features lose bits; 0: nothing of what is seen is lost");
     })
 
 }  // namespace rebake

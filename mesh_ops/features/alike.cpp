@@ -1,0 +1,202 @@
+#include "mesh_ops/features/alike.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include "mesh_ops/base/hash.h"
+#include "mesh_ops/features/texel_colors.h"
+
+namespace rebake {
+
+namespace {
+
+using Features = TexelColors::Features;
+
+struct Patch {
+  std::size_t set, patch;
+  TexelRect rect;
+  std::uint64_t mask = 0;  // hash of which texels are opaque
+  std::size_t opaque = 0;
+  // Mean weighted features of the rectangle's quarters, each by the root of its share of the opaque texels: patches'
+  // features differ by at least as much in the mean square (Jensen's inequality).
+  std::array<double, 32> quarters{};
+};
+
+template <class Visit>
+void for_each_opaque(const BakedObject& object, const Patch& patch, Visit visit) {
+  const FeatureTexture& texels = *object.sets[patch.set].texels;
+  for (int y = 0; y < patch.rect.height(); ++y)
+    for (int x = 0; x < patch.rect.width(); ++x)
+      if (const Texel& texel = texels.at(patch.rect.left + x, patch.rect.top + y); texel.opaque())
+        visit(x, y, decode_features(texel, texels.alpha_code()));
+}
+
+// By how much colours change, in the mean square, with each feature: central differences at a sample of texels.
+Features weights_of(const BakedObject& object, const std::vector<Patch>& patches, const TexelColors& looks) {
+  constexpr std::size_t most_samples = 256;
+  constexpr double step = 0.02;
+  std::vector<Features> moved;  // of each sample up and down in each feature
+  const std::size_t every = std::max<std::size_t>(1, patches.size() / most_samples);
+  for (std::size_t k = 0; k < patches.size(); k += every) {
+    bool taken = false;
+    for_each_opaque(object, patches[k], [&](int, int, const Features& features) {
+      if (taken) return;
+      taken = true;
+      for (std::size_t f = 0; f < 8; ++f)
+        for (const double by : {step, -step}) {
+          moved.push_back(features);
+          moved.back()[f] += by;
+        }
+    });
+  }
+  std::vector<Color> colors(moved.size() * looks.directions());
+  looks.decode_into(moved, colors);
+  Features weights{};
+  for (std::size_t k = 0; k < moved.size(); k += 2)
+    for (std::size_t d = 0; d < looks.directions(); ++d)
+      weights[k / 2 % 8] +=
+          ((colors[k * looks.directions() + d] - colors[(k + 1) * looks.directions() + d]) / (2 * step)).squaredNorm();
+  const double values = 3.0 * static_cast<double>(std::max<std::size_t>(16, colors.size())) / 16;
+  for (double& weight : weights) weight = std::sqrt(weight / values);
+  return weights;
+}
+
+void describe(const BakedObject& object, const Features& weights, Patch& patch) {
+  std::array<double, 4> count{};
+  for_each_opaque(object, patch, [&](int x, int y, const Features& features) {
+    const std::size_t quarter =
+        (2 * x >= patch.rect.width() ? 1U : 0U) + (2 * y >= patch.rect.height() ? std::size_t{2} : std::size_t{0});
+    ++count[quarter];
+    for (std::size_t f = 0; f < 8; ++f) patch.quarters[quarter * 8 + f] += weights[f] * features[f];
+  });
+  for (std::size_t q = 0; q < 4; ++q)
+    for (std::size_t f = 0; f < 8 && count[q] > 0; ++f)
+      patch.quarters[q * 8 + f] *= std::sqrt(count[q] / static_cast<double>(patch.opaque)) / count[q];
+}
+
+double squared_distance(const Patch& a, const Patch& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.quarters.size(); ++k)
+    sum += (a.quarters[k] - b.quarters[k]) * (a.quarters[k] - b.quarters[k]);
+  return sum;
+}
+
+// Mean square of what colours differ by; part of it, more than `most`, where that is found to be so.
+double color_loss(const BakedObject& object, const TexelColors& looks, const Patch& a, const Patch& b, double most) {
+  const FeatureTexture &first = *object.sets[a.set].texels, &second = *object.sets[b.set].texels;
+  const double values = 3.0 * static_cast<double>(a.opaque * looks.directions());
+  constexpr std::size_t at_once = 4 * network_lanes;
+  std::vector<Features> features;  // of one and the other in turn
+  std::vector<Color> colors(2 * at_once * looks.directions());
+  double sum = 0;
+  const auto add = [&] {
+    looks.decode_into(features, colors);
+    for (std::size_t k = 0; k < features.size(); k += 2)
+      for (std::size_t d = 0; d < looks.directions(); ++d)
+        sum += (colors[k * looks.directions() + d] - colors[(k + 1) * looks.directions() + d]).squaredNorm();
+    features.clear();
+  };
+  for (int y = 0; y < a.rect.height(); ++y)
+    for (int x = 0; x < a.rect.width(); ++x) {
+      const Texel &p = first.at(a.rect.left + x, a.rect.top + y), &q = second.at(b.rect.left + x, b.rect.top + y);
+      if (p.opaque() != q.opaque()) return std::numeric_limits<double>::infinity();
+      if (!p.opaque() || (p == q && first.alpha_code() == second.alpha_code())) continue;
+      features.push_back(decode_features(p, first.alpha_code()));
+      features.push_back(decode_features(q, second.alpha_code()));
+      if (features.size() < 2 * at_once) continue;
+      add();
+      if (sum > most * values) return sum / values;
+    }
+  add();
+  return values > 0 ? sum / values : 0;
+}
+
+std::vector<Patch> patches_of(const BakedObject& object, AlikePatches& result) {
+  std::vector<Patch> patches;
+  for (std::size_t s = 0; s < object.sets.size(); ++s) {
+    const TexelPatches found = texel_patches(object.sets[s]);
+    result.shown_by.emplace_back();
+    for (std::size_t p = 0; p < found.rects.size(); ++p) {
+      result.shown_by.back().push_back({s, p});
+      patches.push_back({s, p, found.rects[p], 0, 0, {}});
+    }
+  }
+  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t k) {
+    Patch& patch = patches[k];
+    const FeatureTexture& texels = *object.sets[patch.set].texels;
+    std::vector<std::uint8_t> mask;
+    for (int y = patch.rect.top; y <= patch.rect.bottom; ++y)
+      for (int x = patch.rect.left; x <= patch.rect.right; ++x) mask.push_back(texels.at(x, y).opaque() ? 1 : 0);
+    patch.mask = content_hash({reinterpret_cast<const char*>(mask.data()), mask.size()});
+    patch.opaque = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
+  });
+  return patches;
+}
+
+}  // namespace
+
+AlikePatches alike_patches(const BakedObject& object, double squared_loss, const Progress& progress) {
+  AlikePatches result;
+  if (!std::all_of(object.sets.begin(), object.sets.end(), can_pack)) return result;
+  std::vector<Patch> patches = patches_of(object, result);
+  result.patches = patches.size();
+  constexpr std::size_t directions = 6;
+  const TexelColors looks(*object.decoder, even_directions(directions));
+  const Features weights = weights_of(object, patches, looks);
+  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t k) { describe(object, weights, patches[k]); });
+
+  // Those of one size and opacity, by the quarter's feature that varies most among all.
+  std::size_t key = 0;
+  double widest = -1;
+  for (std::size_t q = 0; q < 32; ++q) {
+    double mean = 0, square = 0;
+    for (const Patch& patch : patches) mean += patch.quarters[q], square += patch.quarters[q] * patch.quarters[q];
+    if (const double spread = square - mean * mean / static_cast<double>(std::max<std::size_t>(1, patches.size()));
+        spread > widest) {
+      widest = spread;
+      key = q;
+    }
+  }
+  using Kind = std::tuple<int, int, std::uint64_t>;
+  std::map<Kind, std::multimap<double, std::size_t>> leaders;
+  // Weights are means: where a patch's features do less than usual, more of a difference passes.
+  constexpr double reach = 4;
+  constexpr std::size_t most_decoded = 8;
+  double lost = 0, opaque = 0;
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    if (k % 256 == 0)
+      progress.at("looking for patches that are alike", static_cast<double>(k) / static_cast<double>(patches.size()));
+    const Patch& patch = patches[k];
+    opaque += static_cast<double>(patch.opaque);
+    auto& known = leaders[{patch.rect.width(), patch.rect.height(), patch.mask}];
+    const double most = reach * squared_loss, radius = std::sqrt(most);
+    std::vector<std::pair<double, std::size_t>> near;
+    for (auto it = known.lower_bound(patch.quarters[key] - radius);
+         it != known.end() && it->first <= patch.quarters[key] + radius; ++it)
+      if (const double distance = squared_distance(patch, patches[it->second]); distance <= most)
+        near.emplace_back(distance, it->second);
+    std::sort(near.begin(), near.end());
+    bool follows = false;
+    for (std::size_t n = 0; n < near.size() && n < most_decoded && !follows; ++n) {
+      const Patch& leader = patches[near[n].second];
+      const double loss = color_loss(object, looks, leader, patch, squared_loss);
+      if (!(loss <= squared_loss)) continue;
+      result.shown_by[patch.set][patch.patch] = {leader.set, leader.patch};
+      ++result.merged;
+      result.texels += patch.opaque;
+      lost += loss * static_cast<double>(patch.opaque);
+      follows = true;
+    }
+    if (!follows) known.emplace(patch.quarters[key], k);
+  }
+  result.squared_loss = opaque > 0 ? lost / opaque : 0;
+  return result;
+}
+
+}  // namespace rebake
