@@ -58,8 +58,9 @@ struct Options {
   std::string action;
   std::vector<std::string> paths;
   std::vector<std::string> edits;
-  std::string node, out, axes = "360";
-  int poses = 200, rays = 128;
+  std::string node, out, axes = "360", way = "linear";
+  int poses = 200, rays = 128, channels = 8;
+  double coarseness = TransferModelOptions{}.coarseness;
 };
 
 std::string read_model_bytes(const std::string& path) {
@@ -77,11 +78,21 @@ void say(const TransferModel& model) {
   fmt::print("range       up to {:.3g} from the mean pose, {} directions; trusted to {:.1f} times that\n",
              model.learnt.space.largest * model.learnt.space.size, model.learnt.space.dimensions(),
              LearntTransfer::trusted_range);
-  fmt::print("error       {:.1f} % of transfer, over poses that were held back\n", 100 * model.learnt.held_back_error);
+  if (model.net)
+    fmt::print(
+        "error       {:.1f} % of transfer, over poses that were held back (turned along only: {:.1f}; linear: "
+        "{:.1f})\n",
+        100 * model.net_error, 100 * model.turning_error, 100 * model.learnt.held_back_error);
+  else
+    fmt::print("error       {:.1f} % of transfer, over poses that were held back\n",
+               100 * model.learnt.held_back_error);
+  if (model.net)
+    fmt::print("net         a U-Net of {} channels on an image of {}²\n", model.net->state().channels,
+               model.net->state().side);
   fmt::print("size        {} points of {}, {:.1f} MB\n", model.keys.size(), model.sites,
-             static_cast<double>(model.learnt.memory()) / 1e6);
+             static_cast<double>(model.learnt.memory() + (model.net ? model.net->memory() : 0)) / 1e6);
   fmt::print("took        {:.1f} s to trace with {} rays, {:.1f} s to learn\n", model.tracing_seconds, model.rays,
-             model.learnt.seconds);
+             model.learnt.seconds + (model.net ? model.net->seconds() : 0));
 }
 
 // Its light, ready to go along.
@@ -122,6 +133,9 @@ void keep(const std::string& bytes, const BakedObject& body, std::size_t sites) 
 void train(const Options& options) {
   for (const std::string& path : options.paths)
     if (!std::filesystem::exists(path)) throw FileError(path, "is not there");
+  if (options.channels % 8 != 0) throw FieldError("channels", "must be a multiple of 8");
+  if (!(options.coarseness >= 0.005 && options.coarseness <= 0.5))
+    throw FieldError("coarseness", "must lie between 0.005 and 0.5");
   if (options.edits.empty())
     throw FieldError(
         "edit",
@@ -153,7 +167,15 @@ void train(const Options& options) {
     if (!moved || !moved->object) throw FieldError("edit", "takes the object away that is learnt");
     return moved->object;
   };
-  TransferModel model = learnt_model(*turning, pose, {options.poses, options.rays}, progress_bar());
+  TransferModelOptions learning;
+  learning.poses = options.poses;
+  learning.rays = options.rays;
+  learning.coarseness = options.coarseness;
+  if (options.way == "net") {
+    learning.net.emplace();
+    learning.net->channels = options.channels;
+  }
+  TransferModel model = learnt_model(*turning, pose, learning, progress_bar());
   for (const json& edit : edits) model.poses_from += (model.poses_from.empty() ? "" : ", ") + edit.dump();
   clear_progress_bar();
   say(model);
@@ -198,6 +220,16 @@ void describe_light(CommandDescription& command) {
   command.option("--node", options->node, "train: the object; left out: the only one", "NAME");
   command.option("--poses", options->poses, "train: so many", "N [200]").between(8, 2000);
   command.option("--rays", options->rays, "train: from each point", "N [128]").between(16, 16384);
+  command
+      .option("--way", options->way,
+              "train: linear in the pose, or net: a U-Net on an image of a smooth body around the object", "linear|net")
+      .one_of(std::vector<std::string>{"linear", "net"});
+  command.option("--channels", options->channels, "train, net: of its first layer, a multiple of 8", "N [8]")
+      .between(8, 64);
+  command.option("--coarseness", options->coarseness,
+                 "train, net: at least, of that body, as a share of the object's diagonal; it is coarser where it "
+                 "would fall apart",
+                 "SHARE [0.03]");
   command.option("-o,--out", options->out, "train: also writes the model to a file", "FILE");
   add_axes_option(command, options->axes);
   command.footer(

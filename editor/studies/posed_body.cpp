@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <random>
 
 #include "editor/studies/deforming.h"
@@ -10,7 +9,7 @@
 #include "mesh_ops/deform/cage_deformation.h"
 #include "mesh_ops/deform/closed_form.h"
 #include "mesh_ops/deform/wrap.h"
-#include "mesh_ops/light/disk_chart.h"
+#include "mesh_ops/light/body_image.h"
 #include "mesh_ops/light/kept_light.h"
 
 namespace rebake {
@@ -103,22 +102,7 @@ PosedBody wrapped_part(const Scene& scene, const Box& shares, double coarseness)
     if (box.contains((part.points[face[0]] + part.points[face[1]] + part.points[face[2]]) / 3))
       part.faces.push_back(face);
   if (part.faces.empty()) throw Error("there is nothing in that part of the scene");
-  const Cage whole = wrap(part, coarseness);
-  const std::vector<std::uint32_t> component = components(whole);
-  std::map<std::uint32_t, std::size_t> sizes;
-  for (const std::uint32_t c : component) ++sizes[c];
-  const std::uint32_t largest = std::max_element(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) {
-                                  return a.second < b.second;
-                                })->first;
-  ProxyMesh mesh;
-  std::vector<std::uint32_t> number(whole.vertices.size());
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    number[v] = static_cast<std::uint32_t>(mesh.vertices.size());
-    if (component[v] == largest) mesh.vertices.push_back(whole.vertices[v]);
-  }
-  for (const Face& face : whole.faces)
-    if (component[face[0]] == largest) mesh.faces.push_back({number[face[0]], number[face[1]], number[face[2]]});
-  PosedBody body = in_lattice("branch", std::move(mesh));
+  PosedBody body = in_lattice("branch", largest_piece(wrap(part, coarseness)));
   body.chart = disk_chart(body.rest);
   return body;
 }

@@ -27,6 +27,7 @@ class GeometryImage {
     Eigen::Vector3f weights;
   };
   int side() const { return side_; }
+  const DiskChart& chart() const { return chart_; }
   const std::vector<Texel>& texels() const { return texels_; }
   /// What bilinear interpolation between texels gives each of the mesh's vertices: `channels` planes of side², to
   /// [vertex][channel].

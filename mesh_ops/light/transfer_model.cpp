@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -11,12 +12,15 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/base/results.h"
+#include "mesh_ops/light/body_image.h"
 
 namespace rebake {
 
 namespace {
 
 constexpr const char* kind = "rebake transfer model 1";
+constexpr int image_side = 64;
+constexpr const char* kind_with_net = "rebake transfer model 2";
 
 // Numbers one after the other, written or read in the same order.
 class Writer {
@@ -66,7 +70,28 @@ void visit_numbers(Model& model, Visit& visit) {
   matrix(learnt.linear);
 }
 
+template <class State, class Visit>
+void visit_net(State& state, Visit& visit) {
+  visit(state.chart.source.data(), state.chart.source.size());
+  for (auto& uv : state.chart.uvs) visit(uv.data(), 2);
+  for (auto& face : state.chart.faces) visit(face.data(), 3);
+  visit(state.weights.data(), state.weights.size());
+  visit(state.box.min().data(), 3);
+  visit(state.box.max().data(), 3);
+  visit(state.mean.data(), static_cast<std::size_t>(state.mean.size()));
+  visit(&state.scale, 1);
+}
+
+// Every eighth pose is held back, as linear models do.
+bool held_back(int pose) { return pose % 8 == 7; }
+
+double relative(double squared_error, double squares) { return squares > 0 ? std::sqrt(squared_error / squares) : 0; }
+
 }  // namespace
+
+Eigen::VectorXf TransferModel::predict(const PoseSpace::Place& place, const std::vector<LightSite>& keys_there) const {
+  return net ? net->predict(keys_there) : learnt.predict(place);
+}
 
 TransferModel learnt_model(const TurnedLight& start,
                            const std::function<std::shared_ptr<const BakedObject>(int k)>& pose,
@@ -80,8 +105,19 @@ TransferModel learnt_model(const TurnedLight& start,
   model.sites = places.size();
   model.poses = options.poses;
   model.rays = options.rays;
-  // Those that lie far from each other; of as many places as there are all.
-  model.keys = PoseSpace::probes_of(places, options.keys);
+  std::optional<UnetTransfer::Training> images;
+  if (options.net) {
+    if (!can_train_unet())
+      throw Error(
+          "nets are trained by LibTorch, which this program was built without: install libtorch-dev and "
+          "libopenblas0-pthread, and build again");
+    BodyImage image = body_image(*from.object, from.sites.now, from.facing, options.coarseness, progress);
+    model.keys = image.sites;
+    images.emplace(std::move(image.mesh), GeometryImage(image.chart, image_side));
+  } else {
+    // Those that lie far from each other; of as many places as there are all.
+    model.keys = PoseSpace::probes_of(places, options.keys);
+  }
   std::vector<Vec3> key_places;
   for (const std::uint32_t k : model.keys) {
     key_places.push_back(places[k]);
@@ -89,9 +125,15 @@ TransferModel learnt_model(const TurnedLight& start,
   }
   const auto began = std::chrono::steady_clock::now();
   TransferTraining training(key_places, static_cast<std::size_t>(options.poses), TransferTraining::Frames::turned);
-  for (int k = 0; k < options.poses; ++k) {
-    progress.at("tracing poses", static_cast<double>(k) / options.poses);
-    const std::shared_ptr<const BakedObject> posed = pose(k);
+  struct Held {
+    int pose;
+    std::vector<LightSite> sites;
+  };
+  std::vector<Held> held;
+  std::vector<Eigen::VectorXf> at_rest;  // transfer of the keys where nothing moved, for nets to be compared with
+  for (int k = options.net ? -1 : 0; k < options.poses; ++k) {
+    progress.at("tracing poses", std::max(0.0, static_cast<double>(k) / options.poses));
+    const std::shared_ptr<const BakedObject> posed = k < 0 ? from.object : pose(k);
     if (!start.fits(*posed)) throw Error("a pose has other triangles than the object; only move them");
     std::vector<std::vector<Mat3>> turns;
     std::vector<Mat3> all_turns;
@@ -107,8 +149,20 @@ TransferModel learnt_model(const TurnedLight& start,
       key_places[i] = key_sites.back().position;
       key_turns.push_back(all_turns[model.keys[i]]);
     }
-    training.set(static_cast<std::size_t>(k), key_places, key_turns,
-                 shown_transfer(key_sites, model.facing, rays_among({{posed, Affine::Identity()}}), options.rays));
+    const std::vector<sh::Coefficients> transfer =
+        shown_transfer(key_sites, model.facing, rays_among({{posed, Affine::Identity()}}), options.rays);
+    if (k < 0) {
+      at_rest.emplace_back(static_cast<Eigen::Index>(transfer.size() * sh::count));
+      for (std::size_t i = 0; i < transfer.size(); ++i)
+        at_rest.front().segment<sh::count>(static_cast<Eigen::Index>(i * sh::count)) = transfer[i].cast<float>();
+      continue;
+    }
+    training.set(static_cast<std::size_t>(k), key_places, key_turns, transfer);
+    if (!images) continue;
+    if (held_back(k))
+      held.push_back({k, key_sites});
+    else
+      images->add(key_sites, key_turns, transfer);
   }
   model.tracing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   const PoseSpace seen(training.rest_probes, training.posed_probes);
@@ -116,28 +170,50 @@ TransferModel learnt_model(const TurnedLight& start,
   if (!(seen.largest > least)) throw Error("nothing moves in these poses: the edit must move triangles of the object");
   // By `rebake study transfer` kernels gain nothing over it.
   model.learnt = LearntTransfer::learnt(training, {.way = TransferWay::turned_linear}, progress);
+  if (!images) return model;
+  model.net = images->learnt(*options.net, progress);
+  double off = 0, turned = 0, all = 0;
+  for (const Held& one : held) {
+    const Eigen::VectorXf truth = training.local.row(one.pose).transpose();
+    off += static_cast<double>((model.net->predict(one.sites) - truth).squaredNorm());
+    turned += static_cast<double>((at_rest.front() - truth).squaredNorm());
+    all += static_cast<double>(truth.squaredNorm());
+  }
+  model.net_error = relative(off, all);
+  model.turning_error = relative(turned, all);
   return model;
 }
 
 std::string bytes_of(const TransferModel& model) {
   const LearntTransfer& learnt = model.learnt;
-  const nlohmann::json head = {{"kind", kind},
-                               {"body", fmt::format("{:016x}", model.body)},
-                               {"sites", model.sites},
-                               {"poses_from", model.poses_from},
-                               {"poses", model.poses},
-                               {"rays", model.rays},
-                               {"tracing_seconds", model.tracing_seconds},
-                               {"learning_seconds", learnt.seconds},
-                               {"held_back_error", learnt.held_back_error},
-                               {"largest_displacement", learnt.space.largest * learnt.space.size},
-                               {"keys", model.keys.size()},
-                               {"probes", learnt.probes.size()},
-                               {"dimensions", learnt.space.dimensions()},
-                               {"components", learnt.components.cols()}};
+  nlohmann::json head = {{"kind", model.net ? kind_with_net : kind},
+                         {"body", fmt::format("{:016x}", model.body)},
+                         {"sites", model.sites},
+                         {"poses_from", model.poses_from},
+                         {"poses", model.poses},
+                         {"rays", model.rays},
+                         {"tracing_seconds", model.tracing_seconds},
+                         {"learning_seconds", learnt.seconds},
+                         {"held_back_error", learnt.held_back_error},
+                         {"largest_displacement", learnt.space.largest * learnt.space.size},
+                         {"keys", model.keys.size()},
+                         {"probes", learnt.probes.size()},
+                         {"dimensions", learnt.space.dimensions()},
+                         {"components", learnt.components.cols()}};
+  if (model.net) {
+    const UnetTransfer::State& net = model.net->state();
+    head["net"] = {{"side", net.side},
+                   {"channels", net.channels},
+                   {"vertices", net.chart.source.size()},
+                   {"faces", net.chart.faces.size()},
+                   {"learning_seconds", net.seconds},
+                   {"held_back_error", model.net_error},
+                   {"turning_error", model.turning_error}};
+  }
   Writer writer;
   writer.bytes = head.dump() + "\n";
   visit_numbers(model, writer);
+  if (model.net) visit_net(model.net->state(), writer);
   const std::uint64_t hash = content_hash(writer.bytes);
   writer(&hash, 1);
   return std::move(writer.bytes);
@@ -151,10 +227,11 @@ TransferModel transfer_model_of(std::string_view bytes) {
   const std::string_view whole = bytes.substr(0, bytes.size() - sizeof(hash));
   const auto head =
       nlohmann::json::parse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(line), nullptr, false);
-  if (!head.is_object() || !head.contains("kind") || head["kind"] != kind)
+  if (!head.is_object() || !head.contains("kind") || (head["kind"] != kind && head["kind"] != kind_with_net))
     throw Error("it is no transfer model of this version");
   if (content_hash(whole) != hash) throw Error("it is damaged: its checksum is another");
   TransferModel model;
+  std::optional<UnetTransfer::State> net;
   try {
     model.body = std::stoull(head.at("body").get<std::string>(), nullptr, 16);
     model.sites = head.at("sites");
@@ -188,6 +265,24 @@ TransferModel transfer_model_of(std::string_view bytes) {
     learnt.mean.resize(index(n.keys * sh::count));
     learnt.components.resize(learnt.mean.size(), index(n.components));
     learnt.linear.resize(index(n.components), index(n.dimensions + 1));
+    if (head["kind"] == kind_with_net) {
+      const auto& about = head.at("net");
+      net.emplace();
+      net->side = about.at("side");
+      net->channels = about.at("channels");
+      net->seconds = about.at("learning_seconds");
+      model.net_error = about.at("held_back_error");
+      model.turning_error = about.at("turning_error");
+      const std::uint64_t vertices = about.at("vertices"), faces = about.at("faces");
+      if (!fits(static_cast<double>(vertices), 2 * sizeof(double)) || !fits(static_cast<double>(faces), sizeof(Face)) ||
+          !fits(net->channels > 0 ? static_cast<double>(unet_weight_count(net->channels)) : 0, sizeof(float)))
+        throw Error("it ends too early");
+      net->chart.source.resize(vertices);
+      net->chart.uvs.resize(vertices);
+      net->chart.faces.resize(faces);
+      net->weights.resize(unet_weight_count(net->channels));
+      net->mean.resize(learnt.mean.size());
+    }
   } catch (const nlohmann::json::exception&) {
     throw Error("its first line lacks something");
   } catch (const std::logic_error&) {
@@ -195,11 +290,17 @@ TransferModel transfer_model_of(std::string_view bytes) {
   }
   Reader reader(whole.substr(line + 1));
   visit_numbers(model, reader);
+  if (net) visit_net(*net, reader);
   if (!reader.done()) throw Error("it goes on behind its end");
   for (const std::uint32_t key : model.keys)
     if (key >= model.sites) throw Error("it names a site that is not there");
   for (const std::uint32_t probe : model.learnt.probes)
     if (probe >= model.keys.size()) throw Error("it names a site that is not there");
+  try {
+    if (net) model.net.emplace(std::move(*net));
+  } catch (const std::invalid_argument& error) {
+    throw Error(error.what());
+  }
   return model;
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "mesh_ops/light/learnt_transfer.h"
 #include "mesh_ops/light/turned_light.h"
+#include "mesh_ops/light/unet_transfer.h"
 
 namespace rebake {
 
@@ -18,16 +20,27 @@ struct TransferModel {
   double tracing_seconds = 0;
   std::vector<std::uint32_t> keys;  ///< numbers of sites
   std::vector<float> facing;        ///< of the keys, what showed (facing_of)
-  LearntTransfer learnt;            ///< of the keys: TransferWay::turned_linear
+  LearntTransfer learnt;            ///< of the keys: TransferWay::turned_linear; with a net its range is what counts
+  std::optional<UnetTransfer> net;  ///< then it is what predicts, its vertices are the keys
+  double net_error = 0;             ///< relative, of the poses held back
+  double turning_error = 0;         ///< of these, when only turned along
+
+  /// Coefficients of each key in turned frames, 16 after each other, in a pose: where it lies among those learnt from,
+  /// and the sites of the keys there.
+  Eigen::VectorXf predict(const PoseSpace::Place& place, const std::vector<LightSite>& keys_there) const;
 };
 
 struct TransferModelOptions {
   int poses = 200, rays = 128;
   std::size_t keys = 4096;
+  /// Deep transfer: a U-Net on an image of a wrap of this coarseness or coarser (body_image). It learns from seven
+  /// poses of eight.
+  std::optional<UnetTraining> net{};
+  double coarseness = 0.03;
 };
 /// Learns from poses of the object that `start` is of, which must be as its light was baked. `pose(k)` moves its
-/// triangles, the same way for the same number. Throws Error for an object that edits moved already, and for poses of
-/// other triangles.
+/// triangles, the same way for the same number. Throws Error for an object that edits moved already, for poses of other
+/// triangles, and where a net is wanted without LibTorch.
 TransferModel learnt_model(const TurnedLight& start,
                            const std::function<std::shared_ptr<const BakedObject>(int k)>& pose,
                            const TransferModelOptions& options, const Progress& progress = {});

@@ -39,6 +39,12 @@ std::shared_ptr<const LightChart> of_vertices(const std::shared_ptr<const LightC
   return result;
 }
 
+std::vector<LightSite> keys_of(const TransferModel& model, const std::vector<LightSite>& sites) {
+  std::vector<LightSite> keys;
+  for (const std::uint32_t k : model.keys) keys.push_back(sites[k]);
+  return keys;
+}
+
 }  // namespace
 
 std::vector<Mat3> node_turns(const TextureSet& from, const TextureSet& to, const LightChart& chart) {
@@ -129,7 +135,7 @@ void TurnedLight::prepare_model() {
       since_baked_.push_back(turn);
   const PoseSpace::Place place = model.learnt.space.place(probes_on(*start_.object));
   if (!(place.range <= LearntTransfer::trusted_range)) return;
-  learnt_ = model.learnt.predict(place);
+  learnt_ = model.predict(place, keys_of(model, start_.sites.now));
   // Of the keys that are near and face much the same way, the nearest four.
   const auto shown_normal = [&](std::size_t i, float facing) -> Vec3 {
     return facing == 0.0F ? Vec3(-start_.sites.baked[i].normal) : start_.sites.baked[i].normal;
@@ -183,14 +189,15 @@ std::optional<double> TurnedLight::range_of(const BakedObject& object) const {
 
 // What the model says beside turning, where it was learnt for such poses.
 void TurnedLight::add_learnt(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
-                             std::vector<Radiance>& light) const {
+                             const std::vector<LightSite>& sites, std::vector<Radiance>& light) const {
   if (shares_.empty()) return;
   const PoseSpace::Place place = start_.model->learnt.space.place(probes_on(object));
   // Less and less of it towards the end of its range, so that nothing jumps there.
   constexpr double fades = 0.5;
   const double share = std::min(1.0, (LearntTransfer::trusted_range - place.range) / fades);
   if (!(share > 0)) return;
-  const Eigen::VectorXf change = static_cast<float>(share) * (start_.model->learnt.predict(place) - learnt_);
+  const Eigen::VectorXf change =
+      static_cast<float>(share) * (start_.model->predict(place, keys_of(*start_.model, sites)) - learnt_);
   for (std::size_t s = 0; s < turns.size(); ++s)
     tbb::parallel_for(std::size_t{0}, turns[s].size(), [&](std::size_t k) {
       const std::size_t i = start_.sites.first[s] + k;
@@ -230,7 +237,7 @@ std::vector<Radiance> TurnedLight::light_on(const BakedObject& object) const {
       if (!turn.isIdentity(0)) change += products_[start_.sites.body[i]](turn, start_.transfer[i]) - unturned_[i];
       light[i] = start_.after[i] + change;
     });
-  add_learnt(object, turns, light);
+  add_learnt(object, turns, sites, light);
   for (Radiance& one : light) one = one.cwiseMax(0.0);
   return light;
 }

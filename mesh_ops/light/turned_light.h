@@ -56,7 +56,7 @@ class TurnedLight {
   void prepare_model();
   std::vector<Vec3> probes_on(const BakedObject& object) const;
   void add_learnt(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
-                  std::vector<Radiance>& light) const;
+                  const std::vector<LightSite>& sites, std::vector<Radiance>& light) const;
 
   Start start_;
   /// Of each site the keys that it takes from, and how much of each.

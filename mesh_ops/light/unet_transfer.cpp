@@ -2,8 +2,10 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 
 namespace rebake {
 
@@ -30,6 +32,22 @@ void append_image(const GeometryImage& image, const Box& box, const std::vector<
       planes[first + (3 + c) * texels + t] = static_cast<float>(normal[static_cast<Eigen::Index>(c)]);
     }
   }
+}
+
+void check(const UnetTransfer::State& state) {
+  const auto all = [](const auto& values, auto holds) { return std::all_of(values.begin(), values.end(), holds); };
+  const auto vertices = static_cast<std::size_t>(state.mean.size()) / sh::count;
+  const bool fits =
+      state.side >= 64 && state.side <= 1024 && state.chart.uvs.size() == state.chart.source.size() && vertices > 0 &&
+      static_cast<std::size_t>(state.mean.size()) == vertices * sh::count && !state.box.isEmpty() &&
+      std::isfinite(state.scale) &&
+      // Each vertex has a place in the image.
+      !state.chart.source.empty() &&
+      *std::max_element(state.chart.source.begin(), state.chart.source.end()) + 1 == vertices &&
+      all(state.chart.uvs, [](const Vec2& uv) { return uv.minCoeff() >= -1e-9 && uv.maxCoeff() <= 1 + 1e-9; }) &&
+      all(state.chart.faces,
+          [&](const Face& face) { return all(face, [&](std::uint32_t v) { return v < state.chart.source.size(); }); });
+  if (!fits) throw std::invalid_argument("a U-Net's image, mean and chart must go together");
 }
 
 }  // namespace
@@ -76,22 +94,24 @@ UnetTransfer UnetTransfer::Training::learnt(const UnetTraining& options, const P
   const double deviation = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, poses_ * values)));
   const float scale = deviation > 0 ? static_cast<float>(deviation) : 1.0F;
   for (float& value : images.targets) value /= scale;
-  UnetTransfer result(image_, trained_unet(images, options, progress));
-  result.box_ = bounds(rest_);
-  result.mean_ = std::move(mean);
-  result.scale_ = scale;
-  result.seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  const Unet net = trained_unet(images, options, progress);
+  return UnetTransfer({image_.chart(), image_.side(), options.channels, net.weights(), bounds(rest_), std::move(mean),
+                       scale, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
 }
+
+UnetTransfer::UnetTransfer(State state)
+    : state_((check(state), std::move(state))),
+      image_(state_.chart, state_.side),
+      net_(state_.side, state_.channels, state_.weights) {}
 
 Eigen::VectorXf UnetTransfer::predict(const std::vector<LightSite>& sites) const {
   std::vector<float> planes;
-  append_image(image_, box_, sites, planes);
-  return mean_ + scale_ * image_.at_vertices(net_.run(planes), sh::count);
+  append_image(image_, state_.box, sites, planes);
+  return state_.mean + state_.scale * image_.at_vertices(net_.run(planes), sh::count);
 }
 
 std::uint64_t UnetTransfer::memory() const {
-  return (net_.weights().size() + static_cast<std::size_t>(mean_.size())) * sizeof(float) +
+  return (state_.weights.size() + static_cast<std::size_t>(state_.mean.size())) * sizeof(float) +
          image_.texels().size() * sizeof(GeometryImage::Texel);
 }
 

@@ -27,19 +27,29 @@ class UnetTransfer {
     std::size_t poses_ = 0;
   };
 
+  /// All of it, as files hold it.
+  struct State {
+    DiskChart chart;
+    int side = 64, channels = 8;
+    std::vector<float> weights;
+    Box box;               ///< of the body at rest
+    Eigen::VectorXf mean;  ///< [vertex][coefficient]: where the image is coarse, the surface keeps that
+    float scale = 1;       ///< of departures from it
+    double seconds = 0;    ///< of learning, without tracing
+  };
+  /// Throws std::invalid_argument where numbers do not go together.
+  explicit UnetTransfer(State state);
+  const State& state() const { return state_; }
+
   /// Coefficients of each vertex in turned frames, 16 after each other.
   Eigen::VectorXf predict(const std::vector<LightSite>& sites) const;
   std::uint64_t memory() const;
-  double seconds() const { return seconds_; }
+  double seconds() const { return state_.seconds; }
 
  private:
-  UnetTransfer(GeometryImage image, Unet net) : image_(std::move(image)), net_(std::move(net)) {}
+  State state_;  ///< its weights are the net's
   GeometryImage image_;
   Unet net_;
-  Box box_;               ///< of the body at rest
-  Eigen::VectorXf mean_;  ///< [vertex][coefficient]: where the image is coarse, the surface keeps that
-  float scale_ = 1;       ///< of departures from it
-  double seconds_ = 0;
 };
 
 }  // namespace rebake

@@ -61,7 +61,7 @@ GridErrors grid_errors(const Cage& cage, int resolution, double (*function)(cons
 
 TEST(Harmonic, LinearAndQuadraticSolutionsAreExactAtTheNodes) {
   for (const auto& [name, cage] : {std::pair("cube", cube()), std::pair("dented", dented())})
-    for (const int resolution : {16, 33, 8 * thorough}) {
+    for (const int resolution : {16, 17 + 2 * thorough, 8 * thorough}) {
       const GridErrors flat = grid_errors(cage, resolution, linear), curved = grid_errors(cage, resolution, quadratic);
       EXPECT_LE(flat.nodes, 1e-13) << name << ' ' << resolution;
       EXPECT_LE(flat.points, 1e-13) << name << ' ' << resolution;
@@ -91,7 +91,7 @@ TEST(Harmonic, BoxesOfEveryNumberOfCells) {
     EXPECT_LE(errors.sum, 1e-12) << size.transpose();
     EXPECT_LE(errors.linear, 1e-12) << size.transpose();
   };
-  for (int cells = 8; cells <= most; ++cells)
+  for (int cells = 8; cells <= most; cells += thorough == 1 ? 3 : 1)
     for (int axis = 0; axis < 3; ++axis) {
       Vec3 size = Vec3::Constant(11.0 / most);
       size[(axis + 1) % 3] = 1;
