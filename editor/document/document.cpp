@@ -34,10 +34,13 @@ Document::Document(Scene start, std::uint64_t memory_budget)
 Document Document::open(const fs::path& project, const Relinked& links, const Progress& progress,
                         std::uint64_t memory_budget) {
   Document document({}, memory_budget);
-  ReadProject read = read_project(project, links, progress);
-  add_sources(document.imported_, read.edits);
-  for (std::size_t k = 0; k < read.edits.size(); ++k)
-    document.history_.add(std::move(read.edits[k]), std::move(read.scenes[k]), read.joined[k]);
+  read_project(
+      project,
+      [&](const Edit& edit, const Scene& after, bool joined) {
+        add_sources(document.imported_, {edit});
+        document.history_.add(edit, after, joined);
+      },
+      links, progress);
   return document;
 }
 

@@ -1,6 +1,5 @@
 #include "editor/document/history.h"
 
-#include <deque>
 #include <unordered_set>
 
 namespace rebake {
@@ -127,13 +126,15 @@ void History::return_to(std::size_t edits, Scene scene) {
 void History::go_to(std::size_t step, const Progress& progress) {
   std::size_t from = step;
   while (!steps_[from].scene) --from;
-  // The last values on the way are kept too: whoever undoes once usually undoes again.
-  std::deque<Scene> scenes{*steps_[from].scene};
+  // The last values on the way are kept too, as far as the budget goes: whoever undoes once usually undoes again. What
+  // is kept for later steps stays until this has succeeded.
+  Scene scene = *steps_[from].scene;
+  std::size_t oldest = from + 1;
   for (std::size_t k = from + 1; k <= step; ++k) {
-    scenes.push_back(rebake::apply(scenes.back(), *steps_[k].edit, progress).scene);
-    if (scenes.size() > checkpoint_distance) scenes.pop_front();
+    scene = rebake::apply(scene, *steps_[k].edit, progress).scene;
+    keep(k, scene);
+    while (oldest < k && (memory_ > budget_ || k - oldest >= checkpoint_distance)) drop(oldest++);
   }
-  for (std::size_t k = step; k > from && !scenes.empty(); --k, scenes.pop_back()) keep(k, std::move(scenes.back()));
   position_ = step;
   fit_budget();
 }

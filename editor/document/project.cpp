@@ -78,9 +78,8 @@ void write_project(const fs::path& path, const std::vector<Edit>& edits, const s
   }
 }
 
-ReadProject read_project(const fs::path& path, const Relinked& links, const Progress& progress) {
+void read_project(const fs::path& path, const EachEdit& each, const Relinked& links, const Progress& progress) {
   const fs::path folder = real_folder_of(path);
-  ReadProject project;
   try {
     const json root = json::parse(read_file(path));
     check_form(path, root);
@@ -98,34 +97,33 @@ ReadProject read_project(const fs::path& path, const Relinked& links, const Prog
     if (!gone.empty())
       throw SourcesGone(path, "its sources are not as they were; put them back, or say where they lie now:" + troubles,
                         gone);
+    std::vector<bool> joined(root.at("edits").size());
+    for (const json& one : root.value("joined", json::array())) {
+      const auto k = one.get<std::size_t>();
+      if (k < 2 || k > joined.size())
+        throw FileError(path, fmt::format("joined: there is no edit {} that could be", k));
+      joined[k - 1] = true;
+    }
     Scene scene;
     std::size_t number = 0;
     for (json line : root.at("edits")) {
       progress.at("opening", static_cast<double>(number++) / static_cast<double>(root.at("edits").size()));
       try {
         if (json* const source = source_field(line)) *source = source_path(folder, *source, links).string();
-        project.edits.push_back(read_edit(line, scene));
-        if (const auto source = source_of(project.edits.back()); source && source->content.empty())
+        const Edit edit = read_edit(line, scene);
+        if (const auto source = source_of(edit); source && source->content.empty())
           throw FieldError("content", "is missing: without it a changed source would not be noticed");
-        scene = rebake::apply(scene, project.edits.back(), progress).scene;
+        scene = rebake::apply(scene, edit, progress).scene;
+        each(edit, scene, joined[number - 1]);
       } catch (const Cancelled&) {
         throw;
       } catch (const Error& error) {
         throw FileError(path, fmt::format("edit {}: {}", number, error.what()));
       }
-      project.scenes.push_back(scene);
-    }
-    project.joined.resize(project.edits.size());
-    for (const json& one : root.value("joined", json::array())) {
-      const auto k = one.get<std::size_t>();
-      if (k < 2 || k > project.joined.size())
-        throw FileError(path, fmt::format("joined: there is no edit {} that could be", k));
-      project.joined[k - 1] = true;
     }
   } catch (const json::exception& error) {
     throw FileError(path, std::string("is not a valid project: ") + error.what());
   }
-  return project;
 }
 
 }  // namespace rebake

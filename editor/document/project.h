@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "editor/document/sources.h"
@@ -28,13 +29,12 @@ bool is_project_file(const std::filesystem::path& path);
 void write_project(const std::filesystem::path& path, const std::vector<Edit>& edits, const std::vector<bool>& joined,
                    const SourceGuard& guard, const Progress& progress = {});
 
-/// The scenes after each edit of a project. Throws FileError for a file that is no project, is damaged or from a newer
-/// version, SourcesGone where sources moved or changed (all of them are named), Cancelled.
-struct ReadProject {
-  std::vector<Edit> edits;
-  std::vector<Scene> scenes;  ///< one after each edit
-  std::vector<bool> joined;   ///< each made together with the one before
-};
-ReadProject read_project(const std::filesystem::path& path, const Relinked& links = {}, const Progress& progress = {});
+/// An edit of a project that is read, the scene after it, and whether it was made together with the one before.
+using EachEdit = std::function<void(const Edit& edit, const Scene& after, bool joined)>;
+/// Carries a project out, one edit after the other: of the scenes only the last is held. Throws FileError for a file
+/// that is no project, is damaged or from a newer version, SourcesGone where sources moved or changed (all of them are
+/// named), Cancelled.
+void read_project(const std::filesystem::path& path, const EachEdit& each, const Relinked& links = {},
+                  const Progress& progress = {});
 
 }  // namespace rebake

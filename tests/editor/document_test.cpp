@@ -110,6 +110,33 @@ TEST_F(DocumentTest, OldScenesAreDroppedWithinTheBudgetAndComputedAgain) {
   EXPECT_EQ(tight.history().undo_count(), 0U);
 }
 
+// Of a long project not all scenes lie in memory while it is opened, nor while one that was dropped is made again.
+TEST_F(DocumentTest, ScenesOnTheWayAreLetGoOf) {
+  Document document;
+  import(document);
+  for (int k = 0; k < 40; ++k) act(document, R"({"op": "bend", "node": "ball", "degrees": 1, "axis": [0, 1, 0]})");
+  document.save(path("long.rebake"));
+  std::vector<std::weak_ptr<const BakedObject>> passed;
+  std::size_t most = 0;
+  const auto alive = [&] {
+    return static_cast<std::size_t>(
+        std::count_if(passed.begin(), passed.end(), [](const auto& one) { return !one.expired(); }));
+  };
+  read_project(path("long.rebake"), [&](const Edit&, const Scene& after, bool) {
+    passed.push_back(after.roots[0]->object);
+    most = std::max(most, alive());
+  });
+  EXPECT_EQ(passed.size(), document.history().undo_count());
+  EXPECT_LE(most, 3U) << "the one before, this one, and one that is shared";
+
+  Document tight = Document::open(path("long.rebake"), {}, {}, 1);
+  EXPECT_EQ(tight.history().kept(), 2U);
+  ASSERT_TRUE(tight.undo());
+  EXPECT_EQ(tight.history().kept(), 2U);
+  document.undo();
+  EXPECT_EQ(exported(tight.scene()), exported(document.scene()));
+}
+
 TEST_F(DocumentTest, SharedPartsAreCountedOnce) {
   Document document;
   import(document);
