@@ -6,6 +6,8 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <numeric>
+#include <span>
 
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/index/near_points.h"
@@ -60,63 +62,163 @@ void opaque_points(const BakedObject& object, double gap, std::vector<Vec3>& poi
     }
 }
 
+std::uint32_t reversed(std::uint32_t bits) {
+  bits = (bits & 0x55555555U) << 1 | (bits >> 1 & 0x55555555U);
+  bits = (bits & 0x33333333U) << 2 | (bits >> 2 & 0x33333333U);
+  bits = (bits & 0x0f0f0f0fU) << 4 | (bits >> 4 & 0x0f0f0f0fU);
+  bits = (bits & 0x00ff00ffU) << 8 | (bits >> 8 & 0x00ff00ffU);
+  return bits << 16 | bits >> 16;
+}
+
+std::uint32_t end_of(const WeldedCorners& corners, std::size_t half_edge) {
+  return corners.places[half_edge - half_edge % 3 + (half_edge + 1) % 3];
+}
+
+// A half edge's opacity from its lower place to its higher one.
+std::uint32_t upwards(const WeldedCorners& corners, std::size_t half_edge, std::uint32_t along) {
+  return corners.places[half_edge] <= end_of(corners, half_edge) ? along : reversed(along);
+}
+
+// Joins what lies along one edge. Who is opaque at a place of it hangs together with the first that is: a wide
+// tolerance can lay hundreds of triangles along one edge, so they are not compared in pairs.
+template <class Opaque, class Part>
+void join_along(std::span<const std::uint32_t> half_edges, Opaque opaque, Part part, UnionFind& parts) {
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::array<std::uint32_t, 32> first_at;
+  first_at.fill(none);
+  for (const std::uint32_t e : half_edges) {
+    const std::uint32_t own = part(e);
+    std::uint32_t joined = none;
+    for (std::uint32_t bits = opaque(e); bits != 0; bits &= bits - 1) {
+      std::uint32_t& here = first_at[static_cast<std::size_t>(std::countr_zero(bits))];
+      if (here == none)
+        here = own;
+      else if (here != joined)
+        parts.join(joined = here, own);
+    }
+  }
+}
+
+template <class Visit>
+void for_each_edge(const EdgeTable& edges, Visit visit) {
+  for (std::size_t edge = 0; edge + 1 < edges.first_of.size(); ++edge)
+    visit(std::span(edges.half_edges).subspan(edges.first_of[edge], edges.first_of[edge + 1] - edges.first_of[edge]));
+}
+
+// `part_of`: of each triangle, as parts are numbered that were joined since. Numbered anew, by their first triangles.
+Components numbered(const std::vector<std::uint32_t>& part_of, UnionFind& parts) {
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  Components result;
+  result.part_of.resize(part_of.size());
+  std::vector<std::uint32_t> number(part_of.size(), none);
+  for (std::size_t t = 0; t < part_of.size(); ++t) {
+    std::uint32_t& own = number[parts.root(part_of[t])];
+    if (own == none) {
+      own = static_cast<std::uint32_t>(result.triangles_in.size());
+      result.triangles_in.push_back(0);
+    }
+    result.part_of[t] = own;
+    ++result.triangles_in[own];
+  }
+  return result;
+}
+
 }  // namespace
 
+EdgeOpacity edge_opacity(const TextureSet& set) {
+  EdgeOpacity opacity{std::vector<std::uint32_t>(set.soup.triangle_count() * 3)};
+  tbb::parallel_for(std::size_t{0}, set.soup.triangle_count(), [&](std::size_t f) {
+    const std::array<Vec2, 3> uv = texel_corners(set, f);
+    for (std::size_t k = 0; k < 3; ++k)
+      opacity.along[f * 3 + k] = opaque_along(*set.texels, uv[k], uv[(k + 1) % 3], uv[(k + 2) % 3]);
+  });
+  return opacity;
+}
+
+SetParts set_parts(const WeldedCorners& corners, const EdgeTable& edges, const EdgeOpacity& opacity) {
+  UnionFind parts(corners.places.size() / 3);
+  for_each_edge(edges, [&](std::span<const std::uint32_t> half_edges) {
+    if (half_edges.size() > 1)
+      join_along(
+          half_edges, [&](std::uint32_t e) { return upwards(corners, e, opacity.along[e]); },
+          [](std::uint32_t e) { return e / 3; }, parts);
+  });
+  SetParts result;
+  result.part_of.resize(corners.places.size() / 3);
+  for (std::uint32_t t = 0; t < result.part_of.size(); ++t) {
+    const std::uint32_t root = parts.root(t);
+    result.part_of[t] = root == t ? result.count++ : result.part_of[root];
+  }
+  return result;
+}
+
+Components joined_components(const WeldedCorners& corners, const std::vector<KnownSet>& sets) {
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max(), shared = none - 1;
+  std::vector<std::uint32_t> set_of(corners.place_count, none), part_of(corners.places.size() / 3);
+  std::vector<std::size_t> first{0};
+  std::uint32_t count = 0;
+  bool any_shared = false;
+  for (std::uint32_t s = 0; s < sets.size(); ++s) {
+    const std::vector<std::uint32_t>& own = sets[s].parts->part_of;
+    for (std::size_t t = 0; t < own.size(); ++t) part_of[first[s] + t] = count + own[t];
+    count += sets[s].parts->count;
+    first.push_back(first[s] + own.size());
+    for (std::size_t corner = 3 * first[s]; corner < 3 * first[s + 1]; ++corner) {
+      std::uint32_t& of = set_of[corners.places[corner]];
+      any_shared = any_shared || (of != none && of != s);
+      of = of == none || of == s ? s : shared;
+    }
+  }
+  UnionFind parts(count);
+  if (any_shared) {
+    std::vector<std::uint32_t> half_edges;
+    for (std::uint32_t e = 0; e < corners.places.size(); ++e)
+      if (set_of[corners.places[e]] == shared && set_of[end_of(corners, e)] == shared) half_edges.push_back(e);
+    const auto key = [&](std::uint32_t e) {
+      const std::uint32_t from = corners.places[e], to = end_of(corners, e);
+      return std::pair(std::min(from, to), std::max(from, to));
+    };
+    std::sort(half_edges.begin(), half_edges.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+    for (std::size_t begin = 0, end = 0; begin < half_edges.size(); begin = end) {
+      while (end < half_edges.size() && key(half_edges[end]) == key(half_edges[begin])) ++end;
+      join_along(
+          std::span(half_edges).subspan(begin, end - begin),
+          [&](std::uint32_t e) {
+            const auto s =
+                static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), e / 3) - first.begin()) - 1;
+            return upwards(corners, e, sets[s].opacity->along[e - 3 * first[s]]);
+          },
+          [&](std::uint32_t e) { return part_of[e / 3]; }, parts);
+    }
+  }
+  return numbered(part_of, parts);
+}
+
 Components opaque_components(const BakedObject& object, const WeldedCorners& corners, const EdgeTable& edges,
-                             double gap) {
+                             const std::vector<std::shared_ptr<const EdgeOpacity>>& opacity, double gap) {
   const std::size_t total = object.triangle_count();
   std::vector<std::uint32_t> opaque(total * 3);  // along each half edge, from the lower place to the higher
   std::size_t first = 0;
-  for (const TextureSet& set : object.sets) {
-    tbb::parallel_for(std::size_t{0}, set.soup.triangle_count(), [&](std::size_t f) {
-      const std::array<Vec2, 3> uv = texel_corners(set, f);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t e = (first + f) * 3 + k;
-        const bool forward = corners.places[e] <= corners.places[(first + f) * 3 + (k + 1) % 3];
-        const Vec2 &a = uv[k], &b = uv[(k + 1) % 3];
-        opaque[e] = opaque_along(*set.texels, forward ? a : b, forward ? b : a, uv[(k + 2) % 3]);
-      }
-    });
-    first += set.soup.triangle_count();
+  for (const auto& set : opacity) {
+    tbb::parallel_for(std::size_t{0}, set->along.size(),
+                      [&](std::size_t e) { opaque[first + e] = upwards(corners, first + e, set->along[e]); });
+    first += set->along.size();
   }
   UnionFind parts(total);
-  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-  for (std::size_t edge = 0; edge + 1 < edges.first_of.size(); ++edge) {
-    // Who is opaque at a place of the edge hangs together with the first that is. A wide tolerance can lay hundreds of
-    // triangles along one edge, so they are not compared in pairs.
-    std::array<std::uint32_t, 32> first_at;
-    first_at.fill(none);
-    for (std::uint32_t i = edges.first_of[edge]; i < edges.first_of[edge + 1]; ++i) {
-      const std::uint32_t triangle = edges.half_edges[i] / 3;
-      std::uint32_t joined = none;
-      for (std::uint32_t bits = opaque[edges.half_edges[i]]; bits != 0; bits &= bits - 1) {
-        std::uint32_t& here = first_at[static_cast<std::size_t>(std::countr_zero(bits))];
-        if (here == none)
-          here = triangle;
-        else if (here != joined)
-          parts.join(joined = here, triangle);
-      }
-    }
-  }
+  for_each_edge(edges, [&](std::span<const std::uint32_t> half_edges) {
+    join_along(
+        half_edges, [&](std::uint32_t e) { return opaque[e]; }, [](std::uint32_t e) { return e / 3; }, parts);
+  });
   if (gap > 0) {
     std::vector<Vec3> points;
     std::vector<std::uint32_t> owner;
     opaque_points(object, gap, points, owner);
     if (!points.empty()) join_near(parts, points, owner, gap, object.bounds().min());
   }
-  Components result;
-  result.part_of.resize(total);
-  std::vector<std::uint32_t> number(total);
-  for (std::uint32_t t = 0; t < total; ++t) {
-    const std::uint32_t root = parts.root(t);
-    if (root == t) {
-      number[t] = static_cast<std::uint32_t>(result.triangles_in.size());
-      result.triangles_in.push_back(0);
-    }
-    result.part_of[t] = number[root];
-    ++result.triangles_in[number[root]];
-  }
-  return result;
+  std::vector<std::uint32_t> own(total);
+  std::iota(own.begin(), own.end(), 0U);
+  return numbered(own, parts);
 }
 
 }  // namespace rebake

@@ -2,7 +2,14 @@
 
 #include <utility>
 
+#include "mesh_ops/base/hash.h"
+
 namespace rebake {
+
+// Hash of the UVs of all faces' corners: the same where vertices were moved, split or not.
+struct CornerUvs {
+  std::uint64_t hash;
+};
 
 namespace {
 
@@ -34,6 +41,7 @@ ArrayCache::Arrays surface_of(const BakedObject& object) {
   return arrays;
 }
 
+ArrayCache::Arrays places_of(const TextureSet& set) { return {set.soup.shared_positions(), set.soup.shared_faces()}; }
 // Trees look texels up in the object's arrays without keeping them; who uses one keeps both.
 std::shared_ptr<const RayTree> with_arrays(std::shared_ptr<const RayTree> tree, ArrayCache::Arrays arrays) {
   if (!tree) return nullptr;
@@ -46,20 +54,55 @@ std::shared_ptr<const RayTree> with_arrays(std::shared_ptr<const RayTree> tree, 
 }  // namespace
 
 std::uint64_t memory_of(const std::vector<TriangleTraits>& traits) { return bytes_of(traits); }
+std::uint64_t memory_of(const std::vector<TriangleLooks>& looks) { return bytes_of(looks); }
+std::uint64_t memory_of(const SetParts& parts) { return bytes_of(parts.part_of); }
+std::uint64_t memory_of(const EdgeOpacity& opacity) { return bytes_of(opacity.along); }
 std::uint64_t memory_of(const WeldedCorners& corners) { return bytes_of(corners.places); }
+std::uint64_t memory_of(const WeldedSet& set) { return memory_of(set.corners) + bytes_of(set.points); }
 std::uint64_t memory_of(const EdgeTable& edges) { return bytes_of(edges.half_edges) + bytes_of(edges.first_of); }
 std::uint64_t memory_of(const Components& parts) { return bytes_of(parts.part_of) + bytes_of(parts.triangles_in); }
+std::uint64_t memory_of(const CornerUvs&) { return sizeof(CornerUvs); }
+std::uint64_t memory_of(const RayTriangles& triangles) { return triangles.memory(); }
 std::uint64_t memory_of(const RayTree& tree) { return tree.memory(); }
 
 const ArrayCache& index_cache() { return cache(); }
 
+// What texels say of a set's triangles goes with the texels and with which of them the faces show, wherever vertices
+// are and however they are numbered.
+static ArrayCache::Settings shown_texels(const TextureSet& set) {
+  const auto corners = cache().get<CornerUvs>({set.soup.shared_uvs(), set.soup.shared_faces()}, {}, [&] {
+    std::vector<Vec2> uvs;
+    uvs.reserve(3 * set.soup.triangle_count());
+    for (const Face& face : set.soup.faces())
+      for (const std::uint32_t vertex : face) uvs.push_back(set.soup.uvs()[vertex]);
+    return CornerUvs{content_hash({reinterpret_cast<const char*>(uvs.data()), uvs.size() * sizeof(Vec2)})};
+  });
+  // Doubles hold 32 bits each exactly.
+  return {static_cast<double>(corners->hash >> 32), static_cast<double>(corners->hash & 0xffffffffU)};
+}
+
+static std::shared_ptr<const WeldedSet> welded_set(const TextureSet& set) {
+  return cache().get<WeldedSet>(places_of(set), {}, [&] { return weld_set(set.soup); });
+}
+
 std::shared_ptr<const std::vector<TriangleTraits>> traits_of(const BakedObject& object) {
   ArrayCache::Arrays arrays = surface_of(object);
   arrays.push_back(object.decoder);
-  return cache().get<std::vector<TriangleTraits>>(arrays, {}, [&] { return triangle_traits(object); });
+  return cache().get<std::vector<TriangleTraits>>(arrays, {}, [&] {
+    std::vector<std::shared_ptr<const std::vector<TriangleLooks>>> looks;
+    for (const TextureSet& set : object.sets) {
+      looks.push_back(cache().get<std::vector<TriangleLooks>>({set.texels, object.decoder}, shown_texels(set),
+                                                              [&] { return triangle_looks(set, *object.decoder); }));
+    }
+    return triangle_traits(object, looks);
+  });
 }
 std::shared_ptr<const WeldedCorners> corners_of(const BakedObject& object, double tolerance) {
-  return cache().get<WeldedCorners>(geometry_of(object), {tolerance}, [&] { return weld(object, tolerance); });
+  return cache().get<WeldedCorners>(geometry_of(object), {tolerance}, [&] {
+    std::vector<std::shared_ptr<const WeldedSet>> sets;
+    for (const TextureSet& set : object.sets) sets.push_back(welded_set(set));
+    return weld(object, sets, tolerance);
+  });
 }
 std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tolerance) {
   return cache().get<EdgeTable>(geometry_of(object), {tolerance},
@@ -67,13 +110,39 @@ std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tole
 }
 std::shared_ptr<const Components> components_of(const BakedObject& object, const Joining& joining) {
   return cache().get<Components>(surface_of(object), {joining.tolerance, joining.gap}, [&] {
-    return opaque_components(object, *corners_of(object, joining.tolerance), *edges_of(object, joining.tolerance),
-                             joining.gap);
+    std::vector<std::shared_ptr<const EdgeOpacity>> opacity;
+    for (const TextureSet& set : object.sets)
+      opacity.push_back(cache().get<EdgeOpacity>({set.texels}, shown_texels(set), [&] { return edge_opacity(set); }));
+    if (joining.tolerance > 0 || joining.gap > 0)
+      return opaque_components(object, *corners_of(object, joining.tolerance), *edges_of(object, joining.tolerance),
+                               opacity, joining.gap);
+    std::vector<KnownSet> sets;
+    for (std::size_t s = 0; s < object.sets.size(); ++s) {
+      const TextureSet& set = object.sets[s];
+      const ArrayCache::Arrays places = places_of(set);
+      ArrayCache::Arrays all = places;
+      all.push_back(set.soup.shared_uvs());
+      all.push_back(set.texels);
+      sets.push_back({opacity[s], cache().get<SetParts>(all, {}, [&] {
+                        const auto welded = welded_set(set);
+                        const auto edges =
+                            cache().get<EdgeTable>(places, {}, [&] { return edges_between(welded->corners); });
+                        return set_parts(welded->corners, *edges, *opacity[s]);
+                      })});
+    }
+    return joined_components(*corners_of(object), sets);
   });
 }
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object) {
   ArrayCache::Arrays arrays = surface_of(object);
-  return with_arrays(cache().get<RayTree>(arrays, {}, [&] { return RayTree(object); }), arrays);
+  return with_arrays(cache().get<RayTree>(arrays, {},
+                                          [&] {
+                                            return RayTree(
+                                                cache().get<RayTriangles>(geometry_of(object), {},
+                                                                          [&] { return RayTriangles(object); }),
+                                                object);
+                                          }),
+                     arrays);
 }
 std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object) {
   ArrayCache::Arrays arrays = surface_of(object);

@@ -36,7 +36,7 @@ struct Sum {
 };
 static_assert(std::endian::native == std::endian::little && sizeof(Texel) == 8);
 
-TriangleTraits traits_of(const TextureSet& set, std::size_t f) {
+TriangleLooks looks_of(const TextureSet& set, std::size_t f) {
   const FeatureTexture& texels = *set.texels;
   const std::array<Vec2, 3> corners = texel_corners(set, f);
   Sum sum;
@@ -51,24 +51,18 @@ TriangleTraits traits_of(const TextureSet& set, std::size_t f) {
     const Vec2 middle = (corners[0] + corners[1] + corners[2]) / 3;
     sum.add(&texels.sample(middle.x() / texels.width(), 1 - middle.y() / texels.height()), 1);
   }
-  TriangleTraits traits;
-  traits.opacity = static_cast<float>(sum.opaque) / static_cast<float>(sum.all);
+  TriangleLooks looks;
+  looks.opacity = static_cast<float>(sum.opaque) / static_cast<float>(sum.all);
   if (sum.opaque > 0) {
-    for (std::size_t k = 0; k < 8; ++k) traits.features[k] = static_cast<float>(sum.bytes[k]) / (255.0F * sum.opaque);
+    for (std::size_t k = 0; k < 8; ++k) looks.features[k] = static_cast<float>(sum.bytes[k]) / (255.0F * sum.opaque);
     if (texels.alpha_code() == AlphaCode::halved)
-      for (const std::size_t k : {3, 7}) traits.features[k] = 2 * traits.features[k] - 1;
+      for (const std::size_t k : {3, 7}) looks.features[k] = 2 * looks.features[k] - 1;
   }
-  const Face& face = set.soup.faces()[f];
-  const std::vector<Vec3>& p = set.soup.positions();
-  const Vec3 cross = (p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]);
-  traits.area = static_cast<float>(cross.norm() / 2);
-  const Vec3 normal = cross.stableNormalized();
-  for (int k = 0; k < 3; ++k) traits.normal[static_cast<std::size_t>(k)] = static_cast<float>(normal[k]);
-  return traits;
+  return looks;
 }
 
 // The decoder on many triangles at once: a column each.
-void decode_colors(const Decoder& decoder, TriangleTraits* traits, Eigen::Index count) {
+void decode_colors(const Decoder& decoder, TriangleLooks* looks, Eigen::Index count) {
   const Eigen::MatrixXf w0 = decoder.weights0.cast<float>().transpose();
   const Eigen::MatrixXf w1 = decoder.weights1.cast<float>().transpose();
   const Eigen::MatrixXf w2 = decoder.weights2.cast<float>().transpose();
@@ -76,7 +70,7 @@ void decode_colors(const Decoder& decoder, TriangleTraits* traits, Eigen::Index 
                         b2 = decoder.bias2.cast<float>();
   Eigen::MatrixXf features(8, count);
   for (Eigen::Index i = 0; i < count; ++i)
-    for (Eigen::Index k = 0; k < 8; ++k) features(k, i) = traits[i].features[static_cast<std::size_t>(k)];
+    for (Eigen::Index k = 0; k < 8; ++k) features(k, i) = looks[i].features[static_cast<std::size_t>(k)];
   const Eigen::MatrixXf base = (w0.leftCols(8) * features).colwise() + b0;
   Eigen::MatrixXf mean = Eigen::MatrixXf::Zero(3, count);
   for (Eigen::Index axis = 0; axis < 3; ++axis)
@@ -87,23 +81,42 @@ void decode_colors(const Decoder& decoder, TriangleTraits* traits, Eigen::Index 
       mean.array() += (1 / (1 + (-out.array()).exp())) / 6;
     }
   for (Eigen::Index i = 0; i < count; ++i)
-    if (traits[i].opacity > 0)
-      for (Eigen::Index k = 0; k < 3; ++k) traits[i].color[static_cast<std::size_t>(k)] = mean(k, i);
+    if (looks[i].opacity > 0)
+      for (Eigen::Index k = 0; k < 3; ++k) looks[i].color[static_cast<std::size_t>(k)] = mean(k, i);
 }
 
 }  // namespace
 
-std::vector<TriangleTraits> triangle_traits(const BakedObject& object) {
+std::vector<TriangleLooks> triangle_looks(const TextureSet& set, const Decoder& decoder) {
+  std::vector<TriangleLooks> looks(set.soup.triangle_count());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, looks.size(), 512),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t f = range.begin(); f < range.end(); ++f) looks[f] = looks_of(set, f);
+                      decode_colors(decoder, &looks[range.begin()], static_cast<Eigen::Index>(range.size()));
+                    });
+  return looks;
+}
+
+std::vector<TriangleTraits> triangle_traits(
+    const BakedObject& object, const std::vector<std::shared_ptr<const std::vector<TriangleLooks>>>& looks) {
   std::vector<TriangleTraits> traits(object.triangle_count());
   std::size_t first = 0;
-  for (const TextureSet& set : object.sets) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, set.soup.triangle_count(), 512),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t f = range.begin(); f < range.end(); ++f) traits[first + f] = traits_of(set, f);
-                        decode_colors(*object.decoder, &traits[first + range.begin()],
-                                      static_cast<Eigen::Index>(range.size()));
-                      });
-    first += set.soup.triangle_count();
+  for (std::size_t s = 0; s < object.sets.size(); ++s) {
+    const Soup& soup = object.sets[s].soup;
+    tbb::parallel_for(std::size_t{0}, soup.triangle_count(), [&](std::size_t f) {
+      const Face& face = soup.faces()[f];
+      const std::vector<Vec3>& p = soup.positions();
+      const Vec3 cross = (p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]);
+      const TriangleLooks& look = (*looks[s])[f];
+      TriangleTraits& one = traits[first + f];
+      one.features = look.features;
+      one.color = look.color;
+      one.opacity = look.opacity;
+      one.area = static_cast<float>(cross.norm() / 2);
+      const Vec3 normal = cross.stableNormalized();
+      for (int k = 0; k < 3; ++k) one.normal[static_cast<std::size_t>(k)] = static_cast<float>(normal[k]);
+    });
+    first += soup.triangle_count();
   }
   return traits;
 }

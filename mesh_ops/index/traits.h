@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "mesh_ops/scene/object.h"
@@ -16,8 +17,17 @@ struct TriangleTraits {
   std::array<float, 3> normal{};    ///< unit, or zero where the triangle has no area
 };
 
-/// Traits of every triangle, in the object's numbering. A triangle too small to hold a texel centre counts the texel at
-/// its own centre.
-std::vector<TriangleTraits> triangle_traits(const BakedObject& object);
+/// What of a triangle's traits its texels say, wherever its corners lie.
+struct TriangleLooks {
+  std::array<float, 8> features{};
+  std::array<float, 3> color{};
+  float opacity = 0;
+};
+/// Of a set's triangles. One too small to hold a texel centre counts the texel at its own centre.
+std::vector<TriangleLooks> triangle_looks(const TextureSet& set, const Decoder& decoder);
+
+/// Traits of every triangle, in the object's numbering, from the looks of each set's.
+std::vector<TriangleTraits> triangle_traits(
+    const BakedObject& object, const std::vector<std::shared_ptr<const std::vector<TriangleLooks>>>& looks);
 
 }  // namespace rebake

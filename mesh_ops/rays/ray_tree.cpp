@@ -22,15 +22,24 @@ struct Surface {
   std::uint32_t first_triangle;
 };
 
+// Passed along with each ray, so that trees with other texels share their triangles.
+struct Context {
+  RTCIntersectContext embree;
+  const Surface* surfaces;  // a set each
+
+  explicit Context(const std::vector<Surface>& of) : embree{}, surfaces(of.data()) { rtcInitIntersectContext(&embree); }
+};
+
 bool count_bytes(void* sum, ssize_t bytes, bool /*after*/) {
   *static_cast<std::atomic<std::int64_t>*>(sum) += bytes;
   return true;
 }
 
 void let_through_transparent(const RTCFilterFunctionNArguments* args) {
-  const auto& surface = *static_cast<const Surface*>(args->geometryUserPtr);
+  const auto* const surfaces = reinterpret_cast<const Context*>(args->context)->surfaces;
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
+    const Surface& surface = surfaces[RTCHitN_geomID(args->hit, args->N, i)];
     const unsigned primitive = RTCHitN_primID(args->hit, args->N, i);
     const double u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
     const Face& face = (*surface.faces)[primitive];
@@ -54,7 +63,7 @@ struct LocalRay {
   double t(float local) const { return shift + static_cast<double>(local) / length; }
 };
 
-class RayTree::Impl {
+class RayTriangles::Impl {
  public:
   explicit Impl(const BakedObject& object) : device_(rtcNewDevice(instructions())), scene_(nullptr) {
     if (device_ == nullptr) throw DeviceError("Embree cannot be started; is its library whole?");
@@ -70,16 +79,10 @@ class RayTree::Impl {
       half_ = half + Vec3::Constant(1e-6 + 1e-6 * half.maxCoeff());
     }
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    std::uint32_t first = 0;
-    surfaces_.reserve(object.sets.size());
     for (const TextureSet& set : object.sets) {
-      surfaces_.push_back({&set.soup.faces(), &set.soup.uvs(), set.texels.get(), first});
-      const Soup& soup = set.soup;
-      first += static_cast<std::uint32_t>(soup.triangle_count());
       RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
       // One without triangles keeps the geometry numbers those of the sets.
-      if (soup.triangle_count() > 0) add_triangles(geometry, soup);
-      rtcSetGeometryUserData(geometry, &surfaces_.back());
+      if (set.soup.triangle_count() > 0) add_triangles(geometry, set.soup);
       rtcSetGeometryIntersectFilterFunction(geometry, let_through_transparent);
       rtcSetGeometryOccludedFilterFunction(geometry, let_through_transparent);
       rtcCommitGeometry(geometry);
@@ -99,80 +102,7 @@ class RayTree::Impl {
   Impl& operator=(const Impl&) = delete;
 
   std::uint64_t memory() const { return static_cast<std::uint64_t>(std::max<std::int64_t>(0, bytes_)); }
-  std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const {
-    const LocalRay local = local_ray(origin, direction, near, far);
-    if (!local.meets) return std::nullopt;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit query{};
-    query.ray = embree_ray(local);
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_, &context, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return Hit{local.t(query.ray.tfar), surfaces_[query.hit.geomID].first_triangle + query.hit.primID};
-  }
-  void nearest(Bundle& rays, double near) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    RTCRayHit8 query{};
-    alignas(32) std::array<int, 8> valid{};
-    std::array<LocalRay, 8> local;
-    for (std::size_t i = 0; i < 8; ++i) {
-      local[i] = local_ray(rays.origins[i], rays.directions[i], near, rays.far[i]);
-      valid[i] = local[i].meets ? -1 : 0;
-      query.ray.org_x[i] = local[i].origin[0];
-      query.ray.org_y[i] = local[i].origin[1];
-      query.ray.org_z[i] = local[i].origin[2];
-      query.ray.dir_x[i] = local[i].direction[0];
-      query.ray.dir_y[i] = local[i].direction[1];
-      query.ray.dir_z[i] = local[i].direction[2];
-      query.ray.tnear[i] = local[i].near;
-      query.ray.tfar[i] = local[i].far;
-      query.ray.mask[i] = ~0U;
-      query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    }
-    rtcIntersect8(valid.data(), scene_, &context, &query);
-    for (std::size_t i = 0; i < 8; ++i) {
-      rays.hit[i] = valid[i] != 0 && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-      if (!rays.hit[i]) continue;
-      rays.far[i] = local[i].t(query.ray.tfar[i]);
-      rays.triangle[i] = surfaces_[query.hit.geomID[i]].first_triangle + query.hit.primID[i];
-    }
-  }
-  bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
-    const LocalRay local = local_ray(origin, direction, near, far);
-    if (!local.meets) return false;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRay query = embree_ray(local);
-    rtcOccluded1(scene_, &context, &query);
-    return query.tfar < 0;
-  }
-
- private:
-  // The same triangles at silhouettes and shared corners on every processor: SSE 4.2 finds bit for bit what SSE 2 does,
-  // a fifth faster; with AVX one of several triangles at one distance may be another, with AVX 2 distances too.
-  static const char* instructions() {
-#ifdef __x86_64__
-    if (__builtin_cpu_supports("sse4.2")) return "isa=sse4.2";
-#endif
-    return "isa=sse2";
-  }
-
-  void add_triangles(RTCGeometry geometry, const Soup& soup) {
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), soup.positions().size()));
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Face),
-                                            soup.faces().size());
-    if (vertices == nullptr || indices == nullptr) return;  // the device says why
-    for (const Vec3& p : soup.positions()) {
-      const Vec3 local = (p - center_) * scale_;
-      for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(local[k]);
-    }
-    std::memcpy(indices, soup.faces().data(), soup.faces().size() * sizeof(Face));
-  }
-
+  RTCScene scene() const { return scene_; }
   LocalRay local_ray(const Vec3& origin, const Vec3& direction, double near, double far) const {
     LocalRay ray;
     const Vec3 d = direction * scale_, o = (origin - center_) * scale_;
@@ -202,6 +132,103 @@ class RayTree::Impl {
     ray.far = static_cast<float>((leaves - enters) * ray.length);
     return ray;
   }
+
+ private:
+  // The same triangles at silhouettes and shared corners on every processor: SSE 4.2 finds bit for bit what SSE 2 does,
+  // a fifth faster; with AVX one of several triangles at one distance may be another, with AVX 2 distances too.
+  static const char* instructions() {
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("sse4.2")) return "isa=sse4.2";
+#endif
+    return "isa=sse2";
+  }
+
+  void add_triangles(RTCGeometry geometry, const Soup& soup) {
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), soup.positions().size()));
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Face),
+                                            soup.faces().size());
+    if (vertices == nullptr || indices == nullptr) return;  // the device says why
+    for (const Vec3& p : soup.positions()) {
+      const Vec3 local = (p - center_) * scale_;
+      for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(local[k]);
+    }
+    std::memcpy(indices, soup.faces().data(), soup.faces().size() * sizeof(Face));
+  }
+
+  void release() {
+    if (scene_ != nullptr) rtcReleaseScene(scene_);
+    if (device_ != nullptr) rtcReleaseDevice(device_);
+  }
+
+  std::atomic<std::int64_t> bytes_ = 0;  ///< that Embree holds
+  RTCDevice device_;
+  RTCScene scene_;
+  Vec3 center_{0, 0, 0};
+  double scale_ = 1;             ///< a power of two
+  Vec3 half_{1e-6, 1e-6, 1e-6};  ///< of the box, in the tree's frame, with some room
+};
+
+class RayTree::Impl {
+ public:
+  Impl(std::shared_ptr<const RayTriangles> triangles, const BakedObject& object) : triangles_(std::move(triangles)) {
+    std::uint32_t first = 0;
+    for (const TextureSet& set : object.sets) {
+      surfaces_.push_back({&set.soup.faces(), &set.soup.uvs(), set.texels.get(), first});
+      first += static_cast<std::uint32_t>(set.soup.triangle_count());
+    }
+  }
+
+  std::uint64_t memory() const { return surfaces_.size() * sizeof(Surface); }
+  std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const {
+    const LocalRay local = triangles_->impl_->local_ray(origin, direction, near, far);
+    if (!local.meets) return std::nullopt;
+    Context context(surfaces_);
+    RTCRayHit query{};
+    query.ray = embree_ray(local);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(triangles_->impl_->scene(), &context.embree, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return Hit{local.t(query.ray.tfar), surfaces_[query.hit.geomID].first_triangle + query.hit.primID};
+  }
+  void nearest(Bundle& rays, double near) const {
+    Context context(surfaces_);
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCRayHit8 query{};
+    alignas(32) std::array<int, 8> valid{};
+    std::array<LocalRay, 8> local;
+    for (std::size_t i = 0; i < 8; ++i) {
+      local[i] = triangles_->impl_->local_ray(rays.origins[i], rays.directions[i], near, rays.far[i]);
+      valid[i] = local[i].meets ? -1 : 0;
+      query.ray.org_x[i] = local[i].origin[0];
+      query.ray.org_y[i] = local[i].origin[1];
+      query.ray.org_z[i] = local[i].origin[2];
+      query.ray.dir_x[i] = local[i].direction[0];
+      query.ray.dir_y[i] = local[i].direction[1];
+      query.ray.dir_z[i] = local[i].direction[2];
+      query.ray.tnear[i] = local[i].near;
+      query.ray.tfar[i] = local[i].far;
+      query.ray.mask[i] = ~0U;
+      query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect8(valid.data(), triangles_->impl_->scene(), &context.embree, &query);
+    for (std::size_t i = 0; i < 8; ++i) {
+      rays.hit[i] = valid[i] != 0 && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+      if (!rays.hit[i]) continue;
+      rays.far[i] = local[i].t(query.ray.tfar[i]);
+      rays.triangle[i] = surfaces_[query.hit.geomID[i]].first_triangle + query.hit.primID[i];
+    }
+  }
+  bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
+    const LocalRay local = triangles_->impl_->local_ray(origin, direction, near, far);
+    if (!local.meets) return false;
+    Context context(surfaces_);
+    RTCRay query = embree_ray(local);
+    rtcOccluded1(triangles_->impl_->scene(), &context.embree, &query);
+    return query.tfar < 0;
+  }
+
+ private:
   static RTCRay embree_ray(const LocalRay& local) {
     RTCRay ray{};
     ray.org_x = local.origin[0];
@@ -215,21 +242,19 @@ class RayTree::Impl {
     ray.mask = ~0U;
     return ray;
   }
-  void release() {
-    if (scene_ != nullptr) rtcReleaseScene(scene_);
-    if (device_ != nullptr) rtcReleaseDevice(device_);
-  }
 
-  std::atomic<std::int64_t> bytes_ = 0;  ///< that Embree holds
-  RTCDevice device_;
-  RTCScene scene_;
-  Vec3 center_{0, 0, 0};
-  double scale_ = 1;             ///< a power of two
-  Vec3 half_{1e-6, 1e-6, 1e-6};  ///< of the box, in the tree's frame, with some room
+  std::shared_ptr<const RayTriangles> triangles_;
   std::vector<Surface> surfaces_;
 };
 
-RayTree::RayTree(const BakedObject& object) : impl_(std::make_unique<Impl>(object)) {}
+RayTriangles::RayTriangles(const BakedObject& object) : impl_(std::make_unique<Impl>(object)) {}
+RayTriangles::RayTriangles(RayTriangles&&) noexcept = default;
+RayTriangles::~RayTriangles() = default;
+std::uint64_t RayTriangles::memory() const { return impl_->memory(); }
+
+RayTree::RayTree(const BakedObject& object) : RayTree(std::make_shared<const RayTriangles>(object), object) {}
+RayTree::RayTree(std::shared_ptr<const RayTriangles> triangles, const BakedObject& object)
+    : impl_(std::make_unique<Impl>(std::move(triangles), object)) {}
 RayTree::RayTree(RayTree&&) noexcept = default;
 RayTree::~RayTree() = default;
 std::uint64_t RayTree::memory() const { return impl_->memory(); }

@@ -8,11 +8,27 @@
 
 namespace rebake {
 
+/// Where the triangles of an object lie, for rays: what takes long to make, and stays as texels change. Holds copies.
+class RayTriangles {
+ public:
+  explicit RayTriangles(const BakedObject& object);
+  RayTriangles(RayTriangles&&) noexcept;
+  ~RayTriangles();
+  std::uint64_t memory() const;  ///< bytes
+
+ private:
+  friend class RayTree;
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 /// Finds the opaque triangle that a ray meets first. Transparent texels let rays through. Distances are found in single
 /// precision, relative to the object's centre: good to about 1e-6 of its size. The object's arrays must outlive it.
 class RayTree {
  public:
   explicit RayTree(const BakedObject& object);
+  /// `triangles` are of an object with the same positions and faces.
+  RayTree(std::shared_ptr<const RayTriangles> triangles, const BakedObject& object);
   RayTree(RayTree&&) noexcept;
   ~RayTree();
 
@@ -34,7 +50,7 @@ class RayTree {
   void nearest(Bundle& rays, double near) const;
   /// Whether anything opaque lies at t in [near, far].
   bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const;
-  std::uint64_t memory() const;  ///< bytes
+  std::uint64_t memory() const;  ///< bytes, without the triangles
 
  private:
   class Impl;

@@ -24,10 +24,21 @@ const BakedObject& object_of(const Scene& scene) { return *scene.roots[0]->objec
 
 Camera camera_of(const Scene& scene) { return framing(world_bounds(scene), 1, false); }
 
+// The same triangles and texels in arrays of their own, of which nothing is known yet.
+BakedObject unknown(const BakedObject& object) {
+  BakedObject fresh = object;
+  fresh.decoder = std::make_shared<const Decoder>(*object.decoder);
+  for (TextureSet& set : fresh.sets) {
+    set.soup = Soup(set.soup.positions(), set.soup.uvs(), set.soup.faces());
+    set.texels = std::make_shared<const FeatureTexture>(*set.texels);
+  }
+  return fresh;
+}
+
 void index(benchmark::State& state) {
   for (auto _ : state) {
     state.PauseTiming();
-    const BakedObject fresh = object_of(scene_at(state.range(0)));
+    const BakedObject fresh = unknown(object_of(scene_at(state.range(0))));
     state.ResumeTiming();
     prepare_index(fresh);
   }
@@ -35,7 +46,7 @@ void index(benchmark::State& state) {
 void index_part(benchmark::State& state, void (*part)(const BakedObject&)) {
   for (auto _ : state) {
     state.PauseTiming();
-    const BakedObject fresh = object_of(scene_at(state.range(0)));
+    const BakedObject fresh = unknown(object_of(scene_at(state.range(0))));
     state.ResumeTiming();
     part(fresh);
   }
@@ -108,6 +119,37 @@ Edit erase_sphere(const Scene&) {
   Erase edit;
   edit.sphere = SphereRegion{Vec3(0.5, 0.5, 0.5), 0.1};
   edit.frame = CoordinateFrame::bounds;
+  return edit;
+}
+
+// A selection on a scene that was edited just before, with the index there as it was before the edit.
+void after(benchmark::State& state, Edit (*change)(const Scene&, std::int64_t), Edit (*make)(const Scene&)) {
+  const Scene& scene = scene_at(state.range(0));
+  prepare_index(object_of(scene));
+  std::int64_t number = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    const Scene changed = rebake::apply(scene, change(scene, ++number)).scene;
+    const Edit made = make(changed);
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(rebake::apply(changed, made));
+  }
+}
+// Each time another one. Tiles lie side by side: it is less than one of nine.
+Edit bent(const Scene&, std::int64_t number) {
+  Bend edit;
+  edit.degrees = 5 + 0.01 * static_cast<double>(number);
+  edit.target.node = NodeRef{NodeId{1}};
+  edit.target.box = BoxRegion{Vec3(0, 0, 0), Vec3(0.1, 1, 1)};
+  edit.target.frame = CoordinateFrame::bounds;
+  return edit;
+}
+Edit stroke(const Scene& scene, std::int64_t number) {
+  const Soup& soup = object_of(scene).sets[0].soup;
+  const Face& face = soup.faces()[static_cast<std::size_t>(number) * 100];
+  Erase edit;
+  edit.sphere = SphereRegion{(soup.positions()[face[0]] + soup.positions()[face[1]] + soup.positions()[face[2]]) / 3,
+                             0.005 * soup.bounds().diagonal().norm()};
   return edit;
 }
 
@@ -185,6 +227,12 @@ REBAKE_BENCHMARK(edit, grow, grow, true);
 REBAKE_BENCHMARK(edit, fill, fill, true);
 REBAKE_BENCHMARK(edit, delete_half, delete_half, true);
 REBAKE_BENCHMARK(edit, erase_sphere, erase_sphere, false);
+REBAKE_BENCHMARK(after, bend_then_connected, bent, connected);
+REBAKE_BENCHMARK(after, bend_then_brush_visible, bent, brush_visible);
+REBAKE_BENCHMARK(after, bend_then_like_color, bent, like_color);
+REBAKE_BENCHMARK(after, stroke_then_connected, stroke, connected);
+REBAKE_BENCHMARK(after, stroke_then_brush_visible, stroke, brush_visible);
+REBAKE_BENCHMARK(after, stroke_then_like_color, stroke, like_color);
 #undef REBAKE_BENCHMARK
 
 }  // namespace

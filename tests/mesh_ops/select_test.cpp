@@ -43,10 +43,10 @@ BakedObject strip(int squares, double apart, const std::function<bool(int, int, 
 bool everywhere(int, int, int) { return true; }
 
 TEST(Select, EqualCornersWeldAndNearOnesWithinTheTolerance) {
-  EXPECT_EQ(weld(strip(3, 0, everywhere), 0).place_count, 8U);
-  EXPECT_EQ(weld(strip(3, 1e-3, everywhere), 0).place_count, 12U);
-  EXPECT_EQ(weld(strip(3, 1e-3, everywhere), 2e-3).place_count, 8U);
-  EXPECT_EQ(weld(strip(3, 1e-3, everywhere), 5e-4).place_count, 12U);
+  EXPECT_EQ(corners_of(strip(3, 0, everywhere), 0)->place_count, 8U);
+  EXPECT_EQ(corners_of(strip(3, 1e-3, everywhere), 0)->place_count, 12U);
+  EXPECT_EQ(corners_of(strip(3, 1e-3, everywhere), 2e-3)->place_count, 8U);
+  EXPECT_EQ(corners_of(strip(3, 1e-3, everywhere), 5e-4)->place_count, 12U);
 }
 
 TEST(Select, WeldingFindsWhatComparingAllPairsFinds) {
@@ -59,7 +59,7 @@ TEST(Select, WeldingFindsWhatComparingAllPairsFinds) {
   BakedObject object = strip(1, 0, everywhere);
   object.sets[0].soup = Soup(positions, std::vector<Vec2>(300, Vec2(0.5, 0.5)), faces);
   for (const double tolerance : {0.01, 0.1, 0.2}) {
-    const WeldedCorners welded = weld(object, tolerance);
+    const WeldedCorners welded = *corners_of(object, tolerance);
     std::vector<std::uint32_t> group(300);
     for (std::uint32_t i = 0; i < 300; ++i) group[i] = i;
     for (bool changed = true; changed;) {
