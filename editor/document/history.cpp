@@ -127,13 +127,15 @@ void History::go_to(std::size_t step, const Progress& progress) {
   std::size_t from = step;
   while (!steps_[from].scene) --from;
   // The last values on the way are kept too, as far as the budget goes: whoever undoes once usually undoes again. What
-  // is kept for later steps stays until this has succeeded.
+  // is kept for later steps stays until this has succeeded, and goes first then: until there as much as half the budget
+  // may lie beside it.
+  const std::uint64_t there = memory_;
   Scene scene = *steps_[from].scene;
   std::size_t oldest = from + 1;
   for (std::size_t k = from + 1; k <= step; ++k) {
     scene = rebake::apply(scene, *steps_[k].edit, progress).scene;
     keep(k, scene);
-    while (oldest < k && (memory_ > budget_ || k - oldest >= checkpoint_distance)) drop(oldest++);
+    while (oldest < k && (memory_ - there > budget_ / 2 || k - oldest >= checkpoint_distance)) drop(oldest++);
   }
   position_ = step;
   fit_budget();

@@ -129,8 +129,13 @@ EdgeOpacity edge_opacity(const TextureSet& set) {
   EdgeOpacity opacity{std::vector<std::uint32_t>(set.soup.triangle_count() * 3)};
   tbb::parallel_for(std::size_t{0}, set.soup.triangle_count(), [&](std::size_t f) {
     const std::array<Vec2, 3> uv = texel_corners(set, f);
-    for (std::size_t k = 0; k < 3; ++k)
-      opacity.along[f * 3 + k] = opaque_along(*set.texels, uv[k], uv[(k + 1) % 3], uv[(k + 2) % 3]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Looked at from the same end by both triangles of an edge, so that rounding is the same.
+      const Vec2 &a = uv[k], &b = uv[(k + 1) % 3], &inside = uv[(k + 2) % 3];
+      const bool forward = std::pair(a.x(), a.y()) <= std::pair(b.x(), b.y());
+      opacity.along[f * 3 + k] =
+          forward ? opaque_along(*set.texels, a, b, inside) : reversed(opaque_along(*set.texels, b, a, inside));
+    }
   });
   return opacity;
 }

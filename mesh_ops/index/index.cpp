@@ -133,20 +133,22 @@ std::shared_ptr<const Components> components_of(const BakedObject& object, const
     return joined_components(*corners_of(object), sets);
   });
 }
+// Triangles are used as often as their trees, so that trees, which hold them, go first.
+static void touch_triangles(const BakedObject& object) { cache().if_there<RayTriangles>(geometry_of(object), {}); }
+
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object) {
   ArrayCache::Arrays arrays = surface_of(object);
-  return with_arrays(cache().get<RayTree>(arrays, {},
-                                          [&] {
-                                            return RayTree(
-                                                cache().get<RayTriangles>(geometry_of(object), {},
-                                                                          [&] { return RayTriangles(object); }),
-                                                object);
-                                          }),
-                     arrays);
+  auto tree = cache().get<RayTree>(arrays, {}, [&] {
+    return RayTree(cache().get<RayTriangles>(geometry_of(object), {}, [&] { return RayTriangles(object); }), object);
+  });
+  touch_triangles(object);
+  return with_arrays(std::move(tree), std::move(arrays));
 }
 std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object) {
   ArrayCache::Arrays arrays = surface_of(object);
-  return with_arrays(cache().if_there<RayTree>(arrays, {}), arrays);
+  auto tree = cache().if_there<RayTree>(arrays, {});
+  if (tree) touch_triangles(object);
+  return with_arrays(std::move(tree), std::move(arrays));
 }
 
 SceneRays rays_through(const std::vector<PlacedNode>& objects) {

@@ -36,7 +36,27 @@ std::vector<std::size_t> surfaces_of(const TextureSet& set, const TexelPatches& 
     std::uint32_t face;
   };
   std::vector<Edge> edges;
+  std::vector<std::array<std::array<double, 2>, 3>> triangles;
   for (const std::vector<std::uint32_t>& patch : faces) {
+    // Only where triangles lie on others in the texture; all else is one surface, wherever its parts have been moved.
+    triangles.clear();
+    for (const std::uint32_t f : patch) {
+      auto& corners = triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2& uv = set.soup.uvs()[set.soup.faces()[f][k]];
+        corners[k] = {uv.x(), uv.y()};
+      }
+      std::sort(corners.begin(), corners.end());
+    }
+    std::sort(triangles.begin(), triangles.end());
+    if (std::adjacent_find(triangles.begin(), triangles.end()) == triangles.end()) {
+      for (const std::uint32_t f : patch) surfaces.join(f, patch.front());
+      continue;
+    }
+    // A vertex has one place in the light.
+    std::map<std::uint32_t, std::uint32_t> face_of;
+    for (const std::uint32_t f : patch)
+      for (const std::uint32_t v : set.soup.faces()[f]) surfaces.join(f, face_of.try_emplace(v, f).first->second);
     edges.clear();
     for (const std::uint32_t f : patch) {
       std::array<Corner, 3> corners;

@@ -260,7 +260,7 @@ class Fit {
   }
   Radiance albedo_of(const Sample& sample) const { return albedo_[sample.cluster] * tone_[sample.part]; }
   // Each part's brightness beside its cluster's, drawn towards 1 as far as parts differ less than what lies within them
-  // (DerSimonian and Laird 1986).
+  // (after DerSimonian and Laird 1986, about 1 instead of their mean).
   void tones() {
     std::vector<double> top(tone_.size(), 0), bottom(tone_.size(), 0);
     for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -277,6 +277,7 @@ class Fit {
       spread += bottom[k] * (top[k] / bottom[k] - 1) * (top[k] / bottom[k] - 1);
       parts += 1;
     }
+    if (parts < 2) return;
     const double within = error() / static_cast<double>(samples_.size()),
                  between = (spread - within * parts) / (sum - squares / sum);
     for (std::size_t k = 0; k < tone_.size(); ++k) {

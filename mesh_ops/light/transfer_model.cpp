@@ -273,9 +273,12 @@ TransferModel transfer_model_of(std::string_view bytes) {
       net->seconds = about.at("learning_seconds");
       model.net_error = about.at("held_back_error");
       model.turning_error = about.at("turning_error");
+      constexpr int most_channels = 64;
+      if (net->channels < 8 || net->channels > most_channels || net->channels % 8 != 0)
+        throw Error("its net has another number of channels than 8, 16 … 64");
       const std::uint64_t vertices = about.at("vertices"), faces = about.at("faces");
       if (!fits(static_cast<double>(vertices), 2 * sizeof(double)) || !fits(static_cast<double>(faces), sizeof(Face)) ||
-          !fits(net->channels > 0 ? static_cast<double>(unet_weight_count(net->channels)) : 0, sizeof(float)))
+          !fits(static_cast<double>(unet_weight_count(net->channels)), sizeof(float)))
         throw Error("it ends too early");
       net->chart.source.resize(vertices);
       net->chart.uvs.resize(vertices);

@@ -150,6 +150,9 @@ void TurnedLight::prepare_model() {
       const std::uint32_t other = model.keys[k];
       const double distance = (start_.sites.baked[other].position - at).squaredNorm();
       if (!(distance < least[3])) continue;
+      // Vertices of nets may stand for the same site.
+      const auto same = [&](std::size_t j) { return std::isfinite(least[j]) && model.keys[share.keys[j]] == other; };
+      if (same(0) || same(1) || same(2) || same(3)) continue;
       // What shows may be another side than in the light that it was learnt in.
       if (start_.facing[i] != model.facing[k] || shown_normal(other, model.facing[k]).dot(normal) < 0.5) continue;
       std::size_t place_in = 3;

@@ -40,11 +40,13 @@ void check(const UnetTransfer::State& state) {
   const bool fits =
       state.side >= 64 && state.side <= 1024 && state.chart.uvs.size() == state.chart.source.size() && vertices > 0 &&
       static_cast<std::size_t>(state.mean.size()) == vertices * sh::count && !state.box.isEmpty() &&
-      std::isfinite(state.scale) &&
+      state.box.min().allFinite() && state.box.max().allFinite() && state.mean.allFinite() &&
+      std::isfinite(state.scale) && all(state.weights, [](float weight) { return std::isfinite(weight); }) &&
       // Each vertex has a place in the image.
       !state.chart.source.empty() &&
       *std::max_element(state.chart.source.begin(), state.chart.source.end()) + 1 == vertices &&
-      all(state.chart.uvs, [](const Vec2& uv) { return uv.minCoeff() >= -1e-9 && uv.maxCoeff() <= 1 + 1e-9; }) &&
+      all(state.chart.uvs,
+          [](const Vec2& uv) { return uv.allFinite() && uv.minCoeff() >= -1e-9 && uv.maxCoeff() <= 1 + 1e-9; }) &&
       all(state.chart.faces,
           [&](const Face& face) { return all(face, [&](std::uint32_t v) { return v < state.chart.source.size(); }); });
   if (!fits) throw std::invalid_argument("a U-Net's image, mean and chart must go together");

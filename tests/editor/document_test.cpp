@@ -135,6 +135,17 @@ TEST_F(DocumentTest, ScenesOnTheWayAreLetGoOf) {
   EXPECT_EQ(tight.history().kept(), 2U);
   document.undo();
   EXPECT_EQ(exported(tight.scene()), exported(document.scene()));
+
+  // Within a budget of some scenes an undo that makes one again keeps some before it, too.
+  while (document.redo()) {
+  }
+  Document first;
+  import(first);
+  const std::uint64_t least = first.history().memory(), budget = least + (document.history().memory() - least) / 2;
+  Document some = Document::open(path("long.rebake"), {}, {}, budget);
+  for (int k = 0; k < 30; ++k) ASSERT_TRUE(some.undo());
+  EXPECT_GT(some.history().kept(), 4U);
+  EXPECT_LE(some.history().memory(), budget);
 }
 
 TEST_F(DocumentTest, SharedPartsAreCountedOnce) {

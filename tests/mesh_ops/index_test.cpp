@@ -93,7 +93,15 @@ TEST(Index, GoesWithTheArrays) {
   {
     const auto object = made_object({.columns = 8, .rows = 4});
     prepare_index(*object);
-    EXPECT_GT(index_cache().memory(), 1000U);
+    const BakedObject unseen = *made_object({.columns = 8, .rows = 4, .seed = 2});
+    const std::uint64_t memory = index_cache().memory();
+    rays_of(unseen);
+    const std::uint64_t of_triangles = index_cache().memory() - memory;
+    EXPECT_GT(of_triangles, 1000U);
+    BakedObject painted = unseen;
+    painted.sets[0].texels = std::make_shared<const FeatureTexture>(*unseen.sets[0].texels);
+    rays_of(painted);
+    EXPECT_LT(index_cache().memory() - memory, of_triangles + 1000) << "other texels, the same triangles";
     EXPECT_GE(index_cache().size(), before + 3);
   }
   const auto other = made_object({.columns = 4, .rows = 4});
