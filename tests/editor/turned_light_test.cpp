@@ -68,6 +68,14 @@ TEST(LightEdit, GoesAlongWithTrianglesThatMove) {
   EXPECT_FALSE(turned_lighting(rest, lighting_of(rest), bent)) << "nobody asked for this node";
 }
 
+// With what was learnt of a node, which is about to be dragged.
+LightingOptions going_along(NodeId node, Results& store) {
+  LightingOptions options;
+  options.results = &store;
+  options.turning = {node};
+  return options;
+}
+
 TEST(LightEdit, WhatWasLearntIsUsedWithinItsRange) {
   // The box is lifted: nothing turns, but the ground below sees the sky again.
   Scene rest = with_light(table());
@@ -79,9 +87,7 @@ TEST(LightEdit, WhatWasLearntIsUsedWithinItsRange) {
     return apply(rest, read_edit(line, rest)).scene;
   };
   Remembered store;
-  LightingOptions options;
-  options.results = &store;
-  options.turning = {node};
+  const LightingOptions options = going_along(node, store);
   const auto turning_now = [&](const Scene& scene) { return lighting_of(scene, options).turning.at(node); };
   const auto plain = turning_now(rest);
   const TransferModel model = learnt_model(*plain, [&](int k) { return lifted(0.02 * k).roots.front()->object; },
@@ -139,9 +145,7 @@ TEST(LightEdit, ANetLearnsAnObjectsPoses) {
     return apply(rest, read_edit(line, rest)).scene;
   };
   Remembered store;
-  LightingOptions options;
-  options.results = &store;
-  options.turning = {node};
+  const LightingOptions options = going_along(node, store);
   const auto turning_now = [&](const Scene& scene) { return lighting_of(scene, options).turning.at(node); };
   const auto plain = turning_now(rest);
   TransferModelOptions learning{.poses = 16, .rays = 64, .coarseness = 0.1};
