@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/rgba_png.h"
 
 namespace rebake {
 
@@ -18,66 +19,77 @@ namespace {
 constexpr int largest_side = 16384;
 constexpr int compression_level = 4;  // 1.4 s for 4096² RGBA; 6 takes 6 s for a tenth less (measured)
 
-// A PNG that is decoded from its top on.
-class PngRows {
+// Any PNG that OpenImageIO reads: palettes, interlaced ones. Says what is wrong with those that are no feature
+// textures.
+class OtherPng : public RgbaRows {
  public:
-  PngRows(std::string_view bytes, const std::filesystem::path& name)
-      : name_(name), source_(const_cast<char*>(bytes.data()), bytes.size()) {
+  static std::unique_ptr<RgbaRows> open(std::string_view bytes, const std::filesystem::path& name) {
     if (bytes.empty()) throw FileError(name, "is empty (0 bytes); a feature PNG was expected");
     if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) throw FileError(name, "is not a PNG file");
-    OIIO::ImageSpec config;
+    auto source = std::make_unique<OIIO::Filesystem::IOMemReader>(const_cast<char*>(bytes.data()), bytes.size());
+    OIIO::ImageSpec config, spec;
     config.attribute("oiio:UnassociatedAlpha", 1);
-    input_ = OIIO::ImageInput::create("png");
-    if (!input_) throw Error("OpenImageIO has no PNG reader; install libopenimageio with PNG support");
-    void* proxy = &source_;
+    auto input = OIIO::ImageInput::create("png");
+    if (!input) throw Error("OpenImageIO has no PNG reader; install libopenimageio with PNG support");
+    void* proxy = source.get();
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    if (!input_->open(name.string(), spec_, config)) throw FileError(name, "cannot be decoded: " + input_->geterror());
-    if (spec_.width < 1 || spec_.height < 1 || spec_.width > largest_side || spec_.height > largest_side)
+    if (!input->open(name.string(), spec, config)) throw FileError(name, "cannot be decoded: " + input->geterror());
+    if (spec.width < 1 || spec.height < 1 || spec.width > largest_side || spec.height > largest_side)
       throw FileError(
-          name, fmt::format("declares {}×{} texels; at most {}² can be read", spec_.width, spec_.height, largest_side));
-    if (spec_.nchannels != 4)
-      throw FileError(name, fmt::format("has {} channels; feature textures have 4 (RGBA)", spec_.nchannels));
-    if (spec_.format != OIIO::TypeDesc::UINT8)
-      throw FileError(name, fmt::format("is not 8 bits a channel (it holds {})", spec_.format.c_str()));
+          name, fmt::format("declares {}×{} texels; at most {}² can be read", spec.width, spec.height, largest_side));
+    if (spec.nchannels != 4)
+      throw FileError(name, fmt::format("has {} channels; feature textures have 4 (RGBA)", spec.nchannels));
+    if (spec.format != OIIO::TypeDesc::UINT8)
+      throw FileError(name, fmt::format("is not 8 bits a channel (it holds {})", spec.format.c_str()));
+    return std::make_unique<OtherPng>(spec.width, spec.height, std::move(source), std::move(input), name);
   }
+  OtherPng(int width, int height, std::unique_ptr<OIIO::Filesystem::IOMemReader> source,
+           std::unique_ptr<OIIO::ImageInput> input, const std::filesystem::path& name)
+      : RgbaRows(width, height), name_(name), source_(std::move(source)), input_(std::move(input)) {}
 
-  int width() const { return spec_.width; }
-  int height() const { return spec_.height; }
-
-  /// The next rows; those before have been read.
-  const std::vector<std::uint8_t>& read(int first, int count) {
-    rgba_.resize(static_cast<std::size_t>(spec_.width) * static_cast<std::size_t>(count) * 4);
-    if (!input_->read_scanlines(0, 0, first, first + count, 0, 0, 4, OIIO::TypeDesc::UINT8, rgba_.data()))
+  void read(int count) override {
+    const int end = std::min(first_ + count, height());
+    rgba_.resize(static_cast<std::size_t>(width()) * static_cast<std::size_t>(end - first_) * 4);
+    if (!input_->read_scanlines(0, 0, first_, end, 0, 0, 4, OIIO::TypeDesc::UINT8, rgba_.data()))
       throw FileError(name_, "cannot be decoded, it may be truncated: " + input_->geterror());
-    return rgba_;
+    first_ = end;
+  }
+  const std::uint8_t* row(int k) const override {
+    return &rgba_[static_cast<std::size_t>(k) * static_cast<std::size_t>(width()) * 4];
   }
 
  private:
   const std::filesystem::path& name_;
-  OIIO::Filesystem::IOMemReader source_;
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> source_;
   std::unique_ptr<OIIO::ImageInput> input_;
-  OIIO::ImageSpec spec_;
   std::vector<std::uint8_t> rgba_;
+  int first_ = 0;
 };
+
+std::unique_ptr<RgbaRows> open_png(std::string_view bytes, const std::filesystem::path& name) {
+  std::unique_ptr<RgbaRows> png = open_rgba_png(bytes, name);
+  return png ? std::move(png) : OtherPng::open(bytes, name);
+}
 
 }  // namespace
 
 FeatureTexture read_feature_pngs(std::string_view feat0, const std::filesystem::path& name0, std::string_view feat1,
                                  const std::filesystem::path& name1, AlphaCode code) {
-  PngRows first(feat0, name0), second(feat1, name1);
-  if (first.width() != second.width() || first.height() != second.height())
-    throw FileError(
-        name1, fmt::format("is {}×{} texels, but {} is {}×{}; both images of a set must be of one size", second.width(),
-                           second.height(), name0.filename().string(), first.width(), first.height()));
-  return FeatureTexture::from_parts(first.width(), first.height(), code, [&](int y, int count, Texel* rows) {
-    const std::uint8_t *a = nullptr, *b = nullptr;
+  const std::unique_ptr<RgbaRows> first = open_png(feat0, name0), second = open_png(feat1, name1);
+  const int width = first->width(), height = first->height();
+  if (width != second->width() || height != second->height())
+    throw FileError(name1, fmt::format("is {}×{} texels, but {} is {}×{}; both images of a set must be of one size",
+                                       second->width(), second->height(), name0.filename().string(), width, height));
+  return FeatureTexture::from_parts(width, height, code, [&](int, int count, Texel* texels) {
     // Of its own: where other files are read beside these and one of them fails, this would return with nothing read.
     tbb::task_group_context whole(tbb::task_group_context::isolated);
-    tbb::parallel_invoke([&] { a = first.read(y, count).data(); }, [&] { b = second.read(y, count).data(); }, whole);
-    const std::size_t texels = static_cast<std::size_t>(first.width()) * static_cast<std::size_t>(count);
-    for (std::size_t k = 0; k < texels; ++k) {
-      std::copy_n(a + k * 4, 4, rows[k].feat0.begin());
-      std::copy_n(b + k * 4, 4, rows[k].feat1.begin());
+    tbb::parallel_invoke([&] { first->read(count); }, [&] { second->read(count); }, whole);
+    for (int y = 0; y < count; ++y) {
+      const std::uint8_t *a = first->row(y), *b = second->row(y);
+      for (int x = 0; x < width; ++x, a += 4, b += 4, ++texels) {
+        std::copy_n(a, 4, texels->feat0.begin());
+        std::copy_n(b, 4, texels->feat1.begin());
+      }
     }
   });
 }

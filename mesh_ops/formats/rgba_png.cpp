@@ -1,0 +1,131 @@
+#include "mesh_ops/formats/rgba_png.h"
+
+#include <fmt/format.h>
+#include <isa-l/crc.h>
+#include <isa-l/igzip_lib.h>
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/png_filters.h"
+
+namespace rebake {
+
+namespace {
+
+std::uint32_t big_endian(std::string_view bytes) {
+  std::uint32_t value = 0;
+  for (int k = 0; k < 4; ++k) value = value << 8 | static_cast<std::uint8_t>(bytes[static_cast<std::size_t>(k)]);
+  return value;
+}
+
+struct Chunk {
+  std::string_view kind, data;
+};
+
+// The chunks of a PNG, one after the other.
+class Chunks {
+ public:
+  Chunks(std::string_view bytes, const std::filesystem::path& name) : bytes_(bytes), name_(name) {}
+
+  // Nothing at the file's end.
+  std::optional<Chunk> next() {
+    if (at_ == bytes_.size()) return std::nullopt;
+    const std::string_view rest = bytes_.substr(at_);
+    if (rest.size() < 12 || big_endian(rest) > rest.size() - 12)
+      throw FileError(name_, fmt::format("is truncated: its last chunk, at byte {}, is not whole; copy it again", at_));
+    const std::size_t size = big_endian(rest);
+    const std::string_view counted = rest.substr(4, 4 + size);
+    const auto* first = reinterpret_cast<const unsigned char*>(counted.data());
+    if (crc32_gzip_refl(0, first, counted.size()) != big_endian(rest.substr(8 + size)))
+      throw FileError(name_,
+                      fmt::format("is damaged: the checksum of its chunk at byte {} is wrong; copy it again", at_));
+    at_ += 12 + size;
+    return Chunk{counted.substr(0, 4), counted.substr(4)};
+  }
+
+ private:
+  std::string_view bytes_;
+  const std::filesystem::path& name_;
+  std::size_t at_ = 8;
+};
+
+class RgbaPng : public RgbaRows {
+ public:
+  RgbaPng(int width, int height, Chunks chunks, std::string_view data, const std::filesystem::path& name)
+      : RgbaRows(width, height),
+        name_(name),
+        chunks_(chunks),
+        stride_(1 + 4 * static_cast<std::size_t>(width)),
+        above_(stride_ - 1) {
+    isal_inflate_init(&inflate_);
+    inflate_.crc_flag = ISAL_ZLIB;
+    feed(data);
+  }
+
+  void read(int count) override {
+    if (count_ > 0) std::copy_n(row(count_ - 1), above_.size(), above_.begin());
+    count_ = std::min(count, height() - first_);
+    rows_.resize(static_cast<std::size_t>(count_ + png_filter_rows - 1) * stride_);
+    inflate(static_cast<std::size_t>(count_) * stride_);
+    const int unknown = first_unknown_png_filter(rows_.data(), count_, stride_);
+    if (unknown < count_)
+      throw FileError(name_, fmt::format("is damaged: its row {} is filtered in no way of PNG", first_ + unknown));
+    undo_png_filters(rows_.data(), count_, width(), above_.data());
+    first_ += count_;
+  }
+  const std::uint8_t* row(int k) const override { return &rows_[static_cast<std::size_t>(k) * stride_ + 1]; }
+
+ private:
+  void feed(std::string_view data) {
+    inflate_.next_in = reinterpret_cast<std::uint8_t*>(const_cast<char*>(data.data()));
+    inflate_.avail_in = static_cast<std::uint32_t>(data.size());
+  }
+
+  void inflate(std::size_t size) {
+    inflate_.next_out = rows_.data();
+    inflate_.avail_out = static_cast<std::uint32_t>(size);
+    while (inflate_.avail_out > 0) {
+      const std::uint32_t in = inflate_.avail_in, out = inflate_.avail_out;
+      if (const int failed = isal_inflate(&inflate_))
+        throw FileError(name_, fmt::format("is damaged: what it holds cannot be inflated (ISA-L says {})", failed));
+      if (inflate_.avail_in < in || inflate_.avail_out < out) continue;
+      const std::optional<Chunk> chunk = chunks_.next();
+      if (!chunk || chunk->kind != "IDAT")
+        throw FileError(name_,
+                        fmt::format("is truncated: it ends before the last of its {} rows; copy it again", height()));
+      feed(chunk->data);
+    }
+  }
+
+  const std::filesystem::path& name_;
+  Chunks chunks_;
+  std::size_t stride_;
+  std::vector<std::uint8_t> above_, rows_;
+  int first_ = 0, count_ = 0;
+  inflate_state inflate_;
+};
+
+}  // namespace
+
+std::unique_ptr<RgbaRows> open_rgba_png(std::string_view bytes, const std::filesystem::path& name) {
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) return nullptr;
+  Chunks chunks(bytes, name);
+  std::optional<Chunk> chunk = chunks.next();
+  // 8 bits, RGBA, deflate, adaptive filters, not interlaced.
+  if (!chunk || chunk->kind != "IHDR" || chunk->data.size() != 13 ||
+      chunk->data.substr(8) != std::string_view("\x08\x06\0\0\0", 5))
+    return nullptr;
+  const std::uint32_t width = big_endian(chunk->data), height = big_endian(chunk->data.substr(4));
+  constexpr std::uint32_t largest = 1 << 14;
+  if (width < 1 || height < 1 || width > largest || height > largest) return nullptr;
+  do {
+    chunk = chunks.next();
+    if (!chunk) throw FileError(name, "is truncated: it ends before its first row; copy it again");
+  } while (chunk->kind != "IDAT");
+  return std::make_unique<RgbaPng>(static_cast<int>(width), static_cast<int>(height), chunks, chunk->data, name);
+}
+
+}  // namespace rebake
