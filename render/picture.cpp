@@ -97,6 +97,16 @@ class Renderer::Impl {
   std::size_t frames_that_compiled() const { return compiled_; }
 
   void prepare(const Scene& scene) { gpu_->prepare(scene); }
+  double arrive(const Scene& scene, double milliseconds) {
+    const gl::Current current(*context_);
+    try {
+      return gpu_->arrive(scene, milliseconds);
+    } catch (const DeviceError&) {
+      // Where there is no room for both, what is drawn goes before the next picture's comes.
+      gpu_->arrive({}, 0);
+      return 1;
+    }
+  }
   const std::string& device() const { return device_; }
   const std::vector<PlannedPass>& passes() const { return passes_; }
   unsigned texture() const { return state_.targets.texture(Target::picture).name(); }
@@ -210,6 +220,8 @@ bool Renderer::make_ahead(const Scene& scene, const View& view, const RenderOpti
 std::size_t Renderer::frames_that_compiled() const { return impl_->frames_that_compiled(); }
 
 void Renderer::prepare(const Scene& scene) { impl_->prepare(scene); }
+
+double Renderer::arrive(const Scene& scene, double milliseconds) { return impl_->arrive(scene, milliseconds); }
 
 Image Renderer::render(const Scene& scene, const View& view, const RenderOptions& options, const Lighting* lighting) {
   impl_->draw(scene, view, options, false, lighting);

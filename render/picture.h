@@ -45,6 +45,10 @@ class Renderer {
   /// Works out what the next picture of a scene will upload, so that it takes less time. From any thread.
   void prepare(const Scene& scene);
 
+  /// Uploads some of what the next picture of a scene needs, for about `milliseconds`, while another scene goes on
+  /// being drawn; returns how much of it is there, from 0 to 1. Drawing it earlier uploads the rest at once.
+  double arrive(const Scene& scene, double milliseconds);
+
   /// Draws a frame and leaves it on the GPU. With `each_pass`, waits for each pass and fills pass_ms; else the frame as
   /// a whole.
   FrameTimes time_frame(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass,

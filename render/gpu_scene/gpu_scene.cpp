@@ -4,12 +4,15 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <chrono>
 
 namespace rebake {
 
 namespace {
 
 constexpr std::size_t faces_a_cluster = 2048;
+// Rows of texels that are uploaded at a time: some milliseconds' worth where scenes arrive in slices.
+constexpr int band = 64;
 
 std::vector<GpuCluster> clusters_of(const Soup& soup, const std::vector<Face>& faces) {
   std::vector<GpuCluster> clusters((faces.size() + faces_a_cluster - 1) / faces_a_cluster);
@@ -105,14 +108,13 @@ PreparedMesh prepared(const TextureSet& set, const ShownFaces& shown) {
   return made;
 }
 
-PreparedMesh GpuScene::take_mesh(const TextureSet& set) {
+PreparedMesh GpuScene::take_mesh(const TextureSet& set, const GpuSurface& surface) {
   {
     const std::lock_guard lock(mutex_);
-    if (auto node = prepared_meshes_.extract(mesh_key(set));
-        node && node.mapped().made.shown == surface(set).shown.faces)
+    if (auto node = prepared_meshes_.extract(mesh_key(set)); node && node.mapped().made.shown == surface.shown.faces)
       return std::move(node.mapped().made);
   }
-  return prepared(set, surface(set).shown);
+  return prepared(set, surface.shown);
 }
 
 PreparedSurface GpuScene::take_surface(const TextureSet& set) {
@@ -191,24 +193,66 @@ void GpuScene::update_light(const Lighting* lighting) {
       if (map && !lights_.contains(map.get())) lights_.emplace(map.get(), upload(map));
 }
 
-void GpuScene::update(const Scene& scene, const Lighting* lighting) {
-  update_light(lighting);
+ResourceDiff GpuScene::difference(const Scene& scene) const {
   std::set<MeshKey> held_meshes;
   for (const auto& [key, mesh] : meshes_) held_meshes.insert(key);
   std::set<SurfaceKey> held_surfaces;
   for (const auto& [key, surface] : surfaces_) held_surfaces.insert(key);
-  ResourceDiff change = diff(held_meshes, held_surfaces, scene);
+  return diff(held_meshes, held_surfaces, scene);
+}
+
+std::vector<SurfaceKey>::const_iterator GpuScene::serving(const ResourceDiff& change, const TextureSet& set) const {
+  return std::find_if(change.released_surfaces.begin(), change.released_surfaces.end(), [&](const SurfaceKey& key) {
+    const GpuSurface& held = surfaces_.at(key);
+    return serves(held.made_for, held.source, set);
+  });
+}
+
+double GpuScene::arrive(const Scene& scene, double milliseconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double, std::milli>(milliseconds);
+  const ResourceDiff change = difference(scene);
+  std::set<SurfaceKey> wanted_surfaces;
+  for (const TextureSet& set : change.surfaces) wanted_surfaces.insert(surface_key(set));
+  std::set<MeshKey> wanted_meshes;
+  for (const TextureSet& set : change.meshes) wanted_meshes.insert(mesh_key(set));
+  std::erase_if(arriving_meshes_, [&](const auto& entry) { return !wanted_meshes.contains(entry.first); });
+  std::erase_if(arriving_surfaces_, [&](const auto& entry) { return !wanted_surfaces.contains(entry.first); });
+  double there = 0, all = 0;
+  for (const TextureSet& set : change.surfaces) {
+    // A few texels of what is there change: update() does that.
+    if (serving(change, set) != change.released_surfaces.end()) continue;
+    all += 1;
+    auto arriving = arriving_surfaces_.find(surface_key(set));
+    if (arriving == arriving_surfaces_.end()) {
+      if (Clock::now() >= end) continue;
+      arriving = arriving_surfaces_.emplace(surface_key(set), begin_upload(take_surface(set))).first;
+    }
+    GpuSurface& surface = arriving->second;
+    while (surface.rows_uploaded < surface.packing->height && Clock::now() < end) upload_rows(surface, band);
+    there += static_cast<double>(surface.rows_uploaded) / surface.packing->height;
+  }
+  if (there < all) return there / all;
+  for (const TextureSet& set : change.meshes) {
+    const MeshKey key = mesh_key(set);
+    const auto surface = arriving_surfaces_.find(key.surface);
+    if (surface == arriving_surfaces_.end() || arriving_meshes_.contains(key)) continue;
+    if (Clock::now() >= end) return 0.999;
+    arriving_meshes_.emplace(key, upload(take_mesh(set, surface->second), surface->second));
+  }
+  return 1;
+}
+
+void GpuScene::update(const Scene& scene, const Lighting* lighting) {
+  update_light(lighting);
+  ResourceDiff change = difference(scene);
   if (change.meshes.empty() && change.surfaces.empty() && change.released_meshes.empty() &&
       change.released_surfaces.empty())
     return;
   // Where texels changed, and none became opaque, only those are uploaded.
   std::map<SurfaceKey, SurfaceKey> taken_over;
   std::erase_if(change.surfaces, [&](const TextureSet& set) {
-    const auto held =
-        std::find_if(change.released_surfaces.begin(), change.released_surfaces.end(), [&](const SurfaceKey& key) {
-          const GpuSurface& surface = surfaces_.at(key);
-          return serves(surface.made_for, surface.source, set);
-        });
+    const auto held = serving(change, set);
     if (held == change.released_surfaces.end()) return false;
     const SurfaceKey key = surface_key(set);
     auto node = surfaces_.extract(*held);
@@ -241,19 +285,32 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
     held = std::find_if(released.begin(), released.end(),
                         [&](const MeshKey& other) { return differs_in_place(now(other), key); });
     if (held == released.end()) return false;
-    PreparedMesh made = take_mesh(set);
+    PreparedMesh made = take_mesh(set, surface(set));
     move_vertices(rekeyed(held, set), std::move(made));
     return true;
   });
   // Before what comes needs the room.
   for (const MeshKey& key : change.released_meshes) meshes_.erase(key);
   for (const SurfaceKey& key : change.released_surfaces) surfaces_.erase(key);
+  std::set<SurfaceKey> came;  // from what had arrived
   for (const TextureSet& set : change.surfaces) {
-    const GpuSurface& made = surfaces_.emplace(surface_key(set), rebake::upload(take_surface(set))).first->second;
+    const SurfaceKey key = surface_key(set);
+    auto arrived = arriving_surfaces_.extract(key);
+    if (arrived) came.insert(key);
+    GpuSurface made = arrived ? std::move(arrived.mapped()) : begin_upload(take_surface(set));
+    while (!upload_rows(made, band)) {
+    }
     texels_uploaded_ +=
         static_cast<std::uint64_t>(made.packing->width) * static_cast<std::uint64_t>(made.packing->height);
+    surfaces_.emplace(key, std::move(made));
   }
-  for (const TextureSet& set : change.meshes) meshes_.emplace(mesh_key(set), upload(take_mesh(set), surface(set)));
+  for (const TextureSet& set : change.meshes) {
+    auto arrived = arriving_meshes_.extract(mesh_key(set));
+    if (arrived && came.contains(surface_key(set)))
+      meshes_.insert(std::move(arrived));
+    else
+      meshes_.emplace(mesh_key(set), upload(take_mesh(set, surface(set)), surface(set)));
+  }
   const std::lock_guard lock(mutex_);
   held_meshes_.clear();
   for (const auto& [key, mesh] : meshes_) held_meshes_.emplace(key, mesh.source);

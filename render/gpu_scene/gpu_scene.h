@@ -59,6 +59,9 @@ class GpuScene {
  public:
   /// Uploads what is missing and releases what `scene` no longer holds.
   void update(const Scene& scene, const Lighting* lighting = nullptr);
+  /// Uploads some of what update() would, for about so long, beside what is there; returns how much of it is, from 0
+  /// to 1. What waits is dropped by the next call for a scene that lacks it.
+  double arrive(const Scene& scene, double milliseconds);
   /// Works out what update() will upload, from any thread; it takes what there is of it.
   void prepare(const Scene& scene);
 
@@ -71,12 +74,18 @@ class GpuScene {
  private:
   void update_light(const Lighting* lighting);
   /// What was prepared of a set, or is now.
-  PreparedMesh take_mesh(const TextureSet& set);
+  PreparedMesh take_mesh(const TextureSet& set, const GpuSurface& surface);
   PreparedSurface take_surface(const TextureSet& set);
+  ResourceDiff difference(const Scene& scene) const;
+  /// The surface that no scene needs any more, and is good for the set.
+  std::vector<SurfaceKey>::const_iterator serving(const ResourceDiff& change, const TextureSet& set) const;
 
   std::map<MeshKey, GpuMesh> meshes_;
   std::map<SurfaceKey, GpuSurface> surfaces_;
   std::map<const LightMap*, GpuLight> lights_;
+  // What arrives for a scene that is not drawn yet.
+  std::map<SurfaceKey, GpuSurface> arriving_surfaces_;
+  std::map<MeshKey, GpuMesh> arriving_meshes_;
   std::uint64_t texels_uploaded_ = 0;
   // Shared with prepare():
   std::mutex mutex_;

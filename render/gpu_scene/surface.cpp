@@ -11,18 +11,6 @@ namespace rebake {
 
 namespace {
 
-// Rows that are uploaded at a time.
-constexpr int band = 256;
-
-void upload_rows(const TexelPacking& packing, const FeatureTexture& texels) {
-  std::vector<Texel> rows;
-  for (int first = 0; first < packing.height; first += band) {
-    const int count = std::min(band, packing.height - first);
-    fill_packed_rows(packing, texels, first, count, rows);
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, first, packing.width, count, GL_RG_INTEGER, GL_UNSIGNED_INT, rows.data());
-  }
-}
-
 // The parts of a rectangle that lie in changed tiles. Returns how many texels that is.
 std::uint64_t upload_changed(const FeatureTexture& texels, const std::vector<std::uint8_t>& changed,
                              const PackedRect& rect, std::vector<Texel>& rows) {
@@ -86,7 +74,7 @@ PreparedSurface prepared_surface(const TextureSet& set) {
   return made;
 }
 
-GpuSurface upload(PreparedSurface made) {
+GpuSurface begin_upload(PreparedSurface made) {
   GpuSurface surface;
   // The element buffer is bound to no vertex array here.
   glBindVertexArray(0);
@@ -94,12 +82,25 @@ GpuSurface upload(PreparedSurface made) {
       gl::make_buffer(GL_ARRAY_BUFFER, made.vertices.data(), made.vertices.size() * sizeof(SurfaceVertex));
   surface.indices = gl::make_buffer(GL_ARRAY_BUFFER, made.shown.faces->data(), made.shown.faces->size() * sizeof(Face));
   surface.texels = gl::make_texture(GL_RG32UI, made.packing->width, made.packing->height, sizeof(Texel));
-  upload_rows(*made.packing, *made.source.texels);
   surface.made_for = made.source.texels;
   surface.source = std::move(made.source);
   surface.shown = std::move(made.shown);
   surface.packing = std::move(made.packing);
   return surface;
+}
+
+bool upload_rows(GpuSurface& surface, int count) {
+  const TexelPacking& packing = *surface.packing;
+  count = std::min(count, packing.height - surface.rows_uploaded);
+  if (count > 0) {
+    std::vector<Texel> rows;
+    fill_packed_rows(packing, *surface.source.texels, surface.rows_uploaded, count, rows);
+    glBindTexture(GL_TEXTURE_2D, surface.texels.name());
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, surface.rows_uploaded, packing.width, count, GL_RG_INTEGER, GL_UNSIGNED_INT,
+                    rows.data());
+    surface.rows_uploaded += count;
+  }
+  return surface.rows_uploaded == packing.height;
 }
 
 bool serves(const std::shared_ptr<const FeatureTexture>& made_for, const TextureSet& source, const TextureSet& set) {

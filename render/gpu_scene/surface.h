@@ -41,8 +41,12 @@ struct GpuSurface {
   gl::Buffer vertices;
   gl::Buffer indices;
   gl::Texture texels;
+  int rows_uploaded = 0;  ///< of the texels
 };
-GpuSurface upload(PreparedSurface made);
+/// All but the texels.
+GpuSurface begin_upload(PreparedSurface made);
+/// The next `count` rows of its texels. Returns whether those were the last.
+bool upload_rows(GpuSurface& surface, int count);
 
 /// Whether a surface is good for a set with the same triangles: no texel has become opaque, and sizes are the same.
 bool serves(const std::shared_ptr<const FeatureTexture>& made_for, const TextureSet& source, const TextureSet& set);

@@ -177,6 +177,60 @@ TEST(GpuScene, UploadsWhatAStrokeTouched) {
   EXPECT_EQ(gpu.texels_uploaded(), all + touched) << "nothing changed";
 }
 
+// As the window does it when a scene is opened: it is uploaded in slices while another one goes on being drawn.
+TEST(GpuScene, WhatArrivesIsDrawnAsIfItWereNewAndNotBefore) {
+  const Scene first = scene_of(made_object({.columns = 64, .rows = 40}));
+  Scene second =
+      with_added(first, Node(*scene_of(made_object({.columns = 48, .rows = 32, .seed = 3})).roots[0]), NodeId::none, 9);
+  const View view = small_view();
+  Renderer kept;
+  const Image before = kept.render(first, view);
+  int slices = 0;
+  for (double share = 0; share < 1; ++slices) {
+    const double now = kept.arrive(second, 0.01);
+    EXPECT_GE(now, share);
+    share = now;
+    EXPECT_EQ(kept.render(first, view).rgb, before.rgb);
+    if (slices == 2) second = bent(second, 0.2);  // another one is wanted meanwhile, of the same texels
+  }
+  EXPECT_GT(slices, 3);
+  EXPECT_EQ(kept.arrive(second, 0), 1);
+  EXPECT_EQ(kept.render(second, view).rgb, Renderer().render(second, view).rgb);
+  // What has arrived in part is drawn too; and what was not wanted after all is gone.
+  const Scene third = scene_of(made_object({.columns = 40, .rows = 40, .seed = 5})),
+              fourth = scene_of(made_object({.columns = 40, .rows = 40, .seed = 6}));
+  kept.arrive(third, 0.01);
+  kept.arrive(fourth, 0.01);
+  EXPECT_EQ(kept.render(third, view).rgb, Renderer().render(third, view).rgb);
+  EXPECT_EQ(kept.render(fourth, view).rgb, Renderer().render(fourth, view).rgb);
+  kept.arrive(third, 1000);
+  EXPECT_EQ(kept.render(third, view).rgb, Renderer().render(third, view).rgb);
+}
+
+// What has arrived is not uploaded again; a stroke of what is drawn does not wait for its texture.
+TEST(GpuScene, ArrivesOnceAndLeavesStrokesToTheUpdate) {
+  const auto context = gl::make_headless_context();
+  const gl::Current current(*context);
+  const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
+  GpuScene gpu;
+  const std::uint64_t nothing = gl::memory_use().now;
+  EXPECT_LT(gpu.arrive(scene, 0), 1);
+  EXPECT_EQ(gl::memory_use().now, nothing);
+  EXPECT_EQ(gpu.arrive(scene, 1e6), 1);
+  const std::uint64_t there = gl::memory_use().now;
+  EXPECT_GT(there, nothing);
+  gpu.update(scene);
+  EXPECT_EQ(gl::memory_use().now, there);
+  const Scene stroke = erased(scene, 0, 20);
+  EXPECT_EQ(gpu.arrive(stroke, 0), 1);
+  EXPECT_EQ(gl::memory_use().now, there);
+  EXPECT_LT(gpu.arrive(scene_of(made_object({.seed = 4})), 0), 1);
+  gpu.arrive(scene_of(made_object({.seed = 4})), 1e6);
+  EXPECT_GT(gl::memory_use().now, there);
+  EXPECT_EQ(gpu.arrive(scene, 0), 1);
+  EXPECT_EQ(gl::memory_use().now, there) << "what is no longer wanted is let go of";
+}
+
 TEST(GpuScene, WhatWasPreparedForFewerFacesIsNotUsedForMore) {
   const Scene full = scene_of(made_object({.columns = 64, .rows = 40}));
   const Scene holes = erased(full, 0, 600);

@@ -20,6 +20,7 @@ namespace rebake {
 namespace {
 
 constexpr auto settle_time = std::chrono::milliseconds(200);  // after the last move the picture is drawn in full
+constexpr double upload_ms = 6;                               // of a frame, while a scene goes to the GPU
 
 // The scene before the quiet background that people look at it on, unless they want its own.
 Scene on_ground(const Scene& scene, const Desk& desk) {
@@ -67,6 +68,7 @@ bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
 
 double Viewport::next_frame_in(const Desk& desk) const {
   if (desk.jobs.film && desk.jobs.film->waits()) return 0.1;
+  if (arrived_ < 1) return 0;
   if (desk.jobs.film || desk.view.flying || (thumbnails_.wants() && !moving() && desk.at_rest())) return 0;
   // A quick picture is followed by one in full.
   if (!moving())
@@ -215,13 +217,25 @@ void Viewport::picture(Desk& desk) {
   const std::shared_ptr<const Lighting> lighting =
       scene.light && !desk.view.as_baked ? desk.relighter.latest() : nullptr;
   Made wanted{scene, lighting, view, guides(desk), each_pass_, desk.view.wipe, desk.view.width, desk.view.height};
-  if (made_ && same_scene(made_->scene, scene) && made_->lighting == lighting && same_view(made_->view, view) &&
-      made_->guides == wanted.guides && made_->each_pass == each_pass_ && made_->wipe == desk.view.wipe)
+  // What was there before is shown until all of a scene is on the GPU; while something is dragged only that changes.
+  arrived_ = !made_ || desk.preview || made_->scene.roots == scene.roots ? 1 : renderer_.arrive(scene, upload_ms);
+  if (arrived_ < 1) {
+    if (made_->view.camera == view.camera && made_->shown_width == desk.view.width &&
+        made_->shown_height == desk.view.height)
+      return;
+    wanted.scene = made_->scene;
+    wanted.lighting = made_->lighting;
+    wanted.guides = made_->guides;
+  }
+  if (made_ && same_scene(made_->scene, wanted.scene) && made_->lighting == wanted.lighting &&
+      same_view(made_->view, view) && made_->guides == wanted.guides && made_->each_pass == each_pass_ &&
+      made_->wipe == desk.view.wipe)
     return;
   // Whether it can be drawn or not: what cannot is said once.
   made_ = wanted;
   texture_ = 0;
-  const Renderer::Shown shown = renderer_.show(scene, view, {}, wanted.guides, each_pass_, lighting.get());
+  const Renderer::Shown shown =
+      renderer_.show(wanted.scene, view, {}, wanted.guides, each_pass_, wanted.lighting.get());
   const double ms = shown.times.frame_ms;
   if (view.width == desk.view.width && view.samples == desk.view.samples) full_ms_ = ms;
   // The time goes with the pixels, as far as it goes with anything that can be chosen here.
@@ -247,7 +261,7 @@ void Viewport::picture(Desk& desk) {
   }
   texture_ = shown.texture;
   drew_ = true;
-  if (still && !desk.preview && view.width == desk.view.width) keep_picture(desk);
+  if (still && !desk.preview && arrived_ == 1 && view.width == desk.view.width) keep_picture(desk);
 }
 
 // Of what was just opened or saved, for the list of recent files.

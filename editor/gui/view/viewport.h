@@ -35,6 +35,8 @@ class Viewport {
   void make_ahead(const Desk& desk);
   /// How long the whole frame took of the window in which the last picture was drawn.
   void frame_took(double ms);
+  /// How much of the scene is on the GPU, from 0 to 1; until it is all there the one before is shown.
+  double arrived() const { return arrived_; }
   const FrameReport& report() const { return report_; }
   bool& each_pass() { return each_pass_; }
   Thumbnails& thumbnails() { return thumbnails_; }
@@ -71,6 +73,7 @@ class Viewport {
   std::unique_ptr<Renderer> before_;  ///< of the scene as imported; null while it is not compared with
   Tools& tools_;
   Clock::time_point moved_at_{}, flown_at_{}, drawn_at_{};
+  double arrived_ = 1;
   double full_ms_ = 0;       ///< of a picture at full quality
   double rest_ms_ = 0;       ///< of a frame beside its picture
   double moving_scale_ = 1;  ///< of the resolution while the camera moves

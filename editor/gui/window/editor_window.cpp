@@ -54,7 +54,10 @@ class EditorWindow {
     while (!dialogs_.may_quit()) {
       const bool works = desk_.jobs.worker.busy() || dialogs_.waits();
       const bool rests = frames_ == 0 && !works && next_frame_in() < 0 && viewport().wants_ahead();
-      const double pause = frames_ > 0 ? 0 : works ? 0.1 : rests ? before_making_ahead : next_frame_in();
+      const double pause = frames_ > 0 || viewport().arrived() < 1 ? 0
+                           : works                                 ? 0.1
+                           : rests                                 ? before_making_ahead
+                                                                   : next_frame_in();
       const auto waits = std::chrono::steady_clock::now();
       if (window().wait(pause))
         frames_ = frames_after_event;

@@ -288,6 +288,10 @@ void WindowLayout::status() {
     std::string what = now.what.empty() ? now.title : now.title + ": " + now.what;
     std::replace(what.begin(), what.end(), '_', ' ');
     ImGui::TextUnformatted(what.c_str());
+  } else if (viewport_->arrived() < 1) {
+    ImGui::ProgressBar(static_cast<float>(viewport_->arrived()), {px(160), px(6)}, "");
+    ImGui::SameLine();
+    ImGui::TextUnformatted("going to the graphics card");
   } else if (!desk_.status.empty()) {
     ImGui::TextUnformatted(ui::shortened(desk_.status, 0.5F * ImGui::GetWindowWidth()).c_str());
   } else {
