@@ -66,4 +66,9 @@ std::unique_ptr<Coordinates> harmonic_coordinates(const Cage& cage, int resoluti
 std::unique_ptr<Coordinates> coordinates_of(const Cage& cage, CageCoordinates kind, int resolution,
                                             const Progress& progress = {});
 
+/// As coordinates_of; but what anyone still holds of an equal cage is taken again, since harmonic ones take seconds.
+/// Callable from any thread.
+std::shared_ptr<const Coordinates> shared_coordinates(const Cage& cage, CageCoordinates kind, int resolution,
+                                                      const Progress& progress = {});
+
 }  // namespace rebake

@@ -175,26 +175,8 @@ class MeanValue final : public Coordinates {
 
 }  // namespace
 
-std::vector<Vec3> Coordinates::row_motions(const Cage& rest, const std::vector<Vec3>& moved) const {
-  std::vector<Vec3> motions(rows_, Vec3(0, 0, 0));
-  for (std::size_t v = 0; v < rest.vertices.size(); ++v) motions[v] = moved[v] - rest.vertices[v];
-  return motions;
-}
-
 std::unique_ptr<Coordinates> mean_value_coordinates(const Cage& cage, MeanValueBatch batch) {
   return std::make_unique<MeanValue>(cage, batch);
-}
-
-std::unique_ptr<Coordinates> coordinates_of(const Cage& cage, CageCoordinates kind, int resolution,
-                                            const Progress& progress) {
-  switch (kind) {
-    case CageCoordinates::green:
-      return green_coordinates(cage);
-    case CageCoordinates::harmonic:
-      return harmonic_coordinates(cage, resolution, progress);
-    default:
-      return mean_value_coordinates(cage);
-  }
 }
 
 }  // namespace rebake

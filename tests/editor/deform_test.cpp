@@ -6,9 +6,11 @@
 #include <atomic>
 
 #include "editor/commands/session.h"
+#include "editor/edits/deform/deforming.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/deform/cage.h"
+#include "mesh_ops/deform/coordinates.h"
 #include "mesh_ops/formats/export.h"
 #include "render/compare.h"
 #include "render/graph/plan.h"
@@ -68,6 +70,29 @@ TEST_F(DeformScript, LongDeformationsReportAndStopWhereverTheyAre) {
     EXPECT_THROW(run(R"({"op": "cage", "node": "ball", )" + std::string(line) + moves), Cancelled) << stage;
     EXPECT_EQ(session.scene().roots, before.roots);
   }
+}
+
+// As the window's tool holds them while points are dragged: what is let go of is not solved anew, and the same.
+TEST_F(DeformScript, ACageTakesTheHarmonicCoordinatesThatAreHeld) {
+  const std::string line =
+      R"({"op": "cage", "node": "ball", "lattice": [2, 2, 2], "coordinates": "harmonic", "resolution": 16, )"
+      R"("moves": [{"points": [0, 1], "translate": [0.3, 0, 0.1]}]})";
+  bool solved = false;
+  session.progress = Progress([&](std::string_view what, double) { solved |= what == "harmonic coordinates"; });
+  run(line);
+  EXPECT_TRUE(solved);
+  const std::vector<Vec3> moved = ball().sets[0].soup.positions();
+  run(R"({"op": "undo"})");
+  DeformTarget target;
+  target.node = NodeRef{find(session.scene(), "ball")->id};
+  CageSource source;
+  source.lattice = {2, 2, 2};
+  const auto held =
+      shared_coordinates(cage_of(source, deform_set(session.scene(), target)), CageCoordinates::harmonic, 16);
+  solved = false;
+  run(line);
+  EXPECT_FALSE(solved);
+  EXPECT_EQ(ball().sets[0].soup.positions(), moved);
 }
 
 TEST_F(DeformScript, ARigidMotionByACageIsThatOfTheNode) {

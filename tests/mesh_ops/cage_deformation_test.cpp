@@ -57,6 +57,21 @@ TEST(CageDeformation, RigidMotionsOfTheCageAreRigidMotions) {
   }
 }
 
+// What the window shows of a cage and the edit that it commits then take the same coordinates, found once.
+TEST(CageDeformation, CoordinatesThatSomeoneHoldsAreTakenAgain) {
+  const Cage cage = dented();
+  Cage other = cage;
+  other.vertices[0] *= 1 + 1e-15;
+  auto held = shared_coordinates(cage, CageCoordinates::harmonic, 16);
+  EXPECT_EQ(shared_coordinates(Cage(cage), CageCoordinates::harmonic, 16), held);
+  EXPECT_NE(shared_coordinates(cage, CageCoordinates::harmonic, 17), held);
+  EXPECT_NE(shared_coordinates(cage, CageCoordinates::green, 16), held);
+  EXPECT_NE(shared_coordinates(other, CageCoordinates::harmonic, 16), held);
+  const std::weak_ptr<const Coordinates> gone = held;
+  held.reset();
+  EXPECT_TRUE(gone.expired()) << "nothing else keeps them";
+}
+
 TEST(CageDeformation, PointsThatTheCoordinatesDoNotReachStayWhateverMoves) {
   const Cage cage = cube();
   std::vector<Vec3> moved = cage.vertices;

@@ -26,7 +26,7 @@ Outcome apply(const Scene& scene, const CageDeform& edit, const Progress& progre
   const DeformSet set = deform_set(scene, edit.target);
   const Cage cage = cage_of(edit.cage, set, progress);
   const std::vector<Vec3> moved = moved_points(edit.moves, cage, edit.target.frame == CoordinateFrame::bounds);
-  const auto coordinates = coordinates_of(cage, edit.coordinates, edit.resolution, progress);
+  const auto coordinates = shared_coordinates(cage, edit.coordinates, edit.resolution, progress);
   return with_deformed(
       scene, set, edit.target.falloff,
       [&](const std::vector<Vec3>& points) { return deform_points(*coordinates, cage, moved, points, true, progress); },

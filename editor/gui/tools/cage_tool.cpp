@@ -47,7 +47,7 @@ struct CageTool::Bound {
   Scene scene;      ///< that the cage was made in
   Cage cage;
   DeformSet set;
-  std::unique_ptr<Coordinates> coordinates;
+  std::shared_ptr<const Coordinates> coordinates;
   std::vector<std::vector<Vec3>> places;               ///< that move, of each node of the set
   std::vector<std::unique_ptr<CageBinding>> bindings;  ///< one a node of the set
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -82,7 +82,7 @@ void CageTool::make(Desk& desk) {
         bound->scene = session.scene();
         bound->set = deform_set(session.scene(), edit.target);
         bound->cage = cage_of(edit.cage, bound->set, session.progress);
-        bound->coordinates = coordinates_of(bound->cage, edit.coordinates, edit.resolution, session.progress);
+        bound->coordinates = shared_coordinates(bound->cage, edit.coordinates, edit.resolution, session.progress);
         for (std::size_t k = 0; k < bound->set.nodes.size(); ++k) {
           std::vector<Vec3> places;
           deformed(*bound->set.nodes[k].node->object, bound->set.nodes[k].to_world, bound->set.flags[k], 0,
@@ -212,17 +212,8 @@ void CageTool::preview(Desk& desk) {
   std::size_t places = 0;
   for (const std::vector<Vec3>& some : bound_->places) places += some.size();
   const bool at_once = static_cast<double>(places * bound_->cage.faces.size()) <= most_exact;
-  const CageDeform edit = edit_for(moved_);
-  // What is bound here would be found anew by the edit: there the preview is not what is committed.
-  if (edit.cage.wrap || edit.coordinates == CageCoordinates::harmonic) {
-    if (at_once)
-      desk.previews.request(desk.scene().roots, made(true));
-    else
-      desk.previews.request(desk.scene().roots, made(false), made(true));
-    return;
-  }
   std::vector<Edit> list;
-  if (!edit.moves.empty()) list.emplace_back(edit);
+  if (CageDeform edit = edit_for(moved_); !edit.moves.empty()) list.emplace_back(std::move(edit));
   desk.show_preview(std::move(list), bound_->scene, made(at_once));
 }
 
