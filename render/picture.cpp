@@ -100,12 +100,18 @@ class Renderer::Impl {
   double arrive(const Scene& scene, double milliseconds) {
     const gl::Current current(*context_);
     try {
-      return gpu_->arrive(scene, milliseconds);
-    } catch (const DeviceError&) {
-      // Where there is no room for both, what is drawn goes before the next picture's comes.
-      gpu_->arrive({}, 0);
-      return 1;
+      const double share = gpu_->arrive(scene, milliseconds);
+      if (glGetError() != GL_OUT_OF_MEMORY) return share;
+    } catch (const std::exception&) {
+      // What it was, drawing says.
     }
+    // Where there is no room for both, what is drawn goes before the next picture's comes.
+    gpu_->forget_arrival();
+    return 1;
+  }
+  void forget_arrival() {
+    const gl::Current current(*context_);
+    gpu_->forget_arrival();
   }
   const std::string& device() const { return device_; }
   const std::vector<PlannedPass>& passes() const { return passes_; }
@@ -222,6 +228,7 @@ std::size_t Renderer::frames_that_compiled() const { return impl_->frames_that_c
 void Renderer::prepare(const Scene& scene) { impl_->prepare(scene); }
 
 double Renderer::arrive(const Scene& scene, double milliseconds) { return impl_->arrive(scene, milliseconds); }
+void Renderer::forget_arrival() { impl_->forget_arrival(); }
 
 Image Renderer::render(const Scene& scene, const View& view, const RenderOptions& options, const Lighting* lighting) {
   impl_->draw(scene, view, options, false, lighting);

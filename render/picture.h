@@ -48,6 +48,8 @@ class Renderer {
   /// Uploads some of what the next picture of a scene needs, for about `milliseconds`, while another scene goes on
   /// being drawn; returns how much of it is there, from 0 to 1. Drawing it earlier uploads the rest at once.
   double arrive(const Scene& scene, double milliseconds);
+  /// Lets go of what arrived, where that scene is not drawn after all.
+  void forget_arrival();
 
   /// Draws a frame and leaves it on the GPU. With `each_pass`, waits for each pass and fills pass_ms; else the frame as
   /// a whole.

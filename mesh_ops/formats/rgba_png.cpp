@@ -21,6 +21,8 @@ std::uint32_t big_endian(std::string_view bytes) {
   return value;
 }
 
+bool critical(std::string_view kind) { return (kind[0] & 0x20) == 0; }
+
 struct Chunk {
   std::string_view kind, data;
 };
@@ -39,7 +41,9 @@ class Chunks {
     const std::size_t size = big_endian(rest);
     const std::string_view counted = rest.substr(4, 4 + size);
     const auto* first = reinterpret_cast<const unsigned char*>(counted.data());
-    if (crc32_gzip_refl(0, first, counted.size()) != big_endian(rest.substr(8 + size)))
+    // Readers may pass over damage to what no picture needs.
+    const bool needed = critical(counted);
+    if (needed && crc32_gzip_refl(0, first, counted.size()) != big_endian(rest.substr(8 + size)))
       throw FileError(name_,
                       fmt::format("is damaged: the checksum of its chunk at byte {} is wrong; copy it again", at_));
     at_ += 12 + size;
@@ -70,6 +74,7 @@ class RgbaPng : public RgbaRows {
     count_ = std::min(count, height() - first_);
     rows_.resize(static_cast<std::size_t>(count_ + png_filter_rows - 1) * stride_);
     inflate(static_cast<std::size_t>(count_) * stride_);
+    if (first_ + count_ == height()) finish();
     const int unknown = first_unknown_png_filter(rows_.data(), count_, stride_);
     if (unknown < count_)
       throw FileError(name_, fmt::format("is damaged: its row {} is filtered in no way of PNG", first_ + unknown));
@@ -87,17 +92,28 @@ class RgbaPng : public RgbaRows {
   void inflate(std::size_t size) {
     inflate_.next_out = rows_.data();
     inflate_.avail_out = static_cast<std::uint32_t>(size);
-    while (inflate_.avail_out > 0) {
-      const std::uint32_t in = inflate_.avail_in, out = inflate_.avail_out;
-      if (const int failed = isal_inflate(&inflate_))
-        throw FileError(name_, fmt::format("is damaged: what it holds cannot be inflated (ISA-L says {})", failed));
-      if (inflate_.avail_in < in || inflate_.avail_out < out) continue;
-      const std::optional<Chunk> chunk = chunks_.next();
-      if (!chunk || chunk->kind != "IDAT")
-        throw FileError(name_,
-                        fmt::format("is truncated: it ends before the last of its {} rows; copy it again", height()));
-      feed(chunk->data);
-    }
+    while (inflate_.avail_out > 0) inflate_some();
+  }
+
+  // To the checksum behind the last row. More rows than there should be are passed over.
+  void finish() {
+    std::uint8_t more = 0;
+    inflate_.next_out = &more;
+    inflate_.avail_out = 1;
+    while (inflate_.block_state != ISAL_BLOCK_FINISH && inflate_.avail_out > 0) inflate_some();
+  }
+
+  void inflate_some() {
+    const std::uint32_t in = inflate_.avail_in, out = inflate_.avail_out;
+    const isal_block_state state = inflate_.block_state;
+    if (const int failed = isal_inflate(&inflate_))
+      throw FileError(name_, fmt::format("is damaged: what it holds cannot be inflated (ISA-L says {})", failed));
+    if (inflate_.avail_in < in || inflate_.avail_out < out || inflate_.block_state != state) return;
+    const std::optional<Chunk> chunk = chunks_.next();
+    if (!chunk || chunk->kind != "IDAT")
+      throw FileError(name_,
+                      fmt::format("is truncated: it ends before the last of its {} rows; copy it again", height()));
+    feed(chunk->data);
   }
 
   const std::filesystem::path& name_;
@@ -121,10 +137,12 @@ std::unique_ptr<RgbaRows> open_rgba_png(std::string_view bytes, const std::files
   const std::uint32_t width = big_endian(chunk->data), height = big_endian(chunk->data.substr(4));
   constexpr std::uint32_t largest = 1 << 14;
   if (width < 1 || height < 1 || width > largest || height > largest) return nullptr;
-  do {
+  for (;;) {
     chunk = chunks.next();
     if (!chunk) throw FileError(name, "is truncated: it ends before its first row; copy it again");
-  } while (chunk->kind != "IDAT");
+    if (chunk->kind == "IDAT") break;
+    if (critical(chunk->kind) && chunk->kind != "PLTE") return nullptr;
+  }
   return std::make_unique<RgbaPng>(static_cast<int>(width), static_cast<int>(height), chunks, chunk->data, name);
 }
 

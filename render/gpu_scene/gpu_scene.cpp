@@ -26,6 +26,40 @@ std::vector<GpuCluster> clusters_of(const Soup& soup, const std::vector<Face>& f
   return clusters;
 }
 
+// Bytes that a surface or a mesh counts beside its own, and what is uploaded at once.
+constexpr double each_upload = 65536, at_once = 8e6;
+
+// Surfaces that a scene no longer needs, to be taken over by sets that they are good for.
+class Released {
+ public:
+  Released(const std::vector<SurfaceKey>& keys, const std::map<SurfaceKey, GpuSurface>& surfaces)
+      : surfaces_(surfaces) {
+    for (const SurfaceKey& key : keys) left_.emplace(std::pair(key.uvs, key.faces), key);
+  }
+
+  std::optional<SurfaceKey> take(const TextureSet& set) {
+    const SurfaceKey wanted = surface_key(set);
+    const auto [begin, end] = left_.equal_range({wanted.uvs, wanted.faces});
+    const auto found = std::find_if(begin, end, [&](const auto& entry) {
+      const GpuSurface& held = surfaces_.at(entry.second);
+      return serves(held.made_for, held.source, set);
+    });
+    if (found == end) return std::nullopt;
+    const SurfaceKey key = found->second;
+    left_.erase(found);
+    return key;
+  }
+  std::vector<SurfaceKey> left() const {
+    std::vector<SurfaceKey> keys;
+    for (const auto& [place, key] : left_) keys.push_back(key);
+    return keys;
+  }
+
+ private:
+  const std::map<SurfaceKey, GpuSurface>& surfaces_;
+  std::multimap<std::pair<const void*, const void*>, SurfaceKey> left_;
+};
+
 // Whether a mesh is a set's but for its positions, as while something is dragged.
 bool differs_in_place(const MeshKey& held, const MeshKey& wanted) {
   return held.surface == wanted.surface && held.turns == nullptr && wanted.turns == nullptr;
@@ -140,6 +174,10 @@ void GpuScene::prepare(const Scene& scene) {
       surfaces.insert(key);
       shown[key] = surface.shown;
     }
+    for (const auto& [key, faces] : arriving_shown_) {
+      surfaces.insert(key);
+      shown[key] = faces;
+    }
     const ResourceDiff wanted = diff(meshes, surfaces, scene);
     const auto refresh = [&](auto& waiting, const auto& key) {
       if (const auto found = waiting.find(key); found != waiting.end()) found->second.turn = turn;
@@ -201,46 +239,81 @@ ResourceDiff GpuScene::difference(const Scene& scene) const {
   return diff(held_meshes, held_surfaces, scene);
 }
 
-std::vector<SurfaceKey>::const_iterator GpuScene::serving(const ResourceDiff& change, const TextureSet& set) const {
-  return std::find_if(change.released_surfaces.begin(), change.released_surfaces.end(), [&](const SurfaceKey& key) {
-    const GpuSurface& held = surfaces_.at(key);
-    return serves(held.made_for, held.source, set);
-  });
+void GpuScene::plan_arrival(const Scene& scene) {
+  const ResourceDiff change = difference(scene);
+  Released released(change.released_surfaces, surfaces_);
+  Arrival plan{scene.roots, changes_, {}, {}};
+  std::set<SurfaceKey> wanted;
+  double bytes = 0;
+  for (const TextureSet& set : change.surfaces) {
+    // A few texels of what is there change: update() does that.
+    if (released.take(set)) continue;
+    plan.surfaces.push_back(set);
+    wanted.insert(surface_key(set));
+    bytes += each_upload + 8.0 * set.texels->width() * set.texels->height();
+  }
+  std::set<MeshKey> wanted_meshes;
+  for (const TextureSet& set : change.meshes)
+    if (const MeshKey key = mesh_key(set); wanted.contains(key.surface)) {
+      plan.meshes.push_back(set);
+      wanted_meshes.insert(key);
+      bytes += each_upload + 12.0 * static_cast<double>(set.soup.positions().size());
+    }
+  if (bytes <= at_once) {
+    forget_arrival();
+    plan.surfaces.clear();
+    plan.meshes.clear();
+  }
+  std::erase_if(arriving_meshes_, [&](const auto& entry) { return !wanted_meshes.contains(entry.first); });
+  std::erase_if(arriving_surfaces_, [&](const auto& entry) { return !wanted.contains(entry.first); });
+  arrival_ = std::move(plan);
+  const std::lock_guard lock(mutex_);
+  std::erase_if(arriving_shown_, [&](const auto& entry) { return !arriving_surfaces_.contains(entry.first); });
 }
 
 double GpuScene::arrive(const Scene& scene, double milliseconds) {
+  if (!arrival_ || arrival_->roots != scene.roots || arrival_->changes != changes_) plan_arrival(scene);
+  Arrival& plan = *arrival_;
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double, std::milli>(milliseconds);
-  const ResourceDiff change = difference(scene);
-  std::set<SurfaceKey> wanted_surfaces;
-  for (const TextureSet& set : change.surfaces) wanted_surfaces.insert(surface_key(set));
-  std::set<MeshKey> wanted_meshes;
-  for (const TextureSet& set : change.meshes) wanted_meshes.insert(mesh_key(set));
-  std::erase_if(arriving_meshes_, [&](const auto& entry) { return !wanted_meshes.contains(entry.first); });
-  std::erase_if(arriving_surfaces_, [&](const auto& entry) { return !wanted_surfaces.contains(entry.first); });
-  double there = 0, all = 0;
-  for (const TextureSet& set : change.surfaces) {
-    // A few texels of what is there change: update() does that.
-    if (serving(change, set) != change.released_surfaces.end()) continue;
-    all += 1;
-    auto arriving = arriving_surfaces_.find(surface_key(set));
+  bool first = true;
+  const auto goes_on = [&] { return std::exchange(first, false) || Clock::now() < end; };
+  const double all = static_cast<double>(plan.surfaces.size() + 1);
+  for (; plan.surfaces_there < plan.surfaces.size(); ++plan.surfaces_there) {
+    const TextureSet& set = plan.surfaces[plan.surfaces_there];
+    const SurfaceKey key = surface_key(set);
+    auto arriving = arriving_surfaces_.find(key);
     if (arriving == arriving_surfaces_.end()) {
-      if (Clock::now() >= end) continue;
-      arriving = arriving_surfaces_.emplace(surface_key(set), begin_upload(take_surface(set))).first;
+      if (!goes_on()) return static_cast<double>(plan.surfaces_there) / all;
+      arriving = arriving_surfaces_.emplace(key, begin_upload(take_surface(set))).first;
+      const std::lock_guard lock(mutex_);
+      arriving_shown_.emplace(key, arriving->second.shown);
     }
     GpuSurface& surface = arriving->second;
-    while (surface.rows_uploaded < surface.packing->height && Clock::now() < end) upload_rows(surface, band);
-    there += static_cast<double>(surface.rows_uploaded) / surface.packing->height;
+    while (surface.rows_uploaded < surface.packing->height) {
+      if (!goes_on())
+        return (static_cast<double>(plan.surfaces_there) +
+                static_cast<double>(surface.rows_uploaded) / surface.packing->height) /
+               all;
+      upload_rows(surface, band);
+    }
   }
-  if (there < all) return there / all;
-  for (const TextureSet& set : change.meshes) {
-    const MeshKey key = mesh_key(set);
-    const auto surface = arriving_surfaces_.find(key.surface);
-    if (surface == arriving_surfaces_.end() || arriving_meshes_.contains(key)) continue;
-    if (Clock::now() >= end) return 0.999;
-    arriving_meshes_.emplace(key, upload(take_mesh(set, surface->second), surface->second));
+  for (; plan.meshes_there < plan.meshes.size(); ++plan.meshes_there) {
+    const TextureSet& set = plan.meshes[plan.meshes_there];
+    if (arriving_meshes_.contains(mesh_key(set))) continue;
+    if (!goes_on()) return (all - 1) / all;
+    const GpuSurface& surface = arriving_surfaces_.at(surface_key(set));
+    arriving_meshes_.emplace(mesh_key(set), upload(take_mesh(set, surface), surface));
   }
   return 1;
+}
+
+void GpuScene::forget_arrival() {
+  arrival_.reset();
+  arriving_meshes_.clear();
+  arriving_surfaces_.clear();
+  const std::lock_guard lock(mutex_);
+  arriving_shown_.clear();
 }
 
 void GpuScene::update(const Scene& scene, const Lighting* lighting) {
@@ -250,19 +323,21 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
       change.released_surfaces.empty())
     return;
   // Where texels changed, and none became opaque, only those are uploaded.
+  ++changes_;
+  Released released(change.released_surfaces, surfaces_);
   std::map<SurfaceKey, SurfaceKey> taken_over;
   std::erase_if(change.surfaces, [&](const TextureSet& set) {
-    const auto held = serving(change, set);
-    if (held == change.released_surfaces.end()) return false;
+    const std::optional<SurfaceKey> held = released.take(set);
+    if (!held) return false;
     const SurfaceKey key = surface_key(set);
     auto node = surfaces_.extract(*held);
     taken_over[*held] = key;
-    change.released_surfaces.erase(held);
     node.key() = key;
     texels_uploaded_ += take_over(node.mapped(), set);
     surfaces_.insert(std::move(node));
     return true;
   });
+  change.released_surfaces = released.left();
   const auto rekeyed = [&](std::vector<MeshKey>::iterator held, const TextureSet& set) -> GpuMesh& {
     auto node = meshes_.extract(*held);
     change.released_meshes.erase(held);
@@ -276,15 +351,15 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
       if (const auto found = taken_over.find(other.surface); found != taken_over.end()) other.surface = found->second;
       return other;
     };
-    auto& released = change.released_meshes;
-    auto held = std::find_if(released.begin(), released.end(), [&](const MeshKey& other) { return now(other) == key; });
-    if (held != released.end()) {
+    auto& gone = change.released_meshes;
+    auto held = std::find_if(gone.begin(), gone.end(), [&](const MeshKey& other) { return now(other) == key; });
+    if (held != gone.end()) {
       rekeyed(held, set).source = set;
       return true;
     }
-    held = std::find_if(released.begin(), released.end(),
-                        [&](const MeshKey& other) { return differs_in_place(now(other), key); });
-    if (held == released.end()) return false;
+    held =
+        std::find_if(gone.begin(), gone.end(), [&](const MeshKey& other) { return differs_in_place(now(other), key); });
+    if (held == gone.end()) return false;
     PreparedMesh made = take_mesh(set, surface(set));
     move_vertices(rekeyed(held, set), std::move(made));
     return true;
@@ -311,6 +386,7 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
     else
       meshes_.emplace(mesh_key(set), upload(take_mesh(set, surface(set)), surface(set)));
   }
+  if (arrival_ && arrival_->roots == scene.roots) forget_arrival();
   const std::lock_guard lock(mutex_);
   held_meshes_.clear();
   for (const auto& [key, mesh] : meshes_) held_meshes_.emplace(key, mesh.source);
@@ -319,6 +395,7 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
     held_surfaces_.emplace(key, Held{surface.source, surface.made_for, surface.shown});
   std::erase_if(prepared_meshes_, [&](const auto& entry) { return held_meshes_.contains(entry.first); });
   std::erase_if(prepared_surfaces_, [&](const auto& entry) { return held_surfaces_.contains(entry.first); });
+  std::erase_if(arriving_shown_, [&](const auto& entry) { return held_surfaces_.contains(entry.first); });
 }
 
 void bind_vertices(const gl::Buffer& positions, const GpuSurface& surface) {

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "mesh_ops/light/lighting.h"
@@ -59,9 +60,11 @@ class GpuScene {
  public:
   /// Uploads what is missing and releases what `scene` no longer holds.
   void update(const Scene& scene, const Lighting* lighting = nullptr);
-  /// Uploads some of what update() would, for about so long, beside what is there; returns how much of it is, from 0
-  /// to 1. What waits is dropped by the next call for a scene that lacks it.
+  /// Uploads some of what update() would of `scene`, for about so long and at least a piece, beside what is there;
+  /// returns how much of it is, from 0 to 1. What is little is left to update(), which takes what has arrived.
   double arrive(const Scene& scene, double milliseconds);
+  /// Lets go of what arrived for a scene that was not drawn.
+  void forget_arrival();
   /// Works out what update() will upload, from any thread; it takes what there is of it.
   void prepare(const Scene& scene);
 
@@ -77,13 +80,20 @@ class GpuScene {
   PreparedMesh take_mesh(const TextureSet& set, const GpuSurface& surface);
   PreparedSurface take_surface(const TextureSet& set);
   ResourceDiff difference(const Scene& scene) const;
-  /// The surface that no scene needs any more, and is good for the set.
-  std::vector<SurfaceKey>::const_iterator serving(const ResourceDiff& change, const TextureSet& set) const;
+  void plan_arrival(const Scene& scene);
 
   std::map<MeshKey, GpuMesh> meshes_;
   std::map<SurfaceKey, GpuSurface> surfaces_;
   std::map<const LightMap*, GpuLight> lights_;
-  // What arrives for a scene that is not drawn yet.
+  std::uint64_t changes_ = 0;  ///< of the maps above
+  // What arrives for a scene that is not drawn yet, and what is still missing then.
+  struct Arrival {
+    std::vector<NodePtr> roots;  ///< of the scene
+    std::uint64_t changes = 0;   ///< when this was planned
+    std::vector<TextureSet> surfaces, meshes;
+    std::size_t surfaces_there = 0, meshes_there = 0;
+  };
+  std::optional<Arrival> arrival_;
   std::map<SurfaceKey, GpuSurface> arriving_surfaces_;
   std::map<MeshKey, GpuMesh> arriving_meshes_;
   std::uint64_t texels_uploaded_ = 0;
@@ -96,6 +106,7 @@ class GpuScene {
     ShownFaces shown;
   };
   std::map<MeshKey, TextureSet> held_meshes_;
+  std::map<SurfaceKey, ShownFaces> arriving_shown_;
   std::map<SurfaceKey, Held> held_surfaces_;
   template <class Prepared>
   struct Waiting {

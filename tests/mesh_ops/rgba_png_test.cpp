@@ -137,6 +137,19 @@ TEST(RgbaPng, ReadsRowsInPartsFromChunksOfAnySize) {
     for (const int count : {1, 4, 7, 31, 100}) EXPECT_EQ(pixels_of(png_of(width, height, data, size), count), expected);
 }
 
+// Rows that repeat others almost as far behind as deflate can look: across parts whose filters are undone already.
+TEST(RgbaPng, LooksBackAcrossParts) {
+  const int width = 481, height = 200;  // 17 rows are 32,725 bytes
+  const std::size_t stride = 1 + 4 * width;
+  Pixels rows = random_rows(width, height, 5);
+  for (std::size_t k = 17 * stride; k < rows.size(); ++k)
+    if (k / stride % 5 != 0) rows[k] = rows[k - 17 * stride];
+  const std::string data = deflated(rows);
+  EXPECT_LT(data.size(), rows.size() * 2 / 3);
+  const Pixels expected = unfiltered_plainly(rows, width, height);
+  for (const int count : {1, 16, 17, 64, 200}) EXPECT_EQ(pixels_of(png_of(width, height, data, 4000), count), expected);
+}
+
 TEST(RgbaPng, OtherKindsAreReadByOpenImageIO) {
   // Of one pixel, so that interlacing changes nothing but what the header says.
   const Pixels pixel = {0, 1, 2, 3, 4};
@@ -157,12 +170,20 @@ TEST(RgbaPng, SaysWhatIsDamaged) {
   const std::size_t end = file.size() - 12;  // before IEND, which nothing needs
   for (std::size_t size = 50; size < end; ++size)
     EXPECT_NE(refusal_of(file.substr(0, size)).find("is truncated"), std::string::npos) << size;
+  const std::size_t title = file.find("to be passed over");
   for (std::size_t at = 8; at < end; ++at) {
+    // Damage to what no picture needs changes none.
+    if (at + 4 >= title && at < title + 17 + 4) continue;
     std::string damaged = file;
     damaged[at] = static_cast<char>(damaged[at] ^ 4);
     EXPECT_NE(refusal_of(damaged), "") << at;
   }
   EXPECT_NE(refusal_of(png_of(width, height + 1, data, 50)).find("is truncated"), std::string::npos);
+  const std::string unchecked = data.substr(0, data.size() - 4);
+  EXPECT_NE(refusal_of(png_of(width, height, unchecked, 50)).find("is truncated"), std::string::npos);
+  for (const std::size_t size : {data.size() - 2, std::size_t{50}})
+    EXPECT_NE(refusal_of(png_of(width, height, unchecked + "abcd", size)).find("cannot be inflated"),
+              std::string::npos);
   Pixels rows = random_rows(width, height, 1);
   rows[4 * (1 + 4 * width)] = 5;
   EXPECT_NE(refusal_of(png_of(width, height, deflated(rows), 50)).find("row 4 is filtered in no way"),

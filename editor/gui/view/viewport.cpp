@@ -37,6 +37,12 @@ bool same_view(const View& a, const View& b) {
   return a.camera == b.camera && a.width == b.width && a.height == b.height && a.samples == b.samples;
 }
 
+bool from_one_place(const Camera& a, Camera b) {
+  b.near_plane = a.near_plane;
+  b.far_plane = a.far_plane;
+  return a == b;
+}
+
 }  // namespace
 
 Viewport::Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_ptr<gl::Context>()> window_context)
@@ -68,7 +74,7 @@ bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
 
 double Viewport::next_frame_in(const Desk& desk) const {
   if (desk.jobs.film && desk.jobs.film->waits()) return 0.1;
-  if (arrived_ < 1) return 0;
+  if (arrival_) return 0;
   if (desk.jobs.film || desk.view.flying || (thumbnails_.wants() && !moving() && desk.at_rest())) return 0;
   // A quick picture is followed by one in full.
   if (!moving())
@@ -199,6 +205,26 @@ Guides Viewport::guides(const Desk& desk) const {
   return result;
 }
 
+// What was there before is shown until all of a scene is on the GPU. Not while something is dragged, which changes
+// little; nor where steps follow each other so fast that none would be seen.
+bool Viewport::arrives(const Desk& desk, const Scene& scene) {
+  const bool other = made_ && !desk.preview && made_->scene.roots != scene.roots;
+  if (other && arrival_ && arrival_->roots != scene.roots && Clock::now() - arrival_->began < settle_time) {
+    arrival_.reset();
+    return false;
+  }
+  const double there = other ? renderer_.arrive(scene, upload_ms) : 1;
+  if (there < 1) {
+    if (!arrival_ || arrival_->roots != scene.roots)
+      arrival_ = Arrival{scene.roots, !from_one_place(made_->view.camera, desk.view.camera), Clock::now()};
+    arrival_->there = there;
+    return true;
+  }
+  if (arrival_ && !other) renderer_.forget_arrival();
+  arrival_.reset();
+  return false;
+}
+
 void Viewport::picture(Desk& desk) {
   const bool still = !moving() && !desk.view.flying;
   const double wanted_picture_ms = std::max(10.0, 1000.0 / desk.view.target_rate - rest_ms_);
@@ -217,15 +243,13 @@ void Viewport::picture(Desk& desk) {
   const std::shared_ptr<const Lighting> lighting =
       scene.light && !desk.view.as_baked ? desk.relighter.latest() : nullptr;
   Made wanted{scene, lighting, view, guides(desk), each_pass_, desk.view.wipe, desk.view.width, desk.view.height};
-  // What was there before is shown until all of a scene is on the GPU; while something is dragged only that changes.
-  arrived_ = !made_ || desk.preview || made_->scene.roots == scene.roots ? 1 : renderer_.arrive(scene, upload_ms);
-  if (arrived_ < 1) {
-    if (made_->view.camera == view.camera && made_->shown_width == desk.view.width &&
-        made_->shown_height == desk.view.height)
-      return;
+  if (arrives(desk, scene)) {
+    if (arrival_->stays || from_one_place(made_->view.camera, view.camera)) return;
+    view.camera = with_depth_for(view.camera, world_bounds(made_->scene));
     wanted.scene = made_->scene;
     wanted.lighting = made_->lighting;
     wanted.guides = made_->guides;
+    wanted.view = view;
   }
   if (made_ && same_scene(made_->scene, wanted.scene) && made_->lighting == wanted.lighting &&
       same_view(made_->view, view) && made_->guides == wanted.guides && made_->each_pass == each_pass_ &&
@@ -236,6 +260,7 @@ void Viewport::picture(Desk& desk) {
   texture_ = 0;
   const Renderer::Shown shown =
       renderer_.show(wanted.scene, view, {}, wanted.guides, each_pass_, wanted.lighting.get());
+  if (!arrival_) renderer_.forget_arrival();
   const double ms = shown.times.frame_ms;
   if (view.width == desk.view.width && view.samples == desk.view.samples) full_ms_ = ms;
   // The time goes with the pixels, as far as it goes with anything that can be chosen here.
@@ -250,7 +275,7 @@ void Viewport::picture(Desk& desk) {
   report_ = {shown.times, shown.passes, renderer_.peak_gpu_bytes(), report_.device, scale, view.samples, rate};
   if (!desk.view.wipe) {
     before_.reset();
-  } else {
+  } else if (!arrival_) {
     // A renderer of its own keeps what the scene was on the GPU, as long as it is compared with.
     if (!before_) before_ = std::make_unique<Renderer>(window_context_());
     Guides before;
@@ -261,7 +286,7 @@ void Viewport::picture(Desk& desk) {
   }
   texture_ = shown.texture;
   drew_ = true;
-  if (still && !desk.preview && arrived_ == 1 && view.width == desk.view.width) keep_picture(desk);
+  if (still && !desk.preview && !arrival_ && view.width == desk.view.width) keep_picture(desk);
 }
 
 // Of what was just opened or saved, for the list of recent files.

@@ -36,7 +36,7 @@ class Viewport {
   /// How long the whole frame took of the window in which the last picture was drawn.
   void frame_took(double ms);
   /// How much of the scene is on the GPU, from 0 to 1; until it is all there the one before is shown.
-  double arrived() const { return arrived_; }
+  double arrived() const { return arrival_ ? arrival_->there : 1; }
   const FrameReport& report() const { return report_; }
   bool& each_pass() { return each_pass_; }
   Thumbnails& thumbnails() { return thumbnails_; }
@@ -54,6 +54,14 @@ class Viewport {
     bool each_pass = false, wipe = false;
     int shown_width = 0, shown_height = 0;
   };
+  /// A scene that goes to the GPU while the picture is of another one.
+  struct Arrival {
+    std::vector<NodePtr> roots;
+    bool stays;  ///< the picture as it was: the camera went along with the scene, as when one is opened
+    Clock::time_point began;
+    double there = 0;
+  };
+  bool arrives(const Desk& desk, const Scene& scene);
   void navigate(Desk& desk, const Lens& lens, const Pointer& pointer);
   void fly(Desk& desk);
   void picture(Desk& desk);
@@ -73,7 +81,7 @@ class Viewport {
   std::unique_ptr<Renderer> before_;  ///< of the scene as imported; null while it is not compared with
   Tools& tools_;
   Clock::time_point moved_at_{}, flown_at_{}, drawn_at_{};
-  double arrived_ = 1;
+  std::optional<Arrival> arrival_;
   double full_ms_ = 0;       ///< of a picture at full quality
   double rest_ms_ = 0;       ///< of a frame beside its picture
   double moving_scale_ = 1;  ///< of the resolution while the camera moves

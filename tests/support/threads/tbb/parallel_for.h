@@ -11,11 +11,15 @@
 #include <mutex>
 #include <thread>
 #include <type_traits>
+#include <utility>
 
 /// What the thread sanitizer's build takes for TBB's loops. The library is not built with the sanitizer, which hence
-/// takes all that TBB orders for races; threads of the standard library it knows. Loops within loops of the same thread
-/// run in order.
+/// takes all that TBB orders for races; threads of the standard library it knows. Loops within loops run in order; what
+/// contexts do when a loop is stopped is not imitated.
 namespace tbb {
+
+/// Of this thread: it carries out a block.
+inline thread_local bool inside_loop = false;
 
 /// `body(begin, end)` on blocks of at least `grain`, dealt out to three threads in turn: nothing but their beginning
 /// and end puts them in order, so that what they share is found whichever runs first. What the first to fail throws is
@@ -23,11 +27,10 @@ namespace tbb {
 template <class Value, class Body>
 void for_blocks(Value begin, Value end, Value grain, const Body& body) {
   if (!(begin < end)) return;
-  static thread_local bool inside = false;
   constexpr int workers = 3, rounds = 3;
   const Value count = static_cast<Value>(end - begin),
               block = std::max<Value>(grain, static_cast<Value>((count - 1) / (workers * rounds) + 1));
-  if (inside || count <= block) {
+  if (inside_loop || count <= block) {
     body(begin, end);
     return;
   }
@@ -35,7 +38,7 @@ void for_blocks(Value begin, Value end, Value grain, const Body& body) {
   std::mutex mutex;
   std::exception_ptr failed;
   const auto work = [&](int worker) {
-    inside = true;
+    const bool outer = std::exchange(inside_loop, true);
     try {
       for (Value k = 0; k * block < count && !stop.load(std::memory_order_relaxed); ++k) {
         const Value first = static_cast<Value>(k * block);
@@ -48,7 +51,7 @@ void for_blocks(Value begin, Value end, Value grain, const Body& body) {
       if (!failed) failed = std::current_exception();
       stop.store(true, std::memory_order_relaxed);
     }
-    inside = false;
+    inside_loop = outer;
   };
   {
     std::array<std::jthread, workers - 1> threads;
