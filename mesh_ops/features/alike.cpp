@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "mesh_ops/base/hash.h"
-#include "mesh_ops/features/texel_colors.h"
+#include "mesh_ops/network/texel_colors.h"
 
 namespace rebake {
 

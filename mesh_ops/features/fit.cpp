@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "mesh_ops/features/feature_network.h"
+#include "mesh_ops/network/feature_network.h"
 
 namespace rebake {
 

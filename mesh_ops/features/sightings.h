@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mesh_ops/features/composition.h"
-#include "mesh_ops/features/feature_network.h"
+#include "mesh_ops/network/feature_network.h"
 
 namespace rebake {
 

@@ -11,10 +11,10 @@
 #include <numeric>
 
 #include "mesh_ops/base/elementary.h"
-#include "mesh_ops/features/feature_network.h"
-#include "mesh_ops/features/texel_colors.h"
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/index/index.h"
+#include "mesh_ops/network/feature_network.h"
+#include "mesh_ops/network/texel_colors.h"
 
 namespace rebake {
 

@@ -233,7 +233,7 @@ LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t
     const AlphaCode code = set.texels->alpha_code();
     append(inputs, &code, sizeof(code));
   }
-  const std::string key = result_key("lightestimate4", inputs);
+  const std::string key = result_key("lightestimate5", inputs);
   // Numbers in this order; the sky last.
   constexpr std::size_t fixed = 12;
   if (const auto bytes = results->find(key); bytes && bytes->size() > fixed * sizeof(double)) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "mesh_ops/index/footprint.h"
+#include "mesh_ops/network/texel_colors.h"
 
 namespace rebake {
 
@@ -100,6 +101,7 @@ std::vector<Radiance> site_colors(const BakedObject& object,
                                   const std::vector<float>& facing) {
   std::vector<Radiance> colors(sites.size(), Radiance::Zero());
   const Mat3 axes = axes_matrix(object.axes);
+  const TexelColors look(*object.decoder, {});
   for (std::size_t s = 0; s < charts.size(); ++s) {
     const TextureSet& set = object.sets[s];
     const std::size_t first = sites.first[s];
@@ -109,29 +111,44 @@ std::vector<Radiance> site_colors(const BakedObject& object,
       const Vec2 at = node.weights[0] * corners[0] + node.weights[1] * corners[1] + node.weights[2] * corners[2];
       const LightSite& site = sites.baked[i];
       const Vec3 across = site.normal.cross(site.tangent);
-      Radiance sum = Radiance::Zero();
-      double weights = 0;
+      // Four directions to each side.
+      std::array<Vec3, 8> fed;
+      for (std::size_t k = 0; k < fed.size(); ++k) {
+        const double tilt = 0.7;
+        const Vec3 aside = (k % 2 == 0 ? site.tangent : across) * (k % 4 < 2 ? 1 : -1);
+        const Vec3 towards_eye =
+            (std::cos(tilt) * (k < 4 ? 1 : -1) * site.normal + std::sin(tilt) * aside).normalized();
+        fed[k] = axes * -towards_eye;
+      }
+      const double f = static_cast<double>(facing[i]);
+      constexpr std::size_t most = 9 * 8;
+      std::array<TexelColors::Features, most> features;
+      std::array<Vec3, most> directions;
+      std::array<double, most> shares;
+      std::array<Color, most> seen;
+      std::size_t count = 0;
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
           const int x = std::clamp(static_cast<int>(std::floor(at.x())) + dx, 0, set.texels->width() - 1),
                     y = std::clamp(static_cast<int>(std::floor(at.y())) + dy, 0, set.texels->height() - 1);
           const Texel& texel = set.texels->at(x, y);
           if (!texel.opaque()) continue;
-          const auto features = decode_features(texel, set.texels->alpha_code());
-          for (int side = 0; side < 2; ++side) {
-            const double share = side == 0 ? static_cast<double>(facing[i]) : 1 - static_cast<double>(facing[i]);
+          const auto of_texel = decode_features(texel, set.texels->alpha_code());
+          for (std::size_t k = 0; k < fed.size(); ++k) {
+            const double share = k < 4 ? f : 1 - f;
             if (share == 0) continue;
-            for (int k = 0; k < 4; ++k) {
-              const double tilt = 0.7;
-              const Vec3 aside = (k % 2 == 0 ? site.tangent : across) * (k < 2 ? 1 : -1);
-              const Vec3 towards_eye =
-                  (std::cos(tilt) * (side == 0 ? 1 : -1) * site.normal + std::sin(tilt) * aside).normalized();
-              const Color color = decode(*object.decoder, features, axes * -towards_eye);
-              sum += share * Radiance(to_linear(color.x()), to_linear(color.y()), to_linear(color.z()));
-              weights += share;
-            }
+            features[count] = of_texel;
+            directions[count] = fed[k];
+            shares[count++] = share;
           }
         }
+      look.decode_each({features.data(), count}, {directions.data(), count}, {seen.data(), count});
+      Radiance sum = Radiance::Zero();
+      double weights = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        sum += shares[k] * Radiance(to_linear(seen[k].x()), to_linear(seen[k].y()), to_linear(seen[k].z()));
+        weights += shares[k];
+      }
       if (weights > 0) colors[i] = sum / weights;
     });
   }

@@ -42,6 +42,14 @@ void TransferOnOneCore(benchmark::State& state) {
 }
 BENCHMARK(TransferOnOneCore)->Arg(16)->Arg(64)->Arg(256)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
+// What light sites look like from around: before light is estimated, and for every map.
+void SiteColors(benchmark::State& state) {
+  const Points points;
+  const std::vector<float> facing(points.sites.size(), 0.5F);
+  for (auto _ : state) benchmark::DoNotOptimize(site_colors(*points.object, points.charts, points.sites, facing));
+}
+BENCHMARK(SiteColors)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void Estimate(benchmark::State& state) {
   const Points points;
   const auto colors =

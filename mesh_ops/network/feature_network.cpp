@@ -1,4 +1,4 @@
-#include "mesh_ops/features/feature_network.h"
+#include "mesh_ops/network/feature_network.h"
 
 #include <cmath>
 #include <numbers>

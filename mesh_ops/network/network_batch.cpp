@@ -1,6 +1,6 @@
 // Compiled for several kinds of processors (mesh_ops/CMakeLists.txt): GCC's vector types become the widest registers
 // that each has.
-#include "mesh_ops/features/network_batch.h"
+#include "mesh_ops/network/network_batch.h"
 
 #ifndef REBAKE_NETWORK_NAME
 #define REBAKE_NETWORK_NAME network_kernels_baseline

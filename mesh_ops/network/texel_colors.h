@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "mesh_ops/features/feature_network.h"
+#include "mesh_ops/network/feature_network.h"
 
 namespace rebake {
 
-/// What texels look like along some directions, 16 at once.
+/// What texels look like along directions, 16 at once.
 class TexelColors {
  public:
   using Features = std::array<double, 8>;
@@ -21,6 +21,8 @@ class TexelColors {
   /// Display colours, texel after texel, direction after direction: `colors` holds features.size() × directions(). In
   /// single precision (errors below 1e-5), in double for decoders wider than 256. Safe on several threads.
   void decode_into(std::span<const Features> features, std::span<Color> colors) const;
+  /// As decode_into, each texel along a direction of its own.
+  void decode_each(std::span<const Features> features, std::span<const Vec3> directions, std::span<Color> colors) const;
 
  private:
   const Decoder& decoder_;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh_ops/features/network_batch.h"
+#include "mesh_ops/network/network_batch.h"
 #include "mesh_ops/texture/decoder.h"
 
 namespace rebake {
