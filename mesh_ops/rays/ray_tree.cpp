@@ -103,6 +103,7 @@ class RayTriangles::Impl {
 
   std::uint64_t memory() const { return static_cast<std::uint64_t>(std::max<std::int64_t>(0, bytes_)); }
   RTCScene scene() const { return scene_; }
+  Box bounds() const { return Box(Vec3(center_ - half_ / scale_), Vec3(center_ + half_ / scale_)); }
   LocalRay local_ray(const Vec3& origin, const Vec3& direction, double near, double far) const {
     LocalRay ray;
     const Vec3 d = direction * scale_, o = (origin - center_) * scale_;
@@ -219,6 +220,7 @@ class RayTree::Impl {
       rays.triangle[i] = surfaces_[query.hit.geomID[i]].first_triangle + query.hit.primID[i];
     }
   }
+  Box bounds() const { return triangles_->impl_->bounds(); }
   bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
     const LocalRay local = triangles_->impl_->local_ray(origin, direction, near, far);
     if (!local.meets) return false;
@@ -262,6 +264,7 @@ std::optional<RayTree::Hit> RayTree::nearest(const Vec3& origin, const Vec3& dir
   return impl_->nearest(origin, direction, near, far);
 }
 void RayTree::nearest(Bundle& rays, double near) const { impl_->nearest(rays, near); }
+Box RayTree::bounds() const { return impl_->bounds(); }
 bool RayTree::blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
   return impl_->blocked(origin, direction, near, far);
 }

@@ -50,6 +50,8 @@ class RayTree {
   void nearest(Bundle& rays, double near) const;
   /// Whether anything opaque lies at t in [near, far].
   bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const;
+  /// Of the triangles, in object space, with some room.
+  Box bounds() const;
   std::uint64_t memory() const;  ///< bytes, without the triangles
 
  private:

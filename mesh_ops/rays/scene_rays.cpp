@@ -5,8 +5,16 @@
 namespace rebake {
 
 SceneRays::SceneRays(std::vector<Instance> instances) {
-  for (Instance& instance : instances)
-    placed_.push_back({std::move(instance.tree), instance.to_world.inverse(), instance.size, instance.reach});
+  for (Instance& instance : instances) {
+    const Box box = instance.tree->bounds();
+    const Vec3 middle = instance.to_world * box.center();
+    double radius = 0;
+    for (const auto corner : {Box::BottomLeftFloor, Box::BottomRightFloor, Box::TopLeftFloor, Box::TopRightFloor,
+                              Box::BottomLeftCeil, Box::BottomRightCeil, Box::TopLeftCeil, Box::TopRightCeil})
+      radius = std::max(radius, (instance.to_world * box.corner(corner) - middle).norm());
+    placed_.push_back(
+        {std::move(instance.tree), instance.to_world.inverse(), instance.size, instance.reach, middle, radius});
+  }
 }
 
 std::optional<SceneRays::Hit> SceneRays::nearest(const Vec3& origin, const Vec3& direction, double near,
@@ -49,6 +57,11 @@ bool SceneRays::blocked(const Vec3& from, const Vec3& to) const {
 
 bool SceneRays::shaded(const Vec3& from, const Vec3& direction) const {
   return std::any_of(placed_.begin(), placed_.end(), [&](const Placed& placed) {
+    // Most rays go past most balls. Squares of long distances are rounded: 1e-12 of them is far more.
+    const Vec3 to_middle = placed.middle - from;
+    const double along = to_middle.dot(direction), squared = to_middle.squaredNorm(),
+                 reached = placed.radius * placed.radius + 1e-12 * squared;
+    if (squared > reached && (along < 0 || squared - along * along > reached)) return false;
     return placed.tree->blocked(placed.to_object * from, placed.to_object.linear() * direction, 0, placed.reach);
   });
 }

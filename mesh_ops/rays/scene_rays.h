@@ -49,6 +49,8 @@ class SceneRays {
     std::shared_ptr<const RayTree> tree;
     Affine to_object;
     double size, reach;
+    Vec3 middle;  ///< of a ball around the object, in world space
+    double radius;
   };
   std::vector<Placed> placed_;
 };
