@@ -42,7 +42,7 @@ struct Filters {
     const Lanes to_left = magnitude(above - corner), to_above = magnitude(left - corner),
                 to_corner = magnitude(left + above - corner - corner);
     const Lanes nearest =
-        (to_left <= to_above) & (to_left <= to_corner) ? left : (to_above <= to_corner ? above : corner);
+        ((to_left <= to_above) & (to_left <= to_corner)) ? left : (to_above <= to_corner ? above : corner);
     const Lanes predicted = (left & sub) | (above & up) | (((left + above) >> 1) & average) | (nearest & paeth);
     return (filtered + predicted) & 255;
   }
