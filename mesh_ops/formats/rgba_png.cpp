@@ -135,7 +135,7 @@ std::unique_ptr<RgbaRows> open_rgba_png(std::string_view bytes, const std::files
       chunk->data.substr(8) != std::string_view("\x08\x06\0\0\0", 5))
     return nullptr;
   const std::uint32_t width = big_endian(chunk->data), height = big_endian(chunk->data.substr(4));
-  constexpr std::uint32_t largest = 1 << 14;
+  constexpr std::uint32_t largest = largest_png_side;
   if (width < 1 || height < 1 || width > largest || height > largest) return nullptr;
   for (;;) {
     chunk = chunks.next();

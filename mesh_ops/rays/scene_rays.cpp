@@ -17,10 +17,19 @@ SceneRays::SceneRays(std::vector<Instance> instances) {
   }
 }
 
+bool SceneRays::Placed::passed_by(const Vec3& origin, const Vec3& direction) const {
+  // Squares of long distances are rounded: 1e-12 of them is far more. What is no number passes nothing by.
+  const Vec3 to_middle = middle - origin;
+  const double along = to_middle.dot(direction), squared = to_middle.squaredNorm(), length = direction.squaredNorm(),
+               reached = radius * radius + 1e-12 * squared;
+  return squared > reached && (along < 0 || (squared - reached) * length > along * along);
+}
+
 std::optional<SceneRays::Hit> SceneRays::nearest(const Vec3& origin, const Vec3& direction, double near,
                                                  double far) const {
   std::optional<Hit> nearest;
   for (std::size_t k = 0; k < placed_.size(); ++k) {
+    if (near >= 0 && placed_[k].passed_by(origin, direction)) continue;
     const Affine& to_object = placed_[k].to_object;
     const auto hit = placed_[k].tree->nearest(to_object * origin, to_object.linear() * direction, near, far);
     if (!hit || hit->t > far) continue;
@@ -48,6 +57,7 @@ void SceneRays::nearest(Bundle& rays, double near) const {
 
 bool SceneRays::blocked(const Vec3& from, const Vec3& to) const {
   return std::any_of(placed_.begin(), placed_.end(), [&](const Placed& placed) {
+    if (placed.passed_by(from, to - from)) return false;
     const Vec3 start = placed.to_object * from, way = placed.to_object * to - start;
     const double distance = way.norm();
     constexpr double rounding = 1e-5;  // of the object's size, ten times the tree's
@@ -57,12 +67,8 @@ bool SceneRays::blocked(const Vec3& from, const Vec3& to) const {
 
 bool SceneRays::shaded(const Vec3& from, const Vec3& direction) const {
   return std::any_of(placed_.begin(), placed_.end(), [&](const Placed& placed) {
-    // Most rays go past most balls. Squares of long distances are rounded: 1e-12 of them is far more.
-    const Vec3 to_middle = placed.middle - from;
-    const double along = to_middle.dot(direction), squared = to_middle.squaredNorm(),
-                 reached = placed.radius * placed.radius + 1e-12 * squared;
-    if (squared > reached && (along < 0 || squared - along * along > reached)) return false;
-    return placed.tree->blocked(placed.to_object * from, placed.to_object.linear() * direction, 0, placed.reach);
+    return !placed.passed_by(from, direction) &&
+           placed.tree->blocked(placed.to_object * from, placed.to_object.linear() * direction, 0, placed.reach);
   });
 }
 

@@ -12,7 +12,7 @@ namespace rebake {
 
 /// Rays in world space through placed objects, whose trees are shared by all nodes and scenes that show them. Each
 /// object keeps a frame of its own, in which floats tell its triangles apart: one tree over all of them would not,
-/// where nodes differ much in scale or lie far apart. What a ray does not come near costs a test against a box.
+/// where nodes differ much in scale or lie far apart. What a ray does not come near costs a test against a ball.
 class SceneRays {
  public:
   struct Instance {
@@ -51,6 +51,9 @@ class SceneRays {
     double size, reach;
     Vec3 middle;  ///< of a ball around the object, in world space
     double radius;
+
+    /// Whether what begins at `origin` goes past the ball.
+    bool passed_by(const Vec3& origin, const Vec3& direction) const;
   };
   std::vector<Placed> placed_;
 };

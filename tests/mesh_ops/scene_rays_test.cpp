@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "tests/support/made_scenes.h"
@@ -36,11 +37,15 @@ TEST(SceneRays, WhatIsPassedByIsNotAskedAndChangesNothing) {
                      : (instances[static_cast<std::size_t>(k % 8)].to_world.translation() + scale * some() - from)
                            .normalized();
       bool any = false;
+      double nearest = std::numeric_limits<double>::infinity();
       for (const SceneRays::Instance& one : instances) {
         const Affine back = one.to_world.inverse();
         any |= tree->blocked(back * from, back.linear() * direction, 0, one.reach);
+        if (const auto hit = tree->nearest(back * from, back.linear() * direction, 0, nearest)) nearest = hit->t;
       }
       ASSERT_EQ(rays.shaded(from, direction), any) << scale << ", ray " << k;
+      const auto hit = rays.nearest(from, direction, 0, std::numeric_limits<double>::infinity());
+      ASSERT_EQ(hit ? hit->t : std::numeric_limits<double>::infinity(), nearest) << scale << ", ray " << k;
       shaded += any ? 1 : 0;
     }
     EXPECT_GT(shaded, 3000);
