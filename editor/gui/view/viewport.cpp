@@ -12,6 +12,9 @@
 #include "editor/edits/support.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/style.h"
+#include "editor/gui/view/axes.h"
+#include "editor/gui/view/grid.h"
+#include "editor/gui/view/legend.h"
 #include "editor/gui/view/navigation.h"
 #include "render/image.h"
 
@@ -171,23 +174,6 @@ Box Viewport::drawn_bounds(const Desk& desk) const {
   return box;
 }
 
-void Viewport::add_grid(const Desk& desk, std::vector<Guides::Line>& lines) {
-  // On the ground; squares of the power of ten that fits the scene.
-  const Box box = world_bounds(desk.scene());
-  const double size = box.isEmpty() || !(box.diagonal().norm() > 0) ? 1 : box.diagonal().norm();
-  const double step = std::pow(10, std::floor(std::log10(size)));
-  const double floor = box.isEmpty() ? 0 : box.min().y();
-  constexpr int half = 10;
-  for (int k = -half; k <= half; ++k) {
-    const double at = k * step, end = half * step;
-    const Color grey(0.55, 0.56, 0.58);
-    lines.push_back(
-        {{at, floor, -end}, {at, floor, end}, k == 0 ? Color(0.3, 0.5, 0.95) : grey, k == 0 ? 0.7 : 0.28, 0});
-    lines.push_back(
-        {{-end, floor, at}, {end, floor, at}, k == 0 ? Color(0.9, 0.35, 0.35) : grey, k == 0 ? 0.7 : 0.28, 0});
-  }
-}
-
 Guides Viewport::guides(const Desk& desk) const {
   Guides result;
   result.selection = desk.view.show_selection;
@@ -329,84 +315,6 @@ bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, con
   draw_label(list, {x - px(16) - ImGui::CalcTextSize("Before").x, origin.y + px(10)}, "Before");
   draw_label(list, {x + px(16), origin.y + px(10)}, "After");
   return hot || wiping_;
-}
-
-// What the colours mean when they are not the scene's.
-void Viewport::draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin) {
-  std::string text;
-  if (desk.view.cut > 0 && desk.view.inspect == Guides::Inspect::none) {
-    draw_label(list, {origin.x + px(12), origin.y + px(12)},
-               fmt::format("Cut {:.4g} before the eye: Alt + wheel moves it", desk.view.cut));
-    return;
-  }
-  switch (desk.view.inspect) {
-    case Guides::Inspect::none:
-      return;
-    case Guides::Inspect::wireframe:
-      text = "Wireframe: every triangle, a colour for each texture set";
-      break;
-    case Guides::Inspect::opacity:
-      text = "Opacity: grey shows, dark red is transparent";
-      break;
-    case Guides::Inspect::texture_sets:
-      text = "Texture sets: a colour for each";
-      break;
-    case Guides::Inspect::channel:
-      text = fmt::format("Feature channel {}{}: black is 0, white 255", desk.view.channel,
-                         desk.view.channel == 0 ? " (opacity)" : "");
-      break;
-    case Guides::Inspect::overdraw:
-      text = "Overdraw: the brighter, the more triangles behind each other";
-      break;
-  }
-  draw_label(list, {origin.x + px(12), origin.y + px(12)}, text);
-}
-
-bool Viewport::draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, bool over) {
-  const float arm = px(32), knob = px(9);
-  const ImVec2 middle{corner.x - arm - px(18), corner.y + arm + px(18)};
-  const announce::Part part("axes");
-  const Mat3 rows = world_to_camera(desk.view.camera);
-  struct Knob {
-    double depth;
-    ImVec2 at;
-    Vec3 axis;
-    int number;
-  };
-  std::array<Knob, 6> knobs;
-  for (int k = 0; k < 6; ++k) {
-    Vec3 axis(0, 0, 0);
-    axis[k / 2] = k % 2 == 0 ? 1 : -1;
-    const Vec3 seen = rows * axis;
-    knobs[static_cast<std::size_t>(k)] = {
-        seen.z(),
-        {middle.x + arm * static_cast<float>(seen.x()), middle.y - arm * static_cast<float>(seen.y())},
-        axis,
-        k};
-  }
-  std::sort(knobs.begin(), knobs.end(), [](const Knob& a, const Knob& b) { return a.depth < b.depth; });
-  bool hovered = false;
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
-  for (const Knob& one : knobs) {
-    const bool positive = one.number % 2 == 0;
-    const int axis = one.number / 2;
-    const ImU32 color = axis == 0   ? IM_COL32(235, 70, 70, positive ? 255 : 110)
-                        : axis == 1 ? IM_COL32(100, 200, 60, positive ? 255 : 110)
-                                    : IM_COL32(70, 130, 245, positive ? 255 : 110);
-    if (positive) list.AddLine(middle, one.at, color, px(2));
-    list.AddCircleFilled(one.at, positive ? knob : knob - px(3), color);
-    if (positive) {
-      const char letter[] = {static_cast<char>('X' + axis), 0};
-      const ImVec2 size = ImGui::CalcTextSize(letter);
-      list.AddText({one.at.x - size.x / 2, one.at.y - size.y / 2}, IM_COL32(0, 0, 0, 255), letter);
-    }
-    announce::point(std::string(positive ? "+" : "-") + static_cast<char>('X' + axis), one.at);
-    const float dx = mouse.x - one.at.x, dy = mouse.y - one.at.y;
-    if (dx * dx + dy * dy > knob * knob || !over) continue;
-    hovered = true;
-    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) desk.view.camera = along_axis(desk.view.camera, one.axis);
-  }
-  return hovered;
 }
 
 void Viewport::write_pictures(Desk& desk) {

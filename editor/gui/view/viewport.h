@@ -67,11 +67,7 @@ class Viewport {
   void picture(Desk& desk);
   Guides guides(const Desk& desk) const;
   Box drawn_bounds(const Desk& desk) const;
-  static void add_grid(const Desk& desk, std::vector<Guides::Line>& lines);
   bool draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer);
-  static void draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin);
-  /// `over`: the pointer may take a knob. True while it is on one.
-  bool draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, bool over);
   void write_pictures(Desk& desk);
   void keep_picture(const Desk& desk);
   bool moving() const;
