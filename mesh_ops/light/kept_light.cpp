@@ -1,43 +1,14 @@
 #include "mesh_ops/light/kept_light.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
-#include "mesh_ops/base/hash.h"
-#include "mesh_ops/index/index.h"
 #include "mesh_ops/light/relighting.h"
 
 namespace rebake {
 
 namespace {
-
-// How far away an object's parts shade anything.
-double reach_of(const BakedObject& object) {
-  std::vector<Vec3> centers;
-  for (const TextureSet& set : object.sets)
-    for (const Face& face : set.soup.faces())
-      centers.push_back(
-          (set.soup.positions()[face[0]] + set.soup.positions()[face[1]] + set.soup.positions()[face[2]]) / 3);
-  if (centers.empty()) return std::numeric_limits<double>::infinity();
-  const auto quantile = [](std::vector<double>& values, double share) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  };
-  Vec3 middle;
-  std::vector<double> values(centers.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    std::transform(centers.begin(), centers.end(), values.begin(), [&](const Vec3& p) { return p[axis]; });
-    middle[axis] = quantile(values, 0.5);
-  }
-  std::transform(centers.begin(), centers.end(), values.begin(), [&](const Vec3& p) { return (p - middle).norm(); });
-  const double most = quantile(values, 0.6), all = *std::max_element(values.begin(), values.end());
-  constexpr double far = 3;
-  return all > 1.2 * far * most ? far * most : std::numeric_limits<double>::infinity();
-}
 
 void append(std::string& bytes, const void* data, std::size_t size) {
   bytes.append(static_cast<const char*>(data), size);
@@ -46,32 +17,6 @@ template <class T>
 void append(std::string& bytes, const std::vector<T>& values) {
   append(bytes, values.data(), values.size() * sizeof(T));
 }
-
-}  // namespace
-
-std::uint64_t surface_hash(const BakedObject& object) {
-  std::string hashes;
-  const auto add = [&](std::string_view bytes) {
-    const std::uint64_t hash = content_hash(bytes);
-    append(hashes, &hash, sizeof(hash));
-  };
-  const auto view = [](const auto& values) {
-    return std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
-  };
-  for (const TextureSet& set : object.sets) {
-    add(view(set.soup.positions()));
-    add(view(set.soup.uvs()));
-    add(view(set.soup.faces()));
-    const std::array<int, 2> size{set.texels->width(), set.texels->height()};
-    add(view(size));
-    for (int row = 0; row < set.texels->tile_rows(); ++row)
-      for (int column = 0; column < set.texels->tile_columns(); ++column)
-        add(view(set.texels->tile(column, row)->texels));
-  }
-  return content_hash(hashes);
-}
-
-namespace {
 
 void append(std::string& bytes, const std::vector<Occluder>& occluders) {
   for (const Occluder& occluder : occluders) {
@@ -82,14 +27,6 @@ void append(std::string& bytes, const std::vector<Occluder>& occluders) {
 }
 
 }  // namespace
-
-SceneRays rays_among(const std::vector<Occluder>& occluders) {
-  std::vector<SceneRays::Instance> instances;
-  for (const Occluder& occluder : occluders)
-    instances.push_back({rays_of(*occluder.object), occluder.to_frame, occluder.object->bounds().diagonal().norm(),
-                         reach_of(*occluder.object) * std::cbrt(std::abs(occluder.to_frame.linear().determinant()))});
-  return SceneRays(std::move(instances));
-}
 
 std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& object, double spacing,
                                                             std::size_t most_nodes) {

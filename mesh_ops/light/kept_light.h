@@ -6,28 +6,16 @@
 #include "mesh_ops/base/results.h"
 #include "mesh_ops/light/irradiance.h"
 #include "mesh_ops/light/light_estimate.h"
+#include "mesh_ops/light/occluder.h"
 #include "mesh_ops/light/transfer.h"
 
 namespace rebake {
-
-/// Something that shades: an object, and where it stands in the space that light is traced in.
-struct Occluder {
-  std::shared_ptr<const BakedObject> object;
-  Affine to_frame;
-};
-
-/// Rays among them. What lies much farther than most of an object, such as a backdrop, shades nothing: it is what
-/// shines.
-SceneRays rays_among(const std::vector<Occluder>& occluders);
 
 /// traced_light(), from where such results are kept if it is there; rounded to floats where they are. `results` may be
 /// null.
 std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
                                   const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
                                   int rays, Results* results, const Progress& progress);
-
-/// A hash of what shades: triangles, and which of their texels are opaque.
-std::uint64_t surface_hash(const BakedObject& object);
 
 /// Transfer of what each site shows, by the share of its first side in that.
 std::vector<sh::Coefficients> shown_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,

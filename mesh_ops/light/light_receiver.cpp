@@ -68,8 +68,8 @@ std::shared_ptr<const BakedObject> at_baked_places(const BakedObject& object) {
 }  // namespace
 
 LightReceiver::LightReceiver(const std::vector<PlacedNode>& objects, std::size_t own, const SceneLight& settings,
-                             const LightingOptions& options)
-    : objects_(objects), own_(own), settings_(settings), options_(options) {
+                             const LightingOptions& options, BakedLights& known)
+    : objects_(objects), own_(own), settings_(settings), options_(options), known_(known) {
   for (std::size_t k = 0; k < objects_.size(); ++k)
     if (k == own_ || share_body(placed(), objects_[k])) relatives_.push_back(k);
   // What was joined of several shades each other as it was not baked to.
@@ -91,7 +91,7 @@ Mat3 LightReceiver::to_own_light() const { return in_world() ? Mat3(turn().trans
 
 std::shared_ptr<const Light> LightReceiver::light(const Progress& progress) {
   prepare(progress);
-  return light_;
+  return baked_->light;
 }
 
 bool LightReceiver::anything_missing() const {
@@ -117,7 +117,7 @@ double LightReceiver::cast_bound(std::size_t other, const Shared& shared, const 
   constexpr double brightest_sun = 1e5;
   if (const double at_most = sine * sine * brightest_sun * steepest; at_most < settings_.budget / 1000) return at_most;
   prepare(progress);
-  const Light& shining = shared.light != nullptr ? *shared.light : *light_;
+  const Light& shining = shared.light != nullptr ? *shared.light : *baked_->light;
   const Mat3 to_space = shared.light != nullptr ? Mat3(shared.to_light.transpose()) : turn();
   double most = 0;
   for (int c = 0; c < 3; ++c) {
@@ -129,7 +129,7 @@ double LightReceiver::cast_bound(std::size_t other, const Shared& shared, const 
       const double reach = mine.radius + its.radius + std::tan(sun.radius) * std::max(0.0, along + mine.radius);
       if (along > -reach && aside < reach) taken += sun.irradiance[c];
     }
-    most = std::max(most, taken * albedo_[c]);
+    most = std::max(most, taken * baked_->albedo[c]);
   }
   return std::min(1.0, steepest * most);
 }
@@ -137,19 +137,19 @@ double LightReceiver::cast_bound(std::size_t other, const Shared& shared, const 
 double LightReceiver::sampled_change(bool self, bool removed, const Progress& progress) {
   constexpr std::size_t some = 512;
   prepare(progress);
-  std::vector<std::uint8_t> wanted(sites_.size(), 0);
-  const std::size_t step = std::max<std::size_t>(1, sites_.size() / some);
-  for (std::size_t i = step / 2; i < sites_.size(); i += step) wanted[i] = sides_[i];
+  std::vector<std::uint8_t> wanted(baked_->sites.size(), 0);
+  const std::size_t step = std::max<std::size_t>(1, baked_->sites.size() / some);
+  for (std::size_t i = step / 2; i < baked_->sites.size(); i += step) wanted[i] = baked_->sides[i];
   const auto before = light_before(self, removed, wanted, 64, progress);
   const auto after = light_after({}, wanted, 64, {}, progress);
   double most = 0;
-  for (std::size_t i = 0; i < sites_.size(); ++i) {
+  for (std::size_t i = 0; i < baked_->sites.size(); ++i) {
     if (wanted[i] == 0) continue;
     const Radiance e0 = shown(i, before), e1 = shown(i, after);
     for (int c = 0; c < 3; ++c) {
-      const double color = colors_[i][c];
+      const double color = baked_->colors[i][c];
       // What was baked in the dark counts with the common albedo, as it is lit.
-      const double albedo = e0[c] > 0 ? std::min(color / e0[c], 4 * albedo_[c]) : albedo_[c];
+      const double albedo = e0[c] > 0 ? std::min(color / e0[c], 4 * baked_->albedo[c]) : baked_->albedo[c];
       const double changed = std::clamp(color + albedo * (e1[c] - e0[c]), 0.0, 1.0);
       most = std::max(most, std::abs(to_display(changed) - to_display(color)));
     }
@@ -161,10 +161,10 @@ LightReceiver::Change LightReceiver::change(bool self, bool removed, const std::
                                             const Shared& shared, const Progress& progress) {
   prepare(progress);
   const int rays = options_.rays > 0 ? options_.rays : settings_.rays;
-  const auto before = light_before(self, removed, sides_, rays, progress);
-  const auto after = light_after(casters, sides_, rays, shared, progress);
-  Change change{{}, {}, site_colors(object(), charts_, sites_, facing_)};
-  for (std::size_t i = 0; i < sites_.size(); ++i) {
+  const auto before = light_before(self, removed, baked_->sides, rays, progress);
+  const auto after = light_after(casters, baked_->sides, rays, shared, progress);
+  Change change{{}, {}, baked_->shown_colors()};
+  for (std::size_t i = 0; i < baked_->sites.size(); ++i) {
     change.before.push_back(shown(i, before));
     change.after.push_back(shown(i, after));
   }
@@ -172,7 +172,7 @@ LightReceiver::Change LightReceiver::change(bool self, bool removed, const std::
 }
 
 std::vector<std::shared_ptr<const LightMap>> LightReceiver::maps(const Change& change) const {
-  return light_maps(charts_, sites_, change.colors, change.before, change.after);
+  return light_maps(baked_->charts, baked_->sites, change.colors, change.before, change.after);
 }
 
 // What was learnt of its body; what cannot be read was never kept.
@@ -181,11 +181,11 @@ std::shared_ptr<const TransferModel> LightReceiver::kept_model() const {
   if (options_.results == nullptr || bodies.size() != 1 || !bodies.front().to_object.matrix().isIdentity(0))
     return nullptr;
   const BakedObject& body = *bodies.front().object;
-  const auto bytes = options_.results->find(transfer_model_key(body, sites_.size()));
+  const auto bytes = options_.results->find(transfer_model_key(body, baked_->sites.size()));
   if (!bytes || !TurnedLight::same_triangles(body, object())) return nullptr;
   try {
     auto model = std::make_shared<const TransferModel>(transfer_model_of(*bytes));
-    return model->body == surface_hash(body) && model->sites == sites_.size() ? model : nullptr;
+    return model->body == surface_hash(body) && model->sites == baked_->sites.size() ? model : nullptr;
   } catch (const std::exception&) {
     return nullptr;
   }
@@ -195,77 +195,62 @@ std::shared_ptr<const TurnedLight> LightReceiver::turned(const Change& change, c
                                                          const Shared& shared, const Progress& progress) const {
   // Sheared objects are traced in the world, which their triangles do not turn in.
   if (in_world() || !settings_.self) return nullptr;
-  TurnedLight::Start start{
-      placed().node->object, charts_, sites_, facing_, change.colors, change.before, change.after, {}, {},
-      kept_model(),          {}};
+  TurnedLight::Start start{placed().node->object,
+                           baked_->charts,
+                           baked_->sites,
+                           baked_->facing,
+                           change.colors,
+                           change.before,
+                           change.after,
+                           {},
+                           {},
+                           kept_model(),
+                           {}};
   for (const std::size_t k : relatives_)
     if (k != own_) start.others.push_back(occluder(k));
   for (const std::size_t k : casters) start.others.push_back(occluder(k));
   std::vector<Occluder> occluders = start.others;
   occluders.push_back(occluder(own_));
   constexpr int rays = 64;
-  start.transfer = kept_transfer(now_, facing_, occluders, rays, options_.results, progress);
+  start.transfer = kept_transfer(now(), baked_->facing, occluders, rays, options_.results, progress);
   const std::vector<BakedBody> bodies = bodies_of(object());
   for (const BakedBody& body : bodies) {
     if (shared.light != nullptr)
       start.lights.push_back({std::make_shared<const Light>(*shared.light), shared.to_light * turn()});
     else
-      start.lights.push_back({light_, bodies.size() == 1
-                                          ? Mat3(Mat3::Identity())
-                                          : Mat3(orthogonal_factor(body.to_object.linear()).transpose())});
+      start.lights.push_back({baked_->light, bodies.size() == 1
+                                                 ? Mat3(Mat3::Identity())
+                                                 : Mat3(orthogonal_factor(body.to_object.linear()).transpose())});
   }
   return std::make_shared<const TurnedLight>(std::move(start));
 }
 
 void LightReceiver::prepare(const Progress& progress) {
-  if (!charts_.empty()) return;
+  if (baked_) return;
   try {
     orthogonal_factor(to_world().linear());
     for (const BakedBody& body : bodies_of(object())) orthogonal_factor(body.to_object.linear());
   } catch (const std::invalid_argument& error) {
     throw EditError(fmt::format("node \"{}\": {}", name(), error.what()));
   }
-  charts_ = light_charts(object(), options_.spacing, options_.most_nodes);
-  sites_ = light_sites(object(), charts_);
-  now_ = sites_.now;
-  if (in_world()) {
-    const Affine& motion = to_world();
-    const Mat3 normals = motion.linear().inverse().transpose();
-    for (LightSite& site : now_) {
-      site.position = motion * site.position;
-      site.normal = (normals * site.normal).normalized();
-      const Vec3 tangent = motion.linear() * site.tangent;
-      site.tangent = (tangent - tangent.dot(site.normal) * site.normal).normalized();
-      site.offset *= std::cbrt(std::abs(motion.linear().determinant()));
-    }
-  }
-  colors_ = site_colors(object(), charts_, sites_, std::vector<float>(sites_.size(), 0.5F));
-  if (const auto given = given_light(settings_)) {
-    light_ = given;
-    confidence_ = 1;
-  } else {
-    const LightEstimate estimate = kept_estimate(*bodies_of(object()).front().object, options_.spacing,
-                                                 options_.most_nodes, options_.results, progress);
-    light_ = std::make_shared<const Light>(estimate.light);
-    confidence_ = estimate.confidence;
-  }
-  const auto lit = light_before(true, true, {}, 64, progress);
-  facing_ = facing_of(sites_, lit, colors_);
-  for (const float facing : facing_) sides_.push_back(shown_sides(facing));
-  // What nine sites of ten stay below.
-  std::vector<double> values;
-  for (int c = 0; c < 3; ++c) {
-    values.clear();
-    for (std::size_t i = 0; i < sites_.size(); ++i)
-      if (const double e = shown(i, lit)[c]; e > 0) values.push_back(colors_[i][c] / e);
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 9 / 10);
-    if (values.empty()) continue;
-    std::nth_element(values.begin(), at, values.end());
-    albedo_[c] = *at;
+  baked_ = known_.of(placed().node->object, progress);
+  if (!in_world()) return;
+  in_world_ = baked_->sites.now;
+  const Affine& motion = to_world();
+  const Mat3 normals = motion.linear().inverse().transpose();
+  for (LightSite& site : in_world_) {
+    site.position = motion * site.position;
+    site.normal = (normals * site.normal).normalized();
+    const Vec3 tangent = motion.linear() * site.tangent;
+    site.tangent = (tangent - tangent.dot(site.normal) * site.normal).normalized();
+    site.offset *= std::cbrt(std::abs(motion.linear().determinant()));
   }
 }
+
+const std::vector<LightSite>& LightReceiver::now() const { return in_world() ? in_world_ : baked_->sites.now; }
+
 Radiance LightReceiver::shown(std::size_t i, const std::vector<SiteLight>& lit) const {
-  return shown_light(lit[i], facing_[i]);
+  return shown_light(lit[i], baked_->facing[i]);
 }
 
 Occluder LightReceiver::occluder(std::size_t k) const {
@@ -280,38 +265,23 @@ std::vector<Occluder> LightReceiver::relatives() const {
   return occluders;
 }
 
-std::vector<std::uint8_t> LightReceiver::of_body(std::size_t body, const std::vector<std::uint8_t>& wanted) const {
-  std::vector<std::uint8_t> flags(sites_.size());
-  for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = sites_.body[i] != body ? 0 : wanted.empty() ? 3 : wanted[i];
-  return flags;
-}
-
-std::vector<SiteLight> LightReceiver::traced(const std::vector<LightSite>& sites,
-                                             const std::vector<std::uint8_t>& wanted,
-                                             const std::vector<Occluder>& occluders, const Light& light,
-                                             const Mat3& to_light, int rays, const Progress& progress) const {
-  return kept_light(sites, wanted, occluders, light, to_light, rays, options_.keep_traced ? options_.results : nullptr,
-                    progress);
-}
-
 // Without `self`, triangles count as baked where they are now.
 std::vector<SiteLight> LightReceiver::light_before(bool self, bool removed, const std::vector<std::uint8_t>& wanted,
                                                    int rays, const Progress& progress) const {
-  if (moved_ && !self) return traced(now_, wanted, relatives(), *light_, to_own_light(), rays, progress);
+  if (moved_ && !self)
+    return baked_->traced(now(), wanted, relatives(), *baked_->light, to_own_light(), rays, progress);
+  if (removed || !missing_) return baked_->as_baked(wanted, rays, progress);
   const std::vector<BakedBody> bodies = bodies_of(object());
-  std::vector<SiteLight> result(sites_.size());
+  std::vector<SiteLight> result(baked_->sites.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::vector<Occluder> occluders;
-    if (removed || !missing_) {
-      occluders.push_back({bodies[b].object, Affine::Identity()});
-    } else {
-      for (const std::size_t k : relatives_)
-        for (const BakedBody& body : bodies_of(*objects_[k].node->object))
-          if (same_body(body, bodies[b]))
-            occluders.push_back({at_baked_places(*objects_[k].node->object), body.to_object.inverse()});
-    }
-    const std::vector<std::uint8_t> flags = of_body(b, wanted);
-    const auto lit = traced(sites_.baked, flags, occluders, *light_, Mat3::Identity(), rays, progress);
+    for (const std::size_t k : relatives_)
+      for (const BakedBody& body : bodies_of(*objects_[k].node->object))
+        if (same_body(body, bodies[b]))
+          occluders.push_back({at_baked_places(*objects_[k].node->object), body.to_object.inverse()});
+    const std::vector<std::uint8_t> flags = baked_->of_body(b, wanted);
+    const auto lit =
+        baked_->traced(baked_->sites.baked, flags, occluders, *baked_->light, Mat3::Identity(), rays, progress);
     for (std::size_t i = 0; i < flags.size(); ++i)
       if (flags[i] != 0) result[i] = lit[i];
   }
@@ -324,16 +294,17 @@ std::vector<SiteLight> LightReceiver::light_after(const std::vector<std::size_t>
   std::vector<Occluder> occluders = relatives();
   for (const std::size_t k : casters) occluders.push_back(occluder(k));
   if (shared.light != nullptr)
-    return traced(now_, wanted, occluders, *shared.light, in_world() ? shared.to_light : Mat3(shared.to_light * turn()),
-                  rays, progress);
+    return baked_->traced(now(), wanted, occluders, *shared.light,
+                          in_world() ? shared.to_light : Mat3(shared.to_light * turn()), rays, progress);
   const std::vector<BakedBody> bodies = bodies_of(object());
-  if (bodies.size() == 1) return traced(now_, wanted, occluders, *light_, to_own_light(), rays, progress);
+  if (bodies.size() == 1)
+    return baked_->traced(now(), wanted, occluders, *baked_->light, to_own_light(), rays, progress);
   // Each body's light turned with it when it was joined.
-  std::vector<SiteLight> result(sites_.size());
+  std::vector<SiteLight> result(baked_->sites.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Mat3 to_body = orthogonal_factor(bodies[b].to_object.linear()).transpose() * to_own_light();
-    const std::vector<std::uint8_t> flags = of_body(b, wanted);
-    const auto lit = traced(now_, flags, occluders, *light_, to_body, rays, progress);
+    const std::vector<std::uint8_t> flags = baked_->of_body(b, wanted);
+    const auto lit = baked_->traced(now(), flags, occluders, *baked_->light, to_body, rays, progress);
     for (std::size_t i = 0; i < flags.size(); ++i)
       if (flags[i] != 0) result[i] = lit[i];
   }

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/light/kept_light.h"
-#include "mesh_ops/light/lighting.h"
+#include "mesh_ops/light/baked_light.h"
 
 namespace rebake {
 
@@ -13,9 +12,9 @@ namespace rebake {
 /// change itself. What that needs is made when it is first asked for.
 class LightReceiver {
  public:
-  /// Objects, settings and options must outlive it.
+  /// All of these must outlive it.
   LightReceiver(const std::vector<PlacedNode>& objects, std::size_t own, const SceneLight& settings,
-                const LightingOptions& options);
+                const LightingOptions& options, BakedLights& known);
 
   const std::string& name() const { return placed().node->name; }
   /// Whether triangles moved against their object, or were joined with others'.
@@ -50,7 +49,7 @@ class LightReceiver {
 
   /// What it was baked in: found or given. Throws EditError for a node that is flattened.
   std::shared_ptr<const Light> light(const Progress& progress);
-  double confidence() const { return confidence_; }
+  double confidence() const { return baked_->confidence; }
   /// Turns its light's directions into the world's.
   Mat3 turn() const;
 
@@ -63,13 +62,11 @@ class LightReceiver {
   bool in_world() const;
   Mat3 to_own_light() const;
   void prepare(const Progress& progress);
+  /// Sites in the space that light is traced in.
+  const std::vector<LightSite>& now() const;
   Radiance shown(std::size_t i, const std::vector<SiteLight>& lit) const;
   Occluder occluder(std::size_t k) const;
   std::vector<Occluder> relatives() const;
-  std::vector<std::uint8_t> of_body(std::size_t body, const std::vector<std::uint8_t>& wanted) const;
-  std::vector<SiteLight> traced(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
-                                const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
-                                int rays, const Progress& progress) const;
   std::vector<SiteLight> light_before(bool self, bool removed, const std::vector<std::uint8_t>& wanted, int rays,
                                       const Progress& progress) const;
   std::vector<SiteLight> light_after(const std::vector<std::size_t>& casters, const std::vector<std::uint8_t>& wanted,
@@ -81,16 +78,10 @@ class LightReceiver {
   const LightingOptions& options_;
   std::vector<std::size_t> relatives_;
   bool moved_ = false, missing_ = false;
+  BakedLights& known_;
   // Made by prepare():
-  std::vector<std::shared_ptr<const LightChart>> charts_;
-  LightSites sites_;
-  std::vector<LightSite> now_;    ///< in the space that light is traced in
-  std::vector<Radiance> colors_;  ///< seen from both sides alike
-  std::vector<float> facing_;
-  std::vector<std::uint8_t> sides_;  ///< that show, as traced_light wants them
-  std::shared_ptr<const Light> light_;
-  double confidence_ = 0;
-  Radiance albedo_{1, 1, 1};  ///< that nine sites of ten stay below
+  std::shared_ptr<BakedLight> baked_;
+  std::vector<LightSite> in_world_;  ///< the sites, where the node is sheared
 };
 
 }  // namespace rebake

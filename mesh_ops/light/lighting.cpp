@@ -41,9 +41,10 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     enum class Kind { self, removed, cast } kind;
     std::size_t caster = 0;
   };
+  BakedLights known(settings, options);
   std::vector<LightReceiver> receivers;
   receivers.reserve(objects.size());
-  for (std::size_t k = 0; k < objects.size(); ++k) receivers.emplace_back(objects, k, settings, options);
+  for (std::size_t k = 0; k < objects.size(); ++k) receivers.emplace_back(objects, k, settings, options, known);
   std::vector<Candidate> candidates;
   const auto say = [&](std::string name, double bound, std::string why) {
     result.decisions.push_back({std::move(name), false, bound, 0, std::move(why)});

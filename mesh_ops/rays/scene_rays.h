@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -12,7 +13,8 @@ namespace rebake {
 
 /// Rays in world space through placed objects, whose trees are shared by all nodes and scenes that show them. Each
 /// object keeps a frame of its own, in which floats tell its triangles apart: one tree over all of them would not,
-/// where nodes differ much in scale or lie far apart. What a ray does not come near costs a test against a ball.
+/// where nodes differ much in scale or lie far apart. What a ray does not come near costs tests against a few balls, in
+/// a tree over the objects.
 class SceneRays {
  public:
   struct Instance {
@@ -45,17 +47,35 @@ class SceneRays {
   bool shaded(const Vec3& from, const Vec3& direction) const;
 
  private:
+  struct Ball {
+    Vec3 middle{0, 0, 0};  ///< in world space
+    double radius = 0;
+
+    /// Whether what begins at `origin` goes past it.
+    bool passed_by(const Vec3& origin, const Vec3& direction) const;
+  };
   struct Placed {
     std::shared_ptr<const RayTree> tree;
     Affine to_object;
     double size, reach;
-    Vec3 middle;  ///< of a ball around the object, in world space
-    double radius;
-
-    /// Whether what begins at `origin` goes past the ball.
-    bool passed_by(const Vec3& origin, const Vec3& direction) const;
+    Ball ball;
   };
+  /// A ball around instances `first` … `end` − 1 of `order_`, whose halves follow: the next branch and `second`.
+  struct Branch {
+    Ball ball;
+    std::uint32_t first, end;
+    std::uint32_t second;  ///< 0 where it has no halves
+  };
+
+  void grow(std::uint32_t first, std::uint32_t end);
+  /// Calls visit(number) for instances whose balls are not passed by, in any order, until it returns true; returns
+  /// whether it did.
+  template <class Visit>
+  bool any_near(const Vec3& origin, const Vec3& direction, Visit visit) const;
+
   std::vector<Placed> placed_;
+  std::vector<std::uint32_t> order_;  ///< the instances, neighbours together
+  std::vector<Branch> branches_;
 };
 
 }  // namespace rebake

@@ -64,6 +64,26 @@ bool same_body(const BakedBody& a, const BakedBody& b) {
                                              b.object->sets.end(), same_set));
 }
 
+// Whether nothing is but what the origin's files hold.
+static bool as_read(const BakedObject& object) {
+  return object.origin && object.bodies.empty() && object.decoder == object.origin->decoder &&
+         std::equal(object.sets.begin(), object.sets.end(), object.origin->sets.begin(), object.origin->sets.end(),
+                    [](const TextureSet& set, const Origin::Set& read) {
+                      return set.texels == read.texels.lock() && set.soup.shared_positions() == read.positions.lock() &&
+                             set.soup.shared_uvs() == read.uvs.lock() && set.soup.shared_faces() == read.faces.lock() &&
+                             set.soup.vertex_attributes() == Attributes() && set.soup.face_attributes() == Attributes();
+                    });
+}
+
+bool same_reading(const BakedObject& a, const BakedObject& b) {
+  return as_read(a) && as_read(b) && a.axes == b.axes && a.layout == b.layout && a.origin->folder == b.origin->folder &&
+         a.origin->mlp == b.origin->mlp &&
+         std::equal(a.origin->sets.begin(), a.origin->sets.end(), b.origin->sets.begin(), b.origin->sets.end(),
+                    [](const Origin::Set& x, const Origin::Set& y) {
+                      return x.geometry == y.geometry && x.feat0 == y.feat0 && x.feat1 == y.feat1;
+                    });
+}
+
 std::size_t count(const TriangleSet& triangles) {
   return static_cast<std::size_t>(std::count_if(triangles.begin(), triangles.end(), [](auto f) { return f != 0; }));
 }

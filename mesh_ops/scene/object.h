@@ -26,6 +26,7 @@ struct SourceFile {
   std::string name;
   std::uint64_t size = 0;
   std::uint64_t hash = 0;  ///< XXH64 of the bytes
+  bool operator==(const SourceFile&) const = default;
 };
 
 /// Where an object was read from, and which of its parts are still what the files hold.
@@ -82,6 +83,8 @@ std::vector<BakedBody> bodies_of(const BakedObject& object);
 void keep_bodies(BakedObject& made, const BakedObject& of);
 /// The same triangles at the same places.
 bool same_body(const BakedBody& a, const BakedBody& b);
+/// Whether both are still what was read from one folder, whose files were the same both times.
+bool same_reading(const BakedObject& a, const BakedObject& b);
 
 std::size_t count(const TriangleSet& triangles);
 

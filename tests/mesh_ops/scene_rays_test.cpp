@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
+#include <tuple>
 
 #include "tests/support/made_scenes.h"
 
@@ -18,38 +20,52 @@ TEST(SceneRays, WhatIsPassedByIsNotAskedAndChangesNothing) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto some = [&] { return Vec3(unit(random), unit(random), unit(random)); };
-  for (const double scale : {1.0, 1e-6, 1e6}) {
+  for (const auto& [scale, count, broken] : {std::tuple(1.0, 8, false),
+                                             {1e-6, 8, false},
+                                             {1e6, 8, false},
+                                             {1.0, 60, false},
+                                             {1e-6, 60, false},
+                                             {1.0, 20, true}}) {
+    SCOPED_TRACE(testing::Message() << count << " objects at scale " << scale);
     std::vector<SceneRays::Instance> instances;
-    for (int k = 0; k < 8; ++k) {
+    for (int k = 0; k < count; ++k) {
       // Some mirrored, squeezed, or inside others.
       Affine place = Affine::Identity();
-      place.translate(scale * 4 * some()).rotate(Eigen::AngleAxisd(3 * unit(random), some().normalized()));
+      place.translate(scale * 0.5 * count * some()).rotate(Eigen::AngleAxisd(3 * unit(random), some().normalized()));
       place.scale(scale * Vec3(k % 3 == 0 ? -1 : 1, std::pow(10, unit(random)), 0.5));
+      if (broken && k % 7 == 3) place.translation().x() = std::numeric_limits<double>::quiet_NaN();
       instances.push_back({tree, place, object->bounds().diagonal().norm()});
     }
     const SceneRays rays(instances);
     int shaded = 0;
-    for (int k = 0; k < 20000; ++k) {
+    const int sent = 160000 / count;
+    for (int k = 0; k < sent; ++k) {
       const Vec3 from = scale * (k % 4 == 0 ? 1e4 : 5) * some();
       // Some towards an object, which random ones from afar would not meet.
       const Vec3 direction =
           k % 2 == 0 ? some().normalized()
-                     : (instances[static_cast<std::size_t>(k % 8)].to_world.translation() + scale * some() - from)
+                     : (instances[static_cast<std::size_t>(k % count)].to_world.translation() + scale * some() - from)
                            .normalized();
       bool any = false;
       double nearest = std::numeric_limits<double>::infinity();
-      for (const SceneRays::Instance& one : instances) {
+      std::optional<std::size_t> first;
+      for (std::size_t number = 0; number < instances.size(); ++number) {
+        const SceneRays::Instance& one = instances[number];
         const Affine back = one.to_world.inverse();
         any |= tree->blocked(back * from, back.linear() * direction, 0, one.reach);
-        if (const auto hit = tree->nearest(back * from, back.linear() * direction, 0, nearest)) nearest = hit->t;
+        if (const auto hit = tree->nearest(back * from, back.linear() * direction, 0, nearest)) {
+          nearest = hit->t;
+          first = number;
+        }
       }
-      ASSERT_EQ(rays.shaded(from, direction), any) << scale << ", ray " << k;
+      ASSERT_EQ(rays.shaded(from, direction), any) << "ray " << k;
       const auto hit = rays.nearest(from, direction, 0, std::numeric_limits<double>::infinity());
-      ASSERT_EQ(hit ? hit->t : std::numeric_limits<double>::infinity(), nearest) << scale << ", ray " << k;
+      ASSERT_EQ(hit ? hit->t : std::numeric_limits<double>::infinity(), nearest) << "ray " << k;
+      ASSERT_EQ(hit ? std::optional(hit->instance) : std::nullopt, first) << "ray " << k;
       shaded += any ? 1 : 0;
     }
-    EXPECT_GT(shaded, 3000);
-    EXPECT_LT(shaded, 18000);
+    EXPECT_GT(shaded, sent / 8);
+    EXPECT_LT(shaded, sent * 9 / 10);
   }
 }
 

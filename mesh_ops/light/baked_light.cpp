@@ -1,0 +1,73 @@
+#include "mesh_ops/light/baked_light.h"
+
+#include <algorithm>
+
+#include "mesh_ops/light/relighting.h"
+
+namespace rebake {
+
+BakedLight::BakedLight(std::shared_ptr<const BakedObject> object, const SceneLight& settings,
+                       const LightingOptions& options, const Progress& progress)
+    : object_(std::move(object)), bodies_(bodies_of(*object_)), options_(options) {
+  charts = light_charts(*object_, options.spacing, options.most_nodes);
+  sites = light_sites(*object_, charts);
+  colors = site_colors(*object_, charts, sites, std::vector<float>(sites.size(), 0.5F));
+  if (const auto given = given_light(settings)) {
+    light = given;
+    confidence = 1;
+  } else {
+    const LightEstimate estimate =
+        kept_estimate(*bodies_.front().object, options.spacing, options.most_nodes, options.results, progress);
+    light = std::make_shared<const Light>(estimate.light);
+    confidence = estimate.confidence;
+  }
+  const auto lit = as_baked({}, 64, progress);
+  facing = facing_of(sites, lit, colors);
+  for (const float one : facing) sides.push_back(shown_sides(one));
+  std::vector<double> values;
+  for (int c = 0; c < 3; ++c) {
+    values.clear();
+    for (std::size_t i = 0; i < sites.size(); ++i)
+      if (const double e = shown_light(lit[i], facing[i])[c]; e > 0) values.push_back(colors[i][c] / e);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 9 / 10);
+    if (values.empty()) continue;
+    std::nth_element(values.begin(), at, values.end());
+    albedo[c] = *at;
+  }
+}
+
+const std::vector<Radiance>& BakedLight::shown_colors() {
+  if (shown_colors_.empty()) shown_colors_ = site_colors(*object_, charts, sites, facing);
+  return shown_colors_;
+}
+
+std::vector<std::uint8_t> BakedLight::of_body(std::size_t body, const std::vector<std::uint8_t>& wanted) const {
+  std::vector<std::uint8_t> flags(sites.size());
+  for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = sites.body[i] != body ? 0 : wanted.empty() ? 3 : wanted[i];
+  return flags;
+}
+
+std::vector<SiteLight> BakedLight::traced(const std::vector<LightSite>& at, const std::vector<std::uint8_t>& wanted,
+                                          const std::vector<Occluder>& occluders, const Light& in, const Mat3& to_light,
+                                          int rays, const Progress& progress) const {
+  return kept_light(at, wanted, occluders, in, to_light, rays, options_.keep_traced ? options_.results : nullptr,
+                    progress);
+}
+
+std::vector<SiteLight> BakedLight::as_baked(const std::vector<std::uint8_t>& wanted, int rays,
+                                            const Progress& progress) {
+  const bool of_shown = !wanted.empty() && wanted == sides;
+  if (const auto known = of_shown_.find(rays); of_shown && known != of_shown_.end()) return known->second;
+  std::vector<SiteLight> result(sites.size());
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const std::vector<std::uint8_t> flags = of_body(b, wanted);
+    const auto lit =
+        traced(sites.baked, flags, {{bodies_[b].object, Affine::Identity()}}, *light, Mat3::Identity(), rays, progress);
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      if (flags[i] != 0) result[i] = lit[i];
+  }
+  if (of_shown) of_shown_[rays] = result;
+  return result;
+}
+
+}  // namespace rebake

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "mesh_ops/light/kept_light.h"
+#include "mesh_ops/light/lighting.h"
+
+namespace rebake {
+
+/// What an object's light says of it wherever the object stands: its sites, their colours, and the light that it was
+/// baked in. Nodes that show one object share it.
+class BakedLight {
+ public:
+  /// Settings and options must outlive it.
+  BakedLight(std::shared_ptr<const BakedObject> object, const SceneLight& settings, const LightingOptions& options,
+             const Progress& progress);
+
+  std::vector<std::shared_ptr<const LightChart>> charts;
+  LightSites sites;
+  std::vector<Radiance> colors;  ///< seen from both sides alike
+  std::vector<float> facing;
+  std::vector<std::uint8_t> sides;  ///< that show, as traced_light wants them
+  std::shared_ptr<const Light> light;
+  double confidence = 0;     ///< in it, where it was found
+  Radiance albedo{1, 1, 1};  ///< that nine sites of ten stay below
+
+  /// Colours of what shows.
+  const std::vector<Radiance>& shown_colors();
+  /// What light fell on the sites of some sides as they were baked, whole; all sides where `wanted` is empty.
+  std::vector<SiteLight> as_baked(const std::vector<std::uint8_t>& wanted, int rays, const Progress& progress);
+  /// The sides of `wanted` (of all, where it is empty) that belong to a body.
+  std::vector<std::uint8_t> of_body(std::size_t body, const std::vector<std::uint8_t>& wanted) const;
+  /// kept_light(), kept if the options say so.
+  std::vector<SiteLight> traced(const std::vector<LightSite>& at, const std::vector<std::uint8_t>& wanted,
+                                const std::vector<Occluder>& occluders, const Light& in, const Mat3& to_light, int rays,
+                                const Progress& progress) const;
+
+ private:
+  std::shared_ptr<const BakedObject> object_;
+  std::vector<BakedBody> bodies_;
+  const LightingOptions& options_;
+  std::vector<Radiance> shown_colors_;
+  std::map<int, std::vector<SiteLight>> of_shown_;  ///< as baked, by rays
+};
+
+/// Of all objects of a scene, each made when it is first asked for.
+class BakedLights {
+ public:
+  BakedLights(const SceneLight& settings, const LightingOptions& options) : settings_(settings), options_(options) {}
+  std::shared_ptr<BakedLight> of(const std::shared_ptr<const BakedObject>& object, const Progress& progress) {
+    std::shared_ptr<BakedLight>& made = made_[object.get()];
+    if (!made) made = std::make_shared<BakedLight>(object, settings_, options_, progress);
+    return made;
+  }
+
+ private:
+  const SceneLight& settings_;
+  const LightingOptions& options_;
+  std::map<const BakedObject*, std::shared_ptr<BakedLight>> made_;
+};
+
+}  // namespace rebake
