@@ -40,7 +40,7 @@ void for_each_part(const Scene& scene, Visit visit) {
       if (!textures.insert(set.texels.get()).second) continue;
       for (int row = 0; row < set.texels->tile_rows(); ++row)
         for (int column = 0; column < set.texels->tile_columns(); ++column)
-          visit(set.texels->tile(column, row).get(), TexelTile::size * TexelTile::size * sizeof(Texel));
+          visit(set.texels->tile(column, row).get(), set.texels->tile(column, row)->memory());
     }
   }
 }

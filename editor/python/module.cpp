@@ -172,9 +172,9 @@ py::list tiles_of(PyDocument& document, const py::object& name, std::size_t inde
   for (int row = 0; row < set.texels->tile_rows(); ++row) {
     py::list columns;
     for (int column = 0; column < set.texels->tile_columns(); ++column) {
-      const auto& tile = set.texels->tile(column, row);
-      columns.append(view_of(reinterpret_cast<const std::uint8_t*>(tile->texels.data()),
-                             {TexelTile::size, TexelTile::size, 8}, tile));
+      const auto texels = set.texels->tile(column, row)->texels();
+      columns.append(view_of(reinterpret_cast<const std::uint8_t*>(texels->data()),
+                             {TexelTile::size, TexelTile::size, 8}, texels));
     }
     rows.append(columns);
   }
@@ -185,9 +185,10 @@ py::array texture_of(PyDocument& document, const py::object& name, std::size_t i
   const TextureSet set = set_in(document.scene(), name, index);
   const int width = set.texels->width(), height = set.texels->height();
   py::array_t<std::uint8_t> result({height, width, 8});
+  const TexelReader texels(*set.texels);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; x += TexelTile::size)
-      std::memcpy(result.mutable_data(y, x, 0), set.texels->row_part(x, y),
+      std::memcpy(result.mutable_data(y, x, 0), texels.row_part(x, y),
                   static_cast<std::size_t>(std::min(TexelTile::size, width - x)) * sizeof(Texel));
   return result;
 }

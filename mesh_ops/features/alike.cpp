@@ -28,24 +28,30 @@ struct Patch {
   std::array<double, 32> quarters{};
 };
 
+struct SetTexels {
+  std::unique_ptr<const TexelReader> reader;
+  AlphaCode code;
+};
+using Texels = std::vector<SetTexels>;  // a set each
+
 template <class Visit>
-void for_each_opaque(const BakedObject& object, const Patch& patch, Visit visit) {
-  const FeatureTexture& texels = *object.sets[patch.set].texels;
+void for_each_opaque(const Texels& texels, const Patch& patch, Visit visit) {
+  const TexelReader& reader = *texels[patch.set].reader;
   for (int y = 0; y < patch.rect.height(); ++y)
     for (int x = 0; x < patch.rect.width(); ++x)
-      if (const Texel& texel = texels.at(patch.rect.left + x, patch.rect.top + y); texel.opaque())
-        visit(x, y, decode_features(texel, texels.alpha_code()));
+      if (const Texel& texel = reader.at(patch.rect.left + x, patch.rect.top + y); texel.opaque())
+        visit(x, y, decode_features(texel, texels[patch.set].code));
 }
 
 // By how much colours change, in the mean square, with each feature: central differences at a sample of texels.
-Features weights_of(const BakedObject& object, const std::vector<Patch>& patches, const TexelColors& looks) {
+Features weights_of(const Texels& texels, const std::vector<Patch>& patches, const TexelColors& looks) {
   constexpr std::size_t most_samples = 256;
   constexpr double step = 0.02;
   std::vector<Features> moved;  // of each sample up and down in each feature
   const std::size_t every = std::max<std::size_t>(1, patches.size() / most_samples);
   for (std::size_t k = 0; k < patches.size(); k += every) {
     bool taken = false;
-    for_each_opaque(object, patches[k], [&](int, int, const Features& features) {
+    for_each_opaque(texels, patches[k], [&](int, int, const Features& features) {
       if (taken) return;
       taken = true;
       for (std::size_t f = 0; f < 8; ++f)
@@ -67,9 +73,9 @@ Features weights_of(const BakedObject& object, const std::vector<Patch>& patches
   return weights;
 }
 
-void describe(const BakedObject& object, const Features& weights, Patch& patch) {
+void describe(const Texels& texels, const Features& weights, Patch& patch) {
   std::array<double, 4> count{};
-  for_each_opaque(object, patch, [&](int x, int y, const Features& features) {
+  for_each_opaque(texels, patch, [&](int x, int y, const Features& features) {
     const std::size_t quarter =
         (2 * x >= patch.rect.width() ? 1U : 0U) + (2 * y >= patch.rect.height() ? std::size_t{2} : std::size_t{0});
     ++count[quarter];
@@ -88,8 +94,8 @@ double squared_distance(const Patch& a, const Patch& b) {
 }
 
 // Mean square of what colours differ by; part of it, more than `most`, where that is found to be so.
-double color_loss(const BakedObject& object, const TexelColors& looks, const Patch& a, const Patch& b, double most) {
-  const FeatureTexture &first = *object.sets[a.set].texels, &second = *object.sets[b.set].texels;
+double color_loss(const Texels& texels, const TexelColors& looks, const Patch& a, const Patch& b, double most) {
+  const SetTexels &first = texels[a.set], &second = texels[b.set];
   const double values = 3.0 * static_cast<double>(a.opaque * looks.directions());
   constexpr std::size_t at_once = 4 * network_lanes;
   std::vector<Features> features;  // of one and the other in turn
@@ -104,11 +110,12 @@ double color_loss(const BakedObject& object, const TexelColors& looks, const Pat
   };
   for (int y = 0; y < a.rect.height(); ++y)
     for (int x = 0; x < a.rect.width(); ++x) {
-      const Texel &p = first.at(a.rect.left + x, a.rect.top + y), &q = second.at(b.rect.left + x, b.rect.top + y);
+      const Texel &p = first.reader->at(a.rect.left + x, a.rect.top + y),
+                  &q = second.reader->at(b.rect.left + x, b.rect.top + y);
       if (p.opaque() != q.opaque()) return std::numeric_limits<double>::infinity();
-      if (!p.opaque() || (p == q && first.alpha_code() == second.alpha_code())) continue;
-      features.push_back(decode_features(p, first.alpha_code()));
-      features.push_back(decode_features(q, second.alpha_code()));
+      if (!p.opaque() || (p == q && first.code == second.code)) continue;
+      features.push_back(decode_features(p, first.code));
+      features.push_back(decode_features(q, second.code));
       if (features.size() < 2 * at_once) continue;
       add();
       if (sum > most * values) return sum / values;
@@ -132,7 +139,7 @@ std::vector<Patch> patches_of(const BakedObject& object, AlikePatches& result) {
     const FeatureTexture& texels = *object.sets[patch.set].texels;
     std::vector<std::uint8_t> mask;
     for (int y = patch.rect.top; y <= patch.rect.bottom; ++y)
-      for (int x = patch.rect.left; x <= patch.rect.right; ++x) mask.push_back(texels.at(x, y).opaque() ? 1 : 0);
+      for (int x = patch.rect.left; x <= patch.rect.right; ++x) mask.push_back(texels.opaque(x, y) ? 1 : 0);
     patch.mask = content_hash({reinterpret_cast<const char*>(mask.data()), mask.size()});
     patch.opaque = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
   });
@@ -146,10 +153,13 @@ AlikePatches alike_patches(const BakedObject& object, double squared_loss, const
   if (!std::all_of(object.sets.begin(), object.sets.end(), can_pack)) return result;
   std::vector<Patch> patches = patches_of(object, result);
   result.patches = patches.size();
+  Texels texels;
+  for (const TextureSet& set : object.sets)
+    texels.push_back({std::make_unique<const TexelReader>(*set.texels), set.texels->alpha_code()});
   constexpr std::size_t directions = 6;
   const TexelColors looks(*object.decoder, even_directions(directions));
-  const Features weights = weights_of(object, patches, looks);
-  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t k) { describe(object, weights, patches[k]); });
+  const Features weights = weights_of(texels, patches, looks);
+  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t k) { describe(texels, weights, patches[k]); });
 
   // Those of one size and opacity, by the quarter's feature that varies most among all.
   std::size_t key = 0;
@@ -185,7 +195,7 @@ AlikePatches alike_patches(const BakedObject& object, double squared_loss, const
     bool follows = false;
     for (std::size_t n = 0; n < near.size() && n < most_decoded && !follows; ++n) {
       const Patch& leader = patches[near[n].second];
-      const double loss = color_loss(object, looks, leader, patch, squared_loss);
+      const double loss = color_loss(texels, looks, leader, patch, squared_loss);
       if (!(loss <= squared_loss)) continue;
       result.shown_by[patch.set][patch.patch] = {leader.set, leader.patch};
       ++result.merged;

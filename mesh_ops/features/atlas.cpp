@@ -53,9 +53,10 @@ bool can_pack(const TextureSet& set) {
 std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture,
                                                       AlphaCode code) {
   if (texture->alpha_code() == code) return texture;
+  const TexelReader texels(*texture);
   return std::make_shared<const FeatureTexture>(
       FeatureTexture::from_rows(texture->width(), texture->height(), code, [&](int y, Texel* row) {
-        for (int x = 0; x < texture->width(); ++x) row[x] = converted(texture->at(x, y), texture->alpha_code(), code);
+        for (int x = 0; x < texture->width(); ++x) row[x] = converted(texels.at(x, y), texture->alpha_code(), code);
       }));
 }
 
@@ -113,15 +114,17 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
   for (const Page& page : pages)
     pixels.emplace_back(static_cast<std::size_t>(page.width) * static_cast<std::size_t>(page.height),
                         empty_texel(code));
+  std::vector<std::unique_ptr<const TexelReader>> sources;
+  for (const TextureSet& set : sets) sources.push_back(std::make_unique<const TexelReader>(*set.texels));
   for (const Place& place : places) {
     place_of[place.set][place.patch] = place;
-    const FeatureTexture& source = *sets[place.set].texels;
+    const AlphaCode was = sets[place.set].texels->alpha_code();
     const TexelRect& rect = rect_at(place);
     for (int row = 0; row < rect.height(); ++row)
       for (int column = 0; column < rect.width(); ++column)
         pixels[place.page][static_cast<std::size_t>(place.y + row) * static_cast<std::size_t>(pages[place.page].width) +
                            static_cast<std::size_t>(place.x + column)] =
-            converted(source.at(rect.left + column, rect.top + row), source.alpha_code(), code);
+            converted(sources[place.set]->at(rect.left + column, rect.top + row), was, code);
   }
 
   for (std::size_t s = 0; s < shown_by.size(); ++s)

@@ -114,7 +114,7 @@ TexelRect near_texels(const std::array<Vec2, 3>& corners, const TexelRect& withi
 std::uint32_t opaque_texels_in(const FeatureTexture& texels, const TexelRect& rect) {
   std::uint32_t opaque = 0;
   for (int y = rect.top; y <= rect.bottom; ++y)
-    for (int x = rect.left; x <= rect.right; ++x) opaque += texels.at(x, y).opaque() ? 1 : 0;
+    for (int x = rect.left; x <= rect.right; ++x) opaque += texels.opaque(x, y) ? 1 : 0;
   return opaque;
 }
 
@@ -310,7 +310,7 @@ std::vector<TexelSite> sites_of(const Composition& composition, const Compositio
   const auto* light_places = page.soup.vertex_attributes().find<Eigen::Vector2f>(light_attribute);
   const auto add = [&](int x, int y) {
     const std::uint32_t number = face_at[static_cast<std::size_t>((y - rect.top) * width + x - rect.left)];
-    if (number == none || !page.texels->at(x, y).opaque()) return;
+    if (number == none || !page.texels->opaque(x, y)) return;
     const Face& face = page.soup.faces()[number];
     Vec3 weights = barycentric(texel_corners(page, number), {x + 0.5, y + 0.5}).cwiseMax(0.0);
     weights /= weights.sum();

@@ -40,7 +40,7 @@ void for_each_opaque_texel_touched(const FeatureTexture& texels, const std::arra
   const Vec2 low = p[0].cwiseMin(p[1]).cwiseMin(p[2]), high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
   for (int y = texel(low.y(), texels.height()); y <= texel(high.y(), texels.height()); ++y)
     for (int x = texel(low.x(), texels.width()); x <= texel(high.x(), texels.width()); ++x) {
-      if (!texels.at(x, y).opaque()) continue;
+      if (!texels.opaque(x, y)) continue;
       const Vec2 centre(x + 0.5, y + 0.5);
       const Vec3 w = nearest_weights(p, centre);
       // The nearest point, clamped as sampling clamps it, must lie in the texel's square.

@@ -107,7 +107,8 @@ std::vector<Vec3> Sightlines::directions(const std::vector<TexelSite>& sites, st
 
 std::vector<TexelGroup> groups_of(const Composition& composition, const Composition::Block& block,
                                   const std::vector<TexelSite>& sites) {
-  const FeatureTexture& texels = *composition.pages[block.page].texels;
+  const TexelReader texels(*composition.pages[block.page].texels);
+  const AlphaCode code = composition.pages[block.page].texels->alpha_code();
   const std::size_t runs = (sites.size() + 3) / 4, count = (runs + 3) / 4;
   std::vector<TexelGroup> groups(count);
   for (std::size_t g = 0; g < count; ++g) {
@@ -121,7 +122,7 @@ std::vector<TexelGroup> groups_of(const Composition& composition, const Composit
               group.site[group.count - 1]);
     for (std::size_t l = 0; l < network_lanes; ++l) {
       const TexelSite& site = sites[group.site[l]];
-      const auto features = decode_features(texels.at(site.x, site.y), texels.alpha_code());
+      const auto features = decode_features(texels.at(site.x, site.y), code);
       for (std::size_t c = 0; c < texel_features; ++c) group.features[c].at[l] = static_cast<float>(features[c]);
       for (std::size_t k = 0; k < 9; ++k)
         group.turn[k].at[l] =

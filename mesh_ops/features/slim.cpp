@@ -41,7 +41,7 @@ class ShownPoints {
     std::size_t number = 0;
     for (int y = texel_within(low.y(), texels_.height()); y <= texel_within(high.y(), texels_.height()); ++y)
       for (int x = texel_within(low.x(), texels_.width()); x <= texel_within(high.x(), texels_.width()); ++x) {
-        if (!texels_.at(x, y).opaque()) continue;
+        if (!texels_.opaque(x, y)) continue;
         const Vec2 nearest = nearest_inside({x + 0.5, y + 0.5});
         // As far as a texel's corners reach.
         if ((nearest - Vec2(x + 0.5, y + 0.5)).squaredNorm() > 0.5) continue;
@@ -63,7 +63,7 @@ class ShownPoints {
       if (a + b > 1) a = 1 - a, b = 1 - b;
       const Vec3 weights(1 - a - b, a, b);
       const Vec2 uv = uv_[0] * weights[0] + uv_[1] * weights[1] + uv_[2] * weights[2];
-      if (texels_.at(texel_within(uv.x(), texels_.width()), texel_within(uv.y(), texels_.height())).opaque())
+      if (texels_.opaque(texel_within(uv.x(), texels_.width()), texel_within(uv.y(), texels_.height())))
         return at(weights);
     }
     return places_[dice.below(places_.size())];
@@ -114,11 +114,12 @@ Texel rounded(Texel texel, const FeatureBits& bits) {
 template <class Change>
 std::shared_ptr<const FeatureTexture> changed(const std::shared_ptr<const FeatureTexture>& texels, Change change) {
   std::atomic<bool> any = false;
+  const TexelReader reader(*texels);
   auto made = std::make_shared<const FeatureTexture>(
       FeatureTexture::from_rows(texels->width(), texels->height(), texels->alpha_code(), [&](int y, Texel* row) {
         bool differs = false;
         for (int x = 0; x < texels->width(); ++x) {
-          const Texel& was = texels->at(x, y);
+          const Texel& was = reader.at(x, y);
           row[x] = change(x, y, was);
           differs = differs || !(row[x] == was);
         }
@@ -148,15 +149,17 @@ ColorSample sampled_colors(const BakedObject& object) {
   for (const TextureSet& set : object.sets) opaque += set.texels->opaque_count();
   const std::uint64_t step = std::max<std::uint64_t>(1, opaque / wanted);
   std::uint64_t number = 0;
-  for (const TextureSet& set : object.sets)
+  for (const TextureSet& set : object.sets) {
+    const TexelReader texels(*set.texels);
     for (int y = 0; y < set.texels->height(); ++y)
       for (int x = 0; x < set.texels->width();) {
         const int end = std::min(set.texels->width(), (x / TexelTile::size + 1) * TexelTile::size);
-        const Texel* part = set.texels->row_part(x, y);
+        const Texel* part = texels.row_part(x, y);
         for (const Texel* t = part; t < part + (end - x); ++t)
           if (t->opaque() && number++ % step == 0) sample.texels.push_back({*t, set.texels->alpha_code()});
         x = end;
       }
+  }
   return sample;
 }
 

@@ -27,13 +27,13 @@ std::uint32_t opaque_along(const FeatureTexture& texels, const Vec2& a, const Ve
   const Vec2 first = a + shift + along * (0.5 / places), step = along / places;
   const double right = texels.width() - 1.0, bottom = texels.height() - 1.0;
   std::uint32_t mask = 0;
-  const Texel* texel = nullptr;
+  bool opaque = false;
   int x = -1, y = -1;
   for (int i = 0; i < places; ++i) {
     const int next_x = static_cast<int>(std::clamp(first.x() + i * step.x(), 0.0, right));
     const int next_y = static_cast<int>(std::clamp(first.y() + i * step.y(), 0.0, bottom));
-    if (next_x != x || next_y != y) texel = &texels.at(x = next_x, y = next_y);
-    mask |= texel->opaque() ? 1U << i : 0U;
+    if (next_x != x || next_y != y) opaque = texels.opaque(x = next_x, y = next_y);
+    mask |= opaque ? 1U << i : 0U;
   }
   return mask;
 }
@@ -54,7 +54,7 @@ void opaque_points(const BakedObject& object, double gap, std::vector<Vec3>& poi
       }
       const int pitch = texel > 0 ? static_cast<int>(std::clamp(gap / 4 / texel, 1.0, 8.0)) : 1;
       for_each_texel_inside(uv, set.texels->width(), set.texels->height(), [&](int x, int y) {
-        if (x % pitch != 0 || y % pitch != 0 || !set.texels->at(x, y).opaque()) return;
+        if (x % pitch != 0 || y % pitch != 0 || !set.texels->opaque(x, y)) return;
         const Vec3 w = barycentric(uv, {x + 0.5, y + 0.5});
         points.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
         owner.push_back(triangle);

@@ -39,7 +39,7 @@ bool shows_opaque(const FeatureTexture& texels, std::array<Vec2, 3> p) {
   constexpr double reach = 1.0;
   for (int y = top; y <= bottom; ++y)
     for (int x = left; x <= right; ++x) {
-      if (!texels.at(x, y).opaque()) continue;
+      if (!texels.opaque(x, y)) continue;
       const Vec2 centre(x + 0.5, y + 0.5);
       if (std::all_of(edges.begin(), edges.end(),
                       [&](const Edge& e) { return e.normal.dot(centre) + e.offset >= -reach; }))

@@ -36,20 +36,20 @@ struct Sum {
 };
 static_assert(std::endian::native == std::endian::little && sizeof(Texel) == 8);
 
-TriangleLooks looks_of(const TextureSet& set, std::size_t f) {
+TriangleLooks looks_of(const TextureSet& set, const TexelReader& reader, std::size_t f) {
   const FeatureTexture& texels = *set.texels;
   const std::array<Vec2, 3> corners = texel_corners(set, f);
   Sum sum;
   for_each_row_inside(corners, texels.width(), texels.height(), [&](int y, int begin, int end) {
     while (begin < end) {
       const int part = std::min(end, (begin / TexelTile::size + 1) * TexelTile::size);
-      sum.add(texels.row_part(begin, y), part - begin);
+      sum.add(reader.row_part(begin, y), part - begin);
       begin = part;
     }
   });
   if (sum.all == 0) {
     const Vec2 middle = (corners[0] + corners[1] + corners[2]) / 3;
-    sum.add(&texels.sample(middle.x() / texels.width(), 1 - middle.y() / texels.height()), 1);
+    sum.add(&reader.sample(middle.x() / texels.width(), 1 - middle.y() / texels.height()), 1);
   }
   TriangleLooks looks;
   looks.opacity = static_cast<float>(sum.opaque) / static_cast<float>(sum.all);
@@ -89,9 +89,10 @@ void decode_colors(const Decoder& decoder, TriangleLooks* looks, Eigen::Index co
 
 std::vector<TriangleLooks> triangle_looks(const TextureSet& set, const Decoder& decoder) {
   std::vector<TriangleLooks> looks(set.soup.triangle_count());
+  const TexelReader reader(*set.texels);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, looks.size(), 512),
                     [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t f = range.begin(); f < range.end(); ++f) looks[f] = looks_of(set, f);
+                      for (std::size_t f = range.begin(); f < range.end(); ++f) looks[f] = looks_of(set, reader, f);
                       decode_colors(decoder, &looks[range.begin()], static_cast<Eigen::Index>(range.size()));
                     });
   return looks;

@@ -121,7 +121,7 @@ bool any_opaque(const FeatureTexture& texels, const TexelRect& rect, double x, d
             bottom = std::min(rect.bottom, static_cast<int>(std::ceil(y + reach_y)));
   for (int row = top; row <= bottom; ++row)
     for (int column = left; column <= right; ++column)
-      if (texels.at(column, row).opaque()) return true;
+      if (texels.opaque(column, row)) return true;
   return false;
 }
 

@@ -78,7 +78,7 @@ std::uint64_t found_hash(const BakedObject& object) {
     add(set.soup.faces());
     add(std::array<int, 2>{set.texels->width(), set.texels->height()});
     for (int row = 0; row < set.texels->tile_rows(); ++row)
-      for (int column = 0; column < set.texels->tile_columns(); ++column) add(set.texels->tile(column, row)->texels);
+      for (int column = 0; column < set.texels->tile_columns(); ++column) add(*set.texels->tile(column, row)->texels());
   }
   return content_hash(view(hashes));
 }

@@ -104,6 +104,7 @@ std::vector<Radiance> site_colors(const BakedObject& object,
   const TexelColors look(*object.decoder, {});
   for (std::size_t s = 0; s < charts.size(); ++s) {
     const TextureSet& set = object.sets[s];
+    const TexelReader texels(*set.texels);
     const std::size_t first = sites.first[s];
     tbb::parallel_for(first, sites.first[s + 1], [&](std::size_t i) {
       const LightChart::Node& node = charts[s]->nodes[i - first];
@@ -131,9 +132,8 @@ std::vector<Radiance> site_colors(const BakedObject& object,
         for (int dx = -1; dx <= 1; ++dx) {
           const int x = std::clamp(static_cast<int>(std::floor(at.x())) + dx, 0, set.texels->width() - 1),
                     y = std::clamp(static_cast<int>(std::floor(at.y())) + dy, 0, set.texels->height() - 1);
-          const Texel& texel = set.texels->at(x, y);
-          if (!texel.opaque()) continue;
-          const auto of_texel = decode_features(texel, set.texels->alpha_code());
+          if (!set.texels->opaque(x, y)) continue;
+          const auto of_texel = decode_features(texels.at(x, y), set.texels->alpha_code());
           for (std::size_t k = 0; k < fed.size(); ++k) {
             const double share = k < 4 ? f : 1 - f;
             if (share == 0) continue;

@@ -45,7 +45,7 @@ void let_through_transparent(const RTCFilterFunctionNArguments* args) {
     const Face& face = (*surface.faces)[primitive];
     const std::vector<Vec2>& uvs = *surface.uvs;
     const Vec2 uv = uvs[face[0]] * (1 - u - v) + uvs[face[1]] * u + uvs[face[2]] * v;
-    if (!surface.texels->sample(uv.x(), uv.y()).opaque()) args->valid[i] = 0;
+    if (!surface.texels->opaque_at(uv.x(), uv.y())) args->valid[i] = 0;
   }
 }
 

@@ -188,7 +188,7 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standp
       const std::vector<Vec3>& p = set.soup.positions();
       std::vector<Vec3> opaque;
       for_each_texel_inside(uv, set.texels->width(), set.texels->height(), [&](int x, int y) {
-        if (!set.texels->at(x, y).opaque()) return;
+        if (!set.texels->opaque(x, y)) return;
         const Vec3 w = barycentric(uv, {x + 0.5, y + 0.5});
         opaque.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
       });

@@ -114,7 +114,7 @@ TexelPacking pack_texels(const TextureSet& set, const std::vector<std::uint8_t>&
   return packing;
 }
 
-void fill_packed_rows(const TexelPacking& packing, const FeatureTexture& texels, int first_row, int rows,
+void fill_packed_rows(const TexelPacking& packing, const TexelReader& texels, int first_row, int rows,
                       std::vector<Texel>& filled) {
   const auto width = static_cast<std::size_t>(packing.width);
   filled.assign(width * static_cast<std::size_t>(rows), Texel{});
@@ -148,9 +148,8 @@ bool newly_opaque(const FeatureTexture& before, const FeatureTexture& after) {
   for (int row = 0; row < after.tile_rows(); ++row)
     for (int column = 0; column < after.tile_columns(); ++column) {
       const TexelTile &was = *before.tile(column, row), &is = *after.tile(column, row);
-      if (&was == &is || is.opaque_count == 0) continue;
-      for (std::size_t k = 0; k < is.texels.size(); ++k)
-        if (is.texels[k].opaque() && !was.texels[k].opaque()) return true;
+      if (&was == &is || is.opaque_count() == 0) continue;
+      if (is.more_opaque_than(was)) return true;
     }
   return false;
 }

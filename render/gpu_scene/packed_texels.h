@@ -31,7 +31,7 @@ struct TexelPacking {
 TexelPacking pack_texels(const TextureSet& set, const std::vector<std::uint8_t>& shown);
 
 /// Texels of rows [first_row, first_row + rows) of what is on the GPU, row by row.
-void fill_packed_rows(const TexelPacking& packing, const FeatureTexture& texels, int first_row, int rows,
+void fill_packed_rows(const TexelPacking& packing, const TexelReader& texels, int first_row, int rows,
                       std::vector<Texel>& filled);
 
 /// Tiles that differ between textures of one size, as flags in their order.

@@ -12,13 +12,13 @@ namespace rebake {
 namespace {
 
 // The parts of a rectangle that lie in changed tiles. Returns how many texels that is.
-std::uint64_t upload_changed(const FeatureTexture& texels, const std::vector<std::uint8_t>& changed,
+std::uint64_t upload_changed(const TexelReader& texels, int tile_columns, const std::vector<std::uint8_t>& changed,
                              const PackedRect& rect, std::vector<Texel>& rows) {
   constexpr int size = TexelTile::size;
   std::uint64_t uploaded = 0;
   for (int row = rect.y / size; row <= (rect.y + rect.height - 1) / size; ++row)
     for (int column = rect.x / size; column <= (rect.x + rect.width - 1) / size; ++column) {
-      if (changed[static_cast<std::size_t>(row) * static_cast<std::size_t>(texels.tile_columns()) +
+      if (changed[static_cast<std::size_t>(row) * static_cast<std::size_t>(tile_columns) +
                   static_cast<std::size_t>(column)] == 0)
         continue;
       const int left = std::max<int>(rect.x, column * size), top = std::max<int>(rect.y, row * size);
@@ -94,13 +94,16 @@ bool upload_rows(GpuSurface& surface, int count) {
   count = std::min(count, packing.height - surface.rows_uploaded);
   if (count > 0) {
     std::vector<Texel> rows;
-    fill_packed_rows(packing, *surface.source.texels, surface.rows_uploaded, count, rows);
+    if (!surface.reading) surface.reading = std::make_unique<const TexelReader>(*surface.source.texels);
+    fill_packed_rows(packing, *surface.reading, surface.rows_uploaded, count, rows);
     glBindTexture(GL_TEXTURE_2D, surface.texels.name());
     glTexSubImage2D(GL_TEXTURE_2D, 0, 0, surface.rows_uploaded, packing.width, count, GL_RG_INTEGER, GL_UNSIGNED_INT,
                     rows.data());
     surface.rows_uploaded += count;
   }
-  return surface.rows_uploaded == packing.height;
+  if (surface.rows_uploaded < packing.height) return false;
+  surface.reading.reset();
+  return true;
 }
 
 bool serves(const std::shared_ptr<const FeatureTexture>& made_for, const TextureSet& source, const TextureSet& set) {
@@ -113,15 +116,18 @@ std::uint64_t take_over(GpuSurface& surface, const TextureSet& set) {
   const FeatureTexture &before = *surface.source.texels, &after = *set.texels;
   const std::vector<std::uint8_t> changed = changed_tiles(before, after);
   glBindTexture(GL_TEXTURE_2D, surface.texels.name());
+  const TexelReader texels(after);
   std::vector<Texel> rows;
   std::uint64_t uploaded = 0;
   if (surface.packing->whole)
     uploaded = upload_changed(
-        after, changed,
+        texels, after.tile_columns(), changed,
         {0, 0, static_cast<std::uint16_t>(after.width()), static_cast<std::uint16_t>(after.height()), 0, 0}, rows);
   else
-    for (const PackedRect& rect : surface.packing->rects) uploaded += upload_changed(after, changed, rect, rows);
+    for (const PackedRect& rect : surface.packing->rects)
+      uploaded += upload_changed(texels, after.tile_columns(), changed, rect, rows);
   surface.source = set;
+  surface.reading.reset();
   return uploaded;
 }
 

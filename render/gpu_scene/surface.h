@@ -41,7 +41,8 @@ struct GpuSurface {
   gl::Buffer vertices;
   gl::Buffer indices;
   gl::Texture texels;
-  int rows_uploaded = 0;  ///< of the texels
+  int rows_uploaded = 0;                       ///< of the texels
+  std::unique_ptr<const TexelReader> reading;  ///< of the source's, while they are uploaded
 };
 /// All but the texels.
 GpuSurface begin_upload(PreparedSurface made);

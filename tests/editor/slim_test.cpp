@@ -161,12 +161,13 @@ std::shared_ptr<const BakedObject> alike_sphere() {
   TextureSet& set = object->sets[0];
   const TexelPatches patches = texel_patches(set);
   const TexelRect& first = patches.rects.front();
+  const TexelReader texels(*set.texels);
   FeatureTexture::Change change(*set.texels);
   for (std::size_t p = 1; p < patches.rects.size(); ++p) {
     const TexelRect& rect = patches.rects[p];
     for (int y = 0; y < rect.height(); ++y)
       for (int x = 0; x < rect.width(); ++x) {
-        Texel texel = set.texels->at(first.left + x, first.top + y);
+        Texel texel = texels.at(first.left + x, first.top + y);
         std::uint8_t& value = texel.feat1[p % 3];
         value = static_cast<std::uint8_t>(std::clamp(value + (p % 2 == 0 ? 1 : -1), 1, 255));
         change.at(rect.left + x, rect.top + y) = texel;

@@ -26,10 +26,11 @@ TEST(Erase, OnlyOpacityOfTexelsInsideChanges) {
     });
   }
   std::uint64_t cleared = 0;
+  const TexelReader texels_before(before), texels_after(after);
   for (int y = 0; y < before.height(); ++y)
     for (int x = 0; x < before.width(); ++x) {
-      Texel was = before.at(x, y);
-      const Texel& is = after.at(x, y);
+      Texel was = texels_before.at(x, y);
+      const Texel& is = texels_after.at(x, y);
       if (expected[static_cast<std::size_t>(y * before.width() + x)] != 0) {
         EXPECT_FALSE(is.opaque()) << x << " " << y;
       }
@@ -51,12 +52,13 @@ TEST(Erase, TexelsAtThePicturesBorderAreNotTakenForOthers) {
   const Erased result = erase_texels(
       *object, [](const Vec3&) { return true; }, [](const auto&) { return true; });
   const FeatureTexture &before = *set.texels, &after = *result.sets[0].texels;
+  const TexelReader texels_before(before), texels_after(after);
   for (int y = 0; y < before.height(); ++y)
     for (int x = 0; x < before.width(); ++x) {
       // Distance beyond the diagonal, in texels along both sides together.
       const double beyond = static_cast<double>(x) / before.width() + static_cast<double>(y) / before.height() - 1;
       if (beyond > 0) {
-        EXPECT_EQ(before.at(x, y), after.at(x, y)) << x << " " << y;
+        EXPECT_EQ(texels_before.at(x, y), texels_after.at(x, y)) << x << " " << y;
       }
     }
 }

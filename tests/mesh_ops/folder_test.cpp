@@ -83,16 +83,17 @@ TEST_P(ByLayout, DeletionKeepsTexelsAndDropsUnusedSpace) {
   ASSERT_EQ(back->triangle_count(), cut->triangle_count());
   EXPECT_LT(back->sets[0].texels->width() * back->sets[0].texels->height(),
             whole.sets[0].texels->width() * whole.sets[0].texels->height() / 3);
+  const TexelReader texels_back(*back->sets[0].texels), texels_cut(*cut->sets[0].texels);
   for (std::size_t f = 0; f < back->triangle_count(); ++f) {
     const auto corner = [f](const BakedObject& o, std::size_t k) { return o.sets[0].soup.faces()[f][k]; };
     for (int a = 0; a <= 8; ++a)
       for (int b = 0; a + b <= 8; ++b) {
-        const auto at = [&](const BakedObject& o) {
+        const auto at = [&](const BakedObject& o, const TexelReader& texels) {
           const auto& uv = o.sets[0].soup.uvs();
           const Vec2 p = (uv[corner(o, 0)] * a + uv[corner(o, 1)] * b + uv[corner(o, 2)] * (8 - a - b)) / 8;
-          return o.sets[0].texels->sample(p.x(), p.y());
+          return texels.sample(p.x(), p.y());
         };
-        EXPECT_EQ(at(*back), at(*cut)) << "face " << f;
+        EXPECT_EQ(at(*back, texels_back), at(*cut, texels_cut)) << "face " << f;
       }
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_EQ(back->sets[0].soup.positions()[corner(*back, k)], cut->sets[0].soup.positions()[corner(*cut, k)]);
@@ -114,9 +115,10 @@ TEST(Folder, LayoutsConvert) {
   export_scene(split, temporary.path() / "unsplit", {.layout = Layout::unsplit, .sources = {}});
   const auto unsplit = read_any(temporary.path() / "unsplit", Axes::y_up).roots[0]->object;
   EXPECT_EQ(unsplit->layout, Layout::unsplit);
-  const FeatureTexture &a = *split.roots[0]->object->sets[0].texels, &b = *unsplit->sets[0].texels;
-  for (int y = 0; y < a.height(); ++y)
-    for (int x = 0; x < a.width(); ++x) {
+  const FeatureTexture& split_texels = *split.roots[0]->object->sets[0].texels;
+  const TexelReader a(split_texels), b(*unsplit->sets[0].texels);
+  for (int y = 0; y < split_texels.height(); ++y)
+    for (int x = 0; x < split_texels.width(); ++x) {
       ASSERT_EQ(a.at(x, y).opaque(), b.at(x, y).opaque());
       // Halved to plain is exact in what is decoded.
       if (a.at(x, y).opaque()) {
@@ -202,8 +204,9 @@ TEST(Folder, FeaturePngsCarryBytesAndNoColourChunks) {
   const std::string png = write_feature_png(*texture, 0);
   for (const char* chunk : {"gAMA", "cHRM", "iCCP", "sRGB"}) EXPECT_EQ(png.find(chunk), std::string::npos) << chunk;
   const FeatureTexture back = read_feature_pngs(png, "a", write_feature_png(*texture, 1), "b", AlphaCode::halved);
+  const TexelReader were(*texture), are(back);
   for (int y = 0; y < back.height(); ++y)
-    for (int x = 0; x < back.width(); ++x) ASSERT_EQ(back.at(x, y), texture->at(x, y));
+    for (int x = 0; x < back.width(); ++x) ASSERT_EQ(are.at(x, y), were.at(x, y));
 }
 
 // What reads folders stops all its work when one file is bad; a texture that is being made meanwhile was once left with
@@ -211,6 +214,7 @@ TEST(Folder, FeaturePngsCarryBytesAndNoColourChunks) {
 TEST(Folder, TexturesAreWholeWhereWorkAroundThemIsStopped) {
   const auto texture = made_object()->sets[0].texels;
   const std::string feat0 = write_feature_png(*texture, 0), feat1 = write_feature_png(*texture, 1);
+  const TexelReader texels(*texture);
   std::optional<FeatureTexture> read, made;
   tbb::task_group_context around;
   tbb::parallel_for(
@@ -220,15 +224,16 @@ TEST(Folder, TexturesAreWholeWhereWorkAroundThemIsStopped) {
         read = read_feature_pngs(feat0, "a", feat1, "b", texture->alpha_code());
         made = FeatureTexture::from_rows(texture->width(), texture->height(), texture->alpha_code(),
                                          [&](int y, Texel* row) {
-                                           for (int x = 0; x < texture->width(); ++x) row[x] = texture->at(x, y);
+                                           for (int x = 0; x < texture->width(); ++x) row[x] = texels.at(x, y);
                                          });
       },
       around);
   ASSERT_TRUE(read && made);
+  const TexelReader texels_read(*read), texels_made(*made);
   for (int y = 0; y < texture->height(); ++y)
     for (int x = 0; x < texture->width(); ++x) {
-      ASSERT_EQ(read->at(x, y), texture->at(x, y));
-      ASSERT_EQ(made->at(x, y), texture->at(x, y));
+      ASSERT_EQ(texels_read.at(x, y), texels.at(x, y));
+      ASSERT_EQ(texels_made.at(x, y), texels.at(x, y));
     }
 }
 

@@ -184,10 +184,11 @@ void expect_sound(const Result& result) {
   ASSERT_EQ(object.sets.size(), result.composition.pages.size());
   for (std::size_t k = 0; k < object.sets.size(); ++k) {
     const FeatureTexture &after = *object.sets[k].texels, &before = *result.composition.pages[k].texels;
+    const TexelReader texels(after);
     for (int y = 0; y < after.height(); ++y)
       for (int x = 0; x < after.width(); ++x) {
-        ASSERT_EQ(after.at(x, y).opaque(), before.at(x, y).opaque());
-        ASSERT_TRUE(after.alpha_code() == AlphaCode::plain || after.at(x, y).feat0[3] >= 128);
+        ASSERT_EQ(after.opaque(x, y), before.opaque(x, y));
+        ASSERT_TRUE(after.alpha_code() == AlphaCode::plain || texels.at(x, y).feat0[3] >= 128);
       }
   }
 }
@@ -204,8 +205,9 @@ TEST(Fuse, GivesTheSameBytesAtAnyNumberOfThreads) {
     }
     EXPECT_TRUE(*results[0].object->decoder == *results[1].object->decoder);
     const FeatureTexture &a = *results[0].object->sets[0].texels, &b = *results[1].object->sets[0].texels;
+    const TexelReader texels_a(a), texels_b(b);
     for (int y = 0; y < a.height(); ++y)
-      for (int x = 0; x < a.width(); ++x) ASSERT_EQ(a.at(x, y), b.at(x, y));
+      for (int x = 0; x < a.width(); ++x) ASSERT_EQ(texels_a.at(x, y), texels_b.at(x, y));
   }
 }
 
@@ -233,8 +235,8 @@ TEST(Fuse, KeepsTheTexelsOfAKeptNodeBitForBit) {
   const Result result = fused(scene, options);
   EXPECT_TRUE(*result.fused.object->decoder == *object->decoder);
   const auto plain = result.composition.pages[0].texels;
-  const FeatureTexture halved = *with_alpha_code(plain, AlphaCode::halved),
-                       &after = *result.fused.object->sets[0].texels;
+  const auto halved_texture = with_alpha_code(plain, AlphaCode::halved);
+  const TexelReader halved(*halved_texture), after(*result.fused.object->sets[0].texels);
   std::size_t kept = 0, changed = 0;
   for (const Composition::Block& block : result.composition.blocks)
     for (const TexelSite& site : sites_of(result.composition, block)) {
@@ -326,15 +328,16 @@ TEST_P(FuseHardCases, OneTexelAndNone) {
   options.width = GetParam();
   auto one = std::make_shared<BakedObject>(*made_object(small(2)));
   const auto only = [](const FeatureTexture& from, int x, int y) {
+    const TexelReader texels(from);
     return std::make_shared<const FeatureTexture>(
         FeatureTexture::from_rows(from.width(), from.height(), from.alpha_code(), [&, x, y](int row, Texel* out) {
           for (int column = 0; column < from.width(); ++column)
-            out[column] = column == x && row == y ? from.at(x, y) : empty_texel(from.alpha_code());
+            out[column] = column == x && row == y ? texels.at(x, y) : empty_texel(from.alpha_code());
         }));
   };
   const auto texels = one->sets[0].texels;
   one->sets[0].texels = only(*texels, 22, 6);
-  ASSERT_TRUE(one->sets[0].texels->at(22, 6).opaque());
+  ASSERT_TRUE(one->sets[0].texels->opaque(22, 6));
   const Result result = fused(with(with({}, made_object(small(1))), one, moved(2.5)), options);
   expect_sound(result);
   EXPECT_EQ(result.fused.report.parts.back().errors.texels, 1U);

@@ -159,8 +159,9 @@ TEST(RgbaPng, OtherKindsAreReadByOpenImageIO) {
   EXPECT_TRUE(open_rgba_png(plain, name));
   EXPECT_FALSE(open_rgba_png(interlaced, name));
   const FeatureTexture read = read_feature_pngs(plain, name, interlaced, name, AlphaCode::plain);
-  EXPECT_EQ(read.at(0, 0).feat0, (std::array<std::uint8_t, 4>{1, 2, 3, 4}));
-  EXPECT_EQ(read.at(0, 0).feat1, read.at(0, 0).feat0);
+  const Texel texel = TexelReader(read).at(0, 0);
+  EXPECT_EQ(texel.feat0, (std::array<std::uint8_t, 4>{1, 2, 3, 4}));
+  EXPECT_EQ(texel.feat1, texel.feat0);
 }
 
 TEST(RgbaPng, SaysWhatIsDamaged) {

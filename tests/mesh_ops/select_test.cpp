@@ -145,6 +145,7 @@ TEST(Select, TraitsAreThoseOfTheOpaqueTexels) {
     }
     Eigen::Array<double, 8, 1> sum = Eigen::Array<double, 8, 1>::Zero();
     int all = 0, opaque = 0;
+    const TexelReader texels(*set.texels);
     const auto side = [](const Vec2& a, const Vec2& b, const Vec2& c) {
       return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
     };
@@ -154,7 +155,7 @@ TEST(Select, TraitsAreThoseOfTheOpaqueTexels) {
         const double s0 = side(p[0], p[1], c), s1 = side(p[1], p[2], c), s2 = side(p[2], p[0], c);
         if (std::min({s0, s1, s2}) < 0 && std::max({s0, s1, s2}) > 0) continue;
         ++all;
-        const Texel& texel = set.texels->at(x, y);
+        const Texel& texel = texels.at(x, y);
         if (!texel.opaque()) continue;
         ++opaque;
         const auto decoded = decode_features(texel, AlphaCode::halved);

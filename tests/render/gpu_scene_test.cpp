@@ -286,7 +286,8 @@ TEST(PackedTexels, HoldWhatTrianglesShow) {
     const PreparedSurface surface = prepared_surface(set);
     const TexelPacking& packing = *surface.packing;
     std::vector<Texel> here;
-    fill_packed_rows(packing, *set.texels, 0, packing.height, here);
+    const TexelReader texels(*set.texels);
+    fill_packed_rows(packing, texels, 0, packing.height, here);
     for (const Face& face : *surface.shown.faces) {
       const SurfaceVertex &a = surface.vertices[face[0]], &b = surface.vertices[face[1]],
                           &c = surface.vertices[face[2]];
@@ -298,7 +299,7 @@ TEST(PackedTexels, HoldWhatTrianglesShow) {
         ASSERT_EQ(
             here[static_cast<std::size_t>(y - a.first_texel[1] + a.place[1]) * static_cast<std::size_t>(packing.width) +
                  static_cast<std::size_t>(x - a.first_texel[0] + a.place[0])],
-            set.texels->at(x, y));
+            texels.at(x, y));
       }
     }
     const double share = static_cast<double>(packing.width) * packing.height /

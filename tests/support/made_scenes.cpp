@@ -185,11 +185,12 @@ std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int 
       faces.push_back({first, first + 3, first + 2});
     }
   // Some alphas are 127, which no split folder holds.
+  const TexelReader texels(read);
   object->sets.push_back(
       {Soup(positions, uvs, faces), std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(
                                         read.width(), read.height(), AlphaCode::halved, [&](int y, Texel* row) {
                                           for (int x = 0; x < read.width(); ++x) {
-                                            row[x] = read.at(x, y);
+                                            row[x] = texels.at(x, y);
                                             for (auto* feat : {&row[x].feat0, &row[x].feat1})
                                               (*feat)[3] = std::max<std::uint8_t>((*feat)[3], 128);
                                           }

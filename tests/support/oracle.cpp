@@ -18,6 +18,7 @@ struct Surface {
   Mat3 world_to_object;       // directions
   std::vector<Vec3> corners;  // world positions relative to the eye
   int decoder;
+  std::unique_ptr<const TexelReader> texels;
 };
 
 struct Hit {
@@ -71,7 +72,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
   const FeatureTexture& texels = *surface.set->texels;
   const int x = std::clamp(static_cast<int>(std::floor(uv.x() * texels.width())), 0, texels.width() - 1);
   const int y = std::clamp(static_cast<int>(std::floor((1 - uv.y()) * texels.height())), 0, texels.height() - 1);
-  const Texel& texel = texels.at(x, y);
+  const Texel& texel = surface.texels->at(x, y);
   if (texel.feat0[0] == 0) return;
   Vec3 direction = surface.world_to_object * context.ray;
   if (soup.rotations() != nullptr) {
@@ -132,9 +133,10 @@ Image cast_picture(const Scene& scene, const View& view) {
       ++decoder;
     if (decoder == static_cast<int>(decoders.size())) decoders.push_back(placed.node->object->decoder.get());
     for (const TextureSet& set : placed.node->object->sets) {
-      Surface surface{&set, placed.node->object.get(), turn_back(placed.to_world.linear()), {}, decoder};
+      Surface surface{&set, placed.node->object.get(), turn_back(placed.to_world.linear()), {}, decoder, {}};
       for (const Vec3& p : set.soup.positions())
         surface.corners.push_back(placed.to_world.linear() * p + (placed.to_world.translation() - view.camera.eye));
+      surface.texels = std::make_unique<const TexelReader>(*set.texels);
       surfaces.push_back(std::move(surface));
     }
   }
