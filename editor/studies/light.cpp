@@ -62,7 +62,8 @@ class Body {
     sites_ = light_sites(*object_, charts_);
     rays_ = std::make_unique<SceneRays>(
         std::vector<SceneRays::Instance>{{rays_of(*object_), Affine::Identity(), object_->bounds().diagonal().norm()}});
-    for (const SiteLight& lit : traced_light(sites_.baked, {}, *rays_, Light(), Mat3::Identity(), {256}, progress))
+    for (const SiteLight& lit :
+         traced_light(sites_.baked, {}, *rays_, Light(), Mat3::Identity(), {.rays = 256}, progress))
       facing_.push_back(
           static_cast<float>(facing_by_openness(static_cast<double>(lit.open[0]), static_cast<double>(lit.open[1]))));
   }
@@ -71,7 +72,7 @@ class Body {
   const SceneRays& rays() const { return *rays_; }
   std::vector<Radiance> irradiance(const Light& light, int rays, const Progress& progress) const {
     std::vector<Radiance> shown;
-    const auto lit = traced_light(sites_.baked, {}, *rays_, light, Mat3::Identity(), {rays}, progress);
+    const auto lit = traced_light(sites_.baked, {}, *rays_, light, Mat3::Identity(), {.rays = rays}, progress);
     for (std::size_t i = 0; i < lit.size(); ++i) shown.push_back(shown_light(lit[i], facing_[i]));
     return shown;
   }

@@ -8,7 +8,14 @@ namespace rebake {
 
 BakedLight::BakedLight(std::shared_ptr<const BakedObject> object, const SceneLight& settings,
                        const LightingOptions& options, const Progress& progress)
-    : object_(std::move(object)), bodies_(bodies_of(*object_)), options_(options) {
+    : object_(std::move(object)),
+      bodies_(bodies_of(*object_)),
+      untouched_(object_->bodies.empty() &&
+                 std::none_of(object_->sets.begin(), object_->sets.end(),
+                              [](const TextureSet& set) {
+                                return set.soup.vertex_attributes().shared(Soup::displacement) != nullptr;
+                              })),
+      options_(options) {
   charts = light_charts(*object_, options.spacing, options.most_nodes);
   sites = light_sites(*object_, charts);
   colors = site_colors(*object_, charts, sites, std::vector<float>(sites.size(), 0.5F));
@@ -58,6 +65,7 @@ std::vector<SiteLight> BakedLight::as_baked(const std::vector<std::uint8_t>& wan
                                             const Progress& progress) {
   const bool of_shown = !wanted.empty() && wanted == sides;
   if (const auto known = of_shown_.find(rays); of_shown && known != of_shown_.end()) return known->second;
+  if (of_shown && untouched_) return of_shown_[rays] = among({}, rays, progress);
   std::vector<SiteLight> result(sites.size());
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const std::vector<std::uint8_t> flags = of_body(b, wanted);
@@ -68,6 +76,19 @@ std::vector<SiteLight> BakedLight::as_baked(const std::vector<std::uint8_t>& wan
   }
   if (of_shown) of_shown_[rays] = result;
   return result;
+}
+
+std::vector<SiteLight> BakedLight::among(const std::vector<Occluder>& others, int rays, const Progress& progress) {
+  std::vector<Occluder> occluders{{object_, Affine::Identity()}};
+  occluders.insert(occluders.end(), others.begin(), others.end());
+  Results* const results = options_.keep_traced ? options_.results : nullptr;
+  return kept_light(
+      sites.now, sides, occluders, *light, Mat3::Identity(), rays, results, progress, [&]() -> const OpenRays& {
+        if (const auto known = open_.find(rays); known != open_.end()) return known->second;
+        return open_
+            .emplace(rays, kept_open_rays(sites.now, sides, occluders.front(), light->suns, rays, results, progress))
+            .first->second;
+      });
 }
 
 }  // namespace rebake

@@ -30,6 +30,10 @@ class BakedLight {
   const std::vector<Radiance>& shown_colors();
   /// What light fell on the sites of some sides as they were baked, whole; all sides where `wanted` is empty.
   std::vector<SiteLight> as_baked(const std::vector<std::uint8_t>& wanted, int rays, const Progress& progress);
+  /// Whether it is as its light was baked.
+  bool untouched() const { return untouched_; }
+  /// What falls on what shows of an untouched object, among others that stand around it.
+  std::vector<SiteLight> among(const std::vector<Occluder>& others, int rays, const Progress& progress);
   /// The sides of `wanted` (of all, where it is empty) that belong to a body.
   std::vector<std::uint8_t> of_body(std::size_t body, const std::vector<std::uint8_t>& wanted) const;
   /// kept_light(), kept if the options say so.
@@ -40,9 +44,11 @@ class BakedLight {
  private:
   std::shared_ptr<const BakedObject> object_;
   std::vector<BakedBody> bodies_;
+  bool untouched_;
   const LightingOptions& options_;
   std::vector<Radiance> shown_colors_;
   std::map<int, std::vector<SiteLight>> of_shown_;  ///< as baked, by rays
+  std::map<int, OpenRays> open_;                    ///< of what shows, by rays
 };
 
 /// Of all objects of a scene, each made when it is first asked for.

@@ -15,29 +15,37 @@ double facing_by_openness(double first, double second) {
 
 namespace {
 
-// Irradiance over π of what a site sees of a sun.
+std::size_t rays_to_sun(int rays) { return static_cast<std::size_t>(std::max(4, rays / 4)); }
+
+// Irradiance over π of what a site sees of a sun; `open(ray, direction)` says whether nothing hides it.
+template <class Open>
 Radiance sunlight(const SiteFrame& frame, const Sun& sun, const Vec3& towards, const std::vector<DiskPoint>& disk,
-                  const SceneRays& around) {
+                  Open open) {
   const double r = std::tan(sun.radius);
   if (frame.normal().dot(towards) <= -r) return Radiance::Zero();
   const Vec3 u = towards.unitOrthogonal(), v = towards.cross(u);
   double share = 0;
-  for (const DiskPoint& point : disk) {
-    const DiskPoint p = frame.turned(point);
+  for (std::size_t k = 0; k < disk.size(); ++k) {
+    const DiskPoint p = frame.turned(disk[k]);
     const Vec3 d = (towards + r * (p.x * u + p.y * v)).normalized();
     const double above = frame.normal().dot(d);
-    if (above > 0 && !around.shaded(frame.from(), d)) share += above;
+    if (above > 0 && open(k, d)) share += above;
   }
   return share / static_cast<double>(disk.size()) * sun.irradiance;
 }
 
 }  // namespace
 
+OpenRays::OpenRays(std::size_t sites, int rays, std::size_t suns)
+    : words_a_side_((static_cast<std::size_t>(rays) + suns * rays_to_sun(rays) + 63) / 64),
+      words_(2 * sites * words_a_side_, 0) {}
+
 std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
                                     const SceneRays& around, const Light& light, const Mat3& to_light,
                                     const IrradianceOptions& options, const Progress& progress) {
   std::vector<SiteLight> result(sites.size());
-  const std::vector<DiskPoint> disk = disk_points(options.rays), sun_disk = disk_points(std::max(4, options.rays / 4));
+  const std::vector<DiskPoint> disk = disk_points(options.rays),
+                               sun_disk = disk_points(static_cast<int>(rays_to_sun(options.rays)));
   const bool sky = !light.sky.black();
   for_each_site(sites.size(), progress, "tracing light", 0, 1, [&](std::size_t i) {
     const LightSite& site = sites[i];
@@ -46,11 +54,16 @@ std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<
       if (!wanted.empty() && (wanted[i] >> side & 1) == 0) continue;
       const SiteFrame frame(site, i, side == 1);
       const Vec3& from = frame.from();
+      const auto passes = [&](std::size_t ray, const Vec3& d) {
+        if ((options.known != nullptr && !options.known->at(i, side, ray)) || around.shaded(from, d)) return false;
+        if (options.found != nullptr) options.found->set(i, side, ray);
+        return true;
+      };
       Radiance sum = Radiance::Zero();
       int open = 0;
-      for (const DiskPoint& point : disk) {
-        const Vec3 d = frame.direction(point);
-        if (around.shaded(from, d)) {
+      for (std::size_t k = 0; k < disk.size(); ++k) {
+        const Vec3 d = frame.direction(disk[k]);
+        if (!passes(k, d)) {
           sum += light.bounce;
           continue;
         }
@@ -59,8 +72,12 @@ std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<
       }
       result[i].irradiance[side] = sum / options.rays;
       result[i].open[side] = static_cast<float>(open) / static_cast<float>(options.rays);
-      for (const Sun& sun : light.suns)
-        result[i].irradiance[side] += sunlight(frame, sun, to_light.transpose() * sun.direction, sun_disk, around);
+      for (std::size_t s = 0; s < light.suns.size(); ++s) {
+        const Sun& sun = light.suns[s];
+        const std::size_t first = disk.size() + s * sun_disk.size();
+        result[i].irradiance[side] += sunlight(frame, sun, to_light.transpose() * sun.direction, sun_disk,
+                                               [&](std::size_t ray, const Vec3& d) { return passes(first + ray, d); });
+      }
     }
   });
   return result;
@@ -78,7 +95,9 @@ std::vector<SiteLight> traced_suns(std::span<const LightSite> sites, std::span<c
       if (!wanted.empty() && (wanted[i] >> side & 1) == 0) continue;
       const SiteFrame frame(sites[i], i, side == 1);
       for (const Sun& sun : light.suns)
-        result[i].irradiance[side] += sunlight(frame, sun, to_light.transpose() * sun.direction, disk, around);
+        result[i].irradiance[side] +=
+            sunlight(frame, sun, to_light.transpose() * sun.direction, disk,
+                     [&](std::size_t, const Vec3& d) { return !around.shaded(frame.from(), d); });
     }
   });
   return result;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,8 +22,33 @@ struct SiteLight {
 /// or a tenth as open as the other, does not show: the inside of what has one, but for cracks and a missing bottom.
 double facing_by_openness(double first, double second);
 
+/// Which of the sites' rays an object lets through, as traced_light sends them: those over both half spaces, then those
+/// to each sun. A flag a ray.
+class OpenRays {
+ public:
+  OpenRays(std::size_t sites, int rays, std::size_t suns);
+  bool at(std::size_t site, std::size_t side, std::size_t ray) const {
+    return (words_[word(site, side, ray)] >> ray % 64 & 1) != 0;
+  }
+  /// Callable from many threads for different sites.
+  void set(std::size_t site, std::size_t side, std::size_t ray) {
+    words_[word(site, side, ray)] |= std::uint64_t{1} << ray % 64;
+  }
+  std::vector<std::uint64_t>& words() { return words_; }
+
+ private:
+  std::size_t word(std::size_t site, std::size_t side, std::size_t ray) const {
+    return (2 * site + side) * words_a_side_ + ray / 64;
+  }
+  std::size_t words_a_side_;
+  std::vector<std::uint64_t> words_;
+};
+
 struct IrradianceOptions {
   int rays = 256;  ///< over each half space; a quarter of that to each sun
+  /// Of the same sites, sides, rays and suns among what `around` does not hold.
+  const OpenRays* known = nullptr;
+  OpenRays* found = nullptr;  ///< to be filled; of none yet
 };
 
 /// Traced light at sites among `around`, with directions of their space turned by `to_light` into the light's. Cosine

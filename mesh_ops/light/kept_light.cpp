@@ -26,6 +26,11 @@ void append(std::string& bytes, const std::vector<Occluder>& occluders) {
   }
 }
 
+void append_place(std::string& bytes, const Sun& sun) {
+  append(bytes, sun.direction.data(), 3 * sizeof(double));
+  append(bytes, &sun.radius, sizeof(double));
+}
+
 }  // namespace
 
 std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& object, double spacing,
@@ -43,9 +48,14 @@ std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& o
 
 std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
                                   const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
-                                  int rays, Results* results, const Progress& progress) {
+                                  int rays, Results* results, const Progress& progress,
+                                  const std::function<const OpenRays&()>& first_lets_through) {
   const auto trace = [&] {
-    return traced_light(sites, wanted, rays_among(occluders), light, to_light, {rays}, progress);
+    if (!first_lets_through)
+      return traced_light(sites, wanted, rays_among(occluders), light, to_light, {.rays = rays}, progress);
+    const std::vector<Occluder> others(occluders.begin() + 1, occluders.end());
+    return traced_light(sites, wanted, rays_among(others), light, to_light,
+                        {.rays = rays, .known = &first_lets_through()}, progress);
   };
   if (results == nullptr) return trace();
   std::string inputs;
@@ -57,8 +67,7 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
   append(inputs, occluders);
   append(inputs, light.sky.texels());
   for (const Sun& sun : light.suns) {
-    append(inputs, sun.direction.data(), 3 * sizeof(double));
-    append(inputs, &sun.radius, sizeof(double));
+    append_place(inputs, sun);
     append(inputs, sun.irradiance.data(), 3 * sizeof(double));
   }
   append(inputs, light.bounce.data(), 3 * sizeof(double));
@@ -90,6 +99,36 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
     }
   results->keep(key, bytes);
   return lit;
+}
+
+OpenRays kept_open_rays(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
+                        const Occluder& occluder, const std::vector<Sun>& suns, int rays, Results* results,
+                        const Progress& progress) {
+  OpenRays open(sites.size(), rays, suns.size());
+  std::string key;
+  if (results != nullptr) {
+    std::string inputs;
+    append(inputs, sites);
+    append(inputs, wanted);
+    append(inputs, {occluder});
+    for (const Sun& sun : suns) append_place(inputs, sun);
+    append(inputs, &rays, sizeof(rays));
+    key = result_key("openrays1", inputs);
+    std::vector<std::uint64_t>& words = open.words();
+    const std::size_t size = words.size() * sizeof(words[0]);
+    if (const auto bytes = results->find(key); bytes && bytes->size() == size) {
+      std::memcpy(words.data(), bytes->data(), size);
+      return open;
+    }
+  }
+  Light dark;
+  dark.suns = suns;
+  traced_light(sites, wanted, rays_among({occluder}), dark, Mat3::Identity(), {.rays = rays, .found = &open}, progress);
+  if (results != nullptr) {
+    const std::vector<std::uint64_t>& words = open.words();
+    results->keep(key, {reinterpret_cast<const char*>(words.data()), words.size() * sizeof(words[0])});
+  }
+  return open;
 }
 
 std::vector<sh::Coefficients> shown_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -12,10 +13,17 @@
 namespace rebake {
 
 /// traced_light(), from where such results are kept if it is there; rounded to floats where they are. `results` may be
-/// null.
+/// null. `first_lets_through`, where it is there, is asked when something must be traced: what the first occluder lets
+/// through, which then is not asked again.
 std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
                                   const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
-                                  int rays, Results* results, const Progress& progress);
+                                  int rays, Results* results, const Progress& progress,
+                                  const std::function<const OpenRays&()>& first_lets_through = {});
+
+/// The rays that an occluder lets through, likewise kept.
+OpenRays kept_open_rays(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
+                        const Occluder& occluder, const std::vector<Sun>& suns, int rays, Results* results,
+                        const Progress& progress);
 
 /// Transfer of what each site shows, by the share of its first side in that.
 std::vector<sh::Coefficients> shown_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,

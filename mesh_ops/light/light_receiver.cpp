@@ -293,6 +293,10 @@ std::vector<SiteLight> LightReceiver::light_after(const std::vector<std::size_t>
                                                   const Shared& shared, const Progress& progress) const {
   std::vector<Occluder> occluders = relatives();
   for (const std::size_t k : casters) occluders.push_back(occluder(k));
+  // What nothing was done to shades itself as it was baked.
+  if (shared.light == nullptr && baked_->untouched() && relatives_.size() == 1 && !in_world() &&
+      wanted == baked_->sides)
+    return baked_->among({occluders.begin() + 1, occluders.end()}, rays, progress);
   if (shared.light != nullptr)
     return baked_->traced(now(), wanted, occluders, *shared.light,
                           in_world() ? shared.to_light : Mat3(shared.to_light * turn()), rays, progress);

@@ -37,7 +37,7 @@ SceneRays rays_of_objects(const std::vector<std::shared_ptr<const BakedObject>>&
 }
 
 SiteLight traced(const LightSite& at, const SceneRays& around, const Light& light, int rays = 4096) {
-  return traced_light(std::vector<LightSite>{at}, {}, around, light, Mat3::Identity(), {rays}).front();
+  return traced_light(std::vector<LightSite>{at}, {}, around, light, Mat3::Identity(), {.rays = rays}).front();
 }
 
 Scene scene_with(std::vector<std::pair<std::string, std::shared_ptr<const BakedObject>>> objects, SceneLight light) {
@@ -138,7 +138,9 @@ TEST(TracedLight, ComesNearerWithMoreRays) {
   const SceneRays rays = rays_of_objects({object});
   std::vector<LightSite> sites;
   for (int k = 0; k < 60; ++k) sites.push_back(site({-3 + 0.1 * k, 0, 1.4}, {0.2 * std::sin(k), 1, 0.1}));
-  const auto at = [&](int count) { return traced_light(sites, {}, rays, uniform_light(1), Mat3::Identity(), {count}); };
+  const auto at = [&](int count) {
+    return traced_light(sites, {}, rays, uniform_light(1), Mat3::Identity(), {.rays = count});
+  };
   const auto truth = at(16384);
   const auto error = [&](int count) {
     double off = 0, all = 0;
@@ -151,6 +153,36 @@ TEST(TracedLight, ComesNearerWithMoreRays) {
   };
   EXPECT_LT(error(64), 0.04);
   EXPECT_LT(error(256), 0.013);
+}
+
+// Where it is known what an object lets through, only what stands around it is asked, and light is the same to the bit.
+TEST(TracedLight, IsTheSameWhereAnObjectsOwnShadowsAreKnown) {
+  const auto own = lit_object(box_quads({-1, 0, -1}, {1, 1, 1}, 3), [](const Vec3&) { return grey(0.5); }),
+             other = lit_object(box_quads({-3, 0, 2}, {3, 2, 2.5}, 2), [](const Vec3&) { return grey(0.5); });
+  std::vector<LightSite> sites;
+  for (int k = 0; k < 60; ++k) sites.push_back(site({-3 + 0.1 * k, 0, 1.4}, {0.2 * std::sin(k), 1, 0.1}));
+  std::vector<std::uint8_t> wanted(sites.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = static_cast<std::uint8_t>(i % 4);
+  Light light = uniform_light(0.7);
+  light.suns = {{Vec3(-1, 1, -1).normalized(), 0.1, grey(2)}, {Vec3(0.2, 1, 0.5).normalized(), 0.05, grey(1)}};
+  const auto lit = [&](const SceneRays& around, const IrradianceOptions& options) {
+    return traced_light(sites, wanted, around, light, Mat3::Identity(), options);
+  };
+  const int rays = 50;
+  OpenRays open(sites.size(), rays, light.suns.size());
+  const auto alone = lit(rays_of_objects({own}), {.rays = rays, .found = &open}),
+             alone_again = lit(rays_of_objects({}), {.rays = rays, .known = &open}),
+             both = lit(rays_of_objects({own, other}), {.rays = rays}),
+             both_again = lit(rays_of_objects({other}), {.rays = rays, .known = &open});
+  int darker = 0;
+  for (std::size_t i = 0; i < sites.size(); ++i)
+    for (std::size_t side = 0; side < 2; ++side) {
+      EXPECT_EQ(alone_again[i].irradiance[side], alone[i].irradiance[side]) << i;
+      EXPECT_EQ(both_again[i].irradiance[side], both[i].irradiance[side]) << i;
+      EXPECT_EQ(both_again[i].open[side], both[i].open[side]) << i;
+      darker += both[i].open[side] < alone[i].open[side] ? 1 : 0;
+    }
+  EXPECT_GT(darker, 20) << "the other one must hide something";
 }
 
 // In the open it is the clamped cosine; its product with a sky is what is traced under that sky.
@@ -395,7 +427,7 @@ TEST(LightEstimate, FindsTheSunByWhatItShades) {
   const std::vector<std::shared_ptr<const LightChart>> charts{
       std::make_shared<const LightChart>(light_chart(shape->sets.front(), 4))};
   const LightSites sites = light_sites(*shape, charts);
-  const auto lit = traced_light(sites.baked, {}, rays, truth, Mat3::Identity(), {1024});
+  const auto lit = traced_light(sites.baked, {}, rays, truth, Mat3::Identity(), {.rays = 1024});
   std::vector<Radiance> colors;
   for (std::size_t i = 0; i < sites.size(); ++i) colors.push_back(0.5 * lit[i].irradiance[0]);
   const LightEstimate found = estimated_light(sites, colors, rays, {.sites = 1500, .rays = 128});

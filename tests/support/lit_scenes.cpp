@@ -19,14 +19,15 @@ Scene table() {
   const SceneRays rays({{rays_of(*shape), Affine::Identity(), 3}});
   Light sky;
   sky.sky = SkyMap(Radiance::Constant(1));
-  return scene_of(lit_object(quads,
-                             [&](const Vec3& p) -> Radiance {
-                               if (p.y() > 0.01) return Radiance::Constant(0.4);
-                               const std::vector<LightSite> site{{p, {0, 1, 0}, {1, 0, 0}, 1e-3}};
-                               const std::vector<std::uint8_t> up{1};
-                               return 0.4 * traced_light(site, up, rays, sky, Mat3::Identity(), {64})[0].irradiance[0];
-                             }),
-                  "table");
+  return scene_of(
+      lit_object(quads,
+                 [&](const Vec3& p) -> Radiance {
+                   if (p.y() > 0.01) return Radiance::Constant(0.4);
+                   const std::vector<LightSite> site{{p, {0, 1, 0}, {1, 0, 0}, 1e-3}};
+                   const std::vector<std::uint8_t> up{1};
+                   return 0.4 * traced_light(site, up, rays, sky, Mat3::Identity(), {.rays = 64})[0].irradiance[0];
+                 }),
+      "table");
 }
 
 Scene with_light(const Scene& scene) {
