@@ -438,7 +438,7 @@ PYBIND11_MODULE(rebake, module) {
       },
       py::arg("node"), py::arg("texture_set") = 0, "Vertex numbers, n × 3; a read-only view.");
   type.def("tiles", &tiles_of, py::arg("node"), py::arg("texture_set") = 0,
-           "The texels, 256 × 256 × 8 a tile, by row and column; read-only views.");
+           "The texels, 256 × 256 × 8 a tile, by row and column; read-only, unpacked by each call.");
   type.def("texture", &texture_of, py::arg("node"), py::arg("texture_set") = 0,
            "The texels in one piece, height × width × 8; a copy.");
   type.def("select_mask", &select_mask, py::arg("node"), py::arg("mask"), py::arg("mode") = "set",

@@ -151,7 +151,7 @@ class Document:
     def faces(self, node: Node, texture_set: int = 0) -> NDArray[np.uint32]:
         """Vertex numbers, n × 3; a read-only view."""
     def tiles(self, node: Node, texture_set: int = 0) -> list[list[NDArray[np.uint8]]]:
-        """The texels, 256 × 256 × 8 a tile (feat0 RGBA, feat1 RGBA), by row and column; read-only views."""
+        """The texels, 256 × 256 × 8 a tile (feat0 RGBA, feat1 RGBA), by row and column; read-only, unpacked by each call."""
     def texture(self, node: Node, texture_set: int = 0) -> NDArray[np.uint8]:
         """The same in one piece, height × width × 8; a copy."""
 )";

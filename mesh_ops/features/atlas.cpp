@@ -126,6 +126,7 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
                            static_cast<std::size_t>(place.x + column)] =
             converted(sources[place.set]->at(rect.left + column, rect.top + row), was, code);
   }
+  sources.clear();
 
   for (std::size_t s = 0; s < shown_by.size(); ++s)
     for (std::size_t p = 0; p < shown_by[s].size(); ++p) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "mesh_ops/base/error.h"
@@ -107,12 +108,16 @@ std::string write_feature_png(const FeatureTexture& texture, int image) {
   if (!output->open("feature.png", spec)) throw Error("a feature PNG cannot be encoded: " + output->geterror());
   std::vector<std::uint8_t> rgba(static_cast<std::size_t>(texture.width()) *
                                  static_cast<std::size_t>(texture.height()) * 4);
-  const TexelReader texels(texture);
+  // Unpacked a row of tiles at a time.
+  std::optional<TexelReader> texels;
   std::size_t at = 0;
-  for (int y = 0; y < texture.height(); ++y)
+  for (int y = 0; y < texture.height(); ++y) {
+    if (y % TexelTile::size == 0) texels.emplace(texture);
     for (int x = 0; x < texture.width(); ++x, at += 4)
-      std::copy_n((image == 0 ? texels.at(x, y).feat0 : texels.at(x, y).feat1).begin(), 4,
+      std::copy_n((image == 0 ? texels->at(x, y).feat0 : texels->at(x, y).feat1).begin(), 4,
                   rgba.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+  texels.reset();
   if (!output->write_image(OIIO::TypeDesc::UINT8, rgba.data()) || !output->close())
     throw Error("a feature PNG cannot be encoded: " + output->geterror());
   return {encoded.begin(), encoded.end()};

@@ -65,7 +65,6 @@ std::vector<SiteLight> BakedLight::as_baked(const std::vector<std::uint8_t>& wan
                                             const Progress& progress) {
   const bool of_shown = !wanted.empty() && wanted == sides;
   if (const auto known = of_shown_.find(rays); of_shown && known != of_shown_.end()) return known->second;
-  if (of_shown && untouched_) return of_shown_[rays] = among({}, rays, progress);
   std::vector<SiteLight> result(sites.size());
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const std::vector<std::uint8_t> flags = of_body(b, wanted);
@@ -79,16 +78,32 @@ std::vector<SiteLight> BakedLight::as_baked(const std::vector<std::uint8_t>& wan
 }
 
 std::vector<SiteLight> BakedLight::among(const std::vector<Occluder>& others, int rays, const Progress& progress) {
+  if (const auto known = of_shown_.find(rays); others.empty() && known != of_shown_.end()) return known->second;
   std::vector<Occluder> occluders{{object_, Affine::Identity()}};
   occluders.insert(occluders.end(), others.begin(), others.end());
   Results* const results = options_.keep_traced ? options_.results : nullptr;
-  return kept_light(
-      sites.now, sides, occluders, *light, Mat3::Identity(), rays, results, progress, [&]() -> const OpenRays& {
-        if (const auto known = open_.find(rays); known != open_.end()) return known->second;
-        return open_
-            .emplace(rays, kept_open_rays(sites.now, sides, occluders.front(), light->suns, rays, results, progress))
-            .first->second;
-      });
+  const auto own = [&]() -> const OpenRays& {
+    if (const auto known = open_.find(rays); known != open_.end()) return known->second;
+    OpenRays open = kept_open_rays(sites.now, sides, occluders.front(), light->suns, rays, results, progress);
+    return open_.emplace(rays, std::move(open)).first->second;
+  };
+  // Of so many rays flags would take more room than tracing them again takes time.
+  constexpr std::uint64_t most_bytes = std::uint64_t{1} << 26;
+  const bool few = OpenRays::memory_for(sites.size(), rays, light->suns.size()) <= most_bytes;
+  auto lit = kept_light(sites.now, sides, occluders, *light, Mat3::Identity(), rays, results, progress,
+                        few ? own : std::function<const OpenRays&()>());
+  if (others.empty()) of_shown_[rays] = lit;
+  return lit;
+}
+
+std::shared_ptr<BakedLight> BakedLights::of(const std::shared_ptr<const BakedObject>& object,
+                                            const Progress& progress) {
+  const auto known = std::find_if(made_.begin(), made_.end(), [&](const auto& made) {
+    return made->object() == object || same_reading(*made->object(), *object);
+  });
+  if (known != made_.end()) return *known;
+  made_.push_back(std::make_shared<BakedLight>(object, settings_, options_, progress));
+  return made_.back();
 }
 
 }  // namespace rebake

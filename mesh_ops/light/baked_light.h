@@ -30,6 +30,7 @@ class BakedLight {
   const std::vector<Radiance>& shown_colors();
   /// What light fell on the sites of some sides as they were baked, whole; all sides where `wanted` is empty.
   std::vector<SiteLight> as_baked(const std::vector<std::uint8_t>& wanted, int rays, const Progress& progress);
+  const std::shared_ptr<const BakedObject>& object() const { return object_; }
   /// Whether it is as its light was baked.
   bool untouched() const { return untouched_; }
   /// What falls on what shows of an untouched object, among others that stand around it.
@@ -51,20 +52,16 @@ class BakedLight {
   std::map<int, OpenRays> open_;                    ///< of what shows, by rays
 };
 
-/// Of all objects of a scene, each made when it is first asked for.
+/// Of all objects of a scene, each made when it is first asked for, once for all that were read from the same files.
 class BakedLights {
  public:
   BakedLights(const SceneLight& settings, const LightingOptions& options) : settings_(settings), options_(options) {}
-  std::shared_ptr<BakedLight> of(const std::shared_ptr<const BakedObject>& object, const Progress& progress) {
-    std::shared_ptr<BakedLight>& made = made_[object.get()];
-    if (!made) made = std::make_shared<BakedLight>(object, settings_, options_, progress);
-    return made;
-  }
+  std::shared_ptr<BakedLight> of(const std::shared_ptr<const BakedObject>& object, const Progress& progress);
 
  private:
   const SceneLight& settings_;
   const LightingOptions& options_;
-  std::map<const BakedObject*, std::shared_ptr<BakedLight>> made_;
+  std::vector<std::shared_ptr<BakedLight>> made_;
 };
 
 }  // namespace rebake

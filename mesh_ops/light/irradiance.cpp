@@ -36,9 +36,14 @@ Radiance sunlight(const SiteFrame& frame, const Sun& sun, const Vec3& towards, c
 
 }  // namespace
 
+static std::size_t words_of_side(int rays, std::size_t suns) {
+  return (static_cast<std::size_t>(rays) + suns * rays_to_sun(rays) + 63) / 64;
+}
 OpenRays::OpenRays(std::size_t sites, int rays, std::size_t suns)
-    : words_a_side_((static_cast<std::size_t>(rays) + suns * rays_to_sun(rays) + 63) / 64),
-      words_(2 * sites * words_a_side_, 0) {}
+    : words_a_side_(words_of_side(rays, suns)), words_(2 * sites * words_a_side_, 0) {}
+std::uint64_t OpenRays::memory_for(std::size_t sites, int rays, std::size_t suns) {
+  return std::uint64_t{2} * sites * words_of_side(rays, suns) * sizeof(std::uint64_t);
+}
 
 std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
                                     const SceneRays& around, const Light& light, const Mat3& to_light,

@@ -27,6 +27,8 @@ double facing_by_openness(double first, double second);
 class OpenRays {
  public:
   OpenRays(std::size_t sites, int rays, std::size_t suns);
+  /// Bytes.
+  static std::uint64_t memory_for(std::size_t sites, int rays, std::size_t suns);
   bool at(std::size_t site, std::size_t side, std::size_t ray) const {
     return (words_[word(site, side, ray)] >> ray % 64 & 1) != 0;
   }

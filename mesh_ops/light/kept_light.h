@@ -13,14 +13,14 @@
 namespace rebake {
 
 /// traced_light(), from where such results are kept if it is there; rounded to floats where they are. `results` may be
-/// null. `first_lets_through`, where it is there, is asked when something must be traced: what the first occluder lets
-/// through, which then is not asked again.
+/// null. `first_lets_through`, where it is there, is asked when something must be traced: kept_open_rays() of the first
+/// occluder, the same sites, sides, suns and rays, with `to_light` the identity. The first occluder is not asked then.
 std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
                                   const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
                                   int rays, Results* results, const Progress& progress,
                                   const std::function<const OpenRays&()>& first_lets_through = {});
 
-/// The rays that an occluder lets through, likewise kept.
+/// The rays that an occluder lets through, likewise kept; suns stand in the sites' space.
 OpenRays kept_open_rays(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
                         const Occluder& occluder, const std::vector<Sun>& suns, int rays, Results* results,
                         const Progress& progress);

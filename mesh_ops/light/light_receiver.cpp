@@ -161,8 +161,17 @@ LightReceiver::Change LightReceiver::change(bool self, bool removed, const std::
                                             const Shared& shared, const Progress& progress) {
   prepare(progress);
   const int rays = options_.rays > 0 ? options_.rays : settings_.rays;
-  const auto before = light_before(self, removed, baked_->sides, rays, progress);
-  const auto after = light_after(casters, baked_->sides, rays, shared, progress);
+  std::vector<SiteLight> before, after;
+  if (!casters.empty() && shared.light == nullptr && baked_->untouched() && relatives_.size() == 1 && !in_world()) {
+    // It shades itself as it was baked, which is traced once for both.
+    std::vector<Occluder> others;
+    for (const std::size_t k : casters) others.push_back(occluder(k));
+    before = baked_->among({}, rays, progress);
+    after = baked_->among(others, rays, progress);
+  } else {
+    before = light_before(self, removed, baked_->sides, rays, progress);
+    after = light_after(casters, baked_->sides, rays, shared, progress);
+  }
   Change change{{}, {}, baked_->shown_colors()};
   for (std::size_t i = 0; i < baked_->sites.size(); ++i) {
     change.before.push_back(shown(i, before));
@@ -293,10 +302,6 @@ std::vector<SiteLight> LightReceiver::light_after(const std::vector<std::size_t>
                                                   const Shared& shared, const Progress& progress) const {
   std::vector<Occluder> occluders = relatives();
   for (const std::size_t k : casters) occluders.push_back(occluder(k));
-  // What nothing was done to shades itself as it was baked.
-  if (shared.light == nullptr && baked_->untouched() && relatives_.size() == 1 && !in_world() &&
-      wanted == baked_->sides)
-    return baked_->among({occluders.begin() + 1, occluders.end()}, rays, progress);
   if (shared.light != nullptr)
     return baked_->traced(now(), wanted, occluders, *shared.light,
                           in_world() ? shared.to_light : Mat3(shared.to_light * turn()), rays, progress);

@@ -19,8 +19,8 @@ struct Occluder {
 /// shines.
 SceneRays rays_among(const std::vector<Occluder>& occluders);
 
-/// A hash of what shades: triangles, and which of their texels are opaque. Like how far an object shades, it is known
-/// as long as its arrays live.
+/// A hash of an object's triangles and all their texels: of what shades, and of what colours follow from. Like how far
+/// an object shades, it is known as long as its arrays live.
 std::uint64_t surface_hash(const BakedObject& object);
 
 }  // namespace rebake

@@ -14,7 +14,7 @@ namespace rebake {
 /// Rays in world space through placed objects, whose trees are shared by all nodes and scenes that show them. Each
 /// object keeps a frame of its own, in which floats tell its triangles apart: one tree over all of them would not,
 /// where nodes differ much in scale or lie far apart. What a ray does not come near costs tests against a few balls, in
-/// a tree over the objects.
+/// a tree over the objects; bundles are tested against each object's.
 class SceneRays {
  public:
   struct Instance {

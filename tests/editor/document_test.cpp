@@ -160,29 +160,6 @@ TEST_F(DocumentTest, SharedPartsAreCountedOnce) {
   EXPECT_LT(document.history().memory(), one + 20 * 1000) << "a moved node shares its triangles and texels";
 }
 
-// The same folder is there once, for the GPU, rays and light too, also where the node that shows it was edited. What it
-// held is not taken for what it holds.
-TEST_F(DocumentTest, AFolderThatIsImportedAgainIsShared) {
-  Document document;
-  import(document);
-  act(document, R"({"op": "bend", "node": "ball", "degrees": 30, "direction": [0, 1, 0], "axis": [1, 0, 0]})");
-  const auto import_as = [&](const std::string& name, const std::string& axes) {
-    act(document, json{{"op", "import"}, {"path", path("sources/ball").string()}, {"as", name}, {"axes", axes}});
-    return find(document.scene(), name)->object;
-  };
-  const auto second = import_as("second", "360"), third = import_as("third", "360"),
-             turned = import_as("turned", "forward");
-  EXPECT_EQ(second, find(document.scene(), "ball")->object->bodies.front().object);
-  EXPECT_EQ(third, second);
-  EXPECT_NE(turned, second);
-  EXPECT_EQ(turned->axes, Axes::forward);
-
-  export_scene(scene_of(made_object({.seed = 77})), path("other"), {});
-  fs::remove_all(path("sources/ball"));
-  fs::rename(path("other"), path("sources/ball"));
-  EXPECT_NE(import_as("changed", "360"), second);
-}
-
 TEST_F(DocumentTest, AJournalGivesTheWorkBack) {
   Document document;
   document.keep_journal(path("j"));

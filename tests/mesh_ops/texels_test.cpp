@@ -55,7 +55,7 @@ TEST(Texels, ArePackedWithoutLoss) {
       EXPECT_EQ(texture.opaque_at(u, v), shared.sample(u, v).opaque()) << u << " " << v;
 }
 
-TEST(Texels, WhatCannotBePackedTakesNoMoreThanItself) {
+TEST(Texels, WhatCannotBePackedIsHeldAsItIs) {
   const FeatureTexture texture = read_texture(picture());
   constexpr std::uint64_t tile = TexelTile::size * TexelTile::size * sizeof(Texel), flags = tile / 64;
   EXPECT_EQ(texture.tile(0, 0), texture.tile(0, 1)) << "empty tiles are one";

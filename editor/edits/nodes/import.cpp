@@ -1,7 +1,5 @@
 #include "editor/edits/nodes/import.h"
 
-#include <algorithm>
-
 #include "editor/edits/describe.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
@@ -9,32 +7,6 @@
 #include "mesh_ops/formats/scene_files.h"
 
 namespace rebake {
-
-namespace {
-
-// A folder that is in the scene already is there once: on the GPU, for rays and for light. An edited object still has
-// what it was made of.
-void share(Node& node, const Scene& scene) {
-  if (node.object) {
-    for (const PlacedNode& placed : placed_nodes(scene)) {
-      if (!placed.node->object) continue;
-      std::vector<std::shared_ptr<const BakedObject>> there{placed.node->object};
-      for (const BakedBody& body : placed.node->object->bodies) there.push_back(body.object);
-      const auto same = std::find_if(there.begin(), there.end(),
-                                     [&](const auto& object) { return same_reading(*object, *node.object); });
-      if (same == there.end()) continue;
-      node.object = *same;
-      break;
-    }
-  }
-  for (NodePtr& child : node.children) {
-    Node shared = *child;
-    share(shared, scene);
-    child = std::make_shared<const Node>(std::move(shared));
-  }
-}
-
-}  // namespace
 
 Scene apply(const Scene& scene, const Import& edit, const Progress& progress) {
   if (edit.path.empty()) throw FieldError("path", "is empty");
@@ -54,7 +26,6 @@ Scene apply(const Scene& scene, const Import& edit, const Progress& progress) {
       throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
     node.name = edit.as;
   }
-  share(node, scene);
   Scene result = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
   for (const auto& [name, camera] : read.views) result.views.try_emplace(name, camera);
   return result;

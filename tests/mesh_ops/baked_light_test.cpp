@@ -1,0 +1,71 @@
+// What objects say of their light is made once for all that were read from the same files, and only for those.
+#include "mesh_ops/light/baked_light.h"
+
+#include <gtest/gtest.h>
+
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/formats.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+class BakedLightTest : public ::testing::Test {
+ protected:
+  BakedLightTest() {
+    export_scene(scene_of(made_object({.columns = 8, .rows = 4})), folder_.path() / "ball", {});
+    settings_.source = SceneLight::Source::uniform;
+    settings_.zenith = Radiance(1, 1, 1);
+  }
+  std::shared_ptr<const BakedObject> read(Axes axes = Axes::y_up) const {
+    return read_any(folder_.path() / "ball", axes).roots[0]->object;
+  }
+
+  TemporaryFolder folder_;
+  SceneLight settings_;
+  LightingOptions options_;
+};
+
+TEST_F(BakedLightTest, IsSharedByWhatWasReadFromTheSameFiles) {
+  BakedLights known(settings_, options_);
+  const auto first = known.of(read(), {});
+  EXPECT_EQ(known.of(read(), {}), first);
+  EXPECT_NE(known.of(read(Axes::forward), {}), first);
+
+  const auto whole = read();
+  auto cut = std::make_shared<BakedObject>(*whole);
+  keep_bodies(*cut, *whole);
+  cut->sets[0].soup = subset(cut->sets[0].soup, TriangleSet(cut->triangle_count() / 2, 1), 0, true);
+  EXPECT_NE(known.of(cut, {}), first) << "an edited one is another";
+
+  export_scene(scene_of(made_object({.columns = 8, .rows = 4, .seed = 7})), folder_.path() / "other", {});
+  std::filesystem::remove_all(folder_.path() / "ball");
+  std::filesystem::rename(folder_.path() / "other", folder_.path() / "ball");
+  EXPECT_NE(known.of(read(), {}), first) << "the folder holds something else";
+}
+
+// Whether its own shadows are known or traced again, light among others is the same.
+TEST_F(BakedLightTest, AmongOthersIsWhatIsTracedAmongAll) {
+  BakedLights known(settings_, options_);
+  const auto own = read();
+  const auto light = known.of(own, {});
+  ASSERT_TRUE(light->untouched());
+  Affine beside = Affine::Identity();
+  beside.translation() = Vec3(1.5, 0.5, 0);
+  const Occluder other{own, beside};
+  constexpr int rays = 40;
+  const auto lit = light->among({other}, rays, {});
+  const auto expected = kept_light(light->sites.now, light->sides, {{own, Affine::Identity()}, other}, *light->light,
+                                   Mat3::Identity(), rays, nullptr, {});
+  const auto alone = light->as_baked(light->sides, rays, {});
+  int darker = 0;
+  for (std::size_t i = 0; i < lit.size(); ++i)
+    for (std::size_t side = 0; side < 2; ++side) {
+      ASSERT_EQ(lit[i].irradiance[side], expected[i].irradiance[side]) << i;
+      darker += lit[i].open[side] < alone[i].open[side] ? 1 : 0;
+    }
+  EXPECT_GT(darker, 10) << "the other one must hide something";
+}
+
+}  // namespace
+}  // namespace rebake::test
