@@ -181,7 +181,7 @@ LightReceiver::Change LightReceiver::change(bool self, bool removed, const std::
 }
 
 std::vector<std::shared_ptr<const LightMap>> LightReceiver::maps(const Change& change) const {
-  return light_maps(baked_->charts, baked_->sites, change.colors, change.before, change.after);
+  return light_maps(charts_, baked_->sites, change.colors, change.before, change.after);
 }
 
 // What was learnt of its body; what cannot be read was never kept.
@@ -204,17 +204,9 @@ std::shared_ptr<const TurnedLight> LightReceiver::turned(const Change& change, c
                                                          const Shared& shared, const Progress& progress) const {
   // Sheared objects are traced in the world, which their triangles do not turn in.
   if (in_world() || !settings_.self) return nullptr;
-  TurnedLight::Start start{placed().node->object,
-                           baked_->charts,
-                           baked_->sites,
-                           baked_->facing,
-                           change.colors,
-                           change.before,
-                           change.after,
-                           {},
-                           {},
-                           kept_model(),
-                           {}};
+  TurnedLight::Start start{
+      placed().node->object, charts_, baked_->sites, baked_->facing, change.colors, change.before, change.after, {}, {},
+      kept_model(),          {}};
   for (const std::size_t k : relatives_)
     if (k != own_) start.others.push_back(occluder(k));
   for (const std::size_t k : casters) start.others.push_back(occluder(k));
@@ -243,6 +235,15 @@ void LightReceiver::prepare(const Progress& progress) {
     throw EditError(fmt::format("node \"{}\": {}", name(), error.what()));
   }
   baked_ = known_.of(placed().node->object, progress);
+  for (std::size_t s = 0; s < baked_->charts.size(); ++s) {
+    charts_.push_back(baked_->charts[s]);
+    const Soup::Uvs uvs = object().sets[s].soup.shared_uvs();
+    if (charts_[s]->uvs == uvs) continue;
+    // It was read again, from the same files.
+    LightChart own = *charts_[s];
+    own.uvs = uvs;
+    charts_[s] = std::make_shared<const LightChart>(std::move(own));
+  }
   if (!in_world()) return;
   in_world_ = baked_->sites.now;
   const Affine& motion = to_world();

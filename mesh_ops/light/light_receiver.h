@@ -81,7 +81,8 @@ class LightReceiver {
   BakedLights& known_;
   // Made by prepare():
   std::shared_ptr<BakedLight> baked_;
-  std::vector<LightSite> in_world_;  ///< the sites, where the node is sheared
+  std::vector<std::shared_ptr<const LightChart>> charts_;  ///< of its own arrays
+  std::vector<LightSite> in_world_;                        ///< the sites, where the node is sheared
 };
 
 }  // namespace rebake

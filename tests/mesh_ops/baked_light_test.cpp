@@ -44,6 +44,21 @@ TEST_F(BakedLightTest, IsSharedByWhatWasReadFromTheSameFiles) {
   EXPECT_NE(known.of(read(), {}), first) << "the folder holds something else";
 }
 
+TEST_F(BakedLightTest, LightsEachOfThoseThatShareIt) {
+  Scene scene;
+  for (const double x : {0.0, 2.5, 5.0}) {
+    Node node;
+    node.name = std::to_string(scene.roots.size());
+    node.object = read();
+    node.to_parent.translation().x() = x;
+    scene = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
+  }
+  scene.light = std::make_shared<const SceneLight>(settings_);
+  const Lighting lighting = lighting_of(scene, {.rays = 16});
+  for (const NodePtr& node : scene.roots)
+    EXPECT_NE(lighting.map_of(node->id, 0, node->object->sets[0]), nullptr) << node->name;
+}
+
 // Whether its own shadows are known or traced again, light among others is the same.
 TEST_F(BakedLightTest, AmongOthersIsWhatIsTracedAmongAll) {
   BakedLights known(settings_, options_);
