@@ -13,7 +13,7 @@ namespace rebake {
 /// baked in. Nodes that show one object share it.
 class BakedLight {
  public:
-  /// Settings and options must outlive it.
+  /// Options must outlive it.
   BakedLight(std::shared_ptr<const BakedObject> object, const SceneLight& settings, const LightingOptions& options,
              const Progress& progress);
 

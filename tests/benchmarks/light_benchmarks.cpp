@@ -76,6 +76,21 @@ void BentBranch(benchmark::State& state) {
 }
 BENCHMARK(BentBranch)->Arg(16)->Arg(64)->Arg(256)->Unit(benchmark::kMillisecond)->Iterations(3);
 
+// Kettles side by side, each read anew, with all the shadows that they cast on each other and nothing kept.
+void ManyKettles(benchmark::State& state) {
+  Scene scene;
+  for (int k = 0; k < state.range(0); ++k) {
+    Node node;
+    node.name = "kettle " + std::to_string(k);
+    node.object = read_any(std::filesystem::path(REBAKE_SOURCE) / "samples/scenes/kettle", Axes::y_up).roots[0]->object;
+    node.to_parent.translation() = Vec3(2.2 * (k % 6), 0, 2.2 * (k / 6));
+    scene = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
+  }
+  scene.light = std::make_shared<const SceneLight>();
+  for (auto _ : state) benchmark::DoNotOptimize(lighting_of(scene).left_out);
+}
+BENCHMARK(ManyKettles)->Arg(4)->Arg(12)->Arg(26)->Unit(benchmark::kMillisecond)->Iterations(1)->UseRealTime();
+
 // What a drag adds to a frame, off the window's thread, and how near the traced light it comes (root mean square over
 // the sites that change, of what changes): by turning, and with what was learnt of such bends.
 struct InMemory final : Results {
