@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 #include "mesh_ops/base/error.h"
 #include "render/gl/context.h"
@@ -34,6 +36,10 @@ class Renderer::Impl {
     software_ = device_.find("llvmpipe") != std::string::npos || device_.find("softpipe") != std::string::npos ||
                 device_.find("SWR") != std::string::npos;
     state_.empty_array = gl::make_vertex_array();
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &largest);
+    // Halves of words are read, and two words more than there are.
+    reads_coded_ = static_cast<std::size_t>(largest) >= 2 * (most_coded_words + 2);
   }
 
   // What members delete are names in this context, whichever was used last.
@@ -55,15 +61,17 @@ class Renderer::Impl {
     const Clock::time_point start = Clock::now();
     const FramePlan frame_plan = plan(scene, view, options, guides, lighting, device_facts());
     shown_ = view;
+    texels_ = options.texels;
     if (frame_plan.frames.size() > 65535)
       throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
-    gpu_->update(scene, lighting);
+    update(scene, frame_plan.options.texels == RenderOptions::Texels::coded, lighting);
     const std::size_t made_before = state_.programs.made();
     FrameTimes times = carry_out(frame_plan, each_pass, start);
     if (state_.programs.made() != made_before) ++compiled_;
     remember(variant_of(frame_plan));
     passes_ = frame_plan.passes;
     if (frame_plan.runs(effects::occlusion)) say_occlusion();
+    if (frame_plan.runs(effects::coded_texels)) say_coded();
     return times;
   }
 
@@ -74,7 +82,7 @@ class Renderer::Impl {
       all_drawn.occlusion = RenderOptions::Occlusion::off;
       const FramePlan frame_plan = plan(frame.scene, frame.view, all_drawn, nullptr, lighting, device_facts());
       if (!remember(variant_of(frame_plan))) continue;
-      gpu_->update(scene, lighting);
+      update(scene, codes_texels(scene, options.texels, device_facts()), lighting);
       // With targets of its own: what is shown stays.
       PassState other;
       other.empty_array = gl::make_vertex_array();
@@ -96,11 +104,11 @@ class Renderer::Impl {
   }
   std::size_t frames_that_compiled() const { return compiled_; }
 
-  void prepare(const Scene& scene) { gpu_->prepare(scene); }
+  void prepare(const Scene& scene) { gpu_->prepare(scene, codes(scene)); }
   double arrive(const Scene& scene, double milliseconds) {
     const gl::Current current(*context_);
     try {
-      const double share = gpu_->arrive(scene, milliseconds);
+      const double share = gpu_->arrive(scene, codes(scene), milliseconds);
       if (glGetError() != GL_OUT_OF_MEMORY) return share;
     } catch (const std::exception&) {
       // What it was, drawing says.
@@ -135,6 +143,14 @@ class Renderer::Impl {
   }
 
  private:
+  bool codes(const Scene& scene) const { return codes_texels(scene, texels_, {.reads_coded_texels = reads_coded_}); }
+
+  void update(const Scene& scene, bool coded, const Lighting* lighting) {
+    gpu_->update(scene, coded, lighting);
+    // Other programs read them.
+    if (std::exchange(coded_, coded) != coded) drawn_.clear();
+  }
+
   // Draws what is on the GPU as planned, into the targets of the plan.
   FrameTimes carry_out(const FramePlan& frame_plan, bool each_pass, Clock::time_point start) {
     state_.targets.fit(frame_plan);
@@ -177,6 +193,7 @@ class Renderer::Impl {
     DeviceFacts facts;
     // A GPU draws triangles some hundred times faster than a processor, which tests them no faster beside it.
     if (!software_) facts.occlusion_from = 2'000'000;
+    facts.reads_coded_texels = reads_coded_;
     // Too little was hidden: it is looked again from time to time.
     if (share_ > worthwhile_share && ++frames_without_ < look_again) facts.shown_share = share_;
     return facts;
@@ -197,6 +214,11 @@ class Renderer::Impl {
             c.triangles_shown, c.drawn_again ? " and were drawn again, in their order" : "", c.milliseconds);
   }
 
+  void say_coded() {
+    for (PlannedPass& pass : passes_)
+      if (pass.effect == &effects::coded_texels) pass.why += fmt::format("; {:.0f} MB", gpu_->texel_bytes() / 1e6);
+  }
+
   static constexpr double worthwhile_share = 0.7;
   static constexpr int look_again = 16;
 
@@ -207,7 +229,9 @@ class Renderer::Impl {
   PassState state_;
   View shown_;
   std::string device_;
-  bool software_ = false;
+  bool software_ = false, reads_coded_ = true;
+  bool coded_ = false;                                                            ///< the texels on the GPU
+  std::atomic<RenderOptions::Texels> texels_ = RenderOptions::Texels::automatic;  ///< what was asked for last
   std::vector<PlannedPass> passes_;
   std::vector<ProgramVariant> drawn_;  ///< the latest last
   std::size_t compiled_ = 0;

@@ -101,6 +101,10 @@ void ViewOptions::add_to(CommandDescription& command) {
       .one_of(std::vector<std::string>{"automatic", "deferred", "forward"});
   command.option("--occlusion", occlusion, "look for hidden triangles and leave them out", "automatic|on|off")
       .one_of(std::vector<std::string>{"automatic", "on", "off"});
+  command
+      .option("--texels", texels, "on the GPU 8 bytes each, or coded without loss in about half of that",
+              "automatic|plain|coded")
+      .one_of(std::vector<std::string>{"automatic", "plain", "coded"});
   command.option("--precision", precision, "decoder weights as 32- or 16-bit floats", "full|half")
       .one_of(std::vector<std::string>{"full", "half"});
 }
@@ -162,6 +166,9 @@ RenderOptions ViewOptions::render_options() const {
   options.occlusion = occlusion == "on"    ? RenderOptions::Occlusion::on
                       : occlusion == "off" ? RenderOptions::Occlusion::off
                                            : RenderOptions::Occlusion::automatic;
+  options.texels = texels == "plain"   ? RenderOptions::Texels::plain
+                   : texels == "coded" ? RenderOptions::Texels::coded
+                                       : RenderOptions::Texels::automatic;
   options.precision = precision == "half" ? RenderOptions::Precision::half : RenderOptions::Precision::full;
   return options;
 }

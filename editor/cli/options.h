@@ -31,7 +31,8 @@ struct ViewOptions {
   std::string size = "800x800", eye, target, up, camera_file, background;
   std::optional<double> fov, near_plane, far_plane;
   int samples = 4;
-  std::string weights = "automatic", shading = "automatic", precision = "full", occlusion = "automatic";
+  std::string weights = "automatic", shading = "automatic", precision = "full", occlusion = "automatic",
+              texels = "automatic";
 
   void add_to(CommandDescription& command);
   /// The view on `scene`: the options over the camera file, or over a camera that frames the scene. Throws FieldError,

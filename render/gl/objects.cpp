@@ -123,11 +123,11 @@ Texture make_texture(unsigned internal_format, int width, int height, int bytes_
   return texture;
 }
 
-Texture make_buffer_texture(const Buffer& buffer) {
+Texture make_buffer_texture(const Buffer& buffer, unsigned internal_format) {
   unsigned name = 0;
   glGenTextures(1, &name);
   glBindTexture(GL_TEXTURE_BUFFER, name);
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer.name());
+  glTexBuffer(GL_TEXTURE_BUFFER, internal_format, buffer.name());
   return Texture(name);
 }
 

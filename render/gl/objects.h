@@ -67,8 +67,8 @@ Buffer make_buffer(unsigned target, const void* data, std::size_t bytes);
 /// A 2-D texture without mipmaps, clamped; sampled linearly where it is a picture (GL_RGBA8), else the nearest texel.
 /// Throws DeviceError when too large.
 Texture make_texture(unsigned internal_format, int width, int height, int bytes_a_texel);
-/// A texture that reads `buffer` as RGBA32F.
-Texture make_buffer_texture(const Buffer& buffer);
+/// A texture that reads `buffer` in this format, such as GL_RGBA32F.
+Texture make_buffer_texture(const Buffer& buffer, unsigned internal_format);
 Framebuffer make_framebuffer(const std::vector<const Texture*>& colors, const Texture* depth);
 VertexArray make_vertex_array();
 /// Compiles and links. Throws DeviceError with the driver's log.

@@ -11,8 +11,6 @@ namespace rebake {
 namespace {
 
 constexpr std::size_t faces_a_cluster = 2048;
-// Rows of texels that are uploaded at a time: some milliseconds' worth where scenes arrive in slices.
-constexpr int band = 64;
 
 std::vector<GpuCluster> clusters_of(const Soup& soup, const std::vector<Face>& faces) {
   std::vector<GpuCluster> clusters((faces.size() + faces_a_cluster - 1) / faces_a_cluster);
@@ -37,12 +35,12 @@ class Released {
     for (const SurfaceKey& key : keys) left_.emplace(std::pair(key.uvs, key.faces), key);
   }
 
-  std::optional<SurfaceKey> take(const TextureSet& set) {
-    const SurfaceKey wanted = surface_key(set);
+  std::optional<SurfaceKey> take(const TextureSet& set, bool coded) {
+    const SurfaceKey wanted = surface_key(set, coded);
     const auto [begin, end] = left_.equal_range({wanted.uvs, wanted.faces});
     const auto found = std::find_if(begin, end, [&](const auto& entry) {
       const GpuSurface& held = surfaces_.at(entry.second);
-      return serves(held.made_for, held.source, set);
+      return entry.second.coded == coded && serves(held.made_for, held.source, set);
     });
     if (found == end) return std::nullopt;
     const SurfaceKey key = found->second;
@@ -142,24 +140,25 @@ PreparedMesh prepared(const TextureSet& set, const ShownFaces& shown) {
   return made;
 }
 
-PreparedMesh GpuScene::take_mesh(const TextureSet& set, const GpuSurface& surface) {
+PreparedMesh GpuScene::take_mesh(const TextureSet& set, bool coded, const GpuSurface& surface) {
   {
     const std::lock_guard lock(mutex_);
-    if (auto node = prepared_meshes_.extract(mesh_key(set)); node && node.mapped().made.shown == surface.shown.faces)
+    if (auto node = prepared_meshes_.extract(mesh_key(set, coded));
+        node && node.mapped().made.shown == surface.shown.faces)
       return std::move(node.mapped().made);
   }
   return prepared(set, surface.shown);
 }
 
-PreparedSurface GpuScene::take_surface(const TextureSet& set) {
+PreparedSurface GpuScene::take_surface(const TextureSet& set, bool coded) {
   {
     const std::lock_guard lock(mutex_);
-    if (auto node = prepared_surfaces_.extract(surface_key(set))) return std::move(node.mapped().made);
+    if (auto node = prepared_surfaces_.extract(surface_key(set, coded))) return std::move(node.mapped().made);
   }
-  return prepared_surface(set);
+  return prepared_surface(set, coded);
 }
 
-void GpuScene::prepare(const Scene& scene) {
+void GpuScene::prepare(const Scene& scene, bool coded) {
   std::set<MeshKey> meshes;
   std::set<SurfaceKey> surfaces;
   std::map<SurfaceKey, Held> held;
@@ -178,12 +177,12 @@ void GpuScene::prepare(const Scene& scene) {
       surfaces.insert(key);
       shown[key] = faces;
     }
-    const ResourceDiff wanted = diff(meshes, surfaces, scene);
+    const ResourceDiff wanted = diff(meshes, surfaces, scene, coded);
     const auto refresh = [&](auto& waiting, const auto& key) {
       if (const auto found = waiting.find(key); found != waiting.end()) found->second.turn = turn;
     };
-    for (const TextureSet& set : wanted.meshes) refresh(prepared_meshes_, mesh_key(set));
-    for (const TextureSet& set : wanted.surfaces) refresh(prepared_surfaces_, surface_key(set));
+    for (const TextureSet& set : wanted.meshes) refresh(prepared_meshes_, mesh_key(set, coded));
+    for (const TextureSet& set : wanted.surfaces) refresh(prepared_surfaces_, surface_key(set, coded));
     // What two calls did not want is of a preview that was never shown.
     const auto old = [&](const auto& entry) { return entry.second.turn + 2 < turn; };
     std::erase_if(prepared_meshes_, old);
@@ -194,23 +193,24 @@ void GpuScene::prepare(const Scene& scene) {
       shown[key] = made.made.shown;
     }
   }
-  const ResourceDiff missing = diff(meshes, surfaces, scene);
+  const ResourceDiff missing = diff(meshes, surfaces, scene, coded);
   std::set<SurfaceKey> taken_over;
   for (const TextureSet& set : missing.surfaces) {
-    const SurfaceKey key = surface_key(set);
+    const SurfaceKey key = surface_key(set, coded);
     // What is on the GPU will do, with a few texels changed: that is not known before.
-    if (std::any_of(held.begin(), held.end(),
-                    [&](const auto& entry) { return serves(entry.second.made_for, entry.second.source, set); })) {
+    if (std::any_of(held.begin(), held.end(), [&](const auto& entry) {
+          return entry.first.coded == coded && serves(entry.second.made_for, entry.second.source, set);
+        })) {
       taken_over.insert(key);
       continue;
     }
-    PreparedSurface made = prepared_surface(set);
+    PreparedSurface made = prepared_surface(set, coded);
     shown[key] = made.shown;
     const std::lock_guard lock(mutex_);
     prepared_surfaces_.insert_or_assign(key, Waiting<PreparedSurface>{std::move(made), turn});
   }
   for (const TextureSet& set : missing.meshes) {
-    const MeshKey key = mesh_key(set);
+    const MeshKey key = mesh_key(set, coded);
     if (taken_over.contains(key.surface)) continue;
     PreparedMesh made = prepared(set, shown.at(key.surface));
     const std::lock_guard lock(mutex_);
@@ -231,30 +231,30 @@ void GpuScene::update_light(const Lighting* lighting) {
       if (map && !lights_.contains(map.get())) lights_.emplace(map.get(), upload(map));
 }
 
-ResourceDiff GpuScene::difference(const Scene& scene) const {
+ResourceDiff GpuScene::difference(const Scene& scene, bool coded) const {
   std::set<MeshKey> held_meshes;
   for (const auto& [key, mesh] : meshes_) held_meshes.insert(key);
   std::set<SurfaceKey> held_surfaces;
   for (const auto& [key, surface] : surfaces_) held_surfaces.insert(key);
-  return diff(held_meshes, held_surfaces, scene);
+  return diff(held_meshes, held_surfaces, scene, coded);
 }
 
-void GpuScene::plan_arrival(const Scene& scene) {
-  const ResourceDiff change = difference(scene);
+void GpuScene::plan_arrival(const Scene& scene, bool coded) {
+  const ResourceDiff change = difference(scene, coded);
   Released released(change.released_surfaces, surfaces_);
-  Arrival plan{scene.roots, changes_, {}, {}};
+  Arrival plan{scene.roots, coded, changes_, {}, {}};
   std::set<SurfaceKey> wanted;
   double bytes = 0;
   for (const TextureSet& set : change.surfaces) {
     // A few texels of what is there change: update() does that.
-    if (released.take(set)) continue;
+    if (released.take(set, coded)) continue;
     plan.surfaces.push_back(set);
-    wanted.insert(surface_key(set));
+    wanted.insert(surface_key(set, coded));
     bytes += each_upload + 8.0 * set.texels->width() * set.texels->height();
   }
   std::set<MeshKey> wanted_meshes;
   for (const TextureSet& set : change.meshes)
-    if (const MeshKey key = mesh_key(set); wanted.contains(key.surface)) {
+    if (const MeshKey key = mesh_key(set, coded); wanted.contains(key.surface)) {
       plan.meshes.push_back(set);
       wanted_meshes.insert(key);
       bytes += each_upload + 12.0 * static_cast<double>(set.soup.positions().size());
@@ -271,8 +271,9 @@ void GpuScene::plan_arrival(const Scene& scene) {
   std::erase_if(arriving_shown_, [&](const auto& entry) { return !arriving_surfaces_.contains(entry.first); });
 }
 
-double GpuScene::arrive(const Scene& scene, double milliseconds) {
-  if (!arrival_ || arrival_->roots != scene.roots || arrival_->changes != changes_) plan_arrival(scene);
+double GpuScene::arrive(const Scene& scene, bool coded, double milliseconds) {
+  if (!arrival_ || arrival_->roots != scene.roots || arrival_->coded != coded || arrival_->changes != changes_)
+    plan_arrival(scene, coded);
   Arrival& plan = *arrival_;
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double, std::milli>(milliseconds);
@@ -281,29 +282,25 @@ double GpuScene::arrive(const Scene& scene, double milliseconds) {
   const double all = static_cast<double>(plan.surfaces.size() + 1);
   for (; plan.surfaces_there < plan.surfaces.size(); ++plan.surfaces_there) {
     const TextureSet& set = plan.surfaces[plan.surfaces_there];
-    const SurfaceKey key = surface_key(set);
+    const SurfaceKey key = surface_key(set, coded);
     auto arriving = arriving_surfaces_.find(key);
     if (arriving == arriving_surfaces_.end()) {
       if (!goes_on()) return static_cast<double>(plan.surfaces_there) / all;
-      arriving = arriving_surfaces_.emplace(key, begin_upload(take_surface(set))).first;
+      arriving = arriving_surfaces_.emplace(key, begin_upload(take_surface(set, coded))).first;
       const std::lock_guard lock(mutex_);
       arriving_shown_.emplace(key, arriving->second.shown);
     }
     GpuSurface& surface = arriving->second;
-    while (surface.rows_uploaded < surface.packing->height) {
-      if (!goes_on())
-        return (static_cast<double>(plan.surfaces_there) +
-                static_cast<double>(surface.rows_uploaded) / surface.packing->height) /
-               all;
-      upload_rows(surface, band);
-    }
+    do
+      if (!goes_on()) return (static_cast<double>(plan.surfaces_there) + surface.uploaded) / all;
+    while (!upload_more(surface));
   }
   for (; plan.meshes_there < plan.meshes.size(); ++plan.meshes_there) {
     const TextureSet& set = plan.meshes[plan.meshes_there];
-    if (arriving_meshes_.contains(mesh_key(set))) continue;
+    if (arriving_meshes_.contains(mesh_key(set, coded))) continue;
     if (!goes_on()) return (all - 1) / all;
-    const GpuSurface& surface = arriving_surfaces_.at(surface_key(set));
-    arriving_meshes_.emplace(mesh_key(set), upload(take_mesh(set, surface), surface));
+    const GpuSurface& surface = arriving_surfaces_.at(surface_key(set, coded));
+    arriving_meshes_.emplace(mesh_key(set, coded), upload(take_mesh(set, coded, surface), surface));
   }
   return 1;
 }
@@ -316,9 +313,10 @@ void GpuScene::forget_arrival() {
   arriving_shown_.clear();
 }
 
-void GpuScene::update(const Scene& scene, const Lighting* lighting) {
+void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) {
   update_light(lighting);
-  ResourceDiff change = difference(scene);
+  coded_ = coded;
+  ResourceDiff change = difference(scene, coded);
   if (change.meshes.empty() && change.surfaces.empty() && change.released_meshes.empty() &&
       change.released_surfaces.empty())
     return;
@@ -327,9 +325,9 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
   Released released(change.released_surfaces, surfaces_);
   std::map<SurfaceKey, SurfaceKey> taken_over;
   std::erase_if(change.surfaces, [&](const TextureSet& set) {
-    const std::optional<SurfaceKey> held = released.take(set);
+    const std::optional<SurfaceKey> held = released.take(set, coded);
     if (!held) return false;
-    const SurfaceKey key = surface_key(set);
+    const SurfaceKey key = surface_key(set, coded);
     auto node = surfaces_.extract(*held);
     taken_over[*held] = key;
     node.key() = key;
@@ -341,12 +339,12 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
   const auto rekeyed = [&](std::vector<MeshKey>::iterator held, const TextureSet& set) -> GpuMesh& {
     auto node = meshes_.extract(*held);
     change.released_meshes.erase(held);
-    node.key() = mesh_key(set);
+    node.key() = key(set);
     return meshes_.insert(std::move(node)).position->second;
   };
   // What has only moved, or only other texels, keeps its buffers.
   std::erase_if(change.meshes, [&](const TextureSet& set) {
-    const MeshKey key = mesh_key(set);
+    const MeshKey key = mesh_key(set, coded);
     const auto now = [&](MeshKey other) {
       if (const auto found = taken_over.find(other.surface); found != taken_over.end()) other.surface = found->second;
       return other;
@@ -360,7 +358,7 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
     held =
         std::find_if(gone.begin(), gone.end(), [&](const MeshKey& other) { return differs_in_place(now(other), key); });
     if (held == gone.end()) return false;
-    PreparedMesh made = take_mesh(set, surface(set));
+    PreparedMesh made = take_mesh(set, coded, surface(set));
     move_vertices(rekeyed(held, set), std::move(made));
     return true;
   });
@@ -369,22 +367,22 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
   for (const SurfaceKey& key : change.released_surfaces) surfaces_.erase(key);
   std::set<SurfaceKey> came;  // from what had arrived
   for (const TextureSet& set : change.surfaces) {
-    const SurfaceKey key = surface_key(set);
+    const SurfaceKey key = surface_key(set, coded);
     auto arrived = arriving_surfaces_.extract(key);
     if (arrived) came.insert(key);
-    GpuSurface made = arrived ? std::move(arrived.mapped()) : begin_upload(take_surface(set));
-    while (!upload_rows(made, band)) {
+    GpuSurface made = arrived ? std::move(arrived.mapped()) : begin_upload(take_surface(set, coded));
+    while (!upload_more(made)) {
     }
     texels_uploaded_ +=
         static_cast<std::uint64_t>(made.packing->width) * static_cast<std::uint64_t>(made.packing->height);
     surfaces_.emplace(key, std::move(made));
   }
   for (const TextureSet& set : change.meshes) {
-    auto arrived = arriving_meshes_.extract(mesh_key(set));
-    if (arrived && came.contains(surface_key(set)))
+    auto arrived = arriving_meshes_.extract(key(set));
+    if (arrived && came.contains(surface_key(set, coded)))
       meshes_.insert(std::move(arrived));
     else
-      meshes_.emplace(mesh_key(set), upload(take_mesh(set, surface(set)), surface(set)));
+      meshes_.emplace(key(set), upload(take_mesh(set, coded, surface(set)), surface(set)));
   }
   if (arrival_ && arrival_->roots == scene.roots) forget_arrival();
   const std::lock_guard lock(mutex_);
@@ -396,6 +394,13 @@ void GpuScene::update(const Scene& scene, const Lighting* lighting) {
   std::erase_if(prepared_meshes_, [&](const auto& entry) { return held_meshes_.contains(entry.first); });
   std::erase_if(prepared_surfaces_, [&](const auto& entry) { return held_surfaces_.contains(entry.first); });
   std::erase_if(arriving_shown_, [&](const auto& entry) { return held_surfaces_.contains(entry.first); });
+}
+
+std::uint64_t GpuScene::texel_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const auto& [key, surface] : surfaces_)
+    bytes += surface.coded ? surface.coded->blocks.bytes() + surface.coded->words.bytes() : surface.texels.bytes();
+  return bytes;
 }
 
 void bind_vertices(const gl::Buffer& positions, const GpuSurface& surface) {

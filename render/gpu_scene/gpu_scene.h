@@ -58,38 +58,43 @@ struct GpuLight {
 /// Owns what is on the GPU for the current scene.
 class GpuScene {
  public:
-  /// Uploads what is missing and releases what `scene` no longer holds.
-  void update(const Scene& scene, const Lighting* lighting = nullptr);
+  /// Uploads what is missing and releases what `scene` no longer holds. `coded`: texels in blocks, in about half the
+  /// memory, to the same picture.
+  void update(const Scene& scene, bool coded, const Lighting* lighting = nullptr);
   /// Uploads some of what update() would of `scene`, for about so long and at least a piece, beside what is there;
   /// returns how much of it is, from 0 to 1. What is little is left to update(), which takes what has arrived.
-  double arrive(const Scene& scene, double milliseconds);
+  double arrive(const Scene& scene, bool coded, double milliseconds);
   /// Lets go of what arrived for a scene that was not drawn.
   void forget_arrival();
   /// Works out what update() will upload, from any thread; it takes what there is of it.
-  void prepare(const Scene& scene);
+  void prepare(const Scene& scene, bool coded);
 
-  const GpuMesh& mesh(const TextureSet& set) const { return meshes_.at(mesh_key(set)); }
-  const GpuSurface& surface(const TextureSet& set) const { return surfaces_.at(surface_key(set)); }
+  MeshKey key(const TextureSet& set) const { return mesh_key(set, coded_); }
+  const GpuMesh& mesh(const TextureSet& set) const { return meshes_.at(key(set)); }
+  const GpuSurface& surface(const TextureSet& set) const { return surfaces_.at(surface_key(set, coded_)); }
   /// So far.
   std::uint64_t texels_uploaded() const { return texels_uploaded_; }
+  std::uint64_t texel_bytes() const;  ///< held
   const GpuLight& light(const std::shared_ptr<const LightMap>& map) const { return lights_.at(map.get()); }
 
  private:
   void update_light(const Lighting* lighting);
   /// What was prepared of a set, or is now.
-  PreparedMesh take_mesh(const TextureSet& set, const GpuSurface& surface);
-  PreparedSurface take_surface(const TextureSet& set);
-  ResourceDiff difference(const Scene& scene) const;
-  void plan_arrival(const Scene& scene);
+  PreparedMesh take_mesh(const TextureSet& set, bool coded, const GpuSurface& surface);
+  PreparedSurface take_surface(const TextureSet& set, bool coded);
+  ResourceDiff difference(const Scene& scene, bool coded) const;
+  void plan_arrival(const Scene& scene, bool coded);
 
   std::map<MeshKey, GpuMesh> meshes_;
   std::map<SurfaceKey, GpuSurface> surfaces_;
   std::map<const LightMap*, GpuLight> lights_;
+  bool coded_ = false;         ///< the texels of the scene that is there
   std::uint64_t changes_ = 0;  ///< of the maps above
   // What arrives for a scene that is not drawn yet, and what is still missing then.
   struct Arrival {
     std::vector<NodePtr> roots;  ///< of the scene
-    std::uint64_t changes = 0;   ///< when this was planned
+    bool coded = false;
+    std::uint64_t changes = 0;  ///< when this was planned
     std::vector<TextureSet> surfaces, meshes;
     std::size_t surfaces_there = 0, meshes_there = 0;
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "mesh_ops/base/union_find.h"
 #include "mesh_ops/index/footprint.h"
@@ -82,8 +83,17 @@ TexelPacking pack_texels(const TextureSet& set, const std::vector<std::uint8_t>&
   std::vector<std::uint32_t> rect_of_part(count, 0);
   double area = 1;
   int widest_rect = 1;
-  for (std::uint32_t part = 0; part < count; ++part) {
-    if (part_shown[part] == 0) continue;
+  std::vector<std::uint32_t> shown_parts;
+  for (std::uint32_t part = 0; part < count; ++part)
+    if (part_shown[part] != 0) shown_parts.push_back(part);
+  // Whoever reads them unpacks few tiles at a time.
+  const auto in_order = [&](std::uint32_t part) {
+    const Range& r = ranges[part];
+    return std::tuple(r.top / TexelTile::size, r.left / TexelTile::size, r.top, r.left, part);
+  };
+  std::sort(shown_parts.begin(), shown_parts.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return in_order(a) < in_order(b); });
+  for (const std::uint32_t part : shown_parts) {
     const Range& r = ranges[part];
     rect_of_part[part] = static_cast<std::uint32_t>(packing.rects.size());
     packing.rects.push_back({static_cast<std::uint16_t>(r.left), static_cast<std::uint16_t>(r.top),

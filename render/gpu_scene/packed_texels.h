@@ -19,9 +19,9 @@ struct PackedRect {
 /// Which texels of a set are on the GPU. Triangles that share vertices share the rectangle that holds all their texels;
 /// rectangles of triangles that show nothing are not there.
 struct TexelPacking {
-  int width = 1, height = 1;  ///< of what is on the GPU
-  bool whole = false;         ///< texels lie where they do in the texture: packing would save too little
-  std::vector<PackedRect> rects;
+  int width = 1, height = 1;      ///< of what is on the GPU
+  bool whole = false;             ///< texels lie where they do in the texture: packing would save too little
+  std::vector<PackedRect> rects;  ///< in the order of the texture's tiles that they begin in
   /// For each vertex its rectangle; `rects.size()` where its triangles show nothing: then texel (0, 0) stands for it
   /// where texels are packed, which is not opaque.
   std::vector<std::uint32_t> rect_of_vertex;

@@ -14,9 +14,10 @@ struct SurfaceKey {
   const void* uvs = nullptr;
   const void* faces = nullptr;
   const void* texels = nullptr;
+  bool coded = false;  ///< whether its texels are
   auto operator<=>(const SurfaceKey&) const = default;
 };
-SurfaceKey surface_key(const TextureSet& set);
+SurfaceKey surface_key(const TextureSet& set, bool coded);
 
 /// Identity of a mesh on the GPU: the shared arrays that it was made from.
 struct MeshKey {
@@ -25,7 +26,7 @@ struct MeshKey {
   SurfaceKey surface;
   auto operator<=>(const MeshKey&) const = default;
 };
-MeshKey mesh_key(const TextureSet& set);
+MeshKey mesh_key(const TextureSet& set, bool coded);
 
 /// What to upload before a picture can be drawn, and what nothing needs any more.
 struct ResourceDiff {
@@ -37,6 +38,7 @@ struct ResourceDiff {
 
 /// Pure: compares what is held with what a scene can draw (hidden nodes included, so that showing them again is
 /// instant).
-ResourceDiff diff(const std::set<MeshKey>& held_meshes, const std::set<SurfaceKey>& held_surfaces, const Scene& scene);
+ResourceDiff diff(const std::set<MeshKey>& held_meshes, const std::set<SurfaceKey>& held_surfaces, const Scene& scene,
+                  bool coded);
 
 }  // namespace rebake

@@ -4,12 +4,18 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 
 #include "mesh_ops/index/opacity.h"
 
 namespace rebake {
 
 namespace {
+
+// What is uploaded at a time: some milliseconds' worth where scenes arrive in slices.
+constexpr int band = 64;  // rows of texels
+constexpr std::size_t bytes_at_once = 1 << 20;
 
 // The parts of a rectangle that lie in changed tiles. Returns how many texels that is.
 std::uint64_t upload_changed(const TexelReader& texels, int tile_columns, const std::vector<std::uint8_t>& changed,
@@ -34,9 +40,104 @@ std::uint64_t upload_changed(const TexelReader& texels, int tile_columns, const 
   return uploaded;
 }
 
+std::uint64_t area_of(const std::vector<PackedRect>& rects) {
+  std::uint64_t area = 0;
+  for (const PackedRect& rect : rects) area += static_cast<std::uint64_t>(rect.width) * rect.height;
+  return area;
+}
+
+// A texel takes a word at most. Rectangles that overlap would be there several times; tiny ones are smaller as they
+// are.
+std::optional<CodedTexels> coded_where_worth(const TexelPacking& packing, const FeatureTexture& texels) {
+  constexpr double most_coded = 0.9;  // of what it is without
+  const double plain = static_cast<double>(sizeof(Texel)) * packing.width * packing.height;
+  if (area_of(packing.rects) > most_coded_words) return std::nullopt;
+  if (static_cast<double>(sizeof(Texel) * area_of(packing.rects)) > 2 * plain) return std::nullopt;
+  CodedTexels made = coded(packing.rects, texels);
+  const std::size_t bytes = made.blocks.size() * sizeof(TexelBlock) + made.words.size() * sizeof(std::uint64_t);
+  if (static_cast<double>(bytes) > most_coded * plain) return std::nullopt;
+  return made;
+}
+
+GpuCodedTexels begin_upload(CodedTexels coded) {
+  // The shader reads the word that data begin in and the next.
+  coded.words.resize(coded.words.size() + 2, 0);
+  GpuCodedTexels made;
+  made.blocks = gl::make_buffer(GL_TEXTURE_BUFFER, nullptr, coded.blocks.size() * sizeof(TexelBlock));
+  made.words = gl::make_buffer(GL_TEXTURE_BUFFER, nullptr, coded.words.size() * sizeof(std::uint64_t));
+  made.read_blocks = gl::make_buffer_texture(made.blocks, GL_RGBA32UI);
+  made.read_words = gl::make_buffer_texture(made.words, GL_R32UI);
+  made.first_block = coded.first_block;
+  made.first_word = coded.first_word;
+  made.waiting = std::move(coded);
+  return made;
+}
+
+void upload_part(const gl::Buffer& buffer, std::size_t first, std::size_t bytes, const void* data) {
+  glBindBuffer(GL_TEXTURE_BUFFER, buffer.name());
+  glBufferSubData(GL_TEXTURE_BUFFER, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes), data);
+}
+
+// Returns the share that is there then.
+double upload_some(GpuCodedTexels& coded) {
+  const CodedTexels& waiting = coded.waiting;
+  const std::size_t blocks = waiting.blocks.size() * sizeof(TexelBlock),
+                    words = waiting.words.size() * sizeof(std::uint64_t);
+  const std::size_t begin = coded.uploaded, end = std::min(begin + bytes_at_once, blocks + words);
+  const auto part = [&](const gl::Buffer& buffer, std::size_t before, std::size_t size, const void* data) {
+    const std::size_t first = std::clamp(begin, before, before + size) - before,
+                      last = std::clamp(end, before, before + size) - before;
+    if (last > first) upload_part(buffer, first, last - first, static_cast<const std::byte*>(data) + first);
+  };
+  part(coded.blocks, 0, blocks, waiting.blocks.data());
+  part(coded.words, blocks, words, waiting.words.data());
+  coded.uploaded = end;
+  if (end < blocks + words) return static_cast<double>(end) / static_cast<double>(blocks + words);
+  coded.waiting = {};
+  return 1;
+}
+
+bool touches(const PackedRect& rect, int tile_columns, const std::vector<std::uint8_t>& changed) {
+  constexpr int size = TexelTile::size;
+  for (int row = rect.y / size; row <= (rect.y + rect.height - 1) / size; ++row)
+    for (int column = rect.x / size; column <= (rect.x + rect.width - 1) / size; ++column)
+      if (changed[static_cast<std::size_t>(row) * static_cast<std::size_t>(tile_columns) +
+                  static_cast<std::size_t>(column)] != 0)
+        return true;
+  return false;
+}
+
+// Rectangles in changed tiles anew, each in the room that it has; runs of them at once. Returns how many texels that
+// is, nothing where some need more room.
+std::optional<std::uint64_t> recode_changed(const GpuCodedTexels& coded, const std::vector<PackedRect>& rects,
+                                            const TexelReader& texels, int tile_columns,
+                                            const std::vector<std::uint8_t>& changed) {
+  std::uint64_t recoded = 0;
+  std::vector<TexelBlock> blocks;
+  std::vector<std::uint64_t> words;
+  for (std::size_t k = 0; k < rects.size(); ++k) {
+    const std::size_t first = k;
+    blocks.clear();
+    words.clear();
+    for (; k < rects.size() && touches(rects[k], tile_columns, changed); ++k) {
+      append_coded(rects[k], texels, coded.first_word[k], blocks, words);
+      const std::size_t end = coded.first_word[k + 1] - coded.first_word[first];
+      if (words.size() > end) return std::nullopt;
+      words.resize(end, 0);
+      recoded += static_cast<std::uint64_t>(rects[k].width) * rects[k].height;
+    }
+    if (k == first) continue;
+    upload_part(coded.blocks, coded.first_block[first] * sizeof(TexelBlock), blocks.size() * sizeof(TexelBlock),
+                blocks.data());
+    upload_part(coded.words, coded.first_word[first] * sizeof(std::uint64_t), words.size() * sizeof(std::uint64_t),
+                words.data());
+  }
+  return recoded;
+}
+
 }  // namespace
 
-PreparedSurface prepared_surface(const TextureSet& set) {
+PreparedSurface prepared_surface(const TextureSet& set, bool coded) {
   const Soup& soup = set.soup;
   PreparedSurface made;
   made.source = set;
@@ -49,6 +150,7 @@ PreparedSurface prepared_surface(const TextureSet& set) {
   made.shown.faces = std::move(faces);
   const auto packing = std::make_shared<const TexelPacking>(pack_texels(set, shows));
   made.packing = packing;
+  if (coded) made.coded = coded_where_worth(*packing, *set.texels);
   made.vertices.resize(soup.uvs().size());
   const double width = set.texels->width(), height = set.texels->height();
   tbb::parallel_for(std::size_t{0}, made.vertices.size(), [&](std::size_t v) {
@@ -57,7 +159,7 @@ PreparedSurface prepared_surface(const TextureSet& set) {
     vertex = {{static_cast<float>(uv.x() * width), static_cast<float>((1 - uv.y()) * height)}, {}, {}, {}};
     const std::uint32_t number = packing->rect_of_vertex[v];
     if (number == packing->rects.size()) {
-      if (!packing->whole) return;
+      if (!packing->whole || made.coded) return;
       // Its own texels are there too.
       vertex.last_texel[0] = static_cast<std::uint16_t>(packing->width - 1);
       vertex.last_texel[1] = static_cast<std::uint16_t>(packing->height - 1);
@@ -68,8 +170,9 @@ PreparedSurface prepared_surface(const TextureSet& set) {
     vertex.first_texel[1] = rect.y;
     vertex.last_texel[0] = static_cast<std::uint16_t>(rect.x + rect.width - 1);
     vertex.last_texel[1] = static_cast<std::uint16_t>(rect.y + rect.height - 1);
-    vertex.place[0] = rect.place_x;
-    vertex.place[1] = rect.place_y;
+    const std::uint32_t first_block = made.coded ? made.coded->first_block[number] : 0;
+    vertex.place[0] = made.coded ? static_cast<std::uint16_t>(first_block & 0xffffU) : rect.place_x;
+    vertex.place[1] = made.coded ? static_cast<std::uint16_t>(first_block >> 16) : rect.place_y;
   });
   return made;
 }
@@ -81,7 +184,10 @@ GpuSurface begin_upload(PreparedSurface made) {
   surface.vertices =
       gl::make_buffer(GL_ARRAY_BUFFER, made.vertices.data(), made.vertices.size() * sizeof(SurfaceVertex));
   surface.indices = gl::make_buffer(GL_ARRAY_BUFFER, made.shown.faces->data(), made.shown.faces->size() * sizeof(Face));
-  surface.texels = gl::make_texture(GL_RG32UI, made.packing->width, made.packing->height, sizeof(Texel));
+  if (made.coded)
+    surface.coded = begin_upload(std::move(*made.coded));
+  else
+    surface.texels = gl::make_texture(GL_RG32UI, made.packing->width, made.packing->height, sizeof(Texel));
   surface.made_for = made.source.texels;
   surface.source = std::move(made.source);
   surface.shown = std::move(made.shown);
@@ -89,9 +195,13 @@ GpuSurface begin_upload(PreparedSurface made) {
   return surface;
 }
 
-bool upload_rows(GpuSurface& surface, int count) {
+bool upload_more(GpuSurface& surface) {
+  if (surface.coded) {
+    surface.uploaded = upload_some(*surface.coded);
+    return surface.uploaded >= 1;
+  }
   const TexelPacking& packing = *surface.packing;
-  count = std::min(count, packing.height - surface.rows_uploaded);
+  const int count = std::min(band, packing.height - surface.rows_uploaded);
   if (count > 0) {
     std::vector<Texel> rows;
     if (!surface.reading) surface.reading = std::make_unique<const TexelReader>(*surface.source.texels);
@@ -101,6 +211,7 @@ bool upload_rows(GpuSurface& surface, int count) {
                     rows.data());
     surface.rows_uploaded += count;
   }
+  surface.uploaded = static_cast<double>(surface.rows_uploaded) / packing.height;
   if (surface.rows_uploaded < packing.height) return false;
   surface.reading.reset();
   return true;
@@ -115,8 +226,19 @@ bool serves(const std::shared_ptr<const FeatureTexture>& made_for, const Texture
 std::uint64_t take_over(GpuSurface& surface, const TextureSet& set) {
   const FeatureTexture &before = *surface.source.texels, &after = *set.texels;
   const std::vector<std::uint8_t> changed = changed_tiles(before, after);
-  glBindTexture(GL_TEXTURE_2D, surface.texels.name());
   const TexelReader texels(after);
+  if (surface.coded) {
+    const std::vector<PackedRect>& rects = surface.packing->rects;
+    surface.source = set;
+    if (const auto recoded = recode_changed(*surface.coded, rects, texels, after.tile_columns(), changed))
+      return *recoded;
+    // Blocks stay where they are, so that vertices find them.
+    surface.coded = begin_upload(coded(rects, after));
+    while (upload_some(*surface.coded) < 1) {
+    }
+    return area_of(rects);
+  }
+  glBindTexture(GL_TEXTURE_2D, surface.texels.name());
   std::vector<Texel> rows;
   std::uint64_t uploaded = 0;
   if (surface.packing->whole)

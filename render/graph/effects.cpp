@@ -20,6 +20,7 @@ constexpr const Effect* table[] = {
     &effects::culling,
     &effects::occlusion,
     &effects::hidden_objects,
+    &effects::coded_texels,
     &effects::inspect,
     &effects::selection,
     &effects::outline,

@@ -60,7 +60,8 @@ struct Effect {
 
 namespace effects {
 extern const Effect geometry, supersampling, node_frames, turned_rays, light, light_offset, decoder_compositing,
-    ray_per_sample, resolve, forward, culling, occlusion, hidden_objects, inspect, selection, outline, guides;
+    ray_per_sample, resolve, forward, culling, occlusion, hidden_objects, coded_texels, inspect, selection, outline,
+    guides;
 }
 
 /// All of them, in the order in which they are said and run.
@@ -72,6 +73,8 @@ std::string plural(std::size_t count, const std::string& one, const std::string&
 std::string drawn_words(const FramePlan& plan);
 /// How it is decoded, in words. Something is drawn.
 std::string decoder_words(const FramePlan& plan);
+/// Bytes of textures above which texels are coded.
+inline constexpr std::uint64_t coded_from = std::uint64_t{256} << 20;
 inline constexpr const char* nothing_in_view = "nothing is in view";
 
 }  // namespace rebake

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "mesh_ops/base/error.h"
@@ -78,6 +79,32 @@ std::size_t frame_index(FramePlan& plan, const NodeFrame& frame) {
   return plan.frames.size() - 1;
 }
 
+// Bytes of textures, each once.
+class TextureBytes {
+ public:
+  void add(const BakedObject& object) {
+    // Of many nodes, neighbours often show one object.
+    if (std::exchange(last_, &object) == &object) return;
+    for (const TextureSet& set : object.sets)
+      if (counted_.insert(set.texels.get()).second)
+        bytes_ += sizeof(Texel) * static_cast<std::uint64_t>(set.texels->width()) *
+                  static_cast<std::uint64_t>(set.texels->height());
+  }
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  const BakedObject* last_ = nullptr;
+  std::set<const FeatureTexture*> counted_;
+  std::uint64_t bytes_ = 0;
+};
+
+RenderOptions::Texels chosen(RenderOptions::Texels texels, std::uint64_t bytes, const DeviceFacts& device) {
+  using Texels = RenderOptions::Texels;
+  if (!device.reads_coded_texels) return Texels::plain;
+  if (texels != Texels::automatic) return texels;
+  return bytes > coded_from ? Texels::coded : Texels::plain;
+}
+
 void plan_passes(FramePlan& plan, const FrameFacts& facts, bool overlays) {
   const bool inspects = overlays && plan.guides.inspect != Guides::Inspect::none;
   for (const Effect* effect : effect_table()) {
@@ -91,6 +118,13 @@ void plan_passes(FramePlan& plan, const FrameFacts& facts, bool overlays) {
 }
 
 }  // namespace
+
+bool codes_texels(const Scene& scene, RenderOptions::Texels texels, const DeviceFacts& device) {
+  TextureBytes textures;
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->object) textures.add(*placed.node->object);
+  return chosen(texels, textures.bytes(), device) == RenderOptions::Texels::coded;
+}
 
 bool FramePlan::runs(const Effect& effect) const {
   return std::any_of(passes.begin(), passes.end(), [&](const PlannedPass& p) { return p.effect == &effect && p.runs; });
@@ -109,8 +143,10 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
   result.background = scene.background;
   const Mat3 camera_rows = world_to_camera(view.camera);
   std::size_t turned = 0, culled = 0, hidden = 0;
+  TextureBytes textures;
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.node->object) continue;
+    textures.add(*placed.node->object);
     if (!placed.visible) {
       ++hidden;
       continue;
@@ -159,6 +195,8 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
     result.options.shading = result.view.samples == 1 && result.options.weights == RenderOptions::Weights::constants
                                  ? RenderOptions::Shading::forward
                                  : RenderOptions::Shading::deferred;
+  result.texture_bytes = textures.bytes();
+  result.options.texels = chosen(options.texels, result.texture_bytes, device);
   if (guides != nullptr) result.guides = *guides;
   plan_passes(result, {result, device, turned, culled, hidden}, guides != nullptr);
   if (lighting != nullptr)

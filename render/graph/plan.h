@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,10 +33,16 @@ struct RenderOptions {
     on,         ///< hidden triangles are looked for and left out
     off,        ///< all triangles in view are drawn
   };
+  enum class Texels {
+    automatic,  ///< coded where a scene's textures take more than 256 MiB
+    plain,      ///< 8 bytes each: fastest
+    coded,      ///< in blocks, without loss: about half the memory
+  };
   Weights weights = Weights::automatic;
   Shading shading = Shading::automatic;
   Precision precision = Precision::full;
   Occlusion occlusion = Occlusion::automatic;
+  Texels texels = Texels::automatic;
 };
 
 /// What a plan is to know of where it is carried out.
@@ -43,7 +50,11 @@ struct DeviceFacts {
   std::size_t occlusion_from = 20'000;  ///< triangles in view from which looking for hidden ones pays
   /// Where the last look found that too little is hidden: the share of triangles in view that showed; else 0.
   double shown_share = 0;
+  bool reads_coded_texels = true;  ///< whether its buffers are large enough for coded texels
 };
+
+/// Whether a scene's texels are coded on the GPU, which holds those of all its nodes, shown or not.
+bool codes_texels(const Scene& scene, RenderOptions::Texels texels, const DeviceFacts& device = {});
 
 /// What looking for hidden triangles found in a frame.
 struct OcclusionCounts {
@@ -101,6 +112,7 @@ struct FramePlan {
   std::vector<PlannedPass> passes;
   PixelRect covered;  ///< nothing is drawn outside it
   std::size_t triangles = 0;
+  std::uint64_t texture_bytes = 0;  ///< of the scene's textures, in view or not, at 8 bytes a texel
   Guides guides;
 
   bool runs(const Effect& effect) const;

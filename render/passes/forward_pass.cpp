@@ -17,7 +17,7 @@ void execute(const PassInput& input) {
     const gl::Program& shader =
         program(input.state, "geometry.vert", "forward.frag",
                 fmt::format("#define TURNED_MESH {}\n", draw.set.soup.rotations() != nullptr ? 1 : 0) +
-                    light_preamble(draw) + decoder);
+                    light_preamble(draw) + texel_preamble(input, draw) + decoder);
     glUseProgram(shader.name());
     set_uniform(shader, "camera_to_fed", to_glm(camera_to_fed(plan, frame)));
     set_uniform(shader, "alpha_code", alpha_factors(frame.alpha_code));

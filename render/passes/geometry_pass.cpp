@@ -36,7 +36,7 @@ void execute(const PassInput& input) {
                             "FRAME_TARGET {}\n#define RAY_TARGET {}\n",
                             draw.set.soup.rotations() != nullptr ? 1 : 0, has_frames ? 1 : 0, has_rays ? 1 : 0,
                             frame_target, ray_target) +
-                    light_preamble(draw) +
+                    light_preamble(draw) + texel_preamble(input, draw) +
                     fmt::format("#define WRITES_LIGHT {}\n#define GAIN_TARGET {}\n#define OFFSET_TARGET {}\n", light,
                                 gain_target, gain_target + 1));
     glUseProgram(shader.name());

@@ -26,11 +26,6 @@ void execute(const PassInput& input) {
   begin_clear(input.plan);
   clear_depth();
   end_clear();
-  const gl::Program& shader = program(
-      input.state, "geometry.vert", "inspect.frag",
-      fmt::format("#define TURNED_MESH 0\n#define LIT_MESH 0\n#define INSPECT {}\n", static_cast<int>(guides.inspect)));
-  glUseProgram(shader.name());
-  set_uniform(shader, "channel", guides.channel);
   if (guides.inspect == Guides::Inspect::wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   if (guides.inspect == Guides::Inspect::overdraw) {
     const float black[4] = {0, 0, 0, 1};
@@ -42,6 +37,12 @@ void execute(const PassInput& input) {
     glBlendFunc(GL_ONE, GL_ONE);
   }
   for (const Draw& draw : input.plan.draws) {
+    const gl::Program& shader = program(input.state, "geometry.vert", "inspect.frag",
+                                        fmt::format("#define TURNED_MESH 0\n#define LIT_MESH 0\n#define INSPECT {}\n",
+                                                    static_cast<int>(guides.inspect)) +
+                                            texel_preamble(input, draw));
+    glUseProgram(shader.name());
+    set_uniform(shader, "channel", guides.channel);
     set_uniform(shader, "set_color", color_of(static_cast<std::size_t>(draw.node) + draw.first_triangle));
     draw_set(input, draw, shader);
   }

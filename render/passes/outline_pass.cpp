@@ -12,9 +12,9 @@ bool outlined(const FramePlan& plan, const Draw& draw) {
 }
 
 void execute(const PassInput& input) {
-  const gl::Program& mask = begin_mask(input);
+  begin_mask(input);
   for (const Draw& draw : input.plan.draws)
-    if (outlined(input.plan, draw)) draw_set(input, draw, mask);
+    if (outlined(input.plan, draw)) draw_set(input, draw, use_mask(input, draw));
   end_mask();
   draw_by_mask(input, "outline.frag");
 }

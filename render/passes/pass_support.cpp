@@ -96,8 +96,8 @@ std::string decoder_preamble(const PassInput& input) {
         gl::make_buffer(GL_TEXTURE_BUFFER, buffers.weights.data(), buffers.weights.size() * sizeof(float));
     tables.layout_buffer =
         gl::make_buffer(GL_TEXTURE_BUFFER, buffers.layout.data(), buffers.layout.size() * sizeof(float));
-    tables.weights = gl::make_buffer_texture(tables.weights_buffer);
-    tables.layout = gl::make_buffer_texture(tables.layout_buffer);
+    tables.weights = gl::make_buffer_texture(tables.weights_buffer, GL_RGBA32F);
+    tables.layout = gl::make_buffer_texture(tables.layout_buffer, GL_RGBA32F);
   }
   return fmt::format("#define WIDEST_LAYER {}\n#define DECODER_BUFFER 1\n", tables.widest_layer);
 }
@@ -162,9 +162,31 @@ int light_level(const FramePlan& plan) {
   return plan.runs(effects::light_offset) ? 2 : plan.runs(effects::light) ? 1 : 0;
 }
 
+std::string texel_preamble(const PassInput& input, const Draw& draw) {
+  return fmt::format("#define CODED_TEXELS {}\n", input.gpu.surface(draw.set).coded ? 1 : 0);
+}
+
 std::string light_preamble(const Draw& draw) {
   return fmt::format("#define LIT_MESH {}\n", !draw.light ? 0 : draw.light->offset.empty() ? 1 : 2);
 }
+
+namespace {
+
+void bind_texels(const GpuSurface& surface, const gl::Program& program) {
+  glActiveTexture(GL_TEXTURE0);
+  if (!surface.coded) {
+    glBindTexture(GL_TEXTURE_2D, surface.texels.name());
+    set_uniform(program, "features", 0);
+    return;
+  }
+  glBindTexture(GL_TEXTURE_BUFFER, surface.coded->read_blocks.name());
+  set_uniform(program, "texel_blocks", 0);
+  glActiveTexture(GL_TEXTURE2);
+  glBindTexture(GL_TEXTURE_BUFFER, surface.coded->read_words.name());
+  set_uniform(program, "texel_words", 2);
+}
+
+}  // namespace
 
 void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Program& program) {
   const GpuMesh& mesh = input.gpu.mesh(draw.set);
@@ -172,7 +194,6 @@ void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Progr
   to_camera.translation() += draw.to_camera.linear() * mesh.center;
   const Eigen::Matrix4d to_clip = projection(input.plan.view);
   set_uniform(program, "object_to_clip", to_glm(Eigen::Matrix4d(to_clip * to_camera.matrix())));
-  set_uniform(program, "features", 0);
   if (draw.set.soup.rotations() != nullptr) {
     const Mat3 axes = axes_matrix(draw.axes);
     set_uniform(program, "parallel_rays", input.plan.view.camera.orthographic() ? 1 : 0);
@@ -181,8 +202,7 @@ void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Progr
                 to_glm(Mat3(axes.transpose() * camera_to_fed(input.plan, input.plan.frames[draw.frame]))));
     set_uniform(program, "object_to_fed", to_glm(axes));
   }
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, input.gpu.surface(draw.set).texels.name());
+  bind_texels(input.gpu.surface(draw.set), program);
 }
 
 void bind_set(const PassInput& input, const Draw& draw, const gl::Program& program) {
@@ -317,15 +337,18 @@ void end_geometry() {
   if (reversed_depth()) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
-const gl::Program& begin_mask(const PassInput& input) {
+void begin_mask(const PassInput& input) {
   input.draw_to({Target::mask}, false);
   begin_overlay(input.plan);
   const float nothing[4] = {};
   glClearBufferfv(GL_COLOR, 0, nothing);
   glEnable(GL_BLEND);
   glBlendEquation(GL_MAX);
-  const gl::Program& mask =
-      program(input.state, "geometry.vert", "selection_mask.frag", "#define TURNED_MESH 0\n#define LIT_MESH 0\n");
+}
+
+const gl::Program& use_mask(const PassInput& input, const Draw& draw) {
+  const gl::Program& mask = program(input.state, "geometry.vert", "selection_mask.frag",
+                                    "#define TURNED_MESH 0\n#define LIT_MESH 0\n" + texel_preamble(input, draw));
   glUseProgram(mask.name());
   bind_scene_depth(input, mask);
   return mask;

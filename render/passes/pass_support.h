@@ -38,6 +38,8 @@ void set_uniform(const gl::Program& program, const char* name, const glm::mat4& 
 int light_level(const FramePlan& plan);
 /// What shaders need to know of a draw's light map.
 std::string light_preamble(const Draw& draw);
+/// How texel.glsl reads a draw's texels.
+std::string texel_preamble(const PassInput& input, const Draw& draw);
 
 /// Whether depth is 1 at the near plane and 0 at the far one; without clip control it runs −1 … 1.
 bool reversed_depth();
@@ -72,7 +74,8 @@ void begin_overlay(const FramePlan& plan);
 /// Binds the scene's depth to texture unit 1, and sets scene_depth, side and nearer.
 void bind_scene_depth(const PassInput& input, const gl::Program& program);
 /// Clears Target::mask and makes ready to draw geometry into it, nearest marks staying; end_mask() after that.
-const gl::Program& begin_mask(const PassInput& input);
+void begin_mask(const PassInput& input);
+const gl::Program& use_mask(const PassInput& input, const Draw& draw);
 void end_mask();
 /// Draws a fragment shader that reads the mask over the whole picture.
 void draw_by_mask(const PassInput& input, const std::string& fragment);

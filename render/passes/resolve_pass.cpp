@@ -50,7 +50,7 @@ void execute(const PassInput& input) {
   if (has_frames) {
     const std::vector<float> table = frame_table(plan);
     table_buffer = gl::make_buffer(GL_TEXTURE_BUFFER, table.data(), table.size() * sizeof(float));
-    table_texture = gl::make_buffer_texture(table_buffer);
+    table_texture = gl::make_buffer_texture(table_buffer, GL_RGBA32F);
     bind(1, GL_TEXTURE_2D, input.read(Target::frames));
     bind(2, GL_TEXTURE_BUFFER, table_texture.name());
     set_uniform(shader, "frames", 1);

@@ -26,11 +26,11 @@ SelectedFaces upload(const Draw& draw, const GpuMesh& mesh, const GpuSurface& su
 }
 
 void execute(const PassInput& input) {
-  const gl::Program& mask = begin_mask(input);
+  begin_mask(input);
   std::map<SelectionKey, SelectedFaces> kept;
   for (const Draw& draw : input.plan.draws) {
     if (draw.selection == nullptr) continue;
-    const SelectionKey key{mesh_key(draw.set), draw.selection.get()};
+    const SelectionKey key{input.gpu.key(draw.set), draw.selection.get()};
     const auto held = input.state.selected.find(key);
     const SelectedFaces& faces =
         kept.emplace(key, held != input.state.selected.end()
@@ -38,7 +38,7 @@ void execute(const PassInput& input) {
                               : upload(draw, input.gpu.mesh(draw.set), input.gpu.surface(draw.set)))
             .first->second;
     if (faces.count == 0) continue;
-    set_mesh_uniforms(input, draw, mask);
+    set_mesh_uniforms(input, draw, use_mask(input, draw));
     glBindVertexArray(faces.array.name());
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(faces.count), GL_UNSIGNED_INT, nullptr);
   }

@@ -3,6 +3,10 @@
 #include <benchmark/benchmark.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
+#include <chrono>
+#include <numbers>
+
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/obj.h"
@@ -78,6 +82,32 @@ BENCHMARK_CAPTURE(frame, forward_buffer, Weights::buffer, Shading::forward)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
+// From among nine mics.
+View inside_view(const BakedObject& nine) {
+  View view;
+  view.camera.eye = nine.bounds().center() + Vec3(0, 0.6, 0.2);
+  view.camera.target = view.camera.eye + Vec3(1, -0.2, 0.8);
+  view.camera.fov_degrees = 60;
+  view.camera.far_plane = 30;
+  return view;
+}
+
+// A view turned about what it looks at.
+class Turn {
+ public:
+  explicit Turn(const View& view) : view_(view), away_(view.camera.eye - view.camera.target) {}
+  View by(double degrees) const {
+    View view = view_;
+    if (degrees != 0)
+      view.camera.eye = view.camera.target + Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vec3::UnitY()) * away_;
+    return view;
+  }
+
+ private:
+  View view_;
+  Vec3 away_;
+};
+
 // Hidden triangles: drawn all the same, left out at rest, while the camera turns by a degree a frame, and in a picture
 // of which nothing is known. `inside`: nine mics, seen from among them.
 enum class Hidden { drawn, at_rest, turning, jumping };
@@ -86,11 +116,7 @@ void hidden_triangles(benchmark::State& state, Hidden hidden, bool inside) {
   static const auto tiled_subject = tiled(*subject());
   View view;
   if (inside) {
-    const Box box = tiled_subject->bounds();
-    view.camera.eye = box.center() + Vec3(0, 0.6, 0.2);
-    view.camera.target = view.camera.eye + Vec3(1, -0.2, 0.8);
-    view.camera.fov_degrees = 60;
-    view.camera.far_plane = 30;
+    view = inside_view(*tiled_subject);
   } else {
     view.camera.near_plane = 2;
     view.camera.far_plane = 6;
@@ -98,18 +124,14 @@ void hidden_triangles(benchmark::State& state, Hidden hidden, bool inside) {
   const Scene scene = scene_of(inside ? tiled_subject : subject());
   RenderOptions options;
   options.occlusion = hidden == Hidden::drawn ? RenderOptions::Occlusion::off : RenderOptions::Occlusion::on;
-  const Vec3 away = view.camera.eye - view.camera.target;
+  const Turn turn(view);
   double degrees = 0;
-  const auto turn = [&](double by) {
-    degrees += by;
-    view.camera.eye = view.camera.target + Eigen::AngleAxisd(degrees * 3.14159265358979 / 180, Vec3::UnitY()) * away;
-  };
   renderer.time_frame(scene, view, options, false);
   renderer.time_frame(scene, view, options, false);
   for (auto _ : state) {
-    if (hidden == Hidden::turning) turn(1);
-    if (hidden == Hidden::jumping) turn(97);
-    renderer.time_frame(scene, view, options, false);
+    if (hidden == Hidden::turning) degrees += 1;
+    if (hidden == Hidden::jumping) degrees += 97;
+    renderer.time_frame(scene, turn.by(degrees), options, false);
   }
 }
 BENCHMARK_CAPTURE(hidden_triangles, drawn, Hidden::drawn, false)->Unit(benchmark::kMillisecond)->UseRealTime();
@@ -150,17 +172,22 @@ void many_instances(benchmark::State& state) {
 }
 BENCHMARK(many_instances)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+TriangleSet left_half(const Soup& soup) {
+  std::vector<double> along;
+  for (const Face& face : soup.faces()) along.push_back(soup.positions()[face[0]].x());
+  std::vector<double> sorted = along;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  TriangleSet keep(soup.triangle_count(), 0);
+  for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = along[f] < sorted[sorted.size() / 2] ? 1 : 0;
+  return keep;
+}
+
 // Megabytes on the GPU beside the picture, of a scene and of what is left when half of its triangles are deleted.
 void gpu_memory(benchmark::State& state) {
   auto object = std::make_shared<BakedObject>(*subject());
   if (state.range(0) != 0) {
     const Soup& soup = object->sets[0].soup;
-    std::vector<double> along;
-    for (const Face& face : soup.faces()) along.push_back(soup.positions()[face[0]].x());
-    std::vector<double> sorted = along;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    TriangleSet keep(soup.triangle_count(), 0);
-    for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = along[f] < sorted[sorted.size() / 2] ? 1 : 0;
+    const TriangleSet keep = left_half(soup);
     object->sets[0].soup = subset(soup, keep, 0, true);
   }
   View view;
@@ -175,6 +202,63 @@ void gpu_memory(benchmark::State& state) {
   state.counters["megabytes"] = static_cast<double>(held) / 1e6;
 }
 BENCHMARK(gpu_memory)->Arg(0)->Arg(1)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// Eight of nine mics with textures of their own and real features, seen from among them: a frame at rest and in
+// turning, and megabytes on the GPU beside the picture, of all and where half of each is deleted; texels at 8 bytes, or
+// coded.
+void many_textures(benchmark::State& state, RenderOptions::Texels texels) {
+  static const std::array<std::shared_ptr<const BakedObject>, 2> objects = [] {
+    std::array<std::shared_ptr<const BakedObject>, 2> made;
+    auto object = std::make_shared<BakedObject>(*tiled(*subject()));
+    object->sets.pop_back();
+    for (std::size_t k = 0; k < object->sets.size(); ++k) {
+      TextureSet& set = object->sets[k];
+      if (auto real =
+              with_real_features(*set.texels, k % 2 == 0 ? "lego_ball" : "lego_tractor", 100 * static_cast<int>(k)))
+        set.texels = std::move(real);
+      else
+        set.texels = made_features(set.soup, set.texels->width(), set.texels->height(), static_cast<unsigned>(k) + 5);
+    }
+    made[0] = object;
+    auto half = std::make_shared<BakedObject>(*object);
+    for (TextureSet& set : half->sets) set.soup = subset(set.soup, left_half(set.soup), 0, true);
+    made[1] = half;
+    return made;
+  }();
+  const Scene scene = scene_of(objects.at(static_cast<std::size_t>(state.range(0))));
+  const bool turning = state.range(1) != 0;
+  View view = inside_view(*objects[0]);
+  RenderOptions options;
+  options.texels = texels;
+  const std::uint64_t before = gl::memory_use().now;
+  Renderer renderer;
+  {
+    View small = view;
+    small.width = small.height = 16;
+    const auto start = std::chrono::steady_clock::now();
+    renderer.time_frame(scene, small, options, false);
+    state.counters["first_ms"] =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    state.counters["megabytes"] = static_cast<double>(gl::memory_use().now - before) / 1e6;
+  }
+  const Turn turn(view);
+  renderer.time_frame(scene, view, options, false);
+  renderer.time_frame(scene, view, options, false);
+  double degrees = 0;
+  for (auto _ : state) renderer.time_frame(scene, turn.by(turning ? ++degrees : 0), options, false);
+}
+BENCHMARK_CAPTURE(many_textures, plain, RenderOptions::Texels::plain)
+    ->Args({0, 0})
+    ->Args({0, 1})
+    ->Args({1, 0})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(many_textures, coded, RenderOptions::Texels::coded)
+    ->Args({0, 0})
+    ->Args({0, 1})
+    ->Args({1, 0})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 // From an erased disk of texels to the next picture; and as if the whole texture were new.
 void erase_stroke(benchmark::State& state) {

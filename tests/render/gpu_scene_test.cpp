@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <thread>
 #include <tuple>
 
@@ -41,12 +42,24 @@ Scene bent(const Scene& scene, double amount, bool turns = false) {
   });
 }
 
+// With texels as they are, and coded; what is new is drawn with texels as they are.
+class GpuSceneTest : public ::testing::TestWithParam<bool> {
+ protected:
+  static RenderOptions options() {
+    RenderOptions options;
+    options.texels = GetParam() ? RenderOptions::Texels::coded : RenderOptions::Texels::plain;
+    return options;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Texels, GpuSceneTest, ::testing::Bool(),
+                         [](const auto& coded) { return coded.param ? "Coded" : "Plain"; });
+
 // As the window does it: what the next picture uploads is worked out on another thread meanwhile.
-TEST(GpuScene, WhatWasPreparedIsDrawnAlike) {
+TEST_P(GpuSceneTest, WhatWasPreparedIsDrawnAlike) {
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
   const View view = small_view();
   Renderer kept;
-  kept.render(scene, view);
+  kept.render(scene, view, options());
   for (const bool turns : {false, true})
     for (int k = 1; k <= 6; ++k) {
       const Scene next = bent(scene, 0.1 * k, turns);
@@ -55,15 +68,15 @@ TEST(GpuScene, WhatWasPreparedIsDrawnAlike) {
         // Of what is never shown nothing stays.
         for (int other = 0; other < 5; ++other) kept.prepare(bent(scene, 0.01 * other + k, turns));
       });
-      kept.render(scene, view);
+      kept.render(scene, view, options());
       ahead.join();
       Renderer fresh;
-      EXPECT_EQ(kept.render(next, view).rgb, fresh.render(next, view).rgb) << k;
+      EXPECT_EQ(kept.render(next, view, options()).rgb, fresh.render(next, view).rgb) << k;
     }
 }
 
 // Other texels at the address of those that were prepared and are gone are not taken for them.
-TEST(GpuScene, WhatWasPreparedForTexelsThatAreGoneIsNotUsed) {
+TEST_P(GpuSceneTest, WhatWasPreparedForTexelsThatAreGoneIsNotUsed) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
   const auto with_texels = [&](bool empty) {
     return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
@@ -79,46 +92,46 @@ TEST(GpuScene, WhatWasPreparedForTexelsThatAreGoneIsNotUsed) {
   };
   const View view = small_view();
   Renderer kept;
-  kept.render({}, view);
+  kept.render({}, view, options());
   for (int k = 0; k < 8; ++k) {
     kept.prepare(with_texels(true));
     const Scene next = with_texels(false);
     kept.prepare(next);
-    EXPECT_EQ(kept.render(next, view).rgb, Renderer().render(next, view).rgb);
+    EXPECT_EQ(kept.render(next, view, options()).rgb, Renderer().render(next, view).rgb);
   }
 }
 
-TEST(GpuScene, WhatOnlyMovedIsDrawnAsIfItWereNew) {
+TEST_P(GpuSceneTest, WhatOnlyMovedIsDrawnAsIfItWereNew) {
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
   const View view = small_view();
   Renderer kept;
-  const Image first = kept.render(scene, view);
+  const Image first = kept.render(scene, view, options());
   EXPECT_EQ(bent(scene, 0.3).roots[0]->object->sets[0].soup.uvs(), scene.roots[0]->object->sets[0].soup.uvs());
   for (const double amount : {0.2, 0.5, -4.0}) {
     const Scene moved = bent(scene, amount);
     Renderer fresh;
-    EXPECT_EQ(kept.render(moved, view).rgb, fresh.render(moved, view).rgb) << amount;
+    EXPECT_EQ(kept.render(moved, view, options()).rgb, fresh.render(moved, view).rgb) << amount;
   }
   // The same triangles with turned colours; and again, when fewer show something.
   Scene turned = bent(scene, 0.3, true);
   ASSERT_TRUE(turned.roots[0]->object->any_rotations());
   for (int k = 0; k < 2; ++k) {
     Renderer fresh;
-    const Image drawn = kept.render(turned, view);
+    const Image drawn = kept.render(turned, view, options());
     EXPECT_EQ(drawn.rgb, fresh.render(turned, view).rgb);
-    EXPECT_NE(drawn.rgb, kept.render(bent(scene, 0.3), view).rgb) << "turns are seen";
+    EXPECT_NE(drawn.rgb, kept.render(bent(scene, 0.3), view, options()).rgb) << "turns are seen";
     turned = with_changed(turned, turned.roots[0]->id, [&](Node& node) {
       auto object = std::make_shared<BakedObject>(*node.object);
       object->sets[0].texels = made_object({.columns = 64, .rows = 40, .seed = 9})->sets[0].texels;
       node.object = object;
     });
   }
-  EXPECT_EQ(kept.render(scene, view).rgb, first.rgb);
+  EXPECT_EQ(kept.render(scene, view, options()).rgb, first.rgb);
   // Beside a copy of itself that stays.
   Scene two = scene;
   two = with_added(two, Node(*bent(scene, 0.4).roots[0]), NodeId::none, 1);
   Renderer fresh;
-  EXPECT_EQ(kept.render(two, view).rgb, fresh.render(two, view).rgb);
+  EXPECT_EQ(kept.render(two, view, options()).rgb, fresh.render(two, view).rgb);
 }
 
 // The object with texels of some rows made transparent, or all of them opaque, in shared tiles.
@@ -135,13 +148,30 @@ Scene erased(const Scene& scene, int first_row, int last_row, bool opaque = fals
   });
 }
 
-TEST(GpuScene, WhatWasErasedIsDrawnAsIfItWereNew) {
+// The object with other features where it is opaque, which no longer are alike from texel to texel.
+Scene recoloured(const Scene& scene) {
+  return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
+    auto object = std::make_shared<BakedObject>(*node.object);
+    for (TextureSet& set : object->sets) {
+      FeatureTexture::Change change(*set.texels);
+      std::mt19937 random(1);
+      for (int y = 0; y < set.texels->height(); ++y)
+        for (int x = 0; x < set.texels->width(); ++x)
+          if (set.texels->opaque(x, y))
+            for (std::uint8_t& channel : change.at(x, y).feat1) channel = static_cast<std::uint8_t>(random());
+      set.texels = change.finish();
+    }
+    node.object = object;
+  });
+}
+
+TEST_P(GpuSceneTest, WhatWasErasedIsDrawnAsIfItWereNew) {
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
   const View view = small_view();
   Renderer kept;
-  const Image first = kept.render(scene, view);
+  const Image first = kept.render(scene, view, options());
   const auto expect_new = [&](const Scene& next, const char* what) {
-    EXPECT_EQ(kept.render(next, view).rgb, Renderer().render(next, view).rgb) << what;
+    EXPECT_EQ(kept.render(next, view, options()).rgb, Renderer().render(next, view).rgb) << what;
   };
   const Scene stroke = erased(scene, 0, 300);
   ASSERT_NE(Renderer().render(stroke, view).rgb, first.rgb) << "the stroke is seen";
@@ -153,27 +183,28 @@ TEST(GpuScene, WhatWasErasedIsDrawnAsIfItWereNew) {
   kept.prepare(moved);
   expect_new(moved, "a stroke and a bend at once");
   expect_new(erased(scene, 100, 700, true), "holes are filled: more triangles show than before");
+  expect_new(recoloured(scene), "as many texels are opaque, and differ more");
   expect_new(scene, "and are there again");
 }
 
 // A stroke uploads the texels around it, not the texture; and prepared meshes go with the faces that they were made
 // for.
-TEST(GpuScene, UploadsWhatAStrokeTouched) {
+TEST_P(GpuSceneTest, UploadsWhatAStrokeTouched) {
   const auto context = gl::make_headless_context();
   const gl::Current current(*context);
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
   GpuScene gpu;
-  gpu.update(scene);
+  gpu.update(scene, GetParam());
   const std::uint64_t all = gpu.texels_uploaded();
   EXPECT_GT(all, 0U);
-  gpu.update(bent(scene, 0.2));
+  gpu.update(bent(scene, 0.2), GetParam());
   EXPECT_EQ(gpu.texels_uploaded(), all) << "a bend changes no texel";
   const Scene stroke = erased(scene, 0, 20);
-  gpu.update(stroke);
+  gpu.update(stroke, GetParam());
   const std::uint64_t touched = gpu.texels_uploaded() - all;
   EXPECT_GT(touched, 0U);
   EXPECT_LT(touched, all / 2);
-  gpu.update(stroke);
+  gpu.update(stroke, GetParam());
   EXPECT_EQ(gpu.texels_uploaded(), all + touched) << "nothing changed";
 }
 
@@ -181,66 +212,66 @@ TEST(GpuScene, UploadsWhatAStrokeTouched) {
 Scene large_scene(unsigned seed) { return scene_of(made_object({.columns = 128, .rows = 80, .seed = seed})); }
 
 // As the window does it when a scene is opened: it is uploaded in slices while another one goes on being drawn.
-TEST(GpuScene, WhatArrivesIsDrawnAsIfItWereNewAndNotBefore) {
+TEST_P(GpuSceneTest, WhatArrivesIsDrawnAsIfItWereNewAndNotBefore) {
   const Scene first = large_scene(1);
   Node beside;
   beside.object = large_scene(3).roots[0]->object;
   Scene second = with_added(first, beside, NodeId::none, 1);
   const View view = small_view();
   Renderer kept;
-  const Image before = kept.render(first, view);
+  const Image before = kept.render(first, view, options());
   double share = 0;
   int slices = 0;
   for (; share < 1 && slices < 10000; ++slices) {
     const double now = kept.arrive(second, 0);
     EXPECT_GE(now, share);
     share = now;
-    EXPECT_EQ(kept.render(first, view).rgb, before.rgb);
+    EXPECT_EQ(kept.render(first, view, options()).rgb, before.rgb);
     if (slices == 2) second = bent(second, 0.2);  // another one is wanted meanwhile, of the same texels
     if (slices == 4) kept.prepare(second);
   }
   EXPECT_EQ(share, 1);
   EXPECT_GT(slices, 10);
-  EXPECT_EQ(kept.render(second, view).rgb, Renderer().render(second, view).rgb);
+  EXPECT_EQ(kept.render(second, view, options()).rgb, Renderer().render(second, view).rgb);
   // What has arrived in part is drawn too; and what was not wanted after all is gone.
   const Scene third = large_scene(5), fourth = large_scene(6);
   EXPECT_LT(kept.arrive(third, 0), 1);
   EXPECT_LT(kept.arrive(fourth, 0), 1);
-  EXPECT_EQ(kept.render(third, view).rgb, Renderer().render(third, view).rgb);
-  EXPECT_EQ(kept.render(fourth, view).rgb, Renderer().render(fourth, view).rgb);
+  EXPECT_EQ(kept.render(third, view, options()).rgb, Renderer().render(third, view).rgb);
+  EXPECT_EQ(kept.render(fourth, view, options()).rgb, Renderer().render(fourth, view).rgb);
   EXPECT_EQ(kept.arrive(third, 1e6), 1);
-  EXPECT_EQ(kept.render(third, view).rgb, Renderer().render(third, view).rgb);
+  EXPECT_EQ(kept.render(third, view, options()).rgb, Renderer().render(third, view).rgb);
 }
 
 // What has arrived is not uploaded again, and let go of where nobody wants it; a stroke does not wait for its texture.
-TEST(GpuScene, ArrivesOnceAndLeavesStrokesToTheUpdate) {
+TEST_P(GpuSceneTest, ArrivesOnceAndLeavesStrokesToTheUpdate) {
   const auto context = gl::make_headless_context();
   const gl::Current current(*context);
   const Scene scene = large_scene(1), other = large_scene(4);
   GpuScene gpu;
   const std::uint64_t nothing = gl::memory_use().now;
-  EXPECT_EQ(gpu.arrive(scene, 1e6), 1);
+  EXPECT_EQ(gpu.arrive(scene, GetParam(), 1e6), 1);
   const std::uint64_t there = gl::memory_use().now;
   EXPECT_GT(there, nothing);
-  gpu.update(scene);
+  gpu.update(scene, GetParam());
   EXPECT_EQ(gl::memory_use().now, there);
   const Scene stroke = erased(scene, 0, 20);
-  EXPECT_EQ(gpu.arrive(stroke, 0), 1);
+  EXPECT_EQ(gpu.arrive(stroke, GetParam(), 0), 1);
   EXPECT_EQ(gl::memory_use().now, there);
-  EXPECT_LT(gpu.arrive(other, 0), 1);
+  EXPECT_LT(gpu.arrive(other, GetParam(), 0), 1);
   EXPECT_GT(gl::memory_use().now, there);
-  EXPECT_EQ(gpu.arrive(scene, 0), 1);
+  EXPECT_EQ(gpu.arrive(scene, GetParam(), 0), 1);
   EXPECT_EQ(gl::memory_use().now, there) << "another scene is wanted";
-  gpu.arrive(other, 0);
+  gpu.arrive(other, GetParam(), 0);
   gpu.forget_arrival();
   EXPECT_EQ(gl::memory_use().now, there) << "that was undone";
-  gpu.arrive(other, 0);
-  gpu.update(other);
+  gpu.arrive(other, GetParam(), 0);
+  gpu.update(other, GetParam());
   EXPECT_LT(gl::memory_use().now, there + there / 2) << "drawn before all had arrived";
 }
 
 // Whatever finding out what is missing takes: each call brings something.
-TEST(GpuScene, ManyNodesArriveToo) {
+TEST_P(GpuSceneTest, ManyNodesArriveToo) {
   const auto context = gl::make_headless_context();
   const gl::Current current(*context);
   const auto shared = made_object({.columns = 8, .rows = 4});
@@ -252,25 +283,25 @@ TEST(GpuScene, ManyNodesArriveToo) {
   };
   for (int k = 0; k < 20000; ++k) add(shared);
   GpuScene gpu;
-  EXPECT_EQ(gpu.arrive(scene, 0), 1) << "little: it is uploaded at once";
+  EXPECT_EQ(gpu.arrive(scene, GetParam(), 0), 1) << "little: it is uploaded at once";
   for (unsigned k = 0; k < 300; ++k) add(made_object({.columns = 8, .rows = 4, .seed = k}));
   double share = 0;
-  for (int call = 0; call < 1000 && share < 1; ++call) share = gpu.arrive(scene, 0);
+  for (int call = 0; call < 1000 && share < 1; ++call) share = gpu.arrive(scene, GetParam(), 0);
   EXPECT_EQ(share, 1);
 }
 
-TEST(GpuScene, WhatWasPreparedForFewerFacesIsNotUsedForMore) {
+TEST_P(GpuSceneTest, WhatWasPreparedForFewerFacesIsNotUsedForMore) {
   const Scene full = scene_of(made_object({.columns = 64, .rows = 40}));
   const Scene holes = erased(full, 0, 600);
   const View view = small_view();
   Renderer kept;
-  kept.render({}, view);
+  kept.render({}, view, options());
   const Scene bent_holes = bent(holes, 0.3);
-  kept.prepare(bent_holes);  // clusters of the faces that still show something
-  kept.render(full, view);   // whose surface then stands for that of the holes
-  RenderOptions options;
-  options.occlusion = RenderOptions::Occlusion::on;
-  EXPECT_EQ(kept.render(bent_holes, view, options).rgb, Renderer().render(bent_holes, view).rgb);
+  kept.prepare(bent_holes);            // clusters of the faces that still show something
+  kept.render(full, view, options());  // whose surface then stands for that of the holes
+  RenderOptions with_occlusion = options();
+  with_occlusion.occlusion = RenderOptions::Occlusion::on;
+  EXPECT_EQ(kept.render(bent_holes, view, with_occlusion).rgb, Renderer().render(bent_holes, view).rgb);
 }
 
 // A texel that a triangle may show lies on the GPU where the shader looks for it, and what none shows is not there.
@@ -283,7 +314,7 @@ TEST(PackedTexels, HoldWhatTrianglesShow) {
       for (std::size_t f = 0; f < keep.size(); ++f) keep[f] = f / 2 % 2 == 0 ? 1 : 0;
       set.soup = subset(set.soup, keep, 0, true);
     }
-    const PreparedSurface surface = prepared_surface(set);
+    const PreparedSurface surface = prepared_surface(set, false);
     const TexelPacking& packing = *surface.packing;
     std::vector<Texel> here;
     const TexelReader texels(*set.texels);

@@ -73,6 +73,39 @@ TEST(Plan, ForwardShadingIsRefusedAtSeveralSamples) {
   EXPECT_THROW(plan(scene_of(made_object()), {}, {{}, RenderOptions::Shading::forward, {}}), FieldError);
 }
 
+Scene with_node(const Scene& scene, const std::shared_ptr<const BakedObject>& object, bool visible) {
+  Node node;
+  node.object = object;
+  node.visible = visible;
+  return with_added(scene, std::move(node), NodeId::none, scene.roots.size());
+}
+
+// Small scenes keep their speed, large ones fit; hidden nodes are on the GPU too, and one texture counts once.
+TEST(Plan, TexelsAreCodedWhereTheyTakeMuchMemory) {
+  using Texels = RenderOptions::Texels;
+  constexpr int side = 4096;  // 128 MiB
+  const auto large = [] {
+    auto object = std::make_shared<BakedObject>(*made_object());
+    object->sets[0].texels = std::make_shared<const FeatureTexture>(FeatureTexture::from_parts(
+        side, side, AlphaCode::halved,
+        [](int, int count, Texel* rows) { std::fill_n(rows, static_cast<std::size_t>(count) * side, Texel{}); }));
+    return object;
+  };
+  const auto one = large(), two = large();
+  Scene scene;
+  for (const auto& object : {one, two, one, two}) scene = with_node(scene, object, object == one);
+  EXPECT_FALSE(plan(scene, {}).runs(effects::coded_texels)) << "256 MiB";
+  scene = with_node(scene, made_object(), true);
+  EXPECT_TRUE(plan(scene, {}).runs(effects::coded_texels));
+  EXPECT_TRUE(codes_texels(scene, Texels::automatic));
+  RenderOptions options;
+  options.texels = Texels::plain;
+  EXPECT_FALSE(plan(scene, {}, options).runs(effects::coded_texels));
+  DeviceFacts device;
+  device.reads_coded_texels = false;
+  EXPECT_FALSE(codes_texels(scene, Texels::coded, device)) << "the driver cannot";
+}
+
 TEST(Plan, FlattenedNodeIsRefusedByName) {
   Scene scene = scene_of(made_object(), "leaf");
   scene = with_changed(scene, scene.roots[0]->id, [](Node& n) { n.to_parent.linear()(1, 1) = 0; });
@@ -87,14 +120,14 @@ TEST(Plan, FlattenedNodeIsRefusedByName) {
 TEST(Resources, UnchangedPartsAreNotUploadedTwice) {
   const Scene before = scene_of(made_object());
   const TextureSet& set = before.roots[0]->object->sets[0];
-  const auto first = diff({}, {}, before);
+  const auto first = diff({}, {}, before, false);
   EXPECT_EQ(first.meshes.size() + first.surfaces.size(), 2U);
-  const std::set<MeshKey> meshes{mesh_key(set)};
-  const std::set<SurfaceKey> surfaces{surface_key(set)};
+  const std::set<MeshKey> meshes{mesh_key(set, false)};
+  const std::set<SurfaceKey> surfaces{surface_key(set, false)};
   const Scene moved = with_changed(before, before.roots[0]->id, [](Node& n) { n.to_parent.translation().x() = 3; });
-  const auto again = diff(meshes, surfaces, moved);
+  const auto again = diff(meshes, surfaces, moved, false);
   EXPECT_TRUE(again.meshes.empty() && again.surfaces.empty() && again.released_meshes.empty());
-  const auto gone = diff(meshes, surfaces, {});
+  const auto gone = diff(meshes, surfaces, {}, false);
   EXPECT_EQ(gone.released_meshes.size() + gone.released_surfaces.size(), 2U);
 }
 

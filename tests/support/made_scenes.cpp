@@ -198,6 +198,25 @@ std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int 
   return object;
 }
 
+std::shared_ptr<const FeatureTexture> with_real_features(const FeatureTexture& texture, const std::string& name,
+                                                         int first_column) {
+  const fs::path folder = fs::path(REBAKE_SHARED) / "data" / "morpheus" / name;
+  const fs::path feat0 = folder / "shape0.pngfeat0.png", feat1 = folder / "shape0.pngfeat1.png";
+  if (!fs::exists(feat0)) return nullptr;
+  const FeatureTexture read = read_feature_pngs(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved);
+  const TexelReader real(read);
+  return std::make_shared<const FeatureTexture>(FeatureTexture::from_parts(
+      texture.width(), texture.height(), texture.alpha_code(), [&](int y, int count, Texel* rows) {
+        for (int row = y; row < y + count; ++row)
+          for (int x = 0; x < texture.width(); ++x, ++rows) {
+            *rows = empty_texel(texture.alpha_code());
+            if (!texture.opaque(x, row)) continue;
+            *rows = real.at((x + first_column) % read.width(), row % read.height());
+            rows->feat0[0] = std::max<std::uint8_t>(rows->feat0[0], 1);
+          }
+      }));
+}
+
 std::shared_ptr<const BakedObject> tiled(const BakedObject& object) {
   auto result = std::make_shared<BakedObject>(object);
   result->sets.clear();

@@ -36,6 +36,11 @@ std::shared_ptr<const BakedObject> mic_object();
 /// where shared/ is absent. `quads` a side of the texture's 60 are used.
 std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int quads = 60);
 
+/// A texture that is opaque where another one is, of real features (shared/data/morpheus, over and over from a column
+/// on); nothing where shared/ is absent.
+std::shared_ptr<const FeatureTexture> with_real_features(const FeatureTexture& texture, const std::string& name,
+                                                         int first_column);
+
 /// The object nine times side by side, a texture set each: the real mic so tiled has 741,789 triangles, about as many
 /// as a real unbounded scene.
 std::shared_ptr<const BakedObject> tiled(const BakedObject& object);
