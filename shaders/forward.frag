@@ -17,6 +17,9 @@ uniform sampler2D light_gain;
 uniform sampler2D light_offset;
 in vec2 at_light;
 #endif
+#if GLOSSY_MESH
+#include "gloss.glsl"
+#endif
 layout(location = 0) out vec4 picture;
 
 void main() {
@@ -32,10 +35,15 @@ void main() {
   vec3 ray = camera_to_fed * normalize(vec3(gl_FragCoord.xy * ray_scale + ray_offset, -1.0));
 #endif
   vec3 color = decode(decoder, low, high, ray);
+#if LIT_MESH
+  vec3 gain = texture(light_gain, at_light).rgb, offset = vec3(0.0);
 #if LIT_MESH > 1
-  color = relit(color, texture(light_gain, at_light).rgb, texture(light_offset, at_light).rgb);
-#elif LIT_MESH
-  color = relit(color, texture(light_gain, at_light).rgb, vec3(0.0));
+  offset += texture(light_offset, at_light).rgb;
+#endif
+#if GLOSSY_MESH
+  offset += gloss_change(at_light, gain);
+#endif
+  color = relit(color, gain, offset);
 #endif
   picture = vec4(color, 1.0);
 }

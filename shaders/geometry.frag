@@ -21,6 +21,9 @@ uniform sampler2D light_gain;
 uniform sampler2D light_offset;
 in vec2 at_light;
 #endif
+#if GLOSSY_MESH
+#include "gloss.glsl"
+#endif
 
 void main() {
   uvec2 texel = texel_here();
@@ -41,6 +44,9 @@ void main() {
   sample_offset = texture(light_offset, at_light);
 #else
   sample_offset = vec4(0.0);
+#endif
+#if GLOSSY_MESH
+  sample_offset.rgb += gloss_change(at_light, sample_gain.rgb);
 #endif
 #endif
 #if WRITES_RAY

@@ -4,11 +4,17 @@ layout(location = 6) in uvec4 rectangle;  // first and last texel of those that 
 layout(location = 7) in uvec2 place;      // of the first one on the GPU
 #if TURNED_MESH
 layout(location = 2) in mat3 turn;  // by which an edit turned the vertex against its object
+uniform mat3 object_to_fed;     // the axes of the decoder
+out vec3 turned_ray;
+#endif
+#if GLOSSY_MESH
+out vec3 baked_ray;   // in the object's space, as the surface saw it when it was baked
+out vec3 object_ray;  // and as it is
+#endif
+#if TURNED_MESH || GLOSSY_MESH
 uniform bool parallel_rays;     // of an orthographic camera
 uniform mat4 object_to_camera;
 uniform mat3 camera_to_object;  // directions, orthogonal
-uniform mat3 object_to_fed;     // the axes of the decoder
-out vec3 turned_ray;
 #endif
 #if LIT_MESH
 layout(location = 5) in vec2 light_place;  // in nodes of the light map
@@ -26,9 +32,19 @@ void main() {
 #if LIT_MESH
   at_light = light_place / light_size;
 #endif
-#if TURNED_MESH
+#if TURNED_MESH || GLOSSY_MESH
   // Unnormalised, so that interpolation over the triangle is exact where all three turns agree.
   vec3 ray = camera_to_object * (parallel_rays ? vec3(0.0, 0.0, -1.0) : (object_to_camera * vec4(position, 1.0)).xyz);
+#endif
+#if TURNED_MESH
   turned_ray = object_to_fed * (ray * turn);
+#endif
+#if GLOSSY_MESH
+  object_ray = ray;
+#if TURNED_MESH
+  baked_ray = ray * turn;
+#else
+  baked_ray = ray;
+#endif
 #endif
 }

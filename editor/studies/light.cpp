@@ -97,12 +97,13 @@ class Body {
         const bool front = site.normal.dot(to_eye) > 0;
         if ((front ? facing_[i] : 1 - facing_[i]) == 0) continue;
         const Vec3 normal = front ? site.normal : Vec3(-site.normal);
-        if (rays_->blocked(site.position + site.offset * normal, eye)) continue;
+        const Vec3 above = site.position + site.offset[front ? 0 : 1] * normal;
+        if (rays_->blocked(above, eye)) continue;
         ++seen;
         Radiance color = albedo(site.position, albedos).cwiseProduct(irradiance[i]);
         for (const Sun& sun : light.suns) {
           const double gloss = std::pow(std::max(0.0, normal.dot((to_eye + sun.direction).normalized())), 40);
-          if (normal.dot(sun.direction) > 0 && !rays_->shaded(site.position + site.offset * normal, sun.direction))
+          if (normal.dot(sun.direction) > 0 && !rays_->shaded(above, sun.direction))
             color += 0.15 * gloss * sun.irradiance;
         }
         colors[i] += color;

@@ -228,7 +228,7 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
           result.parts.push_back(
               {placed.node->id, placed.node->name,
                teacher(std::make_shared<const Decoder>(fold_turn(*object.decoder, turn, object.axes, Axes::forward))),
-               bent, 0, false, light});
+               bent, 0, false, light, turn.transpose(), node_turn.transpose()});
         }
         Composition::Part& part = result.parts[it->second];
         part.triangles += count(some);
@@ -329,6 +329,7 @@ std::vector<TexelSite> sites_of(const Composition& composition, const Compositio
         place += static_cast<float>(weights[static_cast<Eigen::Index>(k)]) * (*light_places)[face[k]];
       site.gain = interpolated(*light->chart, light->gain, place);
       if (!light->offset.empty()) site.offset = interpolated(*light->chart, light->offset, place);
+      if (light->gloss) site.gloss = interpolated(*light->chart, *light->gloss, place);
     }
     sites.push_back(site);
   };

@@ -25,6 +25,9 @@ struct Composition {
     bool plain_alpha = false;  ///< some of its texels have all bits of features 3 and 7
     /// What light does to its colours, of one texture set then; null where they are as they were baked.
     std::shared_ptr<const LightMap> light = nullptr;
+    /// Of what mirrors light: turn fed directions into those that its surface was baked with, and directions of the
+    /// world into the object's.
+    Mat3 to_baked = Mat3::Identity(), to_object = Mat3::Identity();
   };
   /// A rectangle of texels of one patch, at most `block_side` a side, whose triangles are of one part.
   struct Block {
@@ -65,6 +68,7 @@ struct TexelSite {
   Mat3 turn;              ///< fed direction = turn · world direction, then normalised
   /// In linear light colours become gain · colour + offset.
   Eigen::Vector3f gain = Eigen::Vector3f::Ones(), offset = Eigen::Vector3f::Zero();
+  GlossPlace gloss{};  ///< and what its part's light mirrors is added
 };
 
 /// The block's opaque texels that triangles come near: two rows at a time, so that a run of four is mostly a square.

@@ -114,7 +114,9 @@ std::vector<TexelGroup> groups_of(const Composition& composition, const Composit
   for (std::size_t g = 0; g < count; ++g) {
     TexelGroup& group = groups[g];
     group.turned = composition.parts[block.part].bent;
-    group.lit = composition.parts[block.part].light != nullptr;
+    const Composition::Part& part = composition.parts[block.part];
+    group.lit = part.light != nullptr;
+    if (group.lit && part.light->gloss) group.mirrors = &part;
     for (std::size_t k = 0; k < 4; ++k)
       for (std::size_t t = 4 * (g + k * count); t < std::min(sites.size(), 4 * (g + k * count) + 4); ++t)
         group.site[group.count++] = static_cast<std::uint32_t>(t);
@@ -131,6 +133,7 @@ std::vector<TexelGroup> groups_of(const Composition& composition, const Composit
         group.gain[c].at[l] = site.gain[static_cast<Eigen::Index>(c)];
         group.offset[c].at[l] = site.offset[static_cast<Eigen::Index>(c)];
       }
+      if (group.mirrors != nullptr) group.gloss.push_back(site.gloss);
     }
   }
   return groups;
@@ -151,6 +154,7 @@ void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& d
   Lanes input[decoder_inputs];
   for (std::size_t c = 0; c < texel_features; ++c) input[c] = group.features[c];
   Lanes* fed = input + texel_features;
+  Lanes added[3] = {group.offset[0], group.offset[1], group.offset[2]};
   for (std::size_t l = 0; l < network_lanes; ++l) {
     Vec3 d = direction;
     if (group.turned) {
@@ -163,6 +167,12 @@ void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& d
     }
     for (std::size_t axis = 0; axis < 3; ++axis)
       fed[axis].at[l] = static_cast<float>(d[static_cast<Eigen::Index>(axis)]);
+    if (group.mirrors == nullptr) continue;
+    const Radiance gain(static_cast<double>(group.gain[0].at[l]), static_cast<double>(group.gain[1].at[l]),
+                        static_cast<double>(group.gain[2].at[l]));
+    const Radiance mirrored = gloss_change(*group.mirrors->light->gloss->gloss, group.gloss[l], gain,
+                                           group.mirrors->to_baked * d, group.mirrors->to_object * direction);
+    for (std::size_t c = 0; c < 3; ++c) added[c].at[l] += static_cast<float>(mirrored[static_cast<Eigen::Index>(c)]);
   }
   for (Lanes& lane : input) {
     lane = mixed(lane, mix);
@@ -171,7 +181,7 @@ void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& d
   network_kernels().forward(teacher.view(), input, colors, work);
   if (!group.lit) return;
   for (std::size_t c = 0; c < 3; ++c) {
-    const Lanes gain = mixed(group.gain[c], mix), offset = mixed(group.offset[c], mix);
+    const Lanes gain = mixed(group.gain[c], mix), offset = mixed(added[c], mix);
     for (std::size_t l = 0; l < network_lanes; ++l) {
       if (gain.at[l] == 1 && offset.at[l] == 0) continue;
       const double linear = static_cast<double>(gain.at[l]) * to_linear(static_cast<double>(colors[c].at[l])) +

@@ -31,6 +31,9 @@ struct TexelGroup {
   std::size_t count = 0;
   std::array<std::uint32_t, network_lanes> site{};  ///< of each lane, among the block's
   bool turned = false, lit = false;
+  /// Of what mirrors: the part it belongs to, whose light says how, and each lane's place. The composition's.
+  const Composition::Part* mirrors = nullptr;
+  std::vector<GlossPlace> gloss{};
 };
 std::vector<TexelGroup> groups_of(const Composition& composition, const Composition::Block& block,
                                   const std::vector<TexelSite>& sites);

@@ -83,6 +83,7 @@ json light_json(const SceneLight& light) {
   json out{{"self", light.self},
            {"cast", light.cast},
            {"removed", light.removed},
+           {"highlights", light.highlights},
            {"match", light.match},
            {"budget", light.budget},
            {"rays", light.rays},
@@ -144,6 +145,7 @@ SceneLight read_light(const json& value) {
   light.self = value.at("self").get<bool>();
   light.cast = value.at("cast").get<bool>();
   light.removed = value.at("removed").get<bool>();
+  light.highlights = value.value("highlights", light.self);
   light.match = value.at("match").get<bool>();
   light.budget = std::clamp(value.at("budget").get<double>(), 0.0, 1.0);
   light.rays = static_cast<int>(std::clamp(value.at("rays").get<double>(), 16.0, 16384.0));

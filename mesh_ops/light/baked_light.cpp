@@ -28,19 +28,26 @@ BakedLight::BakedLight(std::shared_ptr<const BakedObject> object, const SceneLig
     light = std::make_shared<const Light>(estimate.light);
     confidence = estimate.confidence;
   }
-  const auto lit = as_baked({}, 64, progress);
-  facing = facing_of(sites, lit, colors);
+  roughly_ = as_baked({}, 64, progress);
+  facing = facing_of(sites, roughly_, colors);
   for (const float one : facing) sides.push_back(shown_sides(one));
   std::vector<double> values;
   for (int c = 0; c < 3; ++c) {
     values.clear();
     for (std::size_t i = 0; i < sites.size(); ++i)
-      if (const double e = shown_light(lit[i], facing[i])[c]; e > 0) values.push_back(colors[i][c] / e);
+      if (const double e = shown_light(roughly_[i], facing[i])[c]; e > 0) values.push_back(colors[i][c] / e);
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 9 / 10);
     if (values.empty()) continue;
     std::nth_element(values.begin(), at, values.end());
     albedo[c] = *at;
   }
+}
+
+const std::shared_ptr<const GlossFit>& BakedLight::gloss() {
+  if (!gloss_)
+    gloss_ = std::make_shared<const GlossFit>(found_gloss(*object_, charts, sites, facing, colors, *light, roughly_,
+                                                          rays_among({{bodies_.front().object, Affine::Identity()}})));
+  return gloss_;
 }
 
 const std::vector<Radiance>& BakedLight::shown_colors() {

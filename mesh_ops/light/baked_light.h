@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "mesh_ops/light/gloss.h"
 #include "mesh_ops/light/kept_light.h"
 #include "mesh_ops/light/lighting.h"
 
@@ -26,6 +27,9 @@ class BakedLight {
   double confidence = 0;     ///< in it, where it was found
   Radiance albedo{1, 1, 1};  ///< that nine sites of ten stay below
 
+  /// What it mirrors; of objects of one body that has not been turned.
+  const std::shared_ptr<const GlossFit>& gloss();
+  bool may_mirror() const { return bodies_.size() == 1 && bodies_.front().to_object.matrix().isIdentity(0); }
   /// Colours of what shows.
   const std::vector<Radiance>& shown_colors();
   /// What light fell on the sites of some sides as they were baked, whole; all sides where `wanted` is empty.
@@ -47,6 +51,8 @@ class BakedLight {
   std::vector<BakedBody> bodies_;
   bool untouched_;
   const LightingOptions& options_;
+  std::vector<SiteLight> roughly_;  ///< as baked, by few rays
+  std::shared_ptr<const GlossFit> gloss_;
   std::vector<Radiance> shown_colors_;
   std::map<int, std::vector<SiteLight>> of_shown_;  ///< as baked, by rays
   std::map<int, OpenRays> open_;                    ///< of what shows, by rays

@@ -17,21 +17,45 @@ namespace {
 
 std::size_t rays_to_sun(int rays) { return static_cast<std::size_t>(std::max(4, rays / 4)); }
 
-// Irradiance over π of what a site sees of a sun; `open(ray, direction)` says whether nothing hides it.
+// What a site sees of a sun; `open(ray, direction)` says whether nothing hides it.
+struct Sunlight {
+  Radiance irradiance = Radiance::Zero();  // over π
+  double share = 0;                        // of its disk
+};
 template <class Open>
-Radiance sunlight(const SiteFrame& frame, const Sun& sun, const Vec3& towards, const std::vector<DiskPoint>& disk,
+Sunlight sunlight(const SiteFrame& frame, const Sun& sun, const Vec3& towards, const std::vector<DiskPoint>& disk,
                   Open open) {
   const double r = std::tan(sun.radius);
-  if (frame.normal().dot(towards) <= -r) return Radiance::Zero();
+  if (frame.normal().dot(towards) <= -r) return {};
   const Vec3 u = towards.unitOrthogonal(), v = towards.cross(u);
-  double share = 0;
+  double cosines = 0;
+  int seen = 0;
   for (std::size_t k = 0; k < disk.size(); ++k) {
     const DiskPoint p = frame.turned(disk[k]);
     const Vec3 d = (towards + r * (p.x * u + p.y * v)).normalized();
     const double above = frame.normal().dot(d);
-    if (above > 0 && open(k, d)) share += above;
+    if (!(above > 0) || !open(k, d)) continue;
+    cosines += above;
+    ++seen;
   }
-  return share / static_cast<double>(disk.size()) * sun.irradiance;
+  const auto count = static_cast<double>(disk.size());
+  return {cosines / count * sun.irradiance, seen / count};
+}
+
+// Adds what a side of a site sees of some suns.
+template <class Open>
+void add_suns(SiteLight& lit, std::size_t side, const SiteFrame& frame, const Light& light, const Mat3& to_light,
+              const std::vector<DiskPoint>& disk, Open open) {
+  double all = 0, seen = 0;
+  for (std::size_t s = 0; s < light.suns.size(); ++s) {
+    const Sun& sun = light.suns[s];
+    const Sunlight found = sunlight(frame, sun, to_light.transpose() * sun.direction, disk,
+                                    [&](std::size_t ray, const Vec3& d) { return open(s, ray, d); });
+    lit.irradiance[side] += found.irradiance;
+    all += sun.irradiance.sum();
+    seen += found.share * sun.irradiance.sum();
+  }
+  if (all > 0) lit.sunny[side] = static_cast<float>(seen / all);
 }
 
 }  // namespace
@@ -77,12 +101,9 @@ std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<
       }
       result[i].irradiance[side] = sum / options.rays;
       result[i].open[side] = static_cast<float>(open) / static_cast<float>(options.rays);
-      for (std::size_t s = 0; s < light.suns.size(); ++s) {
-        const Sun& sun = light.suns[s];
-        const std::size_t first = disk.size() + s * sun_disk.size();
-        result[i].irradiance[side] += sunlight(frame, sun, to_light.transpose() * sun.direction, sun_disk,
-                                               [&](std::size_t ray, const Vec3& d) { return passes(first + ray, d); });
-      }
+      add_suns(result[i], side, frame, light, to_light, sun_disk, [&](std::size_t sun, std::size_t ray, const Vec3& d) {
+        return passes(disk.size() + sun * sun_disk.size() + ray, d);
+      });
     }
   });
   return result;
@@ -99,10 +120,8 @@ std::vector<SiteLight> traced_suns(std::span<const LightSite> sites, std::span<c
     for (std::size_t side = 0; side < 2; ++side) {
       if (!wanted.empty() && (wanted[i] >> side & 1) == 0) continue;
       const SiteFrame frame(sites[i], i, side == 1);
-      for (const Sun& sun : light.suns)
-        result[i].irradiance[side] +=
-            sunlight(frame, sun, to_light.transpose() * sun.direction, disk,
-                     [&](std::size_t, const Vec3& d) { return !around.shaded(frame.from(), d); });
+      add_suns(result[i], side, frame, light, to_light, disk,
+               [&](std::size_t, std::size_t, const Vec3& d) { return !around.shaded(frame.from(), d); });
     }
   });
   return result;

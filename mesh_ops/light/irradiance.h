@@ -15,7 +15,8 @@ namespace rebake {
 /// What reaches a site on its two sides: [0] the one that the normal points to.
 struct SiteLight {
   std::array<Radiance, 2> irradiance{Radiance(0, 0, 0), Radiance(0, 0, 0)};  ///< over π
-  std::array<float, 2> open{0, 0};  ///< cosine-weighted share of the half space that nothing hides
+  std::array<float, 2> open{0, 0};   ///< cosine-weighted share of the half space that nothing hides
+  std::array<float, 2> sunny{0, 0};  ///< share of suns that nothing hides, by their irradiance
 };
 
 /// By how much two sides are open: the share of the first in what shows, 1, ½ or 0. A side that is as good as closed,

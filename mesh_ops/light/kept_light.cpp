@@ -73,16 +73,18 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
   append(inputs, light.bounce.data(), 3 * sizeof(double));
   append(inputs, to_light.data(), 9 * sizeof(double));
   append(inputs, &rays, sizeof(rays));
-  const std::string key = result_key("light2", inputs);
-  constexpr std::size_t floats = 8;
+  const std::string key = result_key("light3", inputs);
+  constexpr std::size_t floats = 10, floats_a_side = 5;
   if (const auto bytes = results->find(key); bytes && bytes->size() == sites.size() * floats * sizeof(float)) {
     std::vector<SiteLight> lit(sites.size());
     for (std::size_t i = 0; i < lit.size(); ++i) {
       std::array<float, floats> f{};
       std::memcpy(f.data(), bytes->data() + i * sizeof(f), sizeof(f));
       for (std::size_t side = 0; side < 2; ++side) {
-        lit[i].irradiance[side] = Eigen::Vector3f(f[side * 4], f[side * 4 + 1], f[side * 4 + 2]).cast<double>();
-        lit[i].open[side] = f[side * 4 + 3];
+        const float* const own = f.data() + side * floats_a_side;
+        lit[i].irradiance[side] = Eigen::Vector3f(own[0], own[1], own[2]).cast<double>();
+        lit[i].open[side] = own[3];
+        lit[i].sunny[side] = own[4];
       }
     }
     return lit;
@@ -94,6 +96,7 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
       const Eigen::Vector3f e = one.irradiance[side].cast<float>();
       append(bytes, e.data(), sizeof(e));
       append(bytes, &one.open[side], sizeof(float));
+      append(bytes, &one.sunny[side], sizeof(float));
       // The same whether it was kept or not.
       one.irradiance[side] = e.cast<double>();
     }
@@ -209,7 +212,7 @@ LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t
     const AlphaCode code = set.texels->alpha_code();
     append(inputs, &code, sizeof(code));
   }
-  const std::string key = result_key("lightestimate5", inputs);
+  const std::string key = result_key("lightestimate6", inputs);
   // Numbers in this order; the sky last.
   constexpr std::size_t fixed = 12;
   if (const auto bytes = results->find(key); bytes && bytes->size() > fixed * sizeof(double)) {

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 
+#include "mesh_ops/light/chromaticity.h"
 #include "mesh_ops/light/site_rays.h"
 
 namespace rebake {
@@ -75,30 +75,6 @@ double median(std::vector<double> values) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), at, values.end());
   return *at;
-}
-
-// Surfaces that may share an albedo: of much the same chromaticity, so wide that a warm sun and a blue sky do not tell
-// lit from shaded ones. The most common chromaticity takes what is near it, then the most common of the rest.
-void cluster(std::vector<Sample>& samples, const std::vector<Radiance>& colors) {
-  constexpr double cell = 0.15, radius = 0.3;
-  std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells;
-  for (std::uint32_t i = 0; i < samples.size(); ++i) {
-    const Radiance c = colors[samples[i].site].cwiseMax(1e-4);
-    cells[{static_cast<int>(std::lround(std::log(c[0] / c[1]) / cell)),
-           static_cast<int>(std::lround(std::log(c[2] / c[1]) / cell))}]
-        .push_back(i);
-  }
-  for (std::uint32_t number = 0; !cells.empty(); ++number) {
-    const auto center = std::max_element(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
-                          return a.second.size() < b.second.size();
-                        })->first;
-    std::erase_if(cells, [&](const auto& entry) {
-      if (std::hypot(entry.first.first - center.first, entry.first.second - center.second) * cell > radius)
-        return false;
-      for (const std::uint32_t i : entry.second) samples[i].cluster = number;
-      return true;
-    });
-  }
 }
 
 // How much neighbouring lobes hold to each other, against what a usual lobe weighs.
@@ -367,7 +343,10 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
     samples.push_back(
         {usable[(k * usable.size() + mixed(k, 1, 2) % usable.size()) / count % usable.size()], 0.5, 0, 0, {}});
   for (Sample& sample : samples) sample.part = sites.part[sample.site];
-  cluster(samples, colors);
+  std::vector<Radiance> own;
+  for (const Sample& sample : samples) own.push_back(colors[sample.site]);
+  const std::vector<std::uint32_t> clusters = chromaticity_clusters(own);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i].cluster = clusters[i];
 
   const Lobes lobes(options.lobes);
   const auto lobe_count = static_cast<Eigen::Index>(lobes.size());

@@ -9,6 +9,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/light/transfer_model.h"
+#include "mesh_ops/network/texel_colors.h"
 
 namespace rebake {
 
@@ -157,8 +158,50 @@ double LightReceiver::sampled_change(bool self, bool removed, const Progress& pr
   return std::min(1.0, 2 * most);
 }
 
+std::shared_ptr<const GlossFit> LightReceiver::gloss(const Shared& shared, const Progress& progress) {
+  prepare(progress);
+  if (shared.light != nullptr || in_world() || !baked_->may_mirror()) return nullptr;
+  return baked_->gloss()->any() ? baked_->gloss() : nullptr;
+}
+
+std::string LightReceiver::why_matte(const Shared& shared) const {
+  if (shared.light != nullptr) return "it stands in another light than its own";
+  if (in_world()) return "it is sheared";
+  if (!baked_->may_mirror()) return "it was joined of others";
+  return "its colours do not change with the eye as mirrored light would";
+}
+
+double LightReceiver::mirrored_change(const GlossFit& fit) const {
+  constexpr std::size_t some = 512;
+  const LightSites& sites = baked_->sites;
+  const std::vector<Vec3> directions = even_directions(24);
+  const std::size_t step = std::max<std::size_t>(1, sites.size() / some);
+  double most = 0;
+  for (std::size_t i = step / 2; i < sites.size(); i += step) {
+    const LightSite &before = sites.baked[i], &after = sites.now[i];
+    if (before.normal == after.normal || fit.amounts[i].isZero(0)) continue;
+    GlossPlace place;
+    place.before << before.normal.cast<float>(), fit.amounts[i][0];
+    place.after << after.normal.cast<float>(), fit.amounts[i][0];
+    place.suns_before = place.suns_after = fit.amounts[i][1];
+    Mat3 was, is;
+    was << before.tangent, before.normal, before.tangent.cross(before.normal);
+    is << after.tangent, after.normal, after.tangent.cross(after.normal);
+    const Mat3 turn = is * was.transpose();
+    for (const Vec3& now : directions) {
+      const Radiance change = gloss_change(fit.gloss, place, Radiance::Ones(), turn.transpose() * now, now);
+      for (int c = 0; c < 3; ++c) {
+        const double color = baked_->colors[i][c];
+        most = std::max(most, std::abs(to_display(std::clamp(color + change[c], 0.0, 1.0)) - to_display(color)));
+      }
+    }
+  }
+  return std::min(1.0, 2 * most);
+}
+
 LightReceiver::Change LightReceiver::change(bool self, bool removed, const std::vector<std::size_t>& casters,
-                                            const Shared& shared, const Progress& progress) {
+                                            const Shared& shared, const std::shared_ptr<const GlossFit>& gloss,
+                                            const Progress& progress) {
   prepare(progress);
   const int rays = options_.rays > 0 ? options_.rays : settings_.rays;
   std::vector<SiteLight> before, after;
@@ -172,16 +215,21 @@ LightReceiver::Change LightReceiver::change(bool self, bool removed, const std::
     before = light_before(self, removed, baked_->sides, rays, progress);
     after = light_after(casters, baked_->sides, rays, shared, progress);
   }
-  Change change{{}, {}, baked_->shown_colors()};
+  Change change{{}, {}, baked_->shown_colors(), {}};
+  if (gloss) change.mirrors = Mirrors{gloss, {}, {}};
   for (std::size_t i = 0; i < baked_->sites.size(); ++i) {
     change.before.push_back(shown(i, before));
     change.after.push_back(shown(i, after));
+    if (!gloss) continue;
+    change.mirrors->before.push_back(shown_openness(before[i], baked_->facing[i]));
+    change.mirrors->after.push_back(shown_openness(after[i], baked_->facing[i]));
   }
   return change;
 }
 
 std::vector<std::shared_ptr<const LightMap>> LightReceiver::maps(const Change& change) const {
-  return light_maps(charts_, baked_->sites, change.colors, change.before, change.after);
+  return light_maps(charts_, baked_->sites, change.colors, change.before, change.after, now(),
+                    change.mirrors ? &*change.mirrors : nullptr);
 }
 
 // What was learnt of its body; what cannot be read was never kept.
@@ -206,7 +254,7 @@ std::shared_ptr<const TurnedLight> LightReceiver::turned(const Change& change, c
   if (in_world() || !settings_.self) return nullptr;
   TurnedLight::Start start{
       placed().node->object, charts_, baked_->sites, baked_->facing, change.colors, change.before, change.after, {}, {},
-      kept_model(),          {}};
+      kept_model(),          {},      change.mirrors};
   for (const std::size_t k : relatives_)
     if (k != own_) start.others.push_back(occluder(k));
   for (const std::size_t k : casters) start.others.push_back(occluder(k));
@@ -253,7 +301,7 @@ void LightReceiver::prepare(const Progress& progress) {
     site.normal = (normals * site.normal).normalized();
     const Vec3 tangent = motion.linear() * site.tangent;
     site.tangent = (tangent - tangent.dot(site.normal) * site.normal).normalized();
-    site.offset *= std::cbrt(std::abs(motion.linear().determinant()));
+    for (double& offset : site.offset) offset *= std::cbrt(std::abs(motion.linear().determinant()));
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,12 +36,21 @@ class LightReceiver {
   double cast_bound(std::size_t other, const Shared& shared, const Progress& progress);
   /// About what an effect changes: twice the largest change at some sites, 64 rays each.
   double sampled_change(bool self, bool removed, const Progress& progress);
+  /// What it mirrors of a light that its triangles have turned in; null where it does not, and where it was joined of
+  /// others or stands in another light than its own.
+  std::shared_ptr<const GlossFit> gloss(const Shared& shared, const Progress& progress);
+  /// Why that is null.
+  std::string why_matte(const Shared& shared) const;
+  /// About what turning changes of that: twice the largest change at some sites, seen from some sides.
+  double mirrored_change(const GlossFit& fit) const;
   /// Irradiance over π of its sites, as baked and under what runs, and their colours.
   struct Change {
     std::vector<Radiance> before, after, colors;
+    std::optional<Mirrors> mirrors;
   };
+  /// `gloss`: null where highlights stay as they were baked.
   Change change(bool self, bool removed, const std::vector<std::size_t>& casters, const Shared& shared,
-                const Progress& progress);
+                const std::shared_ptr<const GlossFit>& gloss, const Progress& progress);
   /// What that does to colours, a map a texture set; null where nothing changes.
   std::vector<std::shared_ptr<const LightMap>> maps(const Change& change) const;
   /// The same, to go along with triangles that move on; null where it cannot.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "mesh_ops/index/index.h"
 
@@ -17,41 +18,90 @@ struct Surface {
   std::vector<std::array<Vec3, 3>> corners;
   std::vector<Vec3> normals;  // twice the area long
   std::vector<std::array<Vec3, 3>> smooth;
-  std::vector<std::array<double, 3>> roughness;  // sine of the angle by which facets around a corner differ
-  std::vector<double> pitch;                     // size of the facets
+  // Of a corner, over both sides: by how much facets around it stick out of the smooth surface, as a sine.
+  std::vector<std::array<std::array<double, 2>, 3>> roughness;
+  std::vector<double> pitch;  // size of the facets
 };
 
 // Faces whose normals differ by less than this are one surface: beyond it there is an edge.
 constexpr double smooth_cosine = 0.5;
+// Of a face's size: what rises less at an edge hides next to nothing.
+constexpr double stands_up = 0.1;
 
-void smooth_normals(const WeldedCorners& welded, Surface& surface) {
+// The faces around each welded corner.
+struct FacesAround {
+  std::vector<std::uint32_t> first, faces;
+  std::span<const std::uint32_t> of(std::uint32_t place) const {
+    return {faces.data() + first[place], faces.data() + first[place + 1]};
+  }
+};
+FacesAround faces_around(const WeldedCorners& welded) {
+  FacesAround around{std::vector<std::uint32_t>(welded.place_count + 1, 0),
+                     std::vector<std::uint32_t>(welded.places.size())};
+  for (const std::uint32_t place : welded.places) ++around.first[place + 1];
+  for (std::size_t k = 1; k < around.first.size(); ++k) around.first[k] += around.first[k - 1];
+  std::vector<std::uint32_t> next(around.first.begin(), around.first.end() - 1);
+  for (std::uint32_t c = 0; c < welded.places.size(); ++c) around.faces[next[welded.places[c]]++] = c / 3;
+  return around;
+}
+
+void smooth_normals(const WeldedCorners& welded, const FacesAround& around, Surface& surface) {
   const std::size_t faces = surface.corners.size();
-  std::vector<std::uint32_t> first(welded.place_count + 1, 0), around(faces * 3);
-  for (const std::uint32_t place : welded.places) ++first[place + 1];
-  for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::uint32_t c = 0; c < welded.places.size(); ++c) around[next[welded.places[c]]++] = c / 3;
   surface.smooth.resize(faces);
-  surface.roughness.resize(faces);
   tbb::parallel_for(std::size_t{0}, faces, [&](std::size_t f) {
     const Vec3 own = surface.normals[f].stableNormalized();
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t place = welded.places[f * 3 + k];
       Vec3 sum = Vec3::Zero();
-      double differing = 0, area = 0;
-      for (std::uint32_t a = first[place]; a < first[place + 1]; ++a) {
+      for (const std::uint32_t a : around.of(welded.places[f * 3 + k])) {
         // Triangles of soups may face either way.
-        const Vec3& other = surface.normals[around[a]];
+        const Vec3& other = surface.normals[a];
         const double size = other.stableNorm();
         if (!(size > 0)) continue;
         const double cosine = own.dot(other) / size;
         if (std::abs(cosine) >= smooth_cosine) sum += cosine < 0 ? Vec3(-other) : other;
-        differing += size * (1 - std::min(1.0, cosine * cosine));
-        area += size;
       }
       const Vec3 normal = sum.stableNormalized();
       surface.smooth[f][k] = normal.allFinite() && normal.squaredNorm() > 0.5 ? normal : own;
-      surface.roughness[f][k] = area > 0 ? std::sqrt(differing / area) : 0;
+    }
+  });
+}
+
+// A facet of a smooth surface lies across the mean of its corners' normals, however that is curved; one of a ragged
+// surface does not. What stands up at an edge would be met by all rays that start below it.
+void find_roughness(const WeldedCorners& welded, const FacesAround& around, Surface& surface) {
+  const std::size_t faces = surface.corners.size();
+  std::vector<double> ragged(faces, 0);  // squared sines
+  tbb::parallel_for(std::size_t{0}, faces, [&](std::size_t f) {
+    const Vec3 own = surface.normals[f].stableNormalized(),
+               mean = (surface.smooth[f][0] + surface.smooth[f][1] + surface.smooth[f][2]).stableNormalized();
+    const double cosine = own.dot(mean);
+    ragged[f] = 1 - std::min(1.0, cosine * cosine);
+  });
+  surface.roughness.resize(faces);
+  tbb::parallel_for(std::size_t{0}, faces, [&](std::size_t f) {
+    const Vec3 own = surface.normals[f].stableNormalized();
+    for (std::size_t k = 0; k < 3; ++k) {
+      double area = 0;
+      std::array<double, 2> rough{};
+      for (const std::uint32_t a : around.of(welded.places[f * 3 + k])) {
+        const double size = surface.normals[a].stableNorm();
+        if (!(size > 0)) continue;
+        area += size;
+        if (std::abs(own.dot(surface.normals[a])) >= smooth_cosine * size) {
+          for (double& side : rough) side += size * ragged[a];
+          continue;
+        }
+        double above = 0, below = 0;
+        for (const Vec3& corner : surface.corners[a]) {
+          const double height = (corner - surface.corners[f][k]).dot(own);
+          above = std::max(above, height);
+          below = std::max(below, -height);
+        }
+        if (above > stands_up * surface.pitch[a]) rough[0] += size;
+        if (below > stands_up * surface.pitch[a]) rough[1] += size;
+      }
+      for (std::size_t side = 0; side < 2; ++side)
+        surface.roughness[f][k][side] = area > 0 ? std::sqrt(rough[side] / area) : 0;
     }
   });
 }
@@ -66,15 +116,18 @@ Surface surface_of(const WeldedCorners& welded, std::vector<std::array<Vec3, 3>>
     surface.normals[f] = (b - a).cross(c - a);
     surface.pitch[f] = std::sqrt(surface.normals[f].stableNorm());
   }
-  smooth_normals(welded, surface);
+  const FacesAround around = faces_around(welded);
+  smooth_normals(welded, around, surface);
+  find_roughness(welded, around, surface);
   return surface;
 }
 
-// Rays start above what a facet departs from the smooth surface: hardly where facets agree, a whole facet where they
-// do not (a soup would shade itself).
-constexpr double least_offset = 0.04, offset_a_sine = 1.0;
+// Rays start above what a facet departs from the smooth surface: hardly where that is smooth, a whole facet where it is
+// ragged (a soup would shade itself).
+constexpr double least_offset = 0.02, offset_a_sine = 0.5;
 
-LightSite site_at(const Surface& surface, std::size_t face, const Vec3& w) {
+// `rough` is the same surface where its light was baked: bending makes nothing ragged.
+LightSite site_at(const Surface& surface, const Surface& rough, std::size_t face, const Vec3& w) {
   const auto& corners = surface.corners[face];
   LightSite site{};
   site.position = w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2];
@@ -90,9 +143,11 @@ LightSite site_at(const Surface& surface, std::size_t face, const Vec3& w) {
   Vec3 tangent = along - along.dot(site.normal) * site.normal;
   if (!(tangent.squaredNorm() > 1e-12 * along.squaredNorm())) tangent = site.normal.unitOrthogonal();
   site.tangent = tangent.stableNormalized();
-  double roughness = 0;
-  for (int k = 0; k < 3; ++k) roughness += w[k] * surface.roughness[face][static_cast<std::size_t>(k)];
-  site.offset = surface.pitch[face] * std::clamp(offset_a_sine * roughness, least_offset, 1.0);
+  for (std::size_t side = 0; side < 2; ++side) {
+    double roughness = 0;
+    for (std::size_t k = 0; k < 3; ++k) roughness += w[static_cast<Eigen::Index>(k)] * rough.roughness[face][k][side];
+    site.offset[side] = surface.pitch[face] * std::clamp(offset_a_sine * roughness, least_offset, 1.0);
+  }
   return site;
 }
 
@@ -134,15 +189,15 @@ LightSites light_sites(const BakedObject& object, const std::vector<std::shared_
       const Vec3 weights = node.weights.cast<double>();
       sites.body.push_back(body_of[face]);
       sites.part.push_back(components->part_of[face]);
-      sites.now.push_back(site_at(surface_now, face, weights));
-      LightSite before = site_at(surface_baked, face, weights);
+      sites.now.push_back(site_at(surface_now, surface_baked, face, weights));
+      LightSite before = site_at(surface_baked, surface_baked, face, weights);
       const Affine& change = to_body[body_of[face]];
       if (!change.matrix().isIdentity(0)) {
         before.position = change * before.position;
         before.normal = (change.linear().inverse().transpose() * before.normal).normalized();
         const Vec3 tangent = change.linear() * before.tangent;
         before.tangent = (tangent - tangent.dot(before.normal) * before.normal).normalized();
-        before.offset *= std::cbrt(std::abs(change.linear().determinant()));
+        for (double& offset : before.offset) offset *= std::cbrt(std::abs(change.linear().determinant()));
       }
       sites.baked.push_back(before);
     }

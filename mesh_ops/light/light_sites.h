@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,9 +12,9 @@ namespace rebake {
 /// A point of a surface that light falls on, as it was when the light was baked or as it is.
 struct LightSite {
   Vec3 position;
-  Vec3 normal;    ///< of length 1 and smooth over the surface; zero where there is no area
-  Vec3 tangent;   ///< of length 1, across the normal; goes with the surface when that is bent
-  double offset;  ///< how far above it rays start
+  Vec3 normal;                   ///< of length 1 and smooth over the surface; zero where there is no area
+  Vec3 tangent;                  ///< of length 1, across the normal; goes with the surface when that is bent
+  std::array<double, 2> offset;  ///< how far above it rays start, to its two sides: [0] where the normal points
 };
 
 /// The points of an object's light charts, set by set, node by node.

@@ -38,7 +38,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
   struct Candidate {
     std::size_t decision;
     std::size_t receiver;
-    enum class Kind { self, removed, cast } kind;
+    enum class Kind { self, removed, cast, highlights } kind;
     std::size_t caster = 0;
   };
   BakedLights known(settings, options);
@@ -60,6 +60,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
   const auto light_for = [&](std::size_t k) { return matched(k) ? shared : LightReceiver::Shared{}; };
   // Of an object that moved in itself and lost parts both shadows are traced as one; the line that follows another.
   std::map<std::size_t, std::size_t> follows;
+  std::vector<std::shared_ptr<const GlossFit>> gloss(receivers.size());
   for (std::size_t k = 0; k < receivers.size(); ++k) {
     LightReceiver& receiver = receivers[k];
     const bool self = settings.self && receiver.moved(), removed = settings.removed && receiver.missing();
@@ -71,6 +72,15 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     else
       own = say("self-shadow " + receiver.name(), removed ? 0 : receiver.sampled_change(true, false, progress), "");
     if (own && !removed) candidates.push_back({*own, k, Candidate::Kind::self});
+    if (self && !settings.highlights) say("highlights " + receiver.name(), 0, "not asked for");
+    if (self && settings.highlights) {
+      gloss[k] = receiver.gloss(light_for(k), progress);
+      if (gloss[k])
+        candidates.push_back({say("highlights " + receiver.name(), receiver.mirrored_change(*gloss[k]), ""), k,
+                              Candidate::Kind::highlights});
+      else
+        say("highlights " + receiver.name(), 0, receiver.why_matte(light_for(k)));
+    }
     if (receiver.missing() && !removed) say("removed shadow " + receiver.name(), 0, "not asked for");
     if (removed) {
       const std::size_t line =
@@ -98,19 +108,28 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     LightDecision& decision = result.decisions[candidates[k].decision];
     const double sum = result.left_out + decision.bound;
     // In another light all of an object's own changes count.
-    const bool in_other_light = candidates[k].kind != Candidate::Kind::cast && matched(candidates[k].receiver);
+    const bool in_other_light =
+        (candidates[k].kind == Candidate::Kind::self || candidates[k].kind == Candidate::Kind::removed) &&
+        matched(candidates[k].receiver);
     decision.runs = options.everything || in_other_light || sum > settings.budget;
     decision.why = fmt::format("{} {:.2g} of 255, {:.2g} left out before it; budget {:.2g}",
                                candidates[k].kind == Candidate::Kind::cast ? "at most" : "about", decision.bound * 255,
                                result.left_out * 255, settings.budget * 255);
     if (!decision.runs) result.left_out = sum;
+    if (candidates[k].kind == Candidate::Kind::highlights)
+      decision.why += fmt::format("; accounts for {:.0f} % of how colours change with the eye",
+                                  100 * gloss[candidates[k].receiver]->explained);
   }
   for (const auto& [line, other] : follows) {
     result.decisions[line].runs = result.decisions[other].runs;
     result.decisions[line].why = "together with the removed shadow";
   }
+  const auto gloss_for = [&](std::size_t k) {
+    if (!gloss[k] && settings.highlights) gloss[k] = receivers[k].gloss(light_for(k), progress);
+    return gloss[k];
+  };
   for (std::size_t k = 0; k < receivers.size(); ++k) {
-    bool self = false, removed = false;
+    bool self = false, removed = false, highlights = false;
     std::vector<std::size_t> casters;
     std::vector<std::size_t> running;
     for (const Candidate& candidate : candidates) {
@@ -118,13 +137,17 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       running.push_back(candidate.decision);
       self = self || candidate.kind == Candidate::Kind::self;
       removed = removed || candidate.kind == Candidate::Kind::removed;
+      highlights = highlights || candidate.kind == Candidate::Kind::highlights;
       if (candidate.kind == Candidate::Kind::cast) casters.push_back(candidate.caster);
     }
-    self = self || (removed && receivers[k].moved());
+    // What is mirrored follows from how triangles moved, as shadows do.
+    self = self || highlights || (removed && receivers[k].moved());
     const bool turning = options.turning.contains(objects[k].node->id);
     if (running.empty() && !matched(k) && !turning) continue;
     const Clock::time_point start = Clock::now();
-    const LightReceiver::Change change = receivers[k].change(self, removed, casters, light_for(k), progress);
+    const LightReceiver::Change change =
+        receivers[k].change(self, removed, casters, light_for(k),
+                            highlights || (turning && settings.self) ? gloss_for(k) : nullptr, progress);
     if (turning)
       if (auto turned = receivers[k].turned(change, casters, light_for(k), progress))
         result.turning[objects[k].node->id] = std::move(turned);

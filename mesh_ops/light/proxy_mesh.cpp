@@ -65,7 +65,7 @@ std::vector<LightSite> vertex_sites(const ProxyMesh& rest, const ProxyMesh& pose
     }
   std::vector<LightSite> sites;
   for (std::size_t v = 0; v < posed.vertices.size(); ++v) {
-    LightSite site{posed.vertices[v], normals[v], Vec3::Zero(), cells[v]};
+    LightSite site{posed.vertices[v], normals[v], Vec3::Zero(), {cells[v], cells[v]}};
     if (!before[v].isZero(0) && !normals[v].isZero(0)) {
       const Vec3 tangent = turns[v] * before[v].unitOrthogonal();
       site.tangent = (tangent - tangent.dot(site.normal) * site.normal).stableNormalized();

@@ -40,18 +40,9 @@ double unevenness(const std::vector<std::uint32_t>& part, const std::vector<Site
 
 }  // namespace
 
-Eigen::Vector3f interpolated(const LightChart& chart, const std::vector<Eigen::Vector3f>& values,
-                             const Eigen::Vector2f& place) {
-  const float x = std::clamp(place.x() - 0.5F, 0.0F, static_cast<float>(chart.width - 1)),
-              y = std::clamp(place.y() - 0.5F, 0.0F, static_cast<float>(chart.height - 1));
-  const int left = static_cast<int>(x), top = static_cast<int>(y);
-  const float right = x - static_cast<float>(left), down = y - static_cast<float>(top);
-  const auto at = [&](int column, int row) -> const Eigen::Vector3f& {
-    return values[static_cast<std::size_t>(std::min(row, chart.height - 1)) * static_cast<std::size_t>(chart.width) +
-                  static_cast<std::size_t>(std::min(column, chart.width - 1))];
-  };
-  return (1 - down) * ((1 - right) * at(left, top) + right * at(left + 1, top)) +
-         down * ((1 - right) * at(left, top + 1) + right * at(left + 1, top + 1));
+GlossPlace interpolated(const LightChart& chart, const GlossMap& map, const Eigen::Vector2f& place) {
+  return {interpolated(chart, map.before.normals, place), interpolated(chart, map.after.normals, place),
+          interpolated(chart, map.before.suns, place), interpolated(chart, map.after.suns, place)};
 }
 
 std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLight>& baked,
@@ -74,8 +65,9 @@ std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLigh
     auto best = static_cast<float>(facing_by_openness(static_cast<double>(common[0]), static_cast<double>(common[1])));
     if (best == 0.5F) {
       // Both may show: colours tell, if they do so clearly.
-      constexpr double clearly = 0.8;
-      double least = clearly * unevenness(part, baked, colors, 0.5);
+      constexpr double clearly = 0.8, byte_step = 0.01;
+      double least = unevenness(part, baked, colors, 0.5);
+      least = least > byte_step ? clearly * least : 0;
       for (const float other : {1.0F, 0.0F})
         if (const double uneven = unevenness(part, baked, colors, static_cast<double>(other)); uneven < least) {
           least = uneven;
@@ -158,7 +150,8 @@ std::vector<Radiance> site_colors(const BakedObject& object,
 std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::shared_ptr<const LightChart>>& charts,
                                                         const LightSites& sites, const std::vector<Radiance>& colors,
                                                         const std::vector<Radiance>& before,
-                                                        const std::vector<Radiance>& after) {
+                                                        const std::vector<Radiance>& after,
+                                                        const std::vector<LightSite>& now, const Mirrors* mirrors) {
   // What is common: the irradiance that nine sites of ten do not reach.
   Radiance lambda = Radiance::Zero();
   for (int c = 0; c < 3 && !before.empty(); ++c) {
@@ -197,7 +190,9 @@ std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::s
       }
     }
     if (!any_offset) map.offset.clear();
-    maps.push_back(any ? std::make_shared<const LightMap>(std::move(map)) : nullptr);
+    if (mirrors != nullptr)
+      map.gloss = gloss_map(*charts[s], sites, now, sites.first[s], mirrors->fit, mirrors->before, mirrors->after);
+    maps.push_back(any || map.gloss ? std::make_shared<const LightMap>(std::move(map)) : nullptr);
   }
   return maps;
 }

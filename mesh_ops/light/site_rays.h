@@ -44,7 +44,7 @@ class SiteFrame {
       : normal_(back ? Vec3(-site.normal) : site.normal),
         tangent_(site.tangent),
         across_(site.normal.cross(site.tangent)),
-        from_(site.position + site.offset * normal_),
+        from_(site.position + site.offset[back ? 1 : 0] * normal_),
         cosine_(std::cos(own_angle(number))),
         sine_(std::sin(own_angle(number))) {}
 

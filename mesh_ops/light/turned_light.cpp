@@ -226,11 +226,20 @@ bool TurnedLight::same_triangles(const BakedObject& first, const BakedObject& se
   });
 }
 
-std::vector<Radiance> TurnedLight::light_on(const BakedObject& object) const {
+std::vector<std::vector<Mat3>> TurnedLight::turns_on(const BakedObject& object) const {
   std::vector<std::vector<Mat3>> turns;
   for (std::size_t s = 0; s < start_.charts.size(); ++s)
     turns.push_back(node_turns(start_.object->sets[s], object.sets[s], *start_.charts[s]));
-  const std::vector<LightSite> sites = sites_on(object, turns);
+  return turns;
+}
+
+std::vector<Radiance> TurnedLight::light_on(const BakedObject& object) const {
+  const std::vector<std::vector<Mat3>> turns = turns_on(object);
+  return light_on(object, turns, sites_on(object, turns));
+}
+
+std::vector<Radiance> TurnedLight::light_on(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
+                                            const std::vector<LightSite>& sites) const {
   std::vector<Radiance> light = suns_on(object, sites);
   for (std::size_t s = 0; s < start_.charts.size(); ++s)
     tbb::parallel_for(std::size_t{0}, turns[s].size(), [&](std::size_t k) {
@@ -249,7 +258,10 @@ std::vector<std::shared_ptr<const LightMap>> TurnedLight::maps(const BakedObject
   std::vector<std::shared_ptr<const LightChart>> charts;
   for (std::size_t s = 0; s < start_.charts.size(); ++s)
     charts.push_back(of_vertices(start_.charts[s], start_.object->sets[s].soup, object.sets[s].soup));
-  return light_maps(charts, start_.sites, start_.colors, start_.before, light_on(object));
+  const std::vector<std::vector<Mat3>> turns = turns_on(object);
+  const std::vector<LightSite> sites = sites_on(object, turns);
+  return light_maps(charts, start_.sites, start_.colors, start_.before, light_on(object, turns, sites), sites,
+                    start_.mirrors ? &*start_.mirrors : nullptr);
 }
 
 }  // namespace rebake

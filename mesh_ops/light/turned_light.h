@@ -33,6 +33,7 @@ class TurnedLight {
     std::vector<BodyLight> lights;                ///< of each body
     std::shared_ptr<const TransferModel> model;   ///< of its body, to tell more than turning does; may be null
     std::vector<Occluder> others;                 ///< what else shades it, in its space
+    std::optional<Mirrors> mirrors;               ///< as where it was traced
   };
   explicit TurnedLight(Start start);
 
@@ -41,6 +42,8 @@ class TurnedLight {
   static bool same_triangles(const BakedObject& first, const BakedObject& second);
   /// The change of colours of an object that fits, a map a texture set; null where nothing changes.
   std::vector<std::shared_ptr<const LightMap>> maps(const BakedObject& object) const;
+  /// How the surface around each site turned to get there, set by set.
+  std::vector<std::vector<Mat3>> turns_on(const BakedObject& object) const;
   /// Irradiance over π of each site there.
   std::vector<Radiance> light_on(const BakedObject& object) const;
   /// The sites when they have turned so.
@@ -52,6 +55,8 @@ class TurnedLight {
 
  private:
   Vec3 place_of(const BakedObject& object, std::size_t set, std::size_t node) const;
+  std::vector<Radiance> light_on(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
+                                 const std::vector<LightSite>& sites) const;
   std::vector<Radiance> suns_on(const BakedObject& object, const std::vector<LightSite>& sites) const;
   void prepare_model();
   std::vector<Vec3> probes_on(const BakedObject& object) const;

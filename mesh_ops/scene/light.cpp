@@ -86,8 +86,8 @@ Light sky_and_sun(const Radiance& ground, const Radiance& zenith, const Sun& sun
 
 bool SceneLight::operator==(const SceneLight& other) const {
   const auto plain = [](const SceneLight& one) {
-    return std::tie(one.self, one.cast, one.removed, one.match, one.budget, one.rays, one.source, one.picture_turn,
-                    one.zenith, one.ground, one.sun, one.bounce);
+    return std::tie(one.self, one.cast, one.removed, one.highlights, one.match, one.budget, one.rays, one.source,
+                    one.picture_turn, one.zenith, one.ground, one.sun, one.bounce);
   };
   if (plain(*this) != plain(other) || (picture == nullptr) != (other.picture == nullptr)) return false;
   return picture == other.picture || *picture == *other.picture;

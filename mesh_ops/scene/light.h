@@ -73,6 +73,7 @@ struct SceneLight {
   bool self = true;           ///< triangles that moved are shaded anew
   bool cast = true;           ///< objects shade each other
   bool removed = true;        ///< what is gone shades no more
+  bool highlights = true;     ///< what surfaces mirror stays with the light where triangles have turned
   bool match = false;         ///< all objects stand in one light: the given one, or the first object's
   double budget = 1.0 / 255;  ///< of display colours, by which a picture may be off for what is left out
   int rays = 256;             ///< from each point of a surface, 16 … 16384

@@ -98,12 +98,27 @@ GpuMesh upload(PreparedMesh made, const GpuSurface& surface) {
   return mesh;
 }
 
-gl::Texture upload(const LightChart& chart, const std::vector<Eigen::Vector3f>& values) {
-  gl::Texture texture = gl::make_texture(GL_RGBA16F, chart.width, chart.height, 8);
+gl::Texture upload(const LightChart& chart, GLenum format, int bytes, GLenum channels, const float* values) {
+  gl::Texture texture = gl::make_texture(format, chart.width, chart.height, bytes);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, chart.width, chart.height, GL_RGB, GL_FLOAT, values.data());
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, chart.width, chart.height, channels, GL_FLOAT, values);
   return texture;
+}
+
+gl::Texture upload(const LightChart& chart, const std::vector<Eigen::Vector3f>& values) {
+  return upload(chart, GL_RGBA16F, 8, GL_RGB, values.front().data());
+}
+
+void upload_gloss(const LightChart& chart, const GlossMap& map, GpuLight& light) {
+  light.gloss_before = upload(chart, GL_RGBA16F, 8, GL_RGBA, map.before.normals.front().data());
+  light.gloss_after = upload(chart, GL_RGBA16F, 8, GL_RGBA, map.after.normals.front().data());
+  std::vector<float> suns;
+  for (std::size_t k = 0; k < map.before.suns.size(); ++k) {
+    suns.push_back(map.before.suns[k]);
+    suns.push_back(map.after.suns[k]);
+  }
+  light.gloss_suns = upload(chart, GL_RG16F, 4, GL_RG, suns.data());
 }
 
 GpuLight upload(const std::shared_ptr<const LightMap>& map) {
@@ -113,6 +128,7 @@ GpuLight upload(const std::shared_ptr<const LightMap>& map) {
                                  map->chart->places.size() * sizeof(map->chart->places[0]));
   light.gain = upload(*map->chart, map->gain);
   if (!map->offset.empty()) light.offset = upload(*map->chart, map->offset);
+  if (map->gloss) upload_gloss(*map->chart, *map->gloss, light);
   return light;
 }
 

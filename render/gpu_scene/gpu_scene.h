@@ -52,7 +52,8 @@ void bind_vertices(const gl::Buffer& positions, const GpuSurface& surface);
 struct GpuLight {
   std::shared_ptr<const LightMap> source;
   gl::Buffer places;
-  gl::Texture gain, offset;  ///< no offset where there is none
+  gl::Texture gain, offset;                           ///< no offset where there is none
+  gl::Texture gloss_before, gloss_after, gloss_suns;  ///< where there is any
 };
 
 /// Owns what is on the GPU for the current scene.

@@ -59,9 +59,9 @@ struct Effect {
 };
 
 namespace effects {
-extern const Effect geometry, supersampling, node_frames, turned_rays, light, light_offset, decoder_compositing,
-    ray_per_sample, resolve, forward, culling, occlusion, hidden_objects, coded_texels, inspect, selection, outline,
-    guides;
+extern const Effect geometry, supersampling, node_frames, turned_rays, light, light_offset, highlights,
+    decoder_compositing, ray_per_sample, resolve, forward, culling, occlusion, hidden_objects, coded_texels, inspect,
+    selection, outline, guides;
 }
 
 /// All of them, in the order in which they are said and run.

@@ -24,7 +24,9 @@ constexpr std::size_t most_kinds = 12;
 constexpr int side = 24;
 
 // Which preamble a draw's light wants.
-int light_of(const LightMap* light) { return light == nullptr ? 0 : light->offset.empty() ? 1 : 2; }
+int light_of(const LightMap* light) {
+  return light == nullptr ? 0 : (light->offset.empty() ? 1 : 2) + (light->gloss ? 2 : 0);
+}
 
 // What of a node decides which programs it is drawn by.
 struct Kind {
@@ -117,11 +119,12 @@ ProgramVariant variant_of(const FramePlan& plan) {
   if (plan.options.weights == RenderOptions::Weights::constants) variant.decoders = plan.decoders;
   std::uint64_t draws = 0;  // a bit for each way in which a set is drawn
   for (const Draw& draw : plan.draws)
-    draws |= std::uint64_t{1} << (3 * (draw.set.soup.rotations() != nullptr ? 1 : 0) + light_of(draw.light.get()));
+    draws |= std::uint64_t{1} << (5 * (draw.set.soup.rotations() != nullptr ? 1 : 0) + light_of(draw.light.get()));
   variant.flags = fmt::format("{}/{}/{}/{}:", static_cast<int>(plan.options.weights),
                               static_cast<int>(plan.options.shading), plan.view.samples, draws);
-  for (const Effect* effect : {&effects::geometry, &effects::node_frames, &effects::turned_rays, &effects::light,
-                               &effects::light_offset, &effects::ray_per_sample, &effects::resolve, &effects::forward})
+  for (const Effect* effect :
+       {&effects::geometry, &effects::node_frames, &effects::turned_rays, &effects::light, &effects::light_offset,
+        &effects::highlights, &effects::ray_per_sample, &effects::resolve, &effects::forward})
     variant.flags += plan.runs(*effect) ? '1' : '0';
   return variant;
 }

@@ -37,10 +37,11 @@ void execute(const PassInput& input) {
     glBlendFunc(GL_ONE, GL_ONE);
   }
   for (const Draw& draw : input.plan.draws) {
-    const gl::Program& shader = program(input.state, "geometry.vert", "inspect.frag",
-                                        fmt::format("#define TURNED_MESH 0\n#define LIT_MESH 0\n#define INSPECT {}\n",
-                                                    static_cast<int>(guides.inspect)) +
-                                            texel_preamble(input, draw));
+    const gl::Program& shader =
+        program(input.state, "geometry.vert", "inspect.frag",
+                fmt::format("#define TURNED_MESH 0\n#define LIT_MESH 0\n#define GLOSSY_MESH 0\n#define INSPECT {}\n",
+                            static_cast<int>(guides.inspect)) +
+                    texel_preamble(input, draw));
     glUseProgram(shader.name());
     set_uniform(shader, "channel", guides.channel);
     set_uniform(shader, "set_color", color_of(static_cast<std::size_t>(draw.node) + draw.first_triangle));

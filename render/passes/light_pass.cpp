@@ -4,29 +4,42 @@ namespace rebake {
 
 namespace {
 
-std::size_t lit_draws(const FramePlan& plan, bool with_offset) {
+std::size_t lit_draws(const FramePlan& plan, bool (*counts)(const LightMap&)) {
   std::size_t lit = 0;
-  for (const Draw& draw : plan.draws) lit += draw.light && !(with_offset && draw.light->offset.empty()) ? 1 : 0;
+  for (const Draw& draw : plan.draws) lit += draw.light && counts(*draw.light) ? 1 : 0;
   return lit;
+}
+std::size_t lit_draws(const FramePlan& plan) {
+  return lit_draws(plan, [](const LightMap&) { return true; });
 }
 
 std::optional<Decision> decide(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
-  const std::size_t lit = lit_draws(facts.plan, false);
+  const std::size_t lit = lit_draws(facts.plan);
   if (lit == 0) return Decision{false, "no light changes in view"};
   return Decision{true, "light changes in " + plural(lit, "draw", "draws")};
 }
 
 std::optional<Decision> decide_offset(const FrameFacts& facts) {
-  if (!facts.any_draw() || lit_draws(facts.plan, false) == 0) return std::nullopt;
-  const std::size_t lit = lit_draws(facts.plan, true);
-  if (lit == 0) return Decision{false, "factors do: nothing was baked in the dark"};
-  return Decision{true, "something baked in the dark is lit in " + plural(lit, "draw", "draws")};
+  if (!facts.any_draw() || lit_draws(facts.plan) == 0) return std::nullopt;
+  const std::size_t dark = lit_draws(facts.plan, [](const LightMap&map) { return !map.offset.empty(); }),
+                    glossy = lit_draws(facts.plan, [](const LightMap&map) { return map.gloss != nullptr; });
+  if (dark > 0) return Decision{true, "something baked in the dark is lit in " + plural(dark, "draw", "draws")};
+  if (glossy > 0) return Decision{true, "highlights are added to what factors do"};
+  return Decision{false, "factors do: nothing was baked in the dark"};
+}
+
+std::optional<Decision> decide_highlights(const FrameFacts& facts) {
+  if (!facts.any_draw() || lit_draws(facts.plan) == 0) return std::nullopt;
+  const std::size_t glossy = lit_draws(facts.plan, [](const LightMap& map) { return map.gloss != nullptr; });
+  if (glossy == 0) return Decision{false, "nothing that turned mirrors its light"};
+  return Decision{true, "light is mirrored by what turned in " + plural(glossy, "draw", "draws")};
 }
 
 }  // namespace
 
 const Effect effects::light{"light", Effect::Kind::colors, decide};
-const Effect effects::light_offset{"light in the dark", Effect::Kind::colors, decide_offset};
+const Effect effects::light_offset{"light added", Effect::Kind::colors, decide_offset};
+const Effect effects::highlights{"highlights", Effect::Kind::colors, decide_highlights};
 
 }  // namespace rebake

@@ -167,7 +167,11 @@ std::string texel_preamble(const PassInput& input, const Draw& draw) {
 }
 
 std::string light_preamble(const Draw& draw) {
-  return fmt::format("#define LIT_MESH {}\n", !draw.light ? 0 : draw.light->offset.empty() ? 1 : 2);
+  return fmt::format("#define LIT_MESH {}\n#define GLOSSY_MESH {}\n#define GLOSS_SUNS {}\n",
+                     !draw.light                  ? 0
+                     : draw.light->offset.empty() ? 1
+                                                  : 2,
+                     draw.light && draw.light->gloss ? 1 : 0, Gloss::most_suns);
 }
 
 namespace {
@@ -194,16 +198,54 @@ void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Progr
   to_camera.translation() += draw.to_camera.linear() * mesh.center;
   const Eigen::Matrix4d to_clip = projection(input.plan.view);
   set_uniform(program, "object_to_clip", to_glm(Eigen::Matrix4d(to_clip * to_camera.matrix())));
-  if (draw.set.soup.rotations() != nullptr) {
+  const bool turned = draw.set.soup.rotations() != nullptr;
+  if (turned || (draw.light && draw.light->gloss)) {
     const Mat3 axes = axes_matrix(draw.axes);
     set_uniform(program, "parallel_rays", input.plan.view.camera.orthographic() ? 1 : 0);
     set_uniform(program, "object_to_camera", to_glm(Eigen::Matrix4d(to_camera.matrix())));
     set_uniform(program, "camera_to_object",
                 to_glm(Mat3(axes.transpose() * camera_to_fed(input.plan, input.plan.frames[draw.frame]))));
-    set_uniform(program, "object_to_fed", to_glm(axes));
+    if (turned) set_uniform(program, "object_to_fed", to_glm(axes));
   }
   bind_texels(input.gpu.surface(draw.set), program);
 }
+
+namespace {
+
+// Constants of the real spherical harmonics of gloss.glsl, whose polynomials are without them.
+constexpr std::array<double, sh::count> harmonic_constants{
+    0.28209479177387814, 0.4886025119029199, 0.4886025119029199,  0.4886025119029199,
+    1.0925484305920792,  1.0925484305920792, 0.31539156525252005, 1.0925484305920792,
+    0.5462742152960396,  0.5900435899266435, 2.890611442640554,   0.4570457994644658,
+    0.3731763325901154,  0.4570457994644658, 1.445305721320277,   0.5900435899266435};
+
+void bind_gloss(const GpuLight& light, const Gloss& gloss, const gl::Program& program) {
+  const gl::Texture* const textures[] = {&light.gloss_before, &light.gloss_after, &light.gloss_suns};
+  const char* const names[] = {"gloss_before", "gloss_after", "gloss_suns"};
+  for (int k = 0; k < 3; ++k) {
+    glActiveTexture(GL_TEXTURE8 + static_cast<GLenum>(k));
+    glBindTexture(GL_TEXTURE_2D, textures[k]->name());
+    set_uniform(program, names[k], 8 + k);
+  }
+  std::array<glm::vec3, sh::count> sky;
+  for (std::size_t k = 0; k < sky.size(); ++k)
+    for (int c = 0; c < 3; ++c)
+      sky[k][c] = static_cast<float>(harmonic_constants[k] *
+                                     gloss.sky[static_cast<std::size_t>(c)][static_cast<Eigen::Index>(k)]);
+  glUniform3fv(location(program, "gloss_sky"), sh::count, glm::value_ptr(sky[0]));
+  std::array<glm::vec3, Gloss::most_suns> directions{}, lights{};
+  for (std::size_t k = 0; k < gloss.suns.size(); ++k)
+    for (int c = 0; c < 3; ++c) {
+      directions[k][c] = static_cast<float>(gloss.suns[k].direction[c]);
+      lights[k][c] = static_cast<float>(gloss.suns[k].irradiance[c]);
+    }
+  glUniform3fv(location(program, "gloss_sun_direction"), Gloss::most_suns, glm::value_ptr(directions[0]));
+  glUniform3fv(location(program, "gloss_sun_light"), Gloss::most_suns, glm::value_ptr(lights[0]));
+  set_uniform(program, "gloss_sun_count", static_cast<int>(gloss.suns.size()));
+  set_uniform(program, "gloss_sharpness", static_cast<float>(gloss.sharpness));
+}
+
+}  // namespace
 
 void bind_set(const PassInput& input, const Draw& draw, const gl::Program& program) {
   set_mesh_uniforms(input, draw, program);
@@ -221,6 +263,7 @@ void bind_set(const PassInput& input, const Draw& draw, const gl::Program& progr
     glActiveTexture(GL_TEXTURE7);
     glBindTexture(GL_TEXTURE_2D, light.offset.name());
     set_uniform(program, "light_offset", 7);
+    if (draw.light->gloss) bind_gloss(light, *draw.light->gloss->gloss, program);
   }
 }
 
@@ -347,8 +390,9 @@ void begin_mask(const PassInput& input) {
 }
 
 const gl::Program& use_mask(const PassInput& input, const Draw& draw) {
-  const gl::Program& mask = program(input.state, "geometry.vert", "selection_mask.frag",
-                                    "#define TURNED_MESH 0\n#define LIT_MESH 0\n" + texel_preamble(input, draw));
+  const gl::Program& mask =
+      program(input.state, "geometry.vert", "selection_mask.frag",
+              "#define TURNED_MESH 0\n#define LIT_MESH 0\n#define GLOSSY_MESH 0\n" + texel_preamble(input, draw));
   glUseProgram(mask.name());
   bind_scene_depth(input, mask);
   return mask;

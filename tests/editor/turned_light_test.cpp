@@ -50,7 +50,7 @@ TEST(LightEdit, GoesAlongWithTrianglesThatMove) {
                                     {{"op", "transform"},
                                      {"node", "table"},
                                      {"selection", true},
-                                     {"rotate", {{"axis", {1, 0, 0}}, {"degrees", 40}}}}});
+                                     {"rotate", {{"axis", {1, 0, 0}}, {"degrees", 45}}}}});
   const Lighting truth = lighting_of(tilted, options);
   const auto &going = start.turning.at(node), &traced = truth.turning.at(node);
   const std::vector<Radiance> light = going->light_on(*tilted.roots.front()->object);

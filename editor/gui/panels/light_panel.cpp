@@ -113,10 +113,12 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
     const char* help;
     bool SceneLight::*wanted;
   };
-  for (const Wanted& effect : {Wanted{"On itself", "What moved shades its object anew.", &SceneLight::self},
-                               Wanted{"On others", "Objects shade each other.", &SceneLight::cast},
-                               Wanted{"What is gone", "Shadows of what was removed go too.", &SceneLight::removed},
-                               Wanted{"One light", "All objects stand in one light.", &SceneLight::match}}) {
+  for (const Wanted& effect :
+       {Wanted{"On itself", "What moved shades its object anew.", &SceneLight::self},
+        Wanted{"On others", "Objects shade each other.", &SceneLight::cast},
+        Wanted{"What is gone", "Shadows of what was removed go too.", &SceneLight::removed},
+        Wanted{"Highlights", "What bent surfaces mirror stays with the light.", &SceneLight::highlights},
+        Wanted{"One light", "All objects stand in one light.", &SceneLight::match}}) {
     bool wanted = light.*effect.wanted;
     ui::flow(px(100));
     // The last one stays: without any, it is the light that is switched off.

@@ -1,0 +1,166 @@
+// Surfaces that are turned mirror the light where it is, not where it was baked.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "mesh_ops/light/lighting.h"
+#include "render/graph/effects.h"
+#include "render/picture.h"
+#include "tests/support/edits.h"
+#include "tests/support/lit_objects.h"
+#include "tests/support/lit_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+using nlohmann::json;
+
+const Vec3 sun = Vec3(0.3, 1, 0.2).normalized();
+
+// A grey plate that faces upwards, whose decoder shows a highlight where an eye meets the mirrored sun. A hidden unit
+// is linear in the direction, and so is what a flat mirror makes of it.
+Scene plate(double highlight) {
+  auto object = std::make_shared<BakedObject>(*lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4, 4)},
+                                                          [](const Vec3&) { return Radiance(0.2, 0.2, 0.2); }));
+  object->axes = Axes::forward;
+  Decoder d = *object->decoder;
+  const Eigen::Index unit = d.weights0.cols();
+  d.weights0.conservativeResize(Eigen::NoChange, unit + 1);
+  d.weights0.col(unit).setZero();
+  constexpr double steep = 10;
+  d.weights0.col(unit).tail<3>() = steep * Vec3(sun.x(), -sun.y(), sun.z());
+  d.bias0.conservativeResize(unit + 1);
+  d.bias0[unit] = -0.9 * steep;
+  d.weights1.conservativeResize(unit + 1, unit + 1);
+  d.weights1.col(unit).setZero();
+  d.weights1.row(unit).setZero();
+  d.weights1(unit, unit) = 1;
+  d.bias1.conservativeResize(unit + 1);
+  d.bias1[unit] = 0;
+  d.weights2.conservativeResize(unit + 1, Eigen::NoChange);
+  d.weights2.row(unit).setConstant(highlight);
+  object->decoder = std::make_shared<const Decoder>(d);
+  Node node;
+  node.name = "plate";
+  node.object = object;
+  Scene scene = with_added({}, std::move(node), NodeId::none, 0);
+  return apply(scene, read_edit({{"op", "light"}, {"source", "sky"}, {"sun", {sun.x(), sun.y(), sun.z()}}}, scene))
+      .scene;
+}
+
+Scene tilted(Scene scene, double degrees) {
+  for (const json& line : std::vector<json>{{{"op", "select"}, {"box", {{"min", {-9, -9, -9}}, {"max", {9, 9, 9}}}}},
+                                            {{"op", "transform"},
+                                             {"node", "plate"},
+                                             {"selection", true},
+                                             {"rotate", {{"axis", {1, 0, 0}}, {"degrees", degrees}}},
+                                             {"pivot", {0, 0, 0}}}})
+    scene = apply(scene, read_edit(line, scene)).scene;
+  return scene;
+}
+
+// Looks at the plate's middle along `direction`.
+View looking(const Vec3& direction) {
+  View view;
+  view.camera.eye = -3 * direction;
+  view.camera.target = {0, 0, 0};
+  view.camera.up = std::abs(direction.y()) > 0.9 ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+  view.camera.near_plane = 0.1;
+  view.camera.far_plane = 10;
+  view.width = view.height = 65;
+  return view;
+}
+
+int middle(const Image& image) { return image.rgb[(32 * 65 + 32) * 3]; }
+
+TEST(Highlights, StayWithTheLightWhenASurfaceTurns) {
+  const double degrees = 45, radians = degrees * std::numbers::pi / 180;
+  const Scene scene = tilted(plate(6), degrees);
+  const Lighting lighting = lighting_of(scene);
+  ASSERT_TRUE(runs(lighting, "highlights plate")) << decided(lighting, "highlights plate")->why;
+  const TextureSet& set = scene.roots.front()->object->sets.front();
+  const auto map = lighting.map_of(scene.roots.front()->id, 0, set);
+  ASSERT_TRUE(map && map->gloss);
+  const Mat3 turn = Eigen::AngleAxisd(radians, Vec3::UnitX()).toRotationMatrix();
+  const auto mirror = [](const Vec3& d, const Vec3& n) -> Vec3 { return d - 2 * n.dot(d) * n; };
+  const Vec3 up(0, 1, 0), now = turn * up;
+  // Along these an eye meets the highlight: of the sun, and of the sun as if it had turned with the plate.
+  const Vec3 to_sun = mirror(sun, now), as_baked = turn * mirror(sun, up);
+  Renderer renderer;
+  for (const int samples : {1, 4}) {
+    for (const Vec3& direction : {to_sun, as_baked, Vec3(-now)}) {
+      View view = looking(direction);
+      view.samples = samples;
+      const int plain = middle(renderer.render(scene, view)), lit = middle(renderer.render(scene, view, {}, &lighting));
+      // What the library says of the place.
+      const Eigen::Vector2f place(map->chart->places.front() + map->chart->places.back());
+      const GlossPlace at = interpolated(*map->chart, *map->gloss, Eigen::Vector2f(place / 2));
+      const double gain = static_cast<double>(interpolated(*map->chart, map->gain, Eigen::Vector2f(place / 2))[0]);
+      const double offset =
+          map->offset.empty()
+              ? 0
+              : static_cast<double>(interpolated(*map->chart, map->offset, Eigen::Vector2f(place / 2))[0]);
+      const Radiance change =
+          gloss_change(*map->gloss->gloss, at, Radiance::Constant(gain), turn.transpose() * direction, direction);
+      const double expected =
+          255 * to_display(std::clamp(gain * to_linear(plain / 255.0) + offset + change[0], 0.0, 1.0));
+      EXPECT_NEAR(lit, expected, 2) << samples;
+      if (direction == to_sun) {
+        EXPECT_GT(lit, plain + 20);
+      }
+      if (direction == as_baked) {
+        EXPECT_LT(lit, plain - 20);
+      }
+    }
+  }
+  EXPECT_TRUE(plan(scene, looking(to_sun), {}, nullptr, &lighting).runs(effects::highlights));
+}
+
+TEST(Highlights, OfMatteSurfacesAreLeftOut) {
+  const Scene scene = tilted(plate(0), 30);
+  const Lighting lighting = lighting_of(scene);
+  const LightDecision* decision = decided(lighting, "highlights plate");
+  ASSERT_NE(decision, nullptr);
+  EXPECT_FALSE(decision->runs);
+  EXPECT_NE(decision->why.find("do not change with the eye"), std::string::npos);
+  EXPECT_TRUE(runs(lighting, "self-shadow plate"));
+  EXPECT_FALSE(plan(scene, looking({0, -1, 0}), {}, nullptr, &lighting).runs(effects::highlights));
+}
+
+TEST(Highlights, AreLeftOutWhereNobodyAsksForThem) {
+  Scene scene = tilted(plate(6), 30);
+  scene = apply(scene, read_edit({{"op", "light"}, {"source", "sky"}, {"effects", {"self"}}}, scene)).scene;
+  EXPECT_EQ(decided(lighting_of(scene), "highlights plate")->why, "not asked for");
+  // What did not turn mirrors what it was baked with.
+  EXPECT_EQ(decided(lighting_of(plate(6)), "highlights plate"), nullptr);
+}
+
+TEST(Gloss, MirrorsByFresnelTheSkyAndSuns) {
+  Gloss gloss;
+  for (sh::Coefficients& channel : gloss.sky) channel[0] = 2 / sh::basis({0, 0, 1})[0];
+  gloss.suns = {{Vec3(0, 0, 1), 0.01, Radiance(3, 2, 1)}};
+  gloss.sharpness = 10;
+  const Vec3 down(0, 0, -1), up(0, 0, 1);
+  // Seen along the normal a dielectric of index 1.5 sends back 4 %, at grazing angles all of it.
+  EXPECT_LT((mirrored(gloss, down, up, 1, 0) - Radiance::Constant(0.08)).norm(), 1e-12);
+  EXPECT_LT((mirrored(gloss, {1, 0, 0}, up, 1, 0) - Radiance::Constant(2)).norm(), 1e-12);
+  EXPECT_LT((mirrored(gloss, down, up, 0, 1) - 0.04 * Radiance(3, 2, 1)).norm(), 1e-12);
+  // Both sides of a surface mirror alike, and turning all of it changes nothing.
+  const Vec3 d = Vec3(0.3, -0.2, -0.8).normalized(), n = Vec3(0.1, 0.5, 0.9).normalized();
+  EXPECT_EQ(mirrored(gloss, d, n, 1, 1), mirrored(gloss, d, -n, 1, 1));
+  const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  Gloss turned = gloss;
+  turned.suns[0].direction = turn * up;
+  EXPECT_LT((mirrored(turned, turn * d, turn * n, 1, 1) - mirrored(gloss, d, n, 1, 1)).norm(), 1e-12);
+  // Nothing changes where nothing turned.
+  GlossPlace place;
+  place.before << n.cast<float>(), 0.7F;
+  place.after = place.before;
+  place.suns_before = place.suns_after = 0.3F;
+  EXPECT_EQ(gloss_change(gloss, place, Radiance::Ones(), d, d), Radiance::Zero());
+}
+
+}  // namespace
+}  // namespace rebake::test
