@@ -207,11 +207,14 @@ class Renderer::Impl {
     frames_without_ = 0;
     for (PlannedPass& pass : passes_)
       if (pass.effect == &effects::occlusion)
-        pass.why += fmt::format(
-            ": of {} clusters {} show, {} are hidden, {} out of view; of {} triangles {} were drawn, {} may show{}; "
-            "deciding took {:.1f} ms",
-            c.clusters, c.clusters_drawn, c.clusters_hidden, c.clusters_out_of_view, c.triangles, c.triangles_drawn,
-            c.triangles_shown, c.drawn_again ? " and were drawn again, in their order" : "", c.milliseconds);
+        pass.why +=
+            fmt::format(
+                ": of {} clusters {} show, {} are hidden, {} out of view; of {} triangles {} were drawn, {} may "
+                "show{}; ",
+                c.clusters, c.clusters_drawn, c.clusters_hidden, c.clusters_out_of_view, c.triangles, c.triangles_drawn,
+                c.triangles_shown, c.drawn_again ? " and were drawn again, in their order" : "") +
+            (c.known ? std::string("that is known, since nothing has moved")
+                     : fmt::format("deciding took {:.1f} ms", c.milliseconds));
   }
 
   void say_coded() {

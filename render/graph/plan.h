@@ -64,6 +64,7 @@ struct OcclusionCounts {
   std::size_t triangles_shown = 0;  ///< that were not found to be hidden
   double milliseconds = 0;          ///< that deciding took
   bool drawn_again = false;         ///< in the scene's order: much was missing, or samples were equally near
+  bool known = false;               ///< nothing has moved since the last frame: it was not looked again
 };
 
 /// How the samples of some nodes feed a decoder. Nodes that agree share one.

@@ -3,12 +3,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace rebake {
 
 void DepthPyramid::build(const SampleRect& rect, const std::vector<float>& nearness) {
   rect_ = rect;
+  nearness_ = &nearness;
   const int width = rect.right - rect.left, height = rect.top - rect.bottom;
   std::size_t depth = 0;
   const auto level = [&](int w, int h) -> Level& {
@@ -45,6 +47,58 @@ void DepthPyramid::build(const SampleRect& rect, const std::vector<float>& nearn
       }
   }
   levels_.resize(depth);
+}
+
+bool DepthPyramid::hides(const ScreenTriangle& t) const {
+  const int left = std::max(t.samples.left - rect_.left, 0), bottom = std::max(t.samples.bottom - rect_.bottom, 0),
+            right = std::min(t.samples.right, rect_.right - 1) - rect_.left,
+            top = std::min(t.samples.top, rect_.top - 1) - rect_.bottom;
+  constexpr int most_blocks = 1024;
+  if ((right / block - left / block + 1) * (top / block - bottom / block + 1) > most_blocks) return false;
+  // A function a · x + b · y + c of the middle of the sample at column x, row y of the rectangle.
+  struct Linear {
+    double a, b, c;
+    double at(double x, double y) const { return a * x + b * y + c; }
+    double most_of(double x, double y, double width, double height) const {
+      return at(x, y) + std::max(0.0, a * width) + std::max(0.0, b * height);
+    }
+  };
+  const double abx = t.x[1] - t.x[0], aby = t.y[1] - t.y[0], acx = t.x[2] - t.x[0], acy = t.y[2] - t.y[0];
+  const double abn = t.nearness[1] - t.nearness[0], acn = t.nearness[2] - t.nearness[0];
+  const double area = abx * acy - aby * acx;
+  const double x_shift = rect_.left + 0.5, y_shift = rect_.bottom + 0.5;
+  // Its plane; what a driver draws inside of it is a mean of its corners, which have been moved.
+  Linear plane{(abn * acy - acn * aby) / area, (acn * abx - abn * acx) / area, 0};
+  plane.c = t.nearness[0] + plane.a * (x_shift - t.x[0]) + plane.b * (y_shift - t.y[0]) +
+            (std::abs(plane.a) + std::abs(plane.b)) * t.moved + t.error;
+  if (!std::isfinite(plane.c)) return false;
+  // Not negative inside, and where moved corners may bring it.
+  std::array<Linear, 3> edges;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const double sign = area > 0 ? 1 : -1, ex = sign * (t.x[next] - t.x[k]), ey = sign * (t.y[next] - t.y[k]);
+    edges[k] = {-ey, ex, ex * (y_shift - t.y[k]) - ey * (x_shift - t.x[k]) + t.moved * std::hypot(ex, ey)};
+  }
+  const int width = rect_.right - rect_.left;
+  const Level& finest = levels_.front();
+  for (int row = bottom / block; row <= top / block; ++row)
+    for (int column = left / block; column <= right / block; ++column) {
+      const int x0 = std::max(column * block, left), y0 = std::max(row * block, bottom),
+                x1 = std::min(column * block + block - 1, right), y1 = std::min(row * block + block - 1, top);
+      const auto most_of = [&](const Linear& f) { return f.most_of(x0, y0, x1 - x0, y1 - y0); };
+      if (most_of(edges[0]) < 0 || most_of(edges[1]) < 0 || most_of(edges[2]) < 0) continue;
+      const float farthest = finest.farthest[static_cast<std::size_t>(row) * static_cast<std::size_t>(finest.width) +
+                                             static_cast<std::size_t>(column)];
+      if (static_cast<double>(farthest) > most_of(plane)) continue;
+      for (int y = y0; y <= y1; ++y)
+        for (int x = x0; x <= x1; ++x) {
+          if (edges[0].at(x, y) < 0 || edges[1].at(x, y) < 0 || edges[2].at(x, y) < 0) continue;
+          const float there =
+              (*nearness_)[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+          if (!(static_cast<double>(there) > plane.at(x, y))) return false;
+        }
+    }
+  return true;
 }
 
 bool DepthPyramid::hides(const SampleRect& samples, float nearness) const {

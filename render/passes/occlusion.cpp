@@ -5,10 +5,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstring>
 #include <limits>
+#include <memory>
 
 #include "render/passes/depth_pyramid.h"
 #include "render/passes/screen_bounds.h"
@@ -20,12 +22,24 @@ struct OcclusionState {
   /// Bits of a face's flags.
   static constexpr std::uint8_t shown = 1;    ///< in the last frame that looked
   static constexpr std::uint8_t pending = 2;  ///< to be drawn next
+  static constexpr std::uint8_t close = 4;    ///< showed also when it was looked at sample by sample
 
   using Key = std::pair<NodeId, std::size_t>;  ///< node, first triangle of the set
   /// What showed from a camera: a guess for the next frame from near there, which may be wrong.
   struct Memory {
     Camera camera;
     std::map<Key, std::vector<std::uint8_t>> faces;  ///< flags
+    /// What that was found in.
+    struct Drawn {
+      Eigen::Matrix4d to_camera;
+      std::array<std::weak_ptr<const void>, 4> arrays;  ///< positions, UVs, faces, texels
+      bool operator==(const Drawn& other) const;
+    };
+    std::vector<Drawn> draws;
+    std::array<int, 4> raster{};  ///< width, height, samples a side, and how it is shaded
+    int frames_at_rest = 0;       ///< in which nothing of that has changed
+    OcclusionCounts counts;
+    std::vector<std::uint8_t> blocks;
   };
   std::vector<Memory> memories;  ///< the last used one last
   std::vector<float> depth;
@@ -34,9 +48,19 @@ struct OcclusionState {
   int block_columns = 0;
 };
 
+bool OcclusionState::Memory::Drawn::operator==(const Drawn& other) const {
+  const auto same = [](const std::weak_ptr<const void>& a, const std::weak_ptr<const void>& b) {
+    return !a.owner_before(b) && !b.owner_before(a);
+  };
+  return to_camera == other.to_camera && std::equal(arrays.begin(), arrays.end(), other.arrays.begin(), same);
+}
+
 namespace {
 
 constexpr int block_pixels = 16;
+// The frame at rest in which it is looked sample by sample, what then shows being drawn from there on: that takes as
+// long as drawing what it leaves out.
+constexpr int looks_closely = 2;
 // Up to a quarter as many triangles as were drawn are added to them; where more are missing, all that show are drawn
 // again.
 constexpr std::size_t few_missing = 4;
@@ -93,6 +117,17 @@ class Frame {
     OcclusionState::Memory before = recalled(state_.memories, input.plan.view.camera);
     OcclusionState::Memory& now = state_.memories.emplace_back();
     now.camera = input.plan.view.camera;
+    now.raster = {input.plan.view.width, input.plan.view.height, side_, static_cast<int>(input.plan.options.shading)};
+    for (const Draw& draw : input.plan.draws)
+      now.draws.push_back({draw.to_camera.matrix(),
+                           {draw.set.soup.shared_positions(), draw.set.soup.shared_uvs(), draw.set.soup.shared_faces(),
+                            draw.set.texels}});
+    const bool at_rest = before.camera == now.camera && before.raster == now.raster && before.draws == now.draws;
+    if (at_rest) {
+      now.frames_at_rest = before.frames_at_rest + 1;
+      now.counts = before.counts;
+      now.blocks = std::move(before.blocks);
+    }
     for (const Draw& draw : input.plan.draws) {
       const GpuMesh& mesh = input.gpu.mesh(draw.set);
       const GpuSurface& surface = input.gpu.surface(draw.set);
@@ -107,6 +142,15 @@ class Frame {
   }
 
   void draw(const std::function<void()>& clear) {
+    OcclusionState::Memory& memory = state_.memories.back();
+    // Drawn again without a change it would be found the same.
+    if (memory.frames_at_rest > looks_closely) {
+      gather(OcclusionState::close);
+      draw_gathered();
+      counts() = memory.counts;
+      state_.blocks = memory.blocks;
+      return;
+    }
     counts() = {};
     std::vector<Candidate> candidates;
     timed([&] { candidates = in_view(); });
@@ -150,7 +194,23 @@ class Frame {
     }
     counts().clusters_hidden = candidates.size() - counts().clusters_drawn;
     for (const Set& set : sets_)
-      for (std::uint8_t& flags : *set.flags) flags &= OcclusionState::shown;
+      for (std::uint8_t& flags : *set.flags) flags &= OcclusionState::shown | OcclusionState::close;
+    if (memory.frames_at_rest != looks_closely) return;
+    memory.counts = counts();
+    memory.counts.milliseconds = 0;
+    memory.counts.known = true;
+    memory.counts.drawn_again = false;
+    memory.counts.triangles_shown = memory.counts.clusters_drawn = 0;
+    for (const Candidate& c : candidates) {
+      std::size_t shows = 0;
+      for_faces(
+          c, [&](std::uint32_t, const std::uint8_t& flags) { shows += (flags & OcclusionState::close) != 0 ? 1 : 0; });
+      memory.counts.triangles_shown += shows;
+      memory.counts.clusters_drawn += shows > 0 ? 1 : 0;
+    }
+    memory.counts.triangles_drawn = memory.counts.triangles_shown;
+    memory.counts.clusters_hidden = candidates.size() - memory.counts.clusters_drawn;
+    memory.blocks = state_.blocks;
   }
 
  private:
@@ -229,6 +289,7 @@ class Frame {
   // Finds what of the candidates is not hidden by what was drawn: that shows, and is pending where it was not drawn.
   void look(const std::vector<Candidate>& candidates) {
     using Where = ScreenBounds::Where;
+    const bool closely = state_.memories.back().frames_at_rest == looks_closely;
     tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
       const Set& set = sets_[candidates[k].set];
       ClusterBounds triangles;
@@ -242,6 +303,11 @@ class Frame {
         if (where == Where::outside) return;
         if (where == Where::inside && state_.pyramid.hides(triangles.samples(i), triangles.nearness[i])) return;
         flags = is_drawn ? OcclusionState::shown : OcclusionState::shown | OcclusionState::pending;
+        if (closely) {
+          const bool bounded = triangles.nearness[i] < std::numeric_limits<float>::infinity();
+          if (where == Where::inside && bounded && state_.pyramid.hides(set.bounder.triangle(triangles, i))) return;
+          flags |= OcclusionState::close;
+        }
         mark(where, triangles.samples(i));
       });
     });

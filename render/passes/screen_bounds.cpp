@@ -106,7 +106,8 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
   constexpr auto anywhere = static_cast<std::int32_t>(ScreenBounds::Where::anywhere);
   static_assert(static_cast<int>(ScreenBounds::Where::outside) == 0 &&
                 static_cast<int>(ScreenBounds::Where::inside) == anywhere - 1);
-  float x[3][count], y[3][count], z[3][count], w[count], edges[4][count], extent[count];
+  auto &x = bounds.x, &y = bounds.y, &z = bounds.z;
+  float w[count], edges[4][count], extent[count];
   std::int32_t beyond[count];
   for (std::size_t k = 0; k < count; ++k) {
     beyond[k] = 63;
@@ -114,7 +115,7 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
     extent[k] = 0;
   }
   // Simple loops over all faces, which compilers turn into vector instructions.
-  for (int c = 0; c < 3; ++c) {
+  for (std::size_t c = 0; c < 3; ++c) {
     const float* px = corners.at[c][0];
     const float* py = corners.at[c][1];
     const float* pz = corners.at[c][2];
@@ -166,6 +167,8 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
     const float lowest = most(number(thinnest), 4 * shift);
     const float slope = (std::abs(aby * acz - abz * acy) + std::abs(abz * acx - abx * acz)) / area;
     const float near_end = most(z0 * factor, z1 * factor) + offset + slope * shift + 2 * z_error;
+    bounds.moved[k] = shift;
+    bounds.error[k] = 2 * z_error;
     bounds.nearness[k] = area * area > longest * lowest * lowest ? near_end : std::numeric_limits<float>::infinity();
   }
   // Within the rectangle, so that they are numbers that can be cut off to whole ones. One bound at a time: both at once
@@ -195,6 +198,19 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
                                         static_cast<std::int32_t>(bounds.bottom[k] > bounds.top[k])));
     bounds.where[k] = (1 - none) * (anywhere - sound);
   }
+}
+
+ScreenTriangle ScreenBounder::triangle(const ClusterBounds& bounds, std::size_t k) const {
+  ScreenTriangle result;
+  result.samples = bounds.samples(k);
+  for (std::size_t c = 0; c < 3; ++c) {
+    result.x[c] = (static_cast<double>(bounds.x[c][k]) + 1) * half_width_;
+    result.y[c] = (static_cast<double>(bounds.y[c][k]) + 1) * half_height_;
+    result.nearness[c] = static_cast<double>(bounds.z[c][k]) * factor_ + offset_;
+  }
+  result.moved = static_cast<double>(bounds.moved[k]);
+  result.error = static_cast<double>(bounds.error[k]);
+  return result;
 }
 
 }  // namespace rebake

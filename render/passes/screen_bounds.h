@@ -28,6 +28,9 @@ struct ClusterBounds {
   Each<float> nearness;  ///< above all where a triangle is so thin that what drivers draw of it is rounding
   Each<std::int32_t> where;
 
+  std::array<Each<float>, 3> x, y, z;  ///< corners, over w
+  Each<float> moved, error;            ///< as of ScreenTriangle
+
   SampleRect samples(std::size_t k) const { return {left[k], bottom[k], right[k], top[k]}; }
 };
 
@@ -45,6 +48,8 @@ class ScreenBounder {
   ScreenBounds box(const Box& box) const;
   /// Of triangles given relative to the centre of what is drawn.
   void triangles(const ClusterCorners& corners, ClusterBounds& bounds) const;
+  /// One of those that is inside and whose nearness has a bound.
+  ScreenTriangle triangle(const ClusterBounds& bounds, std::size_t k) const;
 
  private:
   ScreenBounds covered(double left, double bottom, double right, double top) const;

@@ -30,6 +30,10 @@ struct Pair {
     const Image drawn = some.render(scene, view, options);
     EXPECT_TRUE(expected.rgb == drawn.rgb) << what;
   }
+  // And while nothing moves: it is looked closely in the third frame, and not at all in the fourth.
+  void expect_same_at_rest(const Scene& scene, const View& view, const std::string& what, RenderOptions options = {}) {
+    for (int frame = 0; frame < 4; ++frame) expect_same(scene, view, fmt::format("{}, frame {}", what, frame), options);
+  }
 
   // What the last picture's plan says of hidden triangles.
   std::string said() const {
@@ -91,8 +95,11 @@ TEST_P(OcclusionBySamples, ChangesNoByteWhileTheCameraTurnsJumpsAndComesNear) {
   const Scene scene = crowd();
   for (int k = 0; k < 8; ++k) {
     const double turn = 0.05 * k;
-    renderers().expect_same(scene, view_of({3 * std::sin(turn), 1, 3 * std::cos(turn)}, {0, 0, 0}, GetParam()),
-                            fmt::format("turning, {}", k));
+    const View view = view_of({3 * std::sin(turn), 1, 3 * std::cos(turn)}, {0, 0, 0}, GetParam());
+    if (k == 5)
+      renderers().expect_same_at_rest(scene, view, "at rest");
+    else
+      renderers().expect_same(scene, view, fmt::format("turning, {}", k));
   }
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-2, 2);
@@ -102,15 +109,15 @@ TEST_P(OcclusionBySamples, ChangesNoByteWhileTheCameraTurnsJumpsAndComesNear) {
                                     {place(random), place(random), place(random)}, GetParam()),
                             fmt::format("jump {}", k));
   for (const double distance : {1.3, 1.05, 1.001, 0.97, 0.5, 0.0001})
-    renderers().expect_same(scene, view_of({0, 0, distance}, {0, 0.01, -1}, GetParam()),
-                            fmt::format("eye at {}", distance));
+    renderers().expect_same_at_rest(scene, view_of({0, 0, distance}, {0, 0.01, -1}, GetParam()),
+                                    fmt::format("eye at {}", distance));
 }
 
 TEST_P(OcclusionBySamples, ChangesNoByteOfParallelRays) {
   View view = view_of({2, 1, 3}, {0, 0, 0}, GetParam());
   for (const double height : {4.0, 0.3, 100.0}) {
     view.camera.ortho_height = height;
-    renderers().expect_same(crowd(), view, fmt::format("height {}", height));
+    renderers().expect_same_at_rest(crowd(), view, fmt::format("height {}", height));
   }
 }
 
@@ -127,7 +134,7 @@ TEST(Occlusion, ChangesNoByteFarFromTheOriginTinyAndHuge) {
       view.camera.far_plane *= scale;
       for (int k = 0; k < 2; ++k) {
         view.camera.eye.y() += 0.1 * k * scale;
-        renderers().expect_same(scene, view, fmt::format("scale {}, {} away, {}", scale, away, k));
+        renderers().expect_same_at_rest(scene, view, fmt::format("scale {}, {} away, {}", scale, away, k));
       }
     }
 }
@@ -141,8 +148,8 @@ TEST(Occlusion, ChangesNoByteWhereFloatsAreCoarse) {
       move_faces(object->sets[0].soup, half, 0, Affine(Eigen::Translation3d(2e5, 0, 0)), Mat3::Identity());
   const Scene scene = scene_of(object);
   for (const double angle : {0.0, 0.4, 0.8})
-    renderers().expect_same(scene, view_of({3 * std::sin(angle), 0.5, 3 * std::cos(angle)}, {0, 0, 0}),
-                            fmt::format("angle {}", angle));
+    renderers().expect_same_at_rest(scene, view_of({3 * std::sin(angle), 0.5, 3 * std::cos(angle)}, {0, 0, 0}),
+                                    fmt::format("angle {}", angle));
 }
 
 TEST(Occlusion, ChangesNoByteOfSamplesAndOfEdits) {
@@ -157,7 +164,7 @@ TEST(Occlusion, ChangesNoByteOfSamplesAndOfEdits) {
             view_of(box.center() + size * (0.25 + 0.2 * k) * Vec3(std::sin(turn), 0.3, std::cos(turn)), box.center());
         view.camera.near_plane = 0.01 * size;
         view.camera.far_plane = 5 * size;
-        renderers().expect_same(scene, view, fmt::format("{}, edit {}, view {}", name, edit, k));
+        renderers().expect_same_at_rest(scene, view, fmt::format("{}, edit {}, view {}", name, edit, k));
       }
       // Half of the triangles go, then the rest moves: what was remembered is of other faces.
       const NodePtr node = scene.roots[0];
@@ -182,7 +189,7 @@ TEST(Occlusion, ChangesNoByteOfTheRealMic) {
     const double turn = 0.03 * k * k;
     View view = view_of({3.5 * std::sin(turn), 2 - 0.3 * k, 3.5 * std::cos(turn)}, {0, 0, 0});
     view.width = view.height = 400;
-    renderers().expect_same(scene, view, fmt::format("view {}", k));
+    renderers().expect_same_at_rest(scene, view, fmt::format("view {}", k));
   }
 }
 
@@ -234,7 +241,7 @@ TEST(Occlusion, ChangesNoByteWhereNeedlesComeThroughAWall) {
   for (int k = 0; k < 4; ++k) {
     View view = view_of({0.002 * k, 0, 2.5}, {0.002 * k, 0, 0});
     view.width = view.height = 400;
-    renderers().expect_same(scene, view, fmt::format("{}", k));
+    renderers().expect_same_at_rest(scene, view, fmt::format("{}", k));
   }
 }
 
@@ -308,6 +315,80 @@ TEST(Occlusion, GivesUpForAWhileWhereNothingIsHidden) {
   }
   EXPECT_GE(looked, 2) << "it may change";
   EXPECT_LE(looked, 3);
+}
+
+// A change between frames at rest is seen: what it uncovers and what it puts in front.
+TEST(Occlusion, AtRestSeesWhatChanges) {
+  const Scene scene = crowd();
+  const View view = view_of({3, 1, 0}, {0, 0, 0});
+  renderers().expect_same_at_rest(scene, view, "before");
+  EXPECT_NE(renderers().said().find("nothing has moved"), std::string::npos) << renderers().said();
+  // The near half of the first object becomes transparent.
+  const auto holes = [&](std::size_t root) {
+    return with_changed(scene, scene.roots[root]->id, [&](Node& node) {
+      auto object = std::make_shared<BakedObject>(*node.object);
+      FeatureTexture::Change change(*object->sets[0].texels);
+      for (int y = 0; y < object->sets[0].texels->height(); ++y)
+        for (int x = 0; x < object->sets[0].texels->width() / 2; ++x) change.at(x, y).feat0[0] = 0;
+      object->sets[0].texels = change.finish();
+      node.object = std::move(object);
+    });
+  };
+  renderers().expect_same(holes(0), view, "erased");
+  EXPECT_EQ(renderers().said().find("nothing has moved"), std::string::npos);
+  renderers().expect_same_at_rest(scene, view, "undone");
+  Scene moved =
+      with_changed(scene, scene.roots[2]->id, [](Node& node) { node.to_parent.translation() = Vec3(1.5, 0, 0); });
+  renderers().expect_same_at_rest(moved, view, "moved in front");
+  moved.background = Color(0, 0, 0);
+  renderers().expect_same(moved, view, "another background");
+}
+
+TEST(DepthPyramid, HidesATriangleWhereAllThatItCoversIsNearerOnly) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> depth(0.45F, 0.8F);
+  std::uniform_real_distribution<double> place(0, 40), near(0, 1);
+  const SampleRect rect{3, 5, 3 + 37, 5 + 23};
+  std::vector<float> nearness(37UL * 23);
+  for (float& n : nearness) n = depth(random);
+  DepthPyramid pyramid;
+  pyramid.build(rect, nearness);
+  int hidden = 0, shown = 0;
+  for (int k = 0; k < 20000; ++k) {
+    ScreenTriangle t;
+    for (std::size_t c = 0; c < 3; ++c) {
+      t.x[c] = place(random);
+      t.y[c] = place(random) * 0.8;
+      t.nearness[c] = 0.6 * near(random);
+    }
+    t.moved = 0.01;
+    t.error = 1e-4;
+    const auto [x0, x1] = std::minmax_element(t.x.begin(), t.x.end());
+    const auto [y0, y1] = std::minmax_element(t.y.begin(), t.y.end());
+    t.samples = {static_cast<int>(*x0), static_cast<int>(*y0), static_cast<int>(*x1), static_cast<int>(*y1)};
+    // Samples inside, by barycentric coordinates in long double.
+    const auto cross = [](long double ax, long double ay, long double bx, long double by) { return ax * by - ay * bx; };
+    const long double area = cross(t.x[1] - t.x[0], t.y[1] - t.y[0], t.x[2] - t.x[0], t.y[2] - t.y[0]);
+    bool any = false;
+    for (int v = 5; v < 5 + 23; ++v)
+      for (int u = 3; u < 3 + 37; ++u) {
+        const long double px = u + 0.5L - t.x[0], py = v + 0.5L - t.y[0];
+        const long double b = cross(px, py, t.x[2] - t.x[0], t.y[2] - t.y[0]) / area,
+                          c = cross(t.x[1] - t.x[0], t.y[1] - t.y[0], px, py) / area;
+        if (b < 0 || c < 0 || b + c > 1) continue;
+        const long double at =
+            t.nearness[0] + b * (t.nearness[1] - t.nearness[0]) + c * (t.nearness[2] - t.nearness[0]);
+        any = any || nearness[static_cast<std::size_t>(v - 5) * 37 + static_cast<std::size_t>(u - 3)] <= at;
+      }
+    const bool hides = pyramid.hides(t);
+    if (any) {
+      ASSERT_FALSE(hides) << k;
+    }
+    hidden += hides ? 1 : 0;
+    shown += any ? 1 : 0;
+  }
+  EXPECT_GT(hidden, 2000);
+  EXPECT_GT(shown, 2000);
 }
 
 TEST(DepthPyramid, HidesWhatLiesBehindAllItsSamplesOnly) {
