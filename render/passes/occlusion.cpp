@@ -416,7 +416,7 @@ void draw_sets(const PassInput& input, const std::function<const gl::Program&(co
     Frame(input, use).draw(clear);
     return;
   }
-  for (const Draw& draw : input.plan.draws) draw_set(input, draw, use(draw));
+  draw_all_sets(input, use);
 }
 
 std::vector<SampleRect> drawn_pixels(const PassInput& input) {
@@ -456,6 +456,10 @@ std::optional<Decision> decide(const FrameFacts& facts) {
     if (plan.triangles < facts.device.occlusion_from)
       return Decision{false, fmt::format("{} are drawn sooner than looked at; here it pays from {} on",
                                          plural(plan.triangles, "triangle", "triangles"), facts.device.occlusion_from)};
+    // One set costs as much to look after as a few of its triangles to draw.
+    if (plan.triangles < faces_a_face_cluster * plan.draws.size())
+      return Decision{false, fmt::format("{} with few triangles each are drawn sooner than looked at",
+                                         plural(plan.draws.size(), "object", "objects"))};
     if (facts.device.shown_share > 0)
       return Decision{false, fmt::format("when it was looked, {:.0f} % of the triangles in view showed",
                                          100 * facts.device.shown_share)};

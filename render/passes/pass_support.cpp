@@ -271,14 +271,14 @@ void unbind_set(const Draw& draw) {
   if (draw.light) glDisableVertexAttribArray(5);
 }
 
-void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program) {
-  bind_set(input, draw, program);
-  const GpuMesh& mesh = input.gpu.mesh(draw.set);
-  const Eigen::Matrix4d cull = projection(input.plan.view) * draw.to_camera.matrix();
+namespace {
+
+// Of a set that is bound.
+void draw_clusters(const GpuMesh& mesh, const Eigen::Matrix4d& object_to_clip) {
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
   for (const GpuCluster& cluster : mesh.clusters) {
-    if (outside(cull, cluster.bounds)) continue;
+    if (outside(object_to_clip, cluster.bounds)) continue;
     const auto begin = reinterpret_cast<const void*>(cluster.first_face * sizeof(Face));
     const auto count = static_cast<GLsizei>(cluster.face_count * 3);
     // Neighbours in view are drawn as one range: each separate range costs a call inside the driver.
@@ -291,10 +291,50 @@ void draw_set(const PassInput& input, const Draw& draw, const gl::Program& progr
     counts.push_back(count);
     offsets.push_back(begin);
   }
-  if (!counts.empty())
+  if (counts.size() == 1)
+    glDrawElements(GL_TRIANGLES, counts.front(), GL_UNSIGNED_INT, offsets.front());
+  else if (!counts.empty())
     glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
                         static_cast<GLsizei>(counts.size()));
+}
+
+// Whether nothing but their place differs in what is bound to draw them.
+bool bound_alike(const Draw& a, const Draw& b) {
+  const Soup &first = a.set.soup, &second = b.set.soup;
+  return a.frame == b.frame && !a.light && !b.light && first.rotations() == nullptr && second.rotations() == nullptr &&
+         first.shared_positions() == second.shared_positions() && first.shared_uvs() == second.shared_uvs() &&
+         first.shared_faces() == second.shared_faces() && a.set.texels == b.set.texels;
+}
+
+}  // namespace
+
+void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program) {
+  bind_set(input, draw, program);
+  draw_clusters(input.gpu.mesh(draw.set), projection(input.plan.view) * draw.to_camera.matrix());
   unbind_set(draw);
+}
+
+void draw_all_sets(const PassInput& input, const std::function<const gl::Program&(const Draw&)>& use) {
+  const Eigen::Matrix4d to_clip = projection(input.plan.view);
+  const Draw* bound = nullptr;
+  const GpuMesh* mesh = nullptr;
+  GLint place = -1;
+  for (const Draw& draw : input.plan.draws) {
+    if (bound != nullptr && bound_alike(*bound, draw)) {
+      Eigen::Matrix4d to_camera = draw.to_camera.matrix();
+      to_camera.topRightCorner<3, 1>() += draw.to_camera.linear() * mesh->center;
+      glUniformMatrix4fv(place, 1, GL_FALSE, glm::value_ptr(to_glm(Eigen::Matrix4d(to_clip * to_camera))));
+    } else {
+      if (bound != nullptr) unbind_set(*bound);
+      const gl::Program& program = use(draw);
+      bind_set(input, draw, program);
+      bound = &draw;
+      mesh = &input.gpu.mesh(draw.set);
+      place = location(program, "object_to_clip");
+    }
+    draw_clusters(*mesh, to_clip * draw.to_camera.matrix());
+  }
+  if (bound != nullptr) unbind_set(*bound);
 }
 
 void begin_geometry(const FramePlan& plan, int side) {

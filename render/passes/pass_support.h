@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <string>
 
@@ -55,6 +56,9 @@ void bind_set(const PassInput& input, const Draw& draw, const gl::Program& progr
 void unbind_set(const Draw& draw);
 /// The same, and draws the clusters in view.
 void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program);
+/// The plan's sets in their order; what neighbours that show one object have in common is bound once. `use` makes ready
+/// to draw a set and returns the program.
+void draw_all_sets(const PassInput& input, const std::function<const gl::Program&(const Draw&)>& use);
 
 /// What is cleared next is cleared where plan.covered is at least; all of it where lines are compared with its depth,
 /// or where that is done sooner. end_clear() after that.

@@ -292,6 +292,14 @@ TEST(Occlusion, RunsWhereItPays) {
   EXPECT_FALSE(plan(many, view, {}, nullptr, nullptr, device).runs(effects::occlusion)) << "nearly all shows";
   device = {.occlusion_from = 1'000'000};
   EXPECT_FALSE(plan(many, view, {}, nullptr, nullptr, device).runs(effects::occlusion)) << "a GPU draws them sooner";
+  Scene crumbs;
+  const auto crumb = made_object({.columns = 5, .rows = 2, .cell = 5});
+  for (int k = 0; k < 2000; ++k) {
+    Node node;
+    node.object = crumb;
+    crumbs = with_added(crumbs, node, NodeId::none, static_cast<std::size_t>(k));
+  }
+  EXPECT_FALSE(plan(crumbs, view).runs(effects::occlusion)) << "40,000 triangles, 20 an object";
   RenderOptions off;
   off.occlusion = Occlusion::off;
   EXPECT_FALSE(plan(many, view, off).runs(effects::occlusion));

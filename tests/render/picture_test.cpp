@@ -263,5 +263,30 @@ TEST(Thumbnail, AveragesTheMiddleAndNeverEnlarges) {
   EXPECT_EQ(thumbnail_of(small, 100, 100).rgb, small.rgb);
 }
 
+// Neighbours that show one object are bound once; copies with arrays of their own are not.
+TEST(Picture, OfCopiesIsThatOfObjectsOfTheirOwn) {
+  const auto object = made_object({.columns = 24, .rows = 12, .cell = 9, .radius = 0.3});
+  Scene copies, apart;
+  for (int k = 0; k < 4; ++k) {
+    Node node;
+    node.object = object;
+    node.to_parent.translation() = Vec3(0.5 * k - 0.75, 0.1 * k, -0.2 * k);
+    // The third is turned, so that its decoder is fed otherwise.
+    if (k == 2) node.to_parent.linear() = Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix();
+    copies = with_added(copies, node, NodeId::none, static_cast<std::size_t>(k));
+    auto own = std::make_shared<BakedObject>(*object);
+    for (TextureSet& set : own->sets)
+      set.soup = Soup(std::vector<Vec3>(set.soup.positions()), std::vector<Vec2>(set.soup.uvs()),
+                      std::vector<Face>(set.soup.faces()));
+    node.object = own;
+    apart = with_added(apart, node, NodeId::none, static_cast<std::size_t>(k));
+  }
+  for (const int samples : {1, 4}) {
+    const View view = view_from({1, 0.5, 3}, samples);
+    expect_as_cast(copies, view);
+    EXPECT_EQ(renderer().render(copies, view), renderer().render(apart, view)) << samples;
+  }
+}
+
 }  // namespace
 }  // namespace rebake::test
