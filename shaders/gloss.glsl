@@ -23,7 +23,9 @@ vec3 mirrored_sky(vec3 d) {
 }
 
 vec3 mirrored(vec3 ray, vec4 surface, float suns) {
-  vec3 normal = surface.xyz / max(length(surface.xyz), 1e-6);
+  float size = length(surface.xyz);
+  if (size < 1e-6) return vec3(0.0);
+  vec3 normal = surface.xyz / size;
   float along = dot(normal, ray);
   vec3 mirror = ray - 2.0 * along * normal;
   vec3 sum = surface.w * mirrored_sky(mirror);

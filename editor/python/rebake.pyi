@@ -194,7 +194,7 @@ class Document:
         color: display red, green and blue (share)
         """
     def light(self, *, effects: Sequence[str] = ["auto"], source: str = "estimated", zenith: Vector = [0.75,0.88,1.1], ground: Vector = [0.34,0.3,0.27], sun: Vector = [0.5,0.8,0.45], sun_color: Vector = [1.15,1.05,0.9], sun_degrees: float = 5.0, picture: str = "", picture_degrees: float = 0.0, content: str = "", bounce: Vector = [0.0,0.0,0.0], budget: float = 1.0, rays: int = 256) -> None:
-        """Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone.
+        """Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone; highlights.
 
         effects: auto: self, cast, removed and highlights, each where it would be seen; or some of them (highlights with self), and match: all objects in one light; none: colours stay as baked
         source: of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground and a sun, about the objects' own upright axis; picture: of all directions

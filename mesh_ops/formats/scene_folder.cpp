@@ -145,7 +145,8 @@ SceneLight read_light(const json& value) {
   light.self = value.at("self").get<bool>();
   light.cast = value.at("cast").get<bool>();
   light.removed = value.at("removed").get<bool>();
-  light.highlights = value.value("highlights", light.self);
+  // Before there were any, what was asked for as a whole included them.
+  light.highlights = light.self && value.value("highlights", light.cast && light.removed);
   light.match = value.at("match").get<bool>();
   light.budget = std::clamp(value.at("budget").get<double>(), 0.0, 1.0);
   light.rays = static_cast<int>(std::clamp(value.at("rays").get<double>(), 16.0, 16384.0));

@@ -45,8 +45,9 @@ BakedLight::BakedLight(std::shared_ptr<const BakedObject> object, const SceneLig
 
 const std::shared_ptr<const GlossFit>& BakedLight::gloss() {
   if (!gloss_)
-    gloss_ = std::make_shared<const GlossFit>(found_gloss(*object_, charts, sites, facing, colors, *light, roughly_,
-                                                          rays_among({{bodies_.front().object, Affine::Identity()}})));
+    gloss_ =
+        std::make_shared<const GlossFit>(kept_gloss(*object_, charts, sites, facing, colors, *light, roughly_,
+                                                    {bodies_.front().object, Affine::Identity()}, options_.results));
   return gloss_;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/light/chromaticity.h"
@@ -35,19 +36,6 @@ Radiance mirrored_suns(const Gloss& gloss, const Vec3& mirror, double sharpness)
   return sum;
 }
 
-Gloss mirrored_light(const Light& light) {
-  Light open = light;
-  open.bounce = Radiance::Zero();
-  Gloss gloss;
-  gloss.sky = projected_sky(open, Mat3::Identity());
-  for (sh::Coefficients& channel : gloss.sky) channel = sh::windowed(channel, sh::Window::lanczos);
-  gloss.suns = light.suns;
-  std::stable_sort(gloss.suns.begin(), gloss.suns.end(),
-                   [](const Sun& a, const Sun& b) { return a.irradiance.sum() > b.irradiance.sum(); });
-  if (gloss.suns.size() > Gloss::most_suns) gloss.suns.resize(Gloss::most_suns);
-  return gloss;
-}
-
 // How a site's colours change with the eye, less their mean, and what of that mirrors would do, a direction and
 // channel.
 struct Views {
@@ -56,6 +44,7 @@ struct Views {
   std::vector<Eigen::ArrayXd> suns;  // by sharpness
 };
 
+// Duller lobes are told from a surface's own colour by chance only.
 constexpr std::array<double, 7> sharpnesses{4, 8, 16, 32, 64, 128, 256};
 constexpr int views_a_side = 24;
 constexpr std::size_t most_sites = 6000;
@@ -98,7 +87,21 @@ struct Equations {
 
 }  // namespace
 
+Gloss mirrored_light(const Light& light) {
+  Light open = light;
+  open.bounce = Radiance::Zero();
+  Gloss gloss;
+  gloss.sky = projected_sky(open, Mat3::Identity());
+  for (sh::Coefficients& channel : gloss.sky) channel = sh::windowed(channel, sh::Window::lanczos);
+  gloss.suns = light.suns;
+  std::stable_sort(gloss.suns.begin(), gloss.suns.end(),
+                   [](const Sun& a, const Sun& b) { return a.irradiance.sum() > b.irradiance.sum(); });
+  if (gloss.suns.size() > Gloss::most_suns) gloss.suns.resize(Gloss::most_suns);
+  return gloss;
+}
+
 Radiance mirrored(const Gloss& gloss, const Vec3& direction, const Vec3& normal, double sky, double suns) {
+  if (normal.isZero(0)) return Radiance::Zero();
   const double along = normal.dot(direction);
   const Vec3 mirror = direction - 2 * along * normal;
   Radiance sum = Radiance::Zero();
@@ -241,6 +244,8 @@ std::shared_ptr<const GlossMap> gloss_map(const LightChart& chart, const LightSi
     side->normals.assign(chart.texel_count(), Eigen::Vector4f::Zero());
     side->suns.assign(chart.texel_count(), 0);
   }
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> patch_at(chart.texel_count(), none);
   bool any = false;
   for (std::size_t n = 0; n < chart.nodes.size(); ++n) {
     const std::size_t i = first + n, texel = chart.nodes[n].texel;
@@ -249,10 +254,14 @@ std::shared_ptr<const GlossMap> gloss_map(const LightChart& chart, const LightSi
     const auto beside = [&](std::size_t other) {
       return map.before.normals[other].head<3>().dot(as_baked.cast<float>());
     };
-    const std::size_t column = texel % static_cast<std::size_t>(chart.width);
-    float along = column > 0 ? beside(texel - 1) : 0;
-    if (along == 0 && texel >= static_cast<std::size_t>(chart.width))
-      along = beside(texel - static_cast<std::size_t>(chart.width));
+    const auto width = static_cast<std::size_t>(chart.width);
+    const auto same_patch = [&](std::size_t other) { return patch_at[other] == chart.nodes[n].patch; };
+    patch_at[texel] = chart.nodes[n].patch;
+    float along = 0;
+    if (texel % width > 0 && same_patch(texel - 1))
+      along = beside(texel - 1);
+    else if (texel >= width && same_patch(texel - width))
+      along = beside(texel - width);
     if (along < 0) {
       as_baked = -as_baked;
       as_is = -as_is;

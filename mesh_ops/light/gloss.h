@@ -18,6 +18,8 @@ struct Gloss {
   static constexpr std::size_t most_suns = 4;
 };
 
+/// A light ready to be mirrored, by nothing yet said how sharply.
+Gloss mirrored_light(const Light& light);
 /// Linear radiance that a surface of normal `normal` (either side) mirrors towards an eye that looks along `direction`,
 /// both of length 1. Fresnel's factor by Schlick (1994), of a dielectric of index 1.5; `sky` and `suns` scale it: 1 is
 /// smooth glass under an open sky.

@@ -26,6 +26,13 @@ void append(std::string& bytes, const std::vector<Occluder>& occluders) {
   }
 }
 
+void append(std::string& bytes, const Decoder& d) {
+  for (const auto* weights : {&d.weights0, &d.weights1, &d.weights2})
+    append(bytes, weights->data(), static_cast<std::size_t>(weights->size()) * sizeof(double));
+  for (const auto* bias : {&d.bias0, &d.bias1, &d.bias2})
+    append(bytes, bias->data(), static_cast<std::size_t>(bias->size()) * sizeof(double));
+}
+
 void append_place(std::string& bytes, const Sun& sun) {
   append(bytes, sun.direction.data(), 3 * sizeof(double));
   append(bytes, &sun.radius, sizeof(double));
@@ -201,10 +208,7 @@ LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t
   const std::uint64_t hash = surface_hash(body);
   append(inputs, &hash, sizeof(hash));
   const Decoder& d = *body.decoder;
-  for (const auto* weights : {&d.weights0, &d.weights1, &d.weights2})
-    append(inputs, weights->data(), static_cast<std::size_t>(weights->size()) * sizeof(double));
-  for (const auto* bias : {&d.bias0, &d.bias1, &d.bias2})
-    append(inputs, bias->data(), static_cast<std::size_t>(bias->size()) * sizeof(double));
+  append(inputs, d);
   append(inputs, &spacing, sizeof(spacing));
   append(inputs, &most_nodes, sizeof(most_nodes));
   append(inputs, &body.axes, sizeof(body.axes));
@@ -254,6 +258,49 @@ LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t
     for (int c = 0; c < 3; ++c) n.push_back(static_cast<double>(texel[c]));
   results->keep(key, {reinterpret_cast<const char*>(n.data()), n.size() * sizeof(double)});
   return estimate;
+}
+
+GlossFit kept_gloss(const BakedObject& object, const std::vector<std::shared_ptr<const LightChart>>& charts,
+                    const LightSites& sites, const std::vector<float>& facing, const std::vector<Radiance>& colors,
+                    const Light& light, const std::vector<SiteLight>& baked, const Occluder& body, Results* results) {
+  const auto make = [&] {
+    return found_gloss(object, charts, sites, facing, colors, light, baked, rays_among({body}));
+  };
+  if (results == nullptr) return make();
+  std::string inputs;
+  append(inputs, *object.decoder);
+  append(inputs, {body});
+  append(inputs, sites.baked);
+  append(inputs, facing);
+  append(inputs, colors);
+  append(inputs, baked);
+  append(inputs, light.sky.texels());
+  for (const Sun& sun : light.suns) {
+    append_place(inputs, sun);
+    append(inputs, sun.irradiance.data(), 3 * sizeof(double));
+  }
+  append(inputs, &object.axes, sizeof(object.axes));
+  const std::string key = result_key("gloss1", inputs);
+  // Two numbers, then two for each site.
+  if (const auto bytes = results->find(key);
+      bytes && bytes->size() == 2 * sizeof(double) + sites.size() * sizeof(Eigen::Vector2f)) {
+    GlossFit fit;
+    fit.gloss = mirrored_light(light);
+    std::memcpy(&fit.gloss.sharpness, bytes->data(), sizeof(double));
+    std::memcpy(&fit.explained, bytes->data() + sizeof(double), sizeof(double));
+    fit.amounts.resize(sites.size());
+    for (std::size_t i = 0; i < sites.size(); ++i)
+      std::memcpy(fit.amounts[i].data(), bytes->data() + 2 * sizeof(double) + i * sizeof(Eigen::Vector2f),
+                  sizeof(Eigen::Vector2f));
+    return fit;
+  }
+  GlossFit fit = make();
+  std::string bytes;
+  append(bytes, &fit.gloss.sharpness, sizeof(double));
+  append(bytes, &fit.explained, sizeof(double));
+  append(bytes, fit.amounts);
+  results->keep(key, bytes);
+  return fit;
 }
 
 }  // namespace rebake

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh_ops/base/results.h"
+#include "mesh_ops/light/gloss.h"
 #include "mesh_ops/light/irradiance.h"
 #include "mesh_ops/light/light_estimate.h"
 #include "mesh_ops/light/occluder.h"
@@ -40,5 +41,10 @@ std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& o
 /// The light that an object stood in as it was baked, likewise kept.
 LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t most_nodes, Results* results,
                             const Progress& progress);
+
+/// found_gloss() among a body, likewise kept.
+GlossFit kept_gloss(const BakedObject& object, const std::vector<std::shared_ptr<const LightChart>>& charts,
+                    const LightSites& sites, const std::vector<float>& facing, const std::vector<Radiance>& colors,
+                    const Light& light, const std::vector<SiteLight>& baked, const Occluder& body, Results* results);
 
 }  // namespace rebake

@@ -165,7 +165,10 @@ LightChart light_chart(const TextureSet& set, double spacing) {
         const Vec2 at(patch.rect.left + column * patch.step_x(), patch.rect.top + row * patch.step_y());
         if (!any_opaque(*set.texels, patch.rect, at.x(), at.y(), patch.step_x(), patch.step_y())) continue;
         double least = std::numeric_limits<double>::infinity();
-        LightChart::Node node{static_cast<std::uint32_t>((patch.top + row) * chart.width + patch.left + column), 0, {}};
+        LightChart::Node node{static_cast<std::uint32_t>((patch.top + row) * chart.width + patch.left + column),
+                              0,
+                              {},
+                              static_cast<std::uint32_t>(&patch - patches.data())};
         for (std::size_t k = 0; k < corners.size() && least > 0; ++k) {
           double outside = 0;
           const Vec3 weights = nearest_weights(corners[k], at, outside);

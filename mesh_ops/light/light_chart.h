@@ -20,6 +20,7 @@ struct LightChart {
     std::uint32_t texel;  ///< y · width + x
     std::uint32_t face;   ///< of the set
     Eigen::Vector3f weights;
+    std::uint32_t patch = 0;  ///< number of its patch: texels beside each other may be of different ones
   };
   std::vector<Node> nodes;
 

@@ -167,7 +167,7 @@ std::shared_ptr<const GlossFit> LightReceiver::gloss(const Shared& shared, const
 std::string LightReceiver::why_matte(const Shared& shared) const {
   if (shared.light != nullptr) return "it stands in another light than its own";
   if (in_world()) return "it is sheared";
-  if (!baked_->may_mirror()) return "it was joined of others";
+  if (!baked_->may_mirror()) return "its bodies were joined or turned";
   return "its colours do not change with the eye as mirrored light would";
 }
 

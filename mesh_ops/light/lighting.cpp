@@ -61,6 +61,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
   // Of an object that moved in itself and lost parts both shadows are traced as one; the line that follows another.
   std::map<std::size_t, std::size_t> follows;
   std::vector<std::shared_ptr<const GlossFit>> gloss(receivers.size());
+  std::vector<std::optional<std::size_t>> own_line(receivers.size());
   for (std::size_t k = 0; k < receivers.size(); ++k) {
     LightReceiver& receiver = receivers[k];
     const bool self = settings.self && receiver.moved(), removed = settings.removed && receiver.missing();
@@ -71,6 +72,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       say("self-shadow " + receiver.name(), 0, "no triangle moved against its object");
     else
       own = say("self-shadow " + receiver.name(), removed ? 0 : receiver.sampled_change(true, false, progress), "");
+    own_line[k] = own;
     if (own && !removed) candidates.push_back({*own, k, Candidate::Kind::self});
     if (self && !settings.highlights) say("highlights " + receiver.name(), 0, "not asked for");
     if (self && settings.highlights) {
@@ -124,6 +126,15 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     result.decisions[line].runs = result.decisions[other].runs;
     result.decisions[line].why = "together with the removed shadow";
   }
+  // What is mirrored follows from how triangles moved, as their shadows do: both are worked out.
+  for (const Candidate& candidate : candidates) {
+    if (candidate.kind != Candidate::Kind::highlights || !result.decisions[candidate.decision].runs) continue;
+    LightDecision& own = result.decisions[*own_line[candidate.receiver]];
+    if (own.runs) continue;
+    own.runs = true;
+    own.why = "together with the highlights";
+    result.left_out -= own.bound;
+  }
   const auto gloss_for = [&](std::size_t k) {
     if (!gloss[k] && settings.highlights) gloss[k] = receivers[k].gloss(light_for(k), progress);
     return gloss[k];
@@ -140,18 +151,18 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       highlights = highlights || candidate.kind == Candidate::Kind::highlights;
       if (candidate.kind == Candidate::Kind::cast) casters.push_back(candidate.caster);
     }
-    // What is mirrored follows from how triangles moved, as shadows do.
     self = self || highlights || (removed && receivers[k].moved());
     const bool turning = options.turning.contains(objects[k].node->id);
     if (running.empty() && !matched(k) && !turning) continue;
     const Clock::time_point start = Clock::now();
-    const LightReceiver::Change change =
+    LightReceiver::Change change =
         receivers[k].change(self, removed, casters, light_for(k),
                             highlights || (turning && settings.self) ? gloss_for(k) : nullptr, progress);
     if (turning)
       if (auto turned = receivers[k].turned(change, casters, light_for(k), progress))
         result.turning[objects[k].node->id] = std::move(turned);
     if (running.empty() && !matched(k)) continue;
+    if (!highlights) change.mirrors.reset();
     result.maps[objects[k].node->id] = receivers[k].maps(change);
     const double seconds = seconds_since(start);
     result.lights[objects[k].node->id] = receivers[k].light(progress);

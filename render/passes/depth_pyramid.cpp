@@ -71,6 +71,12 @@ bool DepthPyramid::hides(const ScreenTriangle& t) const {
   Linear plane{(abn * acy - acn * aby) / area, (acn * abx - abn * acx) / area, 0};
   plane.c = t.nearness[0] + plane.a * (x_shift - t.x[0]) + plane.b * (y_shift - t.y[0]) +
             (std::abs(plane.a) + std::abs(plane.b)) * t.moved + t.error;
+  // Drivers work out its slopes in floats, which slivers make steep.
+  constexpr double rounding = 16.0 / (1 << 24);
+  const double longest =
+      std::max({abx * abx + aby * aby, acx * acx + acy * acy, (acx - abx) * (acx - abx) + (acy - aby) * (acy - aby)});
+  const auto [least, most] = std::minmax({t.nearness[0], t.nearness[1], t.nearness[2]});
+  plane.c += rounding * (most - least) * longest / std::abs(area);
   if (!std::isfinite(plane.c)) return false;
   // Not negative inside, and where moved corners may bring it.
   std::array<Linear, 3> edges;

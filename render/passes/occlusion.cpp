@@ -31,6 +31,7 @@ struct OcclusionState {
     std::map<Key, std::vector<std::uint8_t>> faces;  ///< flags
     /// What that was found in.
     struct Drawn {
+      Key key;
       Eigen::Matrix4d to_camera;
       std::array<std::weak_ptr<const void>, 4> arrays;  ///< positions, UVs, faces, texels
       bool operator==(const Drawn& other) const;
@@ -38,6 +39,7 @@ struct OcclusionState {
     std::vector<Drawn> draws;
     std::array<int, 4> raster{};  ///< width, height, samples a side, and how it is shaded
     int frames_at_rest = 0;       ///< in which nothing of that has changed
+    bool known = false;           ///< what is close: it was looked at in this state
     OcclusionCounts counts;
     std::vector<std::uint8_t> blocks;
   };
@@ -52,7 +54,8 @@ bool OcclusionState::Memory::Drawn::operator==(const Drawn& other) const {
   const auto same = [](const std::weak_ptr<const void>& a, const std::weak_ptr<const void>& b) {
     return !a.owner_before(b) && !b.owner_before(a);
   };
-  return to_camera == other.to_camera && std::equal(arrays.begin(), arrays.end(), other.arrays.begin(), same);
+  return key == other.key && to_camera == other.to_camera &&
+         std::equal(arrays.begin(), arrays.end(), other.arrays.begin(), same);
 }
 
 namespace {
@@ -60,7 +63,7 @@ namespace {
 constexpr int block_pixels = 16;
 // The frame at rest in which it is looked sample by sample, what then shows being drawn from there on: that takes as
 // long as drawing what it leaves out.
-constexpr int looks_closely = 2;
+constexpr int looked_closely = 2;
 // Up to a quarter as many triangles as were drawn are added to them; where more are missing, all that show are drawn
 // again.
 constexpr std::size_t few_missing = 4;
@@ -119,12 +122,14 @@ class Frame {
     now.camera = input.plan.view.camera;
     now.raster = {input.plan.view.width, input.plan.view.height, side_, static_cast<int>(input.plan.options.shading)};
     for (const Draw& draw : input.plan.draws)
-      now.draws.push_back({draw.to_camera.matrix(),
+      now.draws.push_back({{draw.node, draw.first_triangle},
+                           draw.to_camera.matrix(),
                            {draw.set.soup.shared_positions(), draw.set.soup.shared_uvs(), draw.set.soup.shared_faces(),
                             draw.set.texels}});
     const bool at_rest = before.camera == now.camera && before.raster == now.raster && before.draws == now.draws;
     if (at_rest) {
       now.frames_at_rest = before.frames_at_rest + 1;
+      now.known = before.known;
       now.counts = before.counts;
       now.blocks = std::move(before.blocks);
     }
@@ -144,7 +149,7 @@ class Frame {
   void draw(const std::function<void()>& clear) {
     OcclusionState::Memory& memory = state_.memories.back();
     // Drawn again without a change it would be found the same.
-    if (memory.frames_at_rest > looks_closely) {
+    if (memory.known) {
       gather(OcclusionState::close);
       draw_gathered();
       counts() = memory.counts;
@@ -195,7 +200,7 @@ class Frame {
     counts().clusters_hidden = candidates.size() - counts().clusters_drawn;
     for (const Set& set : sets_)
       for (std::uint8_t& flags : *set.flags) flags &= OcclusionState::shown | OcclusionState::close;
-    if (memory.frames_at_rest != looks_closely) return;
+    if (!looks_closely()) return;
     memory.counts = counts();
     memory.counts.milliseconds = 0;
     memory.counts.known = true;
@@ -211,6 +216,7 @@ class Frame {
     memory.counts.triangles_drawn = memory.counts.triangles_shown;
     memory.counts.clusters_hidden = candidates.size() - memory.counts.clusters_drawn;
     memory.blocks = state_.blocks;
+    memory.known = true;
   }
 
  private:
@@ -222,6 +228,7 @@ class Frame {
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
 
+  bool looks_closely() const { return state_.memories.back().frames_at_rest >= looked_closely; }
   OcclusionCounts& counts() { return input_.state.occlusion_counts; }
 
   ScreenBounder bounder(const Draw& draw) const {
@@ -289,7 +296,7 @@ class Frame {
   // Finds what of the candidates is not hidden by what was drawn: that shows, and is pending where it was not drawn.
   void look(const std::vector<Candidate>& candidates) {
     using Where = ScreenBounds::Where;
-    const bool closely = state_.memories.back().frames_at_rest == looks_closely;
+    const bool closely = looks_closely();
     tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
       const Set& set = sets_[candidates[k].set];
       ClusterBounds triangles;

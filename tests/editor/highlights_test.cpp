@@ -132,7 +132,9 @@ TEST(Highlights, OfMatteSurfacesAreLeftOut) {
 TEST(Highlights, AreLeftOutWhereNobodyAsksForThem) {
   Scene scene = tilted(plate(6), 30);
   scene = apply(scene, read_edit({{"op", "light"}, {"source", "sky"}, {"effects", {"self"}}}, scene)).scene;
-  EXPECT_EQ(decided(lighting_of(scene), "highlights plate")->why, "not asked for");
+  const Lighting lighting = lighting_of(scene);
+  ASSERT_NE(decided(lighting, "highlights plate"), nullptr);
+  EXPECT_EQ(decided(lighting, "highlights plate")->why, "not asked for");
   // What did not turn mirrors what it was baked with.
   EXPECT_EQ(decided(lighting_of(plate(6)), "highlights plate"), nullptr);
 }

@@ -345,6 +345,13 @@ TEST(Occlusion, AtRestSeesWhatChanges) {
   renderers().expect_same(holes(0), view, "erased");
   EXPECT_EQ(renderers().said().find("nothing has moved"), std::string::npos);
   renderers().expect_same_at_rest(scene, view, "undone");
+  // Another node in the place of one that went.
+  Node copy = *scene.roots[3];
+  copy.id = NodeId::none;
+  Scene swapped = with_added(scene, copy, NodeId::none, 4);
+  swapped.roots.erase(swapped.roots.begin() + 3);
+  renderers().expect_same_at_rest(swapped, view, "swapped");
+  renderers().expect_same_at_rest(scene, view, "swapped back");
   Scene moved =
       with_changed(scene, scene.roots[2]->id, [](Node& node) { node.to_parent.translation() = Vec3(1.5, 0, 0); });
   renderers().expect_same_at_rest(moved, view, "moved in front");
@@ -369,23 +376,32 @@ TEST(DepthPyramid, HidesATriangleWhereAllThatItCoversIsNearerOnly) {
       t.y[c] = place(random) * 0.8;
       t.nearness[c] = 0.6 * near(random);
     }
-    t.moved = 0.01;
-    t.error = 1e-4;
+    t.moved = 0.3;
+    t.error = 1e-2;
     const auto [x0, x1] = std::minmax_element(t.x.begin(), t.x.end());
     const auto [y0, y1] = std::minmax_element(t.y.begin(), t.y.end());
-    t.samples = {static_cast<int>(*x0), static_cast<int>(*y0), static_cast<int>(*x1), static_cast<int>(*y1)};
+    t.samples = {static_cast<int>(*x0) - 1, static_cast<int>(*y0) - 1, static_cast<int>(*x1) + 1,
+                 static_cast<int>(*y1) + 1};
+    // As a driver may draw it: corners moved, and nearer.
+    ScreenTriangle drawn = t;
+    for (std::size_t c = 0; c < 3; ++c) {
+      drawn.x[c] += t.moved * 0.7 * (2 * near(random) - 1);
+      drawn.y[c] += t.moved * 0.7 * (2 * near(random) - 1);
+      drawn.nearness[c] += t.error * near(random);
+    }
     // Samples inside, by barycentric coordinates in long double.
     const auto cross = [](long double ax, long double ay, long double bx, long double by) { return ax * by - ay * bx; };
-    const long double area = cross(t.x[1] - t.x[0], t.y[1] - t.y[0], t.x[2] - t.x[0], t.y[2] - t.y[0]);
+    const long double area =
+        cross(drawn.x[1] - drawn.x[0], drawn.y[1] - drawn.y[0], drawn.x[2] - drawn.x[0], drawn.y[2] - drawn.y[0]);
     bool any = false;
     for (int v = 5; v < 5 + 23; ++v)
       for (int u = 3; u < 3 + 37; ++u) {
-        const long double px = u + 0.5L - t.x[0], py = v + 0.5L - t.y[0];
-        const long double b = cross(px, py, t.x[2] - t.x[0], t.y[2] - t.y[0]) / area,
-                          c = cross(t.x[1] - t.x[0], t.y[1] - t.y[0], px, py) / area;
+        const long double px = u + 0.5L - drawn.x[0], py = v + 0.5L - drawn.y[0];
+        const long double b = cross(px, py, drawn.x[2] - drawn.x[0], drawn.y[2] - drawn.y[0]) / area,
+                          c = cross(drawn.x[1] - drawn.x[0], drawn.y[1] - drawn.y[0], px, py) / area;
         if (b < 0 || c < 0 || b + c > 1) continue;
-        const long double at =
-            t.nearness[0] + b * (t.nearness[1] - t.nearness[0]) + c * (t.nearness[2] - t.nearness[0]);
+        const long double at = drawn.nearness[0] + b * (drawn.nearness[1] - drawn.nearness[0]) +
+                               c * (drawn.nearness[2] - drawn.nearness[0]);
         any = any || nearness[static_cast<std::size_t>(v - 5) * 37 + static_cast<std::size_t>(u - 3)] <= at;
       }
     const bool hides = pyramid.hides(t);

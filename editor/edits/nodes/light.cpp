@@ -121,7 +121,8 @@ LightEdit light_edit(const SceneLight& light) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    LightEdit, "Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone.",
+    LightEdit,
+    "Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone; highlights.",
     (auto& edit, auto& visit) {
       visit("effects", edit.effects, Need::optional,
             "auto: self, cast, removed and highlights, each where it would be seen; or some of them (highlights with "

@@ -119,13 +119,17 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
         Wanted{"What is gone", "Shadows of what was removed go too.", &SceneLight::removed},
         Wanted{"Highlights", "What bent surfaces mirror stays with the light.", &SceneLight::highlights},
         Wanted{"One light", "All objects stand in one light.", &SceneLight::match}}) {
+    const bool highlights = effect.wanted == &SceneLight::highlights;
+    // They follow from how triangles moved, as shadows on itself do.
+    if (highlights && !light.self) continue;
     bool wanted = light.*effect.wanted;
     ui::flow(px(100));
     // The last one stays: without any, it is the light that is switched off.
-    const bool only = wanted && light.self + light.cast + light.removed + light.match == 1;
+    const bool only = wanted && !highlights && light.self + light.cast + light.removed + light.match == 1;
     if (ui::toggle(effect.name, wanted) && !only) {
       SceneLight changed = light;
       changed.*effect.wanted = wanted;
+      if (effect.wanted == &SceneLight::self) changed.highlights = wanted;
       commit(changed);
     }
     ui::tip(effect.name, "", effect.help);
