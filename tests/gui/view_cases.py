@@ -186,7 +186,13 @@ class ViewTest(WindowCase):
         self.assertLess(different(lit), 100)
         editor.click("tabs/light/What is gone")
         editor.until_ops("import", "light", "bend", "light")
-        self.assertEqual(editor.last_edit()["effects"], ["self", "cast"])
+        self.assertEqual(editor.last_edit()["effects"], ["self", "cast", "highlights"])
+        # They go with shadows on itself, and alone too.
+        editor.click("tabs/light/Highlights")
+        editor.until(lambda state: editor.last_edit()["effects"] == ["self", "cast"], "highlights are off")
+        editor.click("tabs/light/On itself")
+        editor.until(lambda state: editor.last_edit()["effects"] == ["cast"], "shadows on itself are off")
+        self.assertNotIn("tabs/light/Highlights", editor.state()["items"])
 
     def test_a_picture_is_taken_as_light(self):
         sky = self.folder / "sky.png"
