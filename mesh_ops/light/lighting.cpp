@@ -114,7 +114,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
         (candidates[k].kind == Candidate::Kind::self || candidates[k].kind == Candidate::Kind::removed) &&
         matched(candidates[k].receiver);
     decision.runs = options.everything || in_other_light || sum > settings.budget;
-    decision.why = fmt::format("{} {:.2g} of 255, {:.2g} left out before it; budget {:.2g}",
+    decision.why = fmt::format("{} {:.3g} of 255, {:.3g} left out before it; budget {:.3g}",
                                candidates[k].kind == Candidate::Kind::cast ? "at most" : "about", decision.bound * 255,
                                result.left_out * 255, settings.budget * 255);
     if (!decision.runs) result.left_out = sum;
