@@ -53,30 +53,43 @@ REBAKE_INLINE Vector exponential(Vector x) {
 
 REBAKE_INLINE Vector logistic(Vector x) { return 1.F / (1.F + exponential(-x)); }
 
-// Four neurons at once, so that an input is read once for them.
+// The loops that most time goes to know a processor's registers: GCC keeps wider vectors in memory.
+#if defined(__AVX512F__)
+constexpr std::size_t register_bytes = 64;
+#elif defined(__AVX__)
+constexpr std::size_t register_bytes = 32;
+#else
+constexpr std::size_t register_bytes = 16;
+#endif
+using Register = float __attribute__((vector_size(register_bytes), may_alias));
+constexpr std::size_t registers = sizeof(Vector) / register_bytes;  // of a vector
+// As many as leave room for the sums of four neurons.
+constexpr std::size_t at_once = registers < 2 ? registers : 2;
+
+REBAKE_INLINE Register& part(Vector& v, std::size_t k) { return reinterpret_cast<Register*>(&v)[k]; }
+REBAKE_INLINE const Register& part(const Vector& v, std::size_t k) { return reinterpret_cast<const Register*>(&v)[k]; }
+
+// Neurons j … j + count − 1, so that an input is read once for them.
+template <std::size_t count>
+REBAKE_INLINE void neurons(const float* values, std::size_t inputs, const Vector* x, Vector* y) {
+  for (std::size_t first = 0; first < registers; first += at_once) {
+    Register sum[count][at_once];
+    for (std::size_t n = 0; n < count; ++n)
+      for (std::size_t k = 0; k < at_once; ++k) sum[n][k] = Register{} + values[n * (inputs + 1)];
+    for (std::size_t i = 0; i < inputs; ++i)
+      for (std::size_t n = 0; n < count; ++n) {
+        const float weight = values[n * (inputs + 1) + i + 1];
+        for (std::size_t k = 0; k < at_once; ++k) sum[n][k] += weight * part(x[i], first + k);
+      }
+    for (std::size_t n = 0; n < count; ++n)
+      for (std::size_t k = 0; k < at_once; ++k) part(y[n], first + k) = sum[n][k];
+  }
+}
+
 void layer(const float* values, std::size_t inputs, std::size_t outputs, const Vector* x, Vector* y) {
   std::size_t j = 0;
-  for (; j + 4 <= outputs; j += 4) {
-    const float *w0 = values + j * (inputs + 1), *w1 = w0 + inputs + 1, *w2 = w1 + inputs + 1, *w3 = w2 + inputs + 1;
-    Vector s0 = all(w0[0]), s1 = all(w1[0]), s2 = all(w2[0]), s3 = all(w3[0]);
-    for (std::size_t i = 0; i < inputs; ++i) {
-      const Vector v = x[i];
-      s0 += w0[i + 1] * v;
-      s1 += w1[i + 1] * v;
-      s2 += w2[i + 1] * v;
-      s3 += w3[i + 1] * v;
-    }
-    y[j] = s0;
-    y[j + 1] = s1;
-    y[j + 2] = s2;
-    y[j + 3] = s3;
-  }
-  for (; j < outputs; ++j) {
-    const float* w = values + j * (inputs + 1);
-    Vector sum = all(w[0]);
-    for (std::size_t i = 0; i < inputs; ++i) sum += w[i + 1] * x[i];
-    y[j] = sum;
-  }
+  for (; j + 4 <= outputs; j += 4) neurons<4>(values + j * (inputs + 1), inputs, x, y + j);
+  for (; j < outputs; ++j) neurons<1>(values + j * (inputs + 1), inputs, x, y + j);
 }
 
 // Slopes of a layer's inputs from those of its outputs.
@@ -86,21 +99,29 @@ void layer_back(const float* values, std::size_t inputs, std::size_t outputs, co
   for (; j + 4 <= outputs; j += 4) {
     const float *w0 = values + j * (inputs + 1) + 1, *w1 = w0 + inputs + 1, *w2 = w1 + inputs + 1,
                 *w3 = w2 + inputs + 1;
-    const Vector s0 = slopes[j], s1 = slopes[j + 1], s2 = slopes[j + 2], s3 = slopes[j + 3];
-    for (std::size_t i = 0; i < inputs; ++i) result[i] += (w0[i] * s0 + w1[i] * s1) + (w2[i] * s2 + w3[i] * s3);
+    for (std::size_t k = 0; k < registers; ++k) {
+      const Register s0 = part(slopes[j], k), s1 = part(slopes[j + 1], k), s2 = part(slopes[j + 2], k),
+                     s3 = part(slopes[j + 3], k);
+      for (std::size_t i = 0; i < inputs; ++i)
+        part(result[i], k) += (w0[i] * s0 + w1[i] * s1) + (w2[i] * s2 + w3[i] * s3);
+    }
   }
   for (; j < outputs; ++j) {
     const float* w = values + j * (inputs + 1) + 1;
-    for (std::size_t i = 0; i < inputs; ++i) result[i] += w[i] * slopes[j];
+    for (std::size_t k = 0; k < registers; ++k) {
+      const Register slope = part(slopes[j], k);
+      for (std::size_t i = 0; i < inputs; ++i) part(result[i], k) += w[i] * slope;
+    }
   }
 }
 
 void layer_gradient(std::size_t inputs, std::size_t outputs, const Vector* x, const Vector* slopes, Vector* gradient) {
-  for (std::size_t j = 0; j < outputs; ++j, gradient += inputs + 1) {
-    const Vector slope = slopes[j];
-    gradient[0] += slope;
-    for (std::size_t i = 0; i < inputs; ++i) gradient[i + 1] += slope * x[i];
-  }
+  for (std::size_t j = 0; j < outputs; ++j, gradient += inputs + 1)
+    for (std::size_t k = 0; k < registers; ++k) {
+      const Register slope = part(slopes[j], k);
+      part(gradient[0], k) += slope;
+      for (std::size_t i = 0; i < inputs; ++i) part(gradient[i + 1], k) += slope * part(x[i], k);
+    }
 }
 
 // Where activations and slopes lie in the workspace.
@@ -120,15 +141,17 @@ std::size_t workspace_lanes(const NetworkView& n) { return 2 * (n.hidden0 + n.hi
 const float* second_values(const NetworkView& n) { return n.values + n.hidden0 * (n.inputs + 1); }
 const float* third_values(const NetworkView& n) { return second_values(n) + n.hidden1 * (n.hidden0 + 1); }
 
-REBAKE_INLINE void rectify(Vector* x, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) x[i] = x[i] > 0.F ? x[i] : Vector{};
+// x where `of` is above 0, else 0.
+REBAKE_INLINE void rectify(Vector* x, const Vector* of, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < registers; ++k) part(x[i], k) = part(of[i], k) > 0.F ? part(x[i], k) : Register{};
 }
 
 void evaluate(const NetworkView& n, const Vector* inputs, Vector* outputs, const Places& at) {
   layer(n.values, n.inputs, n.hidden0, inputs, at.first);
-  rectify(at.first, n.hidden0);
+  rectify(at.first, at.first, n.hidden0);
   layer(second_values(n), n.hidden0, n.hidden1, at.first, at.second);
-  rectify(at.second, n.hidden1);
+  rectify(at.second, at.second, n.hidden1);
   layer(third_values(n), n.hidden1, n.outputs, at.second, outputs);
   for (std::size_t o = 0; o < n.outputs; ++o) outputs[o] = logistic(outputs[o]);
 }
@@ -137,9 +160,9 @@ void evaluate(const NetworkView& n, const Vector* inputs, Vector* outputs, const
 void evaluate_back(const NetworkView& n, const Vector* inputs, const Vector* output_slopes, Vector* gradient,
                    Vector* input_slopes, const Places& at) {
   layer_back(third_values(n), n.hidden1, n.outputs, output_slopes, at.second_slopes);
-  for (std::size_t j = 0; j < n.hidden1; ++j) at.second_slopes[j] = at.second[j] > 0.F ? at.second_slopes[j] : Vector{};
+  rectify(at.second_slopes, at.second, n.hidden1);
   layer_back(second_values(n), n.hidden0, n.hidden1, at.second_slopes, at.first_slopes);
-  for (std::size_t j = 0; j < n.hidden0; ++j) at.first_slopes[j] = at.first[j] > 0.F ? at.first_slopes[j] : Vector{};
+  rectify(at.first_slopes, at.first, n.hidden0);
   if (input_slopes != nullptr) layer_back(n.values, n.inputs, n.hidden0, at.first_slopes, input_slopes);
   if (gradient == nullptr) return;
   layer_gradient(n.inputs, n.hidden0, inputs, at.first_slopes, gradient);
