@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "mesh_ops/scene/object.h"
 
@@ -12,6 +13,8 @@ namespace rebake {
 class RayTriangles {
  public:
   explicit RayTriangles(const BakedObject& object);
+  /// Some of its triangles alone, numbers in ascending order: rays find what they find among all, but for the others.
+  RayTriangles(const BakedObject& object, const std::vector<std::uint32_t>& only);
   RayTriangles(RayTriangles&&) noexcept;
   ~RayTriangles();
   std::uint64_t memory() const;  ///< bytes
@@ -22,12 +25,13 @@ class RayTriangles {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Finds the opaque triangle that a ray meets first. Transparent texels let rays through. Distances are found in single
+/// Finds the opaque triangle that a ray meets first, of several at one distance that of the lowest number. Transparent
+/// texels let rays through. Distances are found in single
 /// precision, relative to the object's centre: good to about 1e-6 of its size. The object's arrays must outlive it.
 class RayTree {
  public:
   explicit RayTree(const BakedObject& object);
-  /// `triangles` are of an object with the same positions and faces.
+  /// `triangles` are of an object with the same positions and faces, all or some of them.
   RayTree(std::shared_ptr<const RayTriangles> triangles, const BakedObject& object);
   RayTree(RayTree&&) noexcept;
   ~RayTree();

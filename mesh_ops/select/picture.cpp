@@ -11,6 +11,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/index/index.h"
+#include "mesh_ops/select/seen_through.h"
 
 namespace rebake {
 
@@ -139,7 +140,14 @@ TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, c
 
 std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, const Projector& project,
                                         const PixelMask& mask, double nearest, double farthest) {
-  const SceneRays scene = rays_through(objects);
+  std::vector<SceneRays::Instance> instances;
+  SeenThrough through(project, mask);
+  for (const PlacedNode& placed : objects) {
+    const BakedObject& object = *placed.node->object;
+    through.look_at(object, placed.to_world);
+    instances.push_back({rays_seen_through(through, object), placed.to_world, object.bounds().diagonal().norm()});
+  }
+  const SceneRays scene(std::move(instances));
   std::vector<TriangleSet> flags;
   for (const PlacedNode& placed : objects) flags.emplace_back(placed.node->object->triangle_count(), 0);
   struct Pick {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -66,6 +67,56 @@ TEST(SceneRays, WhatIsPassedByIsNotAskedAndChangesNothing) {
     }
     EXPECT_GT(shaded, sent / 8);
     EXPECT_LT(shaded, sent * 9 / 10);
+  }
+}
+
+// Whichever way a tree is built: what a brush finds must not depend on what was indexed before.
+TEST(RayTree, SomeTrianglesAndBundlesGiveWhatAllDoOneByOne) {
+  // Every triangle twice, at the same places, and rays to corners and edges: most of what is met is met at one t.
+  auto object = std::make_shared<BakedObject>(*made_object({.holes = false}));
+  object->sets.push_back(object->sets[0]);
+  const Soup& soup = object->sets[0].soup;
+  const RayTree all(*object);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<std::uint32_t> met;
+  std::vector<Vec3> eyes, ways;
+  for (int k = 0; k < 4000; ++k) {
+    const Face& face = soup.faces()[random() % soup.triangle_count()];
+    const Vec3 &a = soup.positions()[face[0]], &b = soup.positions()[face[1]];
+    eyes.push_back(4 * Vec3(unit(random), unit(random), unit(random)));
+    ways.push_back((k % 2 == 0 ? a : Vec3((a + b) / 2)) - eyes.back());
+    if (const auto hit = all.nearest(eyes.back(), ways.back(), 0, 9)) {
+      EXPECT_LT(hit->triangle, soup.triangle_count()) << "the lower number of two";
+      met.push_back(hit->triangle);
+    }
+  }
+  ASSERT_GT(met.size(), 3000U);
+  for (std::uint32_t f = 0; f < object->triangle_count(); f += 3) met.push_back(f);
+  std::sort(met.begin(), met.end());
+  met.erase(std::unique(met.begin(), met.end()), met.end());
+  const RayTree some(std::make_shared<const RayTriangles>(*object, met), *object);
+  for (std::size_t first = 0; first < eyes.size(); first += 8) {
+    RayTree::Bundle bundle;
+    for (std::size_t k = 0; k < 8; ++k) {
+      bundle.origins[k] = eyes[first + k];
+      bundle.directions[k] = ways[first + k];
+      bundle.far[k] = 9;
+    }
+    RayTree::Bundle of_some = bundle;
+    all.nearest(bundle, 0);
+    some.nearest(of_some, 0);
+    for (std::size_t k = 0; k < 8; ++k) {
+      const auto hit = all.nearest(eyes[first + k], ways[first + k], 0, 9),
+                 here = some.nearest(eyes[first + k], ways[first + k], 0, 9);
+      ASSERT_EQ(bundle.hit[k], hit.has_value());
+      ASSERT_EQ(of_some.hit[k], hit.has_value());
+      ASSERT_EQ(here.has_value(), hit.has_value());
+      if (!hit) continue;
+      EXPECT_EQ(std::tuple(here->t, here->triangle), std::tuple(hit->t, hit->triangle));
+      EXPECT_EQ(std::tuple(bundle.far[k], bundle.triangle[k]), std::tuple(hit->t, hit->triangle));
+      EXPECT_EQ(std::tuple(of_some.far[k], of_some.triangle[k]), std::tuple(hit->t, hit->triangle));
+    }
   }
 }
 

@@ -274,6 +274,48 @@ TEST(Select, ObjectsHideEachOtherAndHolesLetThrough) {
   EXPECT_LT(count(seen[1]), count(alone[0]));
 }
 
+// A brush does not wait for a tree of all triangles; what it finds is the same.
+TEST(Select, WhatIsSeenIsTheSameBeforeAnythingIsIndexed) {
+  struct Case {
+    const char* what;
+    double scale;
+    Vec3 eye;  ///< in spheres' radii
+    double ortho_height;
+    std::vector<Vec2> stroke;
+    double radius;
+  };
+  const std::vector<Vec2> across{Vec2(300, 350), Vec2(420, 460)}, aside{Vec2(5, 400)};
+  for (const Case& one :
+       {Case{"from outside", 1, {0, 0, 4}, 0, across, 12}, Case{"one pixel", 1, {0, 0, 4}, 0, {Vec2(390, 410)}, 0.8},
+        Case{"at the picture's edge", 1, {0.3, 0.2, 1.4}, 0, aside, 30},
+        Case{"through the surface", 1, {0, 0, 0.99}, 0, across, 40},
+        Case{"from within", 1, {0.1, 0.2, 0}, 0, across, 20}, Case{"parallel", 1, {1, 2, 4}, 2.5, across, 12},
+        Case{"huge", 1e6, {0, 0, 4}, 0, across, 12}, Case{"tiny", 1e-6, {0, 0, 4}, 0, across, 12},
+        Case{"from afar", 1, {0, 0, 1e6}, 0, across, 12}}) {
+    SCOPED_TRACE(one.what);
+    Node node;
+    node.object = made_object({.columns = 40, .rows = 20});
+    node.to_parent = Eigen::Scaling(one.scale * Vec3(-1, 1.2, 0.9));
+    const Scene scene = with_added({}, node, NodeId::none, 9);
+    Picture picture;
+    picture.camera.eye = one.scale * one.eye;
+    picture.camera.near_plane = 0.01 * one.scale;
+    picture.camera.far_plane = 2 * picture.camera.eye.norm() + 10 * one.scale;
+    picture.camera.ortho_height = one.scale * one.ortho_height;
+    if (picture.camera.eye.norm() > 1e5 * one.scale) picture.camera.fov_degrees = 0.00015;
+    const Projector project(picture);
+    const PixelMask mask = brush_mask(one.stroke, one.radius, 800, 800);
+    const auto seen = [&] {
+      return triangles_seen(placed_nodes(scene), project, mask, 0, picture.camera.far_plane)[0];
+    };
+    const TriangleSet before = seen();
+    EXPECT_EQ(rays_if_there(*node.object), nullptr) << "nothing waited for one";
+    EXPECT_GT(count(before), 0U);
+    rays_of(*node.object);
+    EXPECT_EQ(before, seen());
+  }
+}
+
 TEST(Select, WhatIsInsideIsUnseenFromOutside) {
   auto object = std::make_shared<BakedObject>(*made_object({.holes = false}));
   object->sets.push_back(made_object({.radius = 0.5, .holes = false})->sets[0]);
