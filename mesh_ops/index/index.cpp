@@ -145,9 +145,10 @@ std::shared_ptr<const RayTree> rays_of(const BakedObject& object) {
   return with_arrays(std::move(tree), std::move(arrays));
 }
 std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object) {
+  const auto triangles = cache().if_there<RayTriangles>(geometry_of(object), {});
+  if (!triangles) return nullptr;
   ArrayCache::Arrays arrays = surface_of(object);
-  auto tree = cache().if_there<RayTree>(arrays, {});
-  if (tree) touch_triangles(object);
+  auto tree = cache().get<RayTree>(arrays, {}, [&] { return RayTree(triangles, object); });
   return with_arrays(std::move(tree), std::move(arrays));
 }
 

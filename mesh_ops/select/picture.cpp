@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "mesh_ops/base/elementary.h"
 #include "mesh_ops/base/error.h"
@@ -93,6 +94,7 @@ PixelMask brush_mask(const std::vector<Vec2>& points, double radius, int width, 
 Projector::Projector(const Picture& picture) : picture_(picture), eye_(picture.camera.eye) {
   check(picture.camera);
   rows_ = world_to_camera(picture.camera);
+  half_height_ = half_height(picture.camera, 1);
 }
 
 bool Projector::operator()(const Vec3& world, At& at) const {
@@ -100,16 +102,17 @@ bool Projector::operator()(const Vec3& world, At& at) const {
   at.depth = -p.z();
   if (!(at.depth >= picture_.camera.near_plane && at.depth <= picture_.camera.far_plane)) return false;
   const auto pixel = [](double v) { return static_cast<int>(std::floor(std::clamp(v, -1e9, 1e9))); };
-  const double top = half_height(picture_.camera, at.depth), right = top * picture_.width / picture_.height;
+  const double top = picture_.camera.orthographic() ? half_height_ : at.depth * half_height_,
+               right = top * picture_.width / picture_.height;
   at.x = pixel((p.x() / right + 1) / 2 * picture_.width);
   at.y = pixel((1 - p.y() / top) / 2 * picture_.height);
   return true;
 }
 
 ViewRay Projector::ray(int x, int y) const {
-  const double top = half_height(picture_.camera, 1), right = top * picture_.width / picture_.height;
-  const Vec3 aside = rows_.transpose() *
-                     Vec3((2 * (x + 0.5) / picture_.width - 1) * right, (1 - 2 * (y + 0.5) / picture_.height) * top, 0);
+  const double right = half_height_ * picture_.width / picture_.height;
+  const Vec3 aside = rows_.transpose() * Vec3((2 * (x + 0.5) / picture_.width - 1) * right,
+                                              (1 - 2 * (y + 0.5) / picture_.height) * half_height_, 0);
   const Vec3 forward = -rows_.row(2).transpose();
   if (picture_.camera.orthographic()) return {eye_ + aside, forward};
   return {eye_, aside + forward};
@@ -141,11 +144,16 @@ TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, c
 std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, const Projector& project,
                                         const PixelMask& mask, double nearest, double farthest) {
   std::vector<SceneRays::Instance> instances;
-  SeenThrough through(project, mask);
+  std::optional<SeenThrough> through;
   for (const PlacedNode& placed : objects) {
     const BakedObject& object = *placed.node->object;
-    through.look_at(object, placed.to_world);
-    instances.push_back({rays_seen_through(through, object), placed.to_world, object.bounds().diagonal().norm()});
+    auto tree = rays_if_there(object);
+    if (!tree) {
+      if (!through) through.emplace(project, mask);
+      through->look_at(object, placed.to_world);
+      tree = rays_seen_through(*through, object);
+    }
+    instances.push_back({std::move(tree), placed.to_world, object.bounds().diagonal().norm()});
   }
   const SceneRays scene(std::move(instances));
   std::vector<TriangleSet> flags;
@@ -157,17 +165,19 @@ std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, 
   std::vector<std::vector<Pick>> picks(static_cast<std::size_t>(mask.height));
   tbb::parallel_for(0, mask.height, [&](int y) {
     for (int first = 0; first < mask.width; first += 8) {
+      const auto* const flags_here =
+          mask.flags.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(mask.width);
+      if (std::none_of(flags_here + first, flags_here + std::min(first + 8, mask.width),
+                       [](std::uint8_t f) { return f != 0; }))
+        continue;
       SceneRays::Bundle rays;
-      bool any = false;
       for (int i = 0; i < 8; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const ViewRay ray = project.ray(first + i, y);
         rays.origins[k] = ray.origin;
         rays.directions[k] = ray.direction;
         rays.far[k] = mask.at(first + i, y) ? project.camera().far_plane : -1;
-        any = any || mask.at(first + i, y);
       }
-      if (!any) continue;
       scene.nearest(rays, project.camera().near_plane);
       for (const auto& hit : rays.hits)
         if (hit && hit->t >= nearest && hit->t <= farthest)

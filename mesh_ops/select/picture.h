@@ -52,6 +52,7 @@ class Projector {
   Picture picture_;
   Vec3 eye_;
   Mat3 rows_;
+  double half_height_;  ///< of the picture in the world; of a pinhole's at a depth of 1
 };
 
 /// Triangles whose centre falls on a flagged pixel at a depth in [nearest, farthest], hidden ones too.

@@ -87,7 +87,6 @@ bool SeenThrough::may_meet(const Vec3& a, const Vec3& b, const Vec3& c) const {
 }
 
 std::shared_ptr<const RayTree> rays_seen_through(const SeenThrough& mask, const BakedObject& object) {
-  if (auto there = rays_if_there(object)) return there;
   std::vector<std::uint32_t> shown;
   std::size_t first = 0;
   for (const TextureSet& set : object.sets) {

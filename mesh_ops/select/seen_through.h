@@ -43,8 +43,8 @@ class SeenThrough {
   std::array<Side, 4> sides_;  // around all flagged pixels, in the object's space
 };
 
-/// A tree for the rays that `mask` was made for. Of all triangles where it is there already, or where most may be met;
-/// else of those only that may be met: making one takes longer than looking at some.
+/// A tree for the rays that `mask` was made for: of the triangles that may be met alone, which takes less than one of
+/// all, or of all where most may be met.
 std::shared_ptr<const RayTree> rays_seen_through(const SeenThrough& mask, const BakedObject& object);
 
 }  // namespace rebake
