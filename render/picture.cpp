@@ -15,6 +15,7 @@
 #include "render/gpu_scene/gpu_scene.h"
 #include "render/graph/passes.h"
 #include "render/graph/variants.h"
+#include "render/passes/pass_support.h"
 
 namespace rebake {
 
@@ -59,7 +60,10 @@ class Renderer::Impl {
                   const Lighting* lighting, const Guides* guides = nullptr) {
     const gl::Current current(*context_);
     const Clock::time_point start = Clock::now();
-    const FramePlan frame_plan = plan(scene, view, options, guides, lighting, device_facts());
+    DeviceFacts facts = device_facts();
+    if (drawn_) facts.shown = &*drawn_;
+    FramePlan frame_plan = plan(scene, view, options, guides, lighting, facts);
+    drawn_.reset();
     shown_ = view;
     texels_ = options.texels;
     if (frame_plan.frames.size() > 65535)
@@ -72,6 +76,7 @@ class Renderer::Impl {
     passes_ = frame_plan.passes;
     if (frame_plan.runs(effects::occlusion)) say_occlusion();
     if (frame_plan.runs(effects::coded_texels)) say_coded();
+    drawn_ = std::move(frame_plan);
     return times;
   }
 
@@ -148,7 +153,7 @@ class Renderer::Impl {
   void update(const Scene& scene, bool coded, const Lighting* lighting) {
     gpu_->update(scene, coded, lighting);
     // Other programs read them.
-    if (std::exchange(coded_, coded) != coded) drawn_.clear();
+    if (std::exchange(coded_, coded) != coded) variants_.clear();
   }
 
   // Draws what is on the GPU as planned, into the targets of the plan.
@@ -157,12 +162,14 @@ class Renderer::Impl {
     if (!frame_plan.runs(effects::selection)) state_.selected.clear();
     glBindFramebuffer(GL_FRAMEBUFFER, picture_buffer());
     glDisable(GL_SCISSOR_TEST);
+    if (frame_plan.kept) restrict_to_covered(frame_plan, 1);
     const Color& b = frame_plan.background;
     const float background[4] = {static_cast<float>(b.x()), static_cast<float>(b.y()), static_cast<float>(b.z()), 1};
     glClearBufferfv(GL_COLOR, 0, background);
     FrameTimes times;
     for (const Effect* pass : effect_table()) {
-      if (pass->execute == nullptr || !frame_plan.runs(*pass)) continue;
+      if (pass->execute == nullptr || !frame_plan.runs(*pass) || (frame_plan.kept && frame_plan.covered.empty()))
+        continue;
       if (each_pass) glFinish();
       const Clock::time_point pass_start = Clock::now();
       pass->execute({frame_plan, *gpu_, state_, *pass});
@@ -181,11 +188,11 @@ class Renderer::Impl {
   // True where none like it was drawn before, as far back as programs are kept.
   bool remember(ProgramVariant variant) {
     constexpr std::size_t most = 32;
-    const auto known = std::find(drawn_.begin(), drawn_.end(), variant);
-    const bool fresh = known == drawn_.end();
-    if (!fresh) drawn_.erase(known);
-    drawn_.push_back(std::move(variant));
-    if (drawn_.size() > most) drawn_.erase(drawn_.begin());
+    const auto known = std::find(variants_.begin(), variants_.end(), variant);
+    const bool fresh = known == variants_.end();
+    if (!fresh) variants_.erase(known);
+    variants_.push_back(std::move(variant));
+    if (variants_.size() > most) variants_.erase(variants_.begin());
     return fresh;
   }
 
@@ -231,12 +238,13 @@ class Renderer::Impl {
   std::optional<GpuScene> gpu_{std::in_place};
   PassState state_;
   View shown_;
+  std::optional<FramePlan> drawn_;  ///< what the targets hold; nothing where drawing failed
   std::string device_;
   bool software_ = false, reads_coded_ = true;
   bool coded_ = false;                                                            ///< the texels on the GPU
   std::atomic<RenderOptions::Texels> texels_ = RenderOptions::Texels::automatic;  ///< what was asked for last
   std::vector<PlannedPass> passes_;
-  std::vector<ProgramVariant> drawn_;  ///< the latest last
+  std::vector<ProgramVariant> variants_;  ///< that were drawn, the latest last
   std::size_t compiled_ = 0;
   double share_ = 0;
   int frames_without_ = 0;

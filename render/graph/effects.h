@@ -35,6 +35,7 @@ struct FrameFacts {
   const FramePlan& plan;  ///< all but its passes
   const DeviceFacts& device;
   std::size_t turned_draws = 0, culled = 0, hidden = 0;
+  std::string why_kept;  ///< or why not
 
   bool any_draw() const { return !plan.draws.empty(); }
   bool forward() const { return plan.options.shading == RenderOptions::Shading::forward; }
@@ -60,8 +61,8 @@ struct Effect {
 
 namespace effects {
 extern const Effect geometry, supersampling, node_frames, turned_rays, light, light_offset, highlights,
-    decoder_compositing, ray_per_sample, resolve, forward, culling, occlusion, hidden_objects, coded_texels, inspect,
-    selection, outline, guides;
+    decoder_compositing, ray_per_sample, resolve, forward, culling, occlusion, hidden_objects, kept_pixels,
+    coded_texels, inspect, selection, outline, guides;
 }
 
 /// All of them, in the order in which they are said and run.

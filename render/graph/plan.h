@@ -8,7 +8,7 @@
 #include "mesh_ops/light/lighting.h"
 #include "mesh_ops/scene/scene.h"
 #include "render/graph/guides.h"
-#include "render/graph/view.h"
+#include "render/graph/pixel_rect.h"
 
 namespace rebake {
 
@@ -43,14 +43,19 @@ struct RenderOptions {
   Precision precision = Precision::full;
   Occlusion occlusion = Occlusion::automatic;
   Texels texels = Texels::automatic;
+
+  bool operator==(const RenderOptions&) const = default;
 };
+
+struct FramePlan;
 
 /// What a plan is to know of where it is carried out.
 struct DeviceFacts {
   std::size_t occlusion_from = 20'000;  ///< triangles in view from which looking for hidden ones pays
   /// Where the last look found that too little is hidden: the share of triangles in view that showed; else 0.
   double shown_share = 0;
-  bool reads_coded_texels = true;  ///< whether its buffers are large enough for coded texels
+  bool reads_coded_texels = true;    ///< whether its buffers are large enough for coded texels
+  const FramePlan* shown = nullptr;  ///< what its targets hold; null where that is not known
 };
 
 /// Whether a scene's texels are coded on the GPU, which holds those of all its nodes, shown or not.
@@ -96,12 +101,6 @@ struct PlannedPass {
   std::string why;
 };
 
-/// Pixel rectangle, y down, right and bottom excluded.
-struct PixelRect {
-  int left = 0, top = 0, right = 0, bottom = 0;
-  bool empty() const { return left >= right || top >= bottom; }
-};
-
 /// Everything that the GPU is to do for one picture.
 struct FramePlan {
   View view;
@@ -112,8 +111,10 @@ struct FramePlan {
   std::vector<NodeFrame> frames;
   std::vector<PlannedPass> passes;
   PixelRect covered;  ///< nothing is drawn outside it
+  bool kept = false;  ///< what the targets hold outside it stays
   std::size_t triangles = 0;
   std::uint64_t texture_bytes = 0;  ///< of the scene's textures, in view or not, at 8 bytes a texel
+  bool overlays = false;            ///< guides are wanted
   Guides guides;
 
   bool runs(const Effect& effect) const;

@@ -459,6 +459,7 @@ std::optional<Decision> decide(const FrameFacts& facts) {
   const FramePlan& plan = facts.plan;
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   if (plan.options.occlusion == Occlusion::off) return Decision{false, "all triangles are to be drawn"};
+  if (plan.kept) return Decision{false, "only what may show in changed pixels is drawn"};
   if (plan.options.occlusion == Occlusion::automatic) {
     if (plan.triangles < facts.device.occlusion_from)
       return Decision{false, fmt::format("{} are drawn sooner than looked at; here it pays from {} on",

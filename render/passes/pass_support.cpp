@@ -7,6 +7,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <numbers>
 
+#include "render/graph/changed_pixels.h"
 #include "render/passes/decoder_glsl.h"
 
 namespace rebake {
@@ -273,6 +274,21 @@ void unbind_set(const Draw& draw) {
 
 namespace {
 
+// Camera to clip space as far as it tells what may be drawn: where the rest is kept, the covered part and what marks
+// there depend on.
+Eigen::Matrix4d drawn_projection(const FramePlan& plan) {
+  Eigen::Matrix4d part = Eigen::Matrix4d::Identity();
+  if (plan.kept) {
+    const PixelRect c = around(plan.covered, mark_pixels, plan.view);
+    const double width = plan.view.width, height = plan.view.height;
+    part(0, 0) = width / (c.right - c.left);
+    part(1, 1) = height / (c.bottom - c.top);
+    part(0, 3) = (width - c.right - c.left) / (c.right - c.left);
+    part(1, 3) = (c.bottom + c.top - height) / (c.bottom - c.top);
+  }
+  return part * projection(plan.view);
+}
+
 // Of a set that is bound.
 void draw_clusters(const GpuMesh& mesh, const Eigen::Matrix4d& object_to_clip) {
   std::vector<GLsizei> counts;
@@ -310,12 +326,12 @@ bool bound_alike(const Draw& a, const Draw& b) {
 
 void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program) {
   bind_set(input, draw, program);
-  draw_clusters(input.gpu.mesh(draw.set), projection(input.plan.view) * draw.to_camera.matrix());
+  draw_clusters(input.gpu.mesh(draw.set), drawn_projection(input.plan) * draw.to_camera.matrix());
   unbind_set(draw);
 }
 
 void draw_all_sets(const PassInput& input, const std::function<const gl::Program&(const Draw&)>& use) {
-  const Eigen::Matrix4d to_clip = projection(input.plan.view);
+  const Eigen::Matrix4d to_clip = projection(input.plan.view), to_drawn = drawn_projection(input.plan);
   const Draw* bound = nullptr;
   const GpuMesh* mesh = nullptr;
   GLint place = -1;
@@ -332,16 +348,26 @@ void draw_all_sets(const PassInput& input, const std::function<const gl::Program
       mesh = &input.gpu.mesh(draw.set);
       place = location(program, "object_to_clip");
     }
-    draw_clusters(*mesh, to_clip * draw.to_camera.matrix());
+    draw_clusters(*mesh, to_drawn * draw.to_camera.matrix());
   }
   if (bound != nullptr) unbind_set(*bound);
 }
 
+namespace {
+
+void restrict_to(const PixelRect& rect, const View& view, int side) {
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(rect.left * side, (view.height - rect.bottom) * side, (rect.right - rect.left) * side,
+            (rect.bottom - rect.top) * side);
+}
+
+}  // namespace
+
+void restrict_to_covered(const FramePlan& plan, int side) { restrict_to(plan.covered, plan.view, side); }
+
 void begin_geometry(const FramePlan& plan, int side) {
   glViewport(0, 0, plan.view.width * side, plan.view.height * side);
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(plan.covered.left * side, (plan.view.height - plan.covered.bottom) * side,
-            (plan.covered.right - plan.covered.left) * side, (plan.covered.bottom - plan.covered.top) * side);
+  restrict_to_covered(plan, side);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);
@@ -355,7 +381,7 @@ void begin_clear(const FramePlan& plan) {
   const auto area = [](double width, double height) { return width * height; };
   const PixelRect& c = plan.covered;
   const bool most = 3 * area(c.right - c.left, c.bottom - c.top) > area(plan.view.width, plan.view.height);
-  if (most || plan.runs(effects::guides)) glDisable(GL_SCISSOR_TEST);
+  if (!plan.kept && (most || plan.runs(effects::guides))) glDisable(GL_SCISSOR_TEST);
 }
 
 void clear_depth() {
@@ -389,6 +415,7 @@ void draw_rectangles(const View& view, const gl::Program& program, const std::ve
 void begin_overlay(const FramePlan& plan) {
   glViewport(0, 0, plan.view.width, plan.view.height);
   glDisable(GL_SCISSOR_TEST);
+  if (plan.kept) restrict_to_covered(plan, 1);
   glDisable(GL_CULL_FACE);
   glDisable(GL_DEPTH_TEST);
   if (reversed_depth()) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
@@ -423,6 +450,8 @@ void end_geometry() {
 void begin_mask(const PassInput& input) {
   input.draw_to({Target::mask}, false);
   begin_overlay(input.plan);
+  // Passes share the mask: around what is drawn it is another's.
+  if (input.plan.kept) restrict_to(around(input.plan.covered, mark_pixels, input.plan.view), input.plan.view, 1);
   const float nothing[4] = {};
   glClearBufferfv(GL_COLOR, 0, nothing);
   glEnable(GL_BLEND);
@@ -445,6 +474,7 @@ void end_mask() {
 
 void draw_by_mask(const PassInput& input, const std::string& fragment) {
   input.draw_to({Target::picture}, false);
+  if (input.plan.kept) restrict_to_covered(input.plan, 1);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   const gl::Program& shader = program(input.state, "fullscreen.vert", fragment, "");
   glUseProgram(shader.name());

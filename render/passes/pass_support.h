@@ -60,8 +60,10 @@ void draw_set(const PassInput& input, const Draw& draw, const gl::Program& progr
 /// to draw a set and returns the program.
 void draw_all_sets(const PassInput& input, const std::function<const gl::Program&(const Draw&)>& use);
 
+/// From here on nothing is drawn outside plan.covered, at `side` samples.
+void restrict_to_covered(const FramePlan& plan, int side);
 /// What is cleared next is cleared where plan.covered is at least; all of it where lines are compared with its depth,
-/// or where that is done sooner. end_clear() after that.
+/// or where that is done sooner, but where the rest is kept. end_clear() after that.
 void begin_clear(const FramePlan& plan);
 void clear_depth();
 void end_clear();

@@ -32,9 +32,7 @@ void execute(const PassInput& input) {
   glViewport(0, 0, plan.view.width, plan.view.height);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(plan.covered.left, plan.view.height - plan.covered.bottom, plan.covered.right - plan.covered.left,
-            plan.covered.bottom - plan.covered.top);
+  restrict_to_covered(plan, 1);
 
   const gl::Program& shader = program(input.state, "rectangles.vert", "resolve.frag",
                                       fmt::format("#define SIDE {}\n#define WRITES_FRAME {}\n#define WRITES_RAY {}\n"
