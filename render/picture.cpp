@@ -80,6 +80,15 @@ class Renderer::Impl {
     return times;
   }
 
+  bool keeps(const Scene& scene, const View& view, const Guides& guides, const Lighting* lighting) const {
+    if (!drawn_) return false;
+    DeviceFacts facts;
+    facts.reads_coded_texels = reads_coded_;
+    facts.shown = &*drawn_;
+    return plan(scene, view, {}, &guides, lighting, facts).kept;
+  }
+  bool kept() const { return drawn_ && drawn_->kept; }
+
   bool make_ahead(const Scene& scene, const View& view, const RenderOptions& options, const Lighting* lighting) {
     const gl::Current current(*context_);
     for (FrameToCome& frame : frames_to_come(scene, view, options, lighting)) {
@@ -281,7 +290,11 @@ Renderer::Shown Renderer::show(const Scene& scene, const View& view, const Rende
   shown.times = impl_->draw(scene, view, options, each_pass, lighting, &guides);
   shown.passes = impl_->passes();
   shown.texture = impl_->texture();
+  shown.kept = impl_->kept();
   return shown;
+}
+bool Renderer::keeps(const Scene& scene, const View& view, const Guides& guides, const Lighting* lighting) const {
+  return impl_->keeps(scene, view, guides, lighting);
 }
 Image Renderer::shown_image() { return impl_->read_back(); }
 

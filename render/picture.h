@@ -62,9 +62,12 @@ class Renderer {
     unsigned texture;
     FrameTimes times;
     std::vector<PlannedPass> passes;
+    bool kept = false;  ///< only the pixels that changed were drawn
   };
   Shown show(const Scene& scene, const View& view, const RenderOptions& options, const Guides& guides, bool each_pass,
              const Lighting* lighting = nullptr);
+  /// Whether only the pixels that changed since the last picture would be drawn: soon, whatever the view asks for.
+  bool keeps(const Scene& scene, const View& view, const Guides& guides, const Lighting* lighting) const;
   /// The picture shown last.
   Image shown_image();
 

@@ -1,6 +1,6 @@
 """Selecting and deleting."""
 
-from window_case import WindowCase, FICUS, KETTLE
+from window_case import WindowCase, FICUS, KETTLE, green
 
 
 class SelectTest(WindowCase):
@@ -31,6 +31,28 @@ class SelectTest(WindowCase):
         editor.click("status/History")
         editor.click("tabs/history/1")
         self.assertEqual(editor.state()["steps"], 1)
+
+    def test_the_eraser_shows_what_a_whole_picture_would(self):
+        """Of a stroke only the pixels that changed are drawn, at once in full."""
+        editor = self.open_ficus()
+        editor.key("e")
+        away = editor.in_viewport(0.02, 0.98)  # for the eraser's ring
+        editor.move(*away)
+        whole = editor.viewport()
+        for down in (0.2, 0.3, 0.4):
+            editor.drag([editor.in_viewport(0.45, down), editor.in_viewport(0.6, down + 0.05)])
+            self.assertEqual(editor.last_edit()["op"], "erase")
+        editor.move(*away)
+        erased = editor.viewport()
+        self.assertLess(int(green(erased).sum()), 0.95 * int(green(whole).sum()))
+        editor.key("g")
+        self.assertGreater(int((editor.viewport() != erased).sum()), 100, "without the grid")
+        editor.key("g")
+        editor.settle()
+        self.assertEqual(int((editor.viewport() != erased).sum()), 0)
+        editor.key("ctrl+z", "ctrl+z", "ctrl+z")
+        editor.settle()
+        self.assertEqual(int((editor.viewport() != whole).sum()), 0)
 
     def test_tools_work_on_what_is_picked(self):
         editor = self.open(FICUS, KETTLE)

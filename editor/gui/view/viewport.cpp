@@ -218,17 +218,27 @@ void Viewport::picture(Desk& desk) {
   const Scene scene = on_ground(desk.shown(), desk);
   view.camera = desk.view.camera;
   view.samples = desk.view.samples;
-  double scale = 1;
-  if (!still && full_ms_ > wanted_picture_ms) {
-    view.samples = 1;
-    scale = desk.view.moving_share > 0 ? desk.view.moving_share : moving_scale_;
-  }
-  view.width = std::max(16, static_cast<int>(std::lround(desk.view.width * scale)));
-  view.height = std::max(16, static_cast<int>(std::lround(desk.view.height * scale)));
+  view.width = desk.view.width;
+  view.height = desk.view.height;
   desk.relighter.request(scene, desk.preview.has_value(), scene.light ? desk.deform_nodes() : std::set<NodeId>{});
   const std::shared_ptr<const Lighting> lighting =
       scene.light && !desk.view.as_baked ? desk.relighter.latest() : nullptr;
   Made wanted{scene, lighting, view, guides(desk), each_pass_, desk.view.wipe, desk.view.width, desk.view.height};
+  // In full as it is, or as soon as in a hurry.
+  const auto stays_full = [&] {
+    return made_ && same_view(made_->view, view) &&
+           ((same_scene(made_->scene, scene) && made_->lighting == lighting && made_->guides == wanted.guides) ||
+            renderer_.keeps(scene, view, wanted.guides, lighting.get()));
+  };
+  double scale = 1;
+  const bool quick = !still && full_ms_ > wanted_picture_ms && !stays_full();
+  if (quick) {
+    view.samples = 1;
+    scale = desk.view.moving_share > 0 ? desk.view.moving_share : moving_scale_;
+    view.width = std::max(16, static_cast<int>(std::lround(desk.view.width * scale)));
+    view.height = std::max(16, static_cast<int>(std::lround(desk.view.height * scale)));
+    wanted.view = view;
+  }
   if (arrives(desk, scene)) {
     if (arrival_->stays || from_one_place(made_->view.camera, view.camera)) return;
     view.camera = with_depth_for(view.camera, world_bounds(made_->scene));
@@ -248,10 +258,9 @@ void Viewport::picture(Desk& desk) {
       renderer_.show(wanted.scene, view, {}, wanted.guides, each_pass_, wanted.lighting.get());
   if (!arrival_) renderer_.forget_arrival();
   const double ms = shown.times.frame_ms;
-  if (view.width == desk.view.width && view.samples == desk.view.samples) full_ms_ = ms;
+  if (view.width == desk.view.width && view.samples == desk.view.samples && !shown.kept) full_ms_ = ms;
   // The time goes with the pixels, as far as it goes with anything that can be chosen here.
-  if (!still && full_ms_ > wanted_picture_ms)
-    moving_scale_ = std::clamp(scale * std::sqrt(wanted_picture_ms / ms), 0.35, 1.0);
+  if (quick) moving_scale_ = std::clamp(scale * std::sqrt(wanted_picture_ms / ms), 0.35, 1.0);
   // Of pictures that follow each other in one movement.
   const Clock::time_point now = Clock::now();
   const double since = std::chrono::duration<double>(now - drawn_at_).count();
