@@ -1,5 +1,7 @@
 #include "mesh_ops/index/index.h"
 
+#include <tbb/parallel_for.h>
+
 #include <utility>
 
 #include "mesh_ops/base/hash.h"
@@ -116,20 +118,20 @@ std::shared_ptr<const Components> components_of(const BakedObject& object, const
     if (joining.tolerance > 0 || joining.gap > 0)
       return opaque_components(object, *corners_of(object, joining.tolerance), *edges_of(object, joining.tolerance),
                                opacity, joining.gap);
-    std::vector<KnownSet> sets;
-    for (std::size_t s = 0; s < object.sets.size(); ++s) {
+    std::vector<KnownSet> sets(object.sets.size());
+    tbb::parallel_for(std::size_t{0}, sets.size(), [&](std::size_t s) {
       const TextureSet& set = object.sets[s];
       const ArrayCache::Arrays places = places_of(set);
       ArrayCache::Arrays all = places;
       all.push_back(set.soup.shared_uvs());
       all.push_back(set.texels);
-      sets.push_back({opacity[s], cache().get<SetParts>(all, {}, [&] {
-                        const auto welded = welded_set(set);
-                        const auto edges =
-                            cache().get<EdgeTable>(places, {}, [&] { return edges_between(welded->corners); });
-                        return set_parts(welded->corners, *edges, *opacity[s]);
-                      })});
-    }
+      sets[s] = {opacity[s], cache().get<SetParts>(all, {}, [&] {
+                   const auto welded = welded_set(set);
+                   const auto edges =
+                       cache().get<EdgeTable>(places, {}, [&] { return edges_between(welded->corners); });
+                   return set_parts(welded->corners, *edges, *opacity[s]);
+                 })};
+    });
     return joined_components(*corners_of(object), sets);
   });
 }

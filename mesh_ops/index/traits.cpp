@@ -98,6 +98,19 @@ std::vector<TriangleLooks> triangle_looks(const TextureSet& set, const Decoder& 
   return looks;
 }
 
+bool shows_opaque(const TextureSet& set, std::size_t triangle) {
+  const FeatureTexture& texels = *set.texels;
+  const std::array<Vec2, 3> corners = texel_corners(set, triangle);
+  bool any = false, opaque = false;
+  for_each_texel_inside(corners, texels.width(), texels.height(), [&](int x, int y) {
+    any = true;
+    opaque = opaque || texels.opaque(x, y);
+  });
+  if (any) return opaque;
+  const Vec2 middle = (corners[0] + corners[1] + corners[2]) / 3;
+  return texels.opaque_at(middle.x() / texels.width(), 1 - middle.y() / texels.height());
+}
+
 std::vector<TriangleTraits> triangle_traits(
     const BakedObject& object, const std::vector<std::shared_ptr<const std::vector<TriangleLooks>>>& looks) {
   std::vector<TriangleTraits> traits(object.triangle_count());

@@ -26,6 +26,9 @@ struct TriangleLooks {
 /// Of a set's triangles. One too small to hold a texel centre counts the texel at its own centre.
 std::vector<TriangleLooks> triangle_looks(const TextureSet& set, const Decoder& decoder);
 
+/// Whether their opacity is above 0, of one: without looking at colours.
+bool shows_opaque(const TextureSet& set, std::size_t triangle);
+
 /// Traits of every triangle, in the object's numbering, from the looks of each set's.
 std::vector<TriangleTraits> triangle_traits(
     const BakedObject& object, const std::vector<std::shared_ptr<const std::vector<TriangleLooks>>>& looks);

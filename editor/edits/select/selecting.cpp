@@ -7,6 +7,7 @@
 
 #include "editor/edits/stored_view.h"
 #include "mesh_ops/index/index.h"
+#include "mesh_ops/index/traits.h"
 
 namespace rebake {
 
@@ -92,18 +93,17 @@ NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const V
   NearestTriangle nearest{0, 0};
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < targets.size(); ++k) {
-    const auto traits = opaque ? traits_of(*targets[k].node->object) : nullptr;
     std::size_t f = 0;
     for (const TextureSet& set : targets[k].node->object->sets) {
       const std::vector<Vec3>& p = set.soup.positions();
-      for (const Face& face : set.soup.faces()) {
+      for (std::size_t own = 0; own < set.soup.triangle_count(); ++own, ++f) {
+        const Face& face = set.soup.faces()[own];
         const Vec3 centre = targets[k].to_world * Vec3((p[face[0]] + p[face[1]] + p[face[2]]) / 3);
         const double distance = (centre - world).squaredNorm();
-        if (distance < least && (!traits || (*traits)[f].opacity > 0)) {
+        if (distance < least && (!opaque || shows_opaque(set, own))) {
           least = distance;
           nearest = {k, f};
         }
-        ++f;
       }
     }
   }
