@@ -85,7 +85,11 @@ class Renderer::Impl {
     DeviceFacts facts;
     facts.reads_coded_texels = reads_coded_;
     facts.shown = &*drawn_;
-    return plan(scene, view, {}, &guides, lighting, facts).kept;
+    try {
+      return plan(scene, view, {}, &guides, lighting, facts).kept;
+    } catch (const Error&) {
+      return false;  // drawing says why
+    }
   }
   bool kept() const { return drawn_ && drawn_->kept; }
 

@@ -66,7 +66,7 @@ class Renderer {
   };
   Shown show(const Scene& scene, const View& view, const RenderOptions& options, const Guides& guides, bool each_pass,
              const Lighting* lighting = nullptr);
-  /// Whether only the pixels that changed since the last picture would be drawn: soon, whatever the view asks for.
+  /// Whether only the pixels that changed since the last picture would be drawn: sooner than a whole one.
   bool keeps(const Scene& scene, const View& view, const Guides& guides, const Lighting* lighting) const;
   /// The picture shown last.
   Image shown_image();

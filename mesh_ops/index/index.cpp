@@ -151,6 +151,7 @@ std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object) {
   if (!triangles) return nullptr;
   ArrayCache::Arrays arrays = surface_of(object);
   auto tree = cache().get<RayTree>(arrays, {}, [&] { return RayTree(triangles, object); });
+  touch_triangles(object);
   return with_arrays(std::move(tree), std::move(arrays));
 }
 

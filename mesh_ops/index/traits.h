@@ -26,7 +26,7 @@ struct TriangleLooks {
 /// Of a set's triangles. One too small to hold a texel centre counts the texel at its own centre.
 std::vector<TriangleLooks> triangle_looks(const TextureSet& set, const Decoder& decoder);
 
-/// Whether their opacity is above 0, of one: without looking at colours.
+/// Whether one triangle's TriangleLooks::opacity is above 0; looks at no colour.
 bool shows_opaque(const TextureSet& set, std::size_t triangle);
 
 /// Traits of every triangle, in the object's numbering, from the looks of each set's.

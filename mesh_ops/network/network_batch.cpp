@@ -69,7 +69,7 @@ constexpr std::size_t at_once = registers < 2 ? registers : 2;
 REBAKE_INLINE Register& part(Vector& v, std::size_t k) { return reinterpret_cast<Register*>(&v)[k]; }
 REBAKE_INLINE const Register& part(const Vector& v, std::size_t k) { return reinterpret_cast<const Register*>(&v)[k]; }
 
-// Neurons j … j + count − 1, so that an input is read once for them.
+// So many neurons at once, whose weights begin at `values`, so that an input is read once for them.
 template <std::size_t count>
 REBAKE_INLINE void neurons(const float* values, std::size_t inputs, const Vector* x, Vector* y) {
   for (std::size_t first = 0; first < registers; first += at_once) {

@@ -6,10 +6,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <string>
-#include <tuple>
 
 #include "mesh_ops/base/error.h"
 
@@ -17,20 +15,8 @@ namespace rebake {
 
 namespace {
 
-// A tree's own frame.
-struct Frame {
-  Vec3 center{0, 0, 0};
-  double scale = 1;  ///< a power of two
-
-  std::array<float, 3> operator()(const Vec3& position) const {
-    const Vec3 local = (position - center) * scale;
-    return {static_cast<float>(local.x()), static_cast<float>(local.y()), static_cast<float>(local.z())};
-  }
-};
-
-// What the filter needs to look a hit up.
+// What the filter needs to look a hit's texel up.
 struct Surface {
-  const std::vector<Vec3>* positions;
   const std::vector<Face>* faces;
   const std::vector<Vec2>* uvs;
   const FeatureTexture* texels;
@@ -41,25 +27,12 @@ struct Surface {
   std::uint32_t triangle(std::uint32_t primitive) const { return first_triangle + face(primitive); }
 };
 
-// What a ray met first, so far.
-struct Met {
-  float t = std::numeric_limits<float>::infinity();
-  std::uint32_t triangle = 0;
-
-  bool anything() const { return t < std::numeric_limits<float>::infinity(); }
-};
-
 // Passed along with each ray, so that trees with other texels share their triangles.
 struct Context {
   RTCIntersectContext embree;
   const Surface* surfaces;  // a set each
-  const Frame* frame;
-  Met* met;  // of rays by their ids; null where any hit will do
 
-  Context(const std::vector<Surface>& of, const Frame& in, Met* of_rays)
-      : embree{}, surfaces(of.data()), frame(&in), met(of_rays) {
-    rtcInitIntersectContext(&embree);
-  }
+  explicit Context(const std::vector<Surface>& of) : embree{}, surfaces(of.data()) { rtcInitIntersectContext(&embree); }
 };
 
 bool count_bytes(void* sum, ssize_t bytes, bool /*after*/) {
@@ -67,51 +40,17 @@ bool count_bytes(void* sum, ssize_t bytes, bool /*after*/) {
   return true;
 }
 
-// Embree takes a little more than a triangle, and then it depends on the boxes around it whether it comes to it. Twice
-// the volumes between the ray and the edges have the same sign within it; those of an edge's two triangles cancel
-// exactly, so that there is no gap between them.
-bool within(const RTCFilterFunctionNArguments& args, unsigned i, const Frame& frame, const Surface& surface,
-            const Face& face) {
-  const Vec3 origin(RTCRayN_org_x(args.ray, args.N, i), RTCRayN_org_y(args.ray, args.N, i),
-                    RTCRayN_org_z(args.ray, args.N, i)),
-      direction(RTCRayN_dir_x(args.ray, args.N, i), RTCRayN_dir_y(args.ray, args.N, i),
-                RTCRayN_dir_z(args.ray, args.N, i));
-  std::array<Vec3, 3> to;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto corner = frame((*surface.positions)[face[k]]);
-    to[k] = Vec3(corner[0], corner[1], corner[2]) - origin;
-  }
-  const double a = to[1].cross(to[2]).dot(direction), b = to[2].cross(to[0]).dot(direction),
-               c = to[0].cross(to[1]).dot(direction);
-  return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
-}
-
 void let_through_transparent(const RTCFilterFunctionNArguments* args) {
-  const auto& context = *reinterpret_cast<const Context*>(args->context);
+  const auto* const surfaces = reinterpret_cast<const Context*>(args->context)->surfaces;
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
-    const Surface& surface = context.surfaces[RTCHitN_geomID(args->hit, args->N, i)];
+    const Surface& surface = surfaces[RTCHitN_geomID(args->hit, args->N, i)];
     const unsigned primitive = RTCHitN_primID(args->hit, args->N, i);
     const double u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
     const Face& face = (*surface.faces)[surface.face(primitive)];
     const std::vector<Vec2>& uvs = *surface.uvs;
     const Vec2 uv = uvs[face[0]] * (1 - u - v) + uvs[face[1]] * u + uvs[face[2]] * v;
-    if (!surface.texels->opaque_at(uv.x(), uv.y())) {
-      args->valid[i] = 0;
-    } else if (context.met != nullptr) {
-      // Boxes of what lies at one distance, but for rounding, are to be opened whatever was met first.
-      constexpr float rounding = 4e-6F;  // of the tree's frame
-      Met& met = context.met[RTCRayN_id(args->ray, args->N, i)];
-      float& far = RTCRayN_tfar(args->ray, args->N, i);
-      const std::uint32_t triangle = surface.triangle(primitive);
-      if (std::tuple(far, triangle) < std::tuple(met.t, met.triangle) &&
-          within(*args, i, *context.frame, surface, face)) {
-        met = {far, triangle};
-        far += rounding;
-      } else {
-        args->valid[i] = 0;
-      }
-    }
+    if (!surface.texels->opaque_at(uv.x(), uv.y())) args->valid[i] = 0;
   }
 }
 
@@ -138,11 +77,11 @@ class RayTriangles::Impl {
     scene_ = rtcNewScene(device_);
     const Box box = object.bounds();
     if (!box.isEmpty() && box.sizes().allFinite()) {
-      frame_.center = box.center();
+      center_ = box.center();
       int exponent = 0;
       std::frexp(box.sizes().maxCoeff(), &exponent);
-      frame_.scale = box.sizes().maxCoeff() > 0 ? std::ldexp(1.0, -exponent) : 1.0;
-      const Vec3 half = box.sizes() / 2 * frame_.scale;
+      scale_ = box.sizes().maxCoeff() > 0 ? std::ldexp(1.0, -exponent) : 1.0;
+      const Vec3 half = box.sizes() / 2 * scale_;
       half_ = half + Vec3::Constant(1e-6 + 1e-6 * half.maxCoeff());
     }
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
@@ -181,14 +120,10 @@ class RayTriangles::Impl {
   std::uint64_t memory() const { return static_cast<std::uint64_t>(std::max<std::int64_t>(0, bytes_)); }
   RTCScene scene() const { return scene_; }
   const std::uint32_t* numbers(std::size_t set) const { return some_ ? numbers_[set].data() : nullptr; }
-  const Frame& frame() const { return frame_; }
-  Box bounds() const {
-    const Vec3 half = half_ / frame_.scale;
-    return Box(Vec3(frame_.center - half), Vec3(frame_.center + half));
-  }
+  Box bounds() const { return Box(Vec3(center_ - half_ / scale_), Vec3(center_ + half_ / scale_)); }
   LocalRay local_ray(const Vec3& origin, const Vec3& direction, double near, double far) const {
     LocalRay ray;
-    const Vec3 d = direction * frame_.scale, o = (origin - frame_.center) * frame_.scale;
+    const Vec3 d = direction * scale_, o = (origin - center_) * scale_;
     const double squared = d.squaredNorm();
     ray.length = squared > 1e-200 && squared < 1e200 ? std::sqrt(squared) : d.stableNorm();
     if (!(far >= near) || !(ray.length > 0) || !std::isfinite(ray.length) || !o.allFinite()) return ray;
@@ -247,8 +182,9 @@ class RayTriangles::Impl {
       for (const std::uint32_t corner : soup.faces()[number]) vertices = put(soup.positions()[corner], vertices);
   }
   float* put(const Vec3& position, float* to) const {
-    const std::array<float, 3> local = frame_(position);
-    return std::copy(local.begin(), local.end(), to);
+    const Vec3 local = (position - center_) * scale_;
+    for (int k = 0; k < 3; ++k) *to++ = static_cast<float>(local[k]);
+    return to;
   }
 
   void release() {
@@ -261,7 +197,8 @@ class RayTriangles::Impl {
   RTCScene scene_;
   bool some_;                                        ///< not all triangles are there
   std::vector<std::vector<std::uint32_t>> numbers_;  ///< of those, in each set
-  Frame frame_;
+  Vec3 center_{0, 0, 0};
+  double scale_ = 1;             ///< a power of two
   Vec3 half_{1e-6, 1e-6, 1e-6};  ///< of the box, in the tree's frame, with some room
 };
 
@@ -270,8 +207,8 @@ class RayTree::Impl {
   Impl(std::shared_ptr<const RayTriangles> triangles, const BakedObject& object) : triangles_(std::move(triangles)) {
     std::uint32_t first = 0;
     for (const TextureSet& set : object.sets) {
-      surfaces_.push_back({&set.soup.positions(), &set.soup.faces(), &set.soup.uvs(), set.texels.get(), first,
-                           triangles_->impl_->numbers(surfaces_.size())});
+      surfaces_.push_back(
+          {&set.soup.faces(), &set.soup.uvs(), set.texels.get(), first, triangles_->impl_->numbers(surfaces_.size())});
       first += static_cast<std::uint32_t>(set.soup.triangle_count());
     }
   }
@@ -280,18 +217,17 @@ class RayTree::Impl {
   std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const {
     const LocalRay local = triangles_->impl_->local_ray(origin, direction, near, far);
     if (!local.meets) return std::nullopt;
-    Met met;
-    Context context(surfaces_, triangles_->impl_->frame(), &met);
+    Context context(surfaces_);
     RTCRayHit query{};
     query.ray = embree_ray(local);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(triangles_->impl_->scene(), &context.embree, &query);
-    if (!met.anything()) return std::nullopt;
-    return Hit{local.t(met.t), met.triangle};
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return Hit{local.t(query.ray.tfar), surfaces_[query.hit.geomID].triangle(query.hit.primID)};
   }
   void nearest(Bundle& rays, double near) const {
-    std::array<Met, 8> met;
-    Context context(surfaces_, triangles_->impl_->frame(), met.data());
+    Context context(surfaces_);
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     RTCRayHit8 query{};
     alignas(32) std::array<int, 8> valid{};
     std::array<LocalRay, 8> local;
@@ -307,22 +243,21 @@ class RayTree::Impl {
       query.ray.tnear[i] = local[i].near;
       query.ray.tfar[i] = local[i].far;
       query.ray.mask[i] = ~0U;
-      query.ray.id[i] = static_cast<unsigned>(i);
       query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
     rtcIntersect8(valid.data(), triangles_->impl_->scene(), &context.embree, &query);
     for (std::size_t i = 0; i < 8; ++i) {
-      rays.hit[i] = met[i].anything();
+      rays.hit[i] = valid[i] != 0 && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
       if (!rays.hit[i]) continue;
-      rays.far[i] = local[i].t(met[i].t);
-      rays.triangle[i] = met[i].triangle;
+      rays.far[i] = local[i].t(query.ray.tfar[i]);
+      rays.triangle[i] = surfaces_[query.hit.geomID[i]].triangle(query.hit.primID[i]);
     }
   }
   Box bounds() const { return triangles_->impl_->bounds(); }
   bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
     const LocalRay local = triangles_->impl_->local_ray(origin, direction, near, far);
     if (!local.meets) return false;
-    Context context(surfaces_, triangles_->impl_->frame(), nullptr);
+    Context context(surfaces_);
     RTCRay query = embree_ray(local);
     rtcOccluded1(triangles_->impl_->scene(), &context.embree, &query);
     return query.tfar < 0;

@@ -13,7 +13,8 @@ namespace rebake {
 class RayTriangles {
  public:
   explicit RayTriangles(const BakedObject& object);
-  /// Some of its triangles alone, numbers in ascending order: rays find what they find among all, but for the others.
+  /// Some of its triangles alone, numbers in ascending order: rays find what they find among all, but for the others,
+  /// and where they pass edges by less than the rounding of floats.
   RayTriangles(const BakedObject& object, const std::vector<std::uint32_t>& only);
   RayTriangles(RayTriangles&&) noexcept;
   ~RayTriangles();
@@ -25,8 +26,7 @@ class RayTriangles {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Finds the opaque triangle that a ray meets first, of several at one distance that of the lowest number. Transparent
-/// texels let rays through. Distances are found in single
+/// Finds the opaque triangle that a ray meets first. Transparent texels let rays through. Distances are found in single
 /// precision, relative to the object's centre: good to about 1e-6 of its size. The object's arrays must outlive it.
 class RayTree {
  public:

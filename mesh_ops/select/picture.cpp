@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "mesh_ops/base/elementary.h"
 #include "mesh_ops/base/error.h"
@@ -144,16 +143,11 @@ TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, c
 std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, const Projector& project,
                                         const PixelMask& mask, double nearest, double farthest) {
   std::vector<SceneRays::Instance> instances;
-  std::optional<SeenThrough> through;
+  SeenThrough through(project, mask);
   for (const PlacedNode& placed : objects) {
     const BakedObject& object = *placed.node->object;
-    auto tree = rays_if_there(object);
-    if (!tree) {
-      if (!through) through.emplace(project, mask);
-      through->look_at(object, placed.to_world);
-      tree = rays_seen_through(*through, object);
-    }
-    instances.push_back({std::move(tree), placed.to_world, object.bounds().diagonal().norm()});
+    through.look_at(object, placed.to_world);
+    instances.push_back({rays_seen_through(through, object), placed.to_world, object.bounds().diagonal().norm()});
   }
   const SceneRays scene(std::move(instances));
   std::vector<TriangleSet> flags;

@@ -42,7 +42,14 @@ void SeenThrough::look_at(const BakedObject& object, const Affine& to_world) {
     corner = {to_object * corner.origin, (to_object.linear() * corner.direction).normalized()};
   for (std::size_t k = 0; k < 4; ++k) {
     const ViewRay &a = corners[k], &b = corners[(k + 1) % 4], &across = corners[(k + 2) % 4];
-    Vec3 normal = a.direction.cross(b.origin + b.direction - a.origin).normalized();
+    Vec3 normal = a.direction.cross(b.origin + b.direction - a.origin);
+    // Between rays so close rounding turns it by more than their pixels are wide.
+    constexpr double least_sine = 1e-6;
+    if (!(normal.norm() > least_sine)) {
+      sides_[k] = {};
+      continue;
+    }
+    normal.normalize();
     if (normal.dot(across.origin + across.direction - a.origin) < 0) normal = -normal;
     sides_[k] = {normal, normal.dot(a.origin)};
   }
@@ -66,7 +73,7 @@ bool SeenThrough::may_meet(const Vec3& a, const Vec3& b, const Vec3& c) const {
   for (const Vec3* corner : {&a, &b, &c}) {
     const Vec3 from_eye = *corner - eye_;
     const double depth = depth_.dot(from_eye);
-    if (!(depth >= camera.near_plane && depth <= camera.far_plane)) return true;
+    if (!(depth > 0 && depth >= camera.near_plane && depth <= camera.far_plane)) return true;
     const double shrinks = camera.orthographic() ? 1 : 1 / depth, x = across_.dot(from_eye) * shrinks,
                  y = down_.dot(from_eye) * shrinks;
     x0 = std::min(x0, x);
@@ -104,7 +111,8 @@ std::shared_ptr<const RayTree> rays_seen_through(const SeenThrough& mask, const 
     for (const auto& some : batches) shown.insert(shown.end(), some.begin(), some.end());
     first += set.soup.triangle_count();
   }
-  if (2 * shown.size() > first) return rays_of(object);
+  constexpr std::size_t many = 8;
+  if (many * shown.size() > first) return rays_of(object);
   return std::make_shared<const RayTree>(std::make_shared<const RayTriangles>(object, shown), object);
 }
 

@@ -44,7 +44,8 @@ class SeenThrough {
 };
 
 /// A tree for the rays that `mask` was made for: of the triangles that may be met alone, which takes less than one of
-/// all, or of all where most may be met.
+/// all, or of all where many may be met. Which it is does not depend on what is indexed already: at edges, rays may
+/// find another triangle in another tree.
 std::shared_ptr<const RayTree> rays_seen_through(const SeenThrough& mask, const BakedObject& object);
 
 }  // namespace rebake

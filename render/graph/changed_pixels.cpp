@@ -12,6 +12,8 @@ namespace {
 
 // What is looked at texel by texel; more is sooner drawn.
 constexpr std::size_t most_tiles = 64;
+// Hidden triangles are not left out of them: where more of the picture may differ, a whole frame is drawn as soon.
+constexpr double most_pixels = 1.0 / 3;
 
 bool same_frame(const NodeFrame& a, const NodeFrame& b) {
   return a.decoder == b.decoder && a.alpha_code == b.alpha_code && a.world_to_fed == b.world_to_fed;
@@ -106,6 +108,10 @@ ChangedPixels changed_pixels(const FramePlan* before, const FramePlan& now) {
   // Who asks for the same once more wants it drawn.
   if (!any) return {std::nullopt, "nothing changed since the last frame"};
   pixels = around(pixels, mark_pixels, now.view);
+  const auto area = [](double width, double height) { return width * height; };
+  if (area(pixels.right - pixels.left, pixels.bottom - pixels.top) >
+      most_pixels * area(now.view.width, now.view.height))
+    return {std::nullopt, "texels changed in much of the picture since the last frame"};
   return {pixels, fmt::format("texels changed since the last frame in {}×{} of {}×{} pixels; the others stay",
                               pixels.right - pixels.left, pixels.bottom - pixels.top, now.view.width, now.view.height)};
 }

@@ -110,7 +110,7 @@ struct FramePlan {
   std::vector<std::shared_ptr<const Decoder>> decoders;  ///< distinct weights in view
   std::vector<NodeFrame> frames;
   std::vector<PlannedPass> passes;
-  PixelRect covered;  ///< nothing is drawn outside it
+  PixelRect covered;  ///< of the picture nothing is drawn outside it
   bool kept = false;  ///< what the targets hold outside it stays
   std::size_t triangles = 0;
   std::uint64_t texture_bytes = 0;  ///< of the scene's textures, in view or not, at 8 bytes a texel

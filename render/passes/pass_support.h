@@ -75,15 +75,17 @@ void end_geometry();
 /// Draws rectangles of the picture with rectangles.vert.
 void draw_rectangles(const View& view, const gl::Program& program, const std::vector<SampleRect>& rectangles);
 
-/// For what is drawn over the picture: its whole raster, the depth convention of the scene, no depth test.
+/// For what is drawn over the picture: its whole raster, or where the rest is kept plan.covered; the depth convention
+/// of the scene, no depth test.
 void begin_overlay(const FramePlan& plan);
 /// Binds the scene's depth to texture unit 1, and sets scene_depth, side and nearer.
 void bind_scene_depth(const PassInput& input, const gl::Program& program);
-/// Clears Target::mask and makes ready to draw geometry into it, nearest marks staying; end_mask() after that.
+/// Clears Target::mask, as far as what is drawn depends on it, and makes ready to draw geometry into it, nearest marks
+/// staying; end_mask() after that.
 void begin_mask(const PassInput& input);
 const gl::Program& use_mask(const PassInput& input, const Draw& draw);
 void end_mask();
-/// Draws a fragment shader that reads the mask over the whole picture.
+/// Draws a fragment shader that reads the mask over the picture.
 void draw_by_mask(const PassInput& input, const std::string& fragment);
 void set_camera_to_clip(const FramePlan& plan, const gl::Program& program);
 /// A vertex array over a mesh's vertices, without indices.

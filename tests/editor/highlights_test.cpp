@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "editor/commands/plain_scene.h"
 #include "mesh_ops/light/lighting.h"
 #include "render/graph/effects.h"
 #include "render/picture.h"
@@ -21,9 +22,9 @@ const Vec3 sun = Vec3(0.3, 1, 0.2).normalized();
 
 // A grey plate that faces upwards, whose decoder shows a highlight where an eye meets the mirrored sun. A hidden unit
 // is linear in the direction, and so is what a flat mirror makes of it.
-Scene plate(double highlight) {
-  auto object = std::make_shared<BakedObject>(*lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4, 4)},
-                                                          [](const Vec3&) { return Radiance(0.2, 0.2, 0.2); }));
+const std::vector<LitQuad> one_patch{flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4, 4)};
+Scene unlit_plate(double highlight, const std::vector<LitQuad>& quads = one_patch) {
+  auto object = std::make_shared<BakedObject>(*lit_object(quads, [](const Vec3&) { return Radiance(0.2, 0.2, 0.2); }));
   object->axes = Axes::forward;
   Decoder d = *object->decoder;
   const Eigen::Index unit = d.weights0.cols();
@@ -45,10 +46,13 @@ Scene plate(double highlight) {
   Node node;
   node.name = "plate";
   node.object = object;
-  Scene scene = with_added({}, std::move(node), NodeId::none, 0);
+  return with_added({}, std::move(node), NodeId::none, 0);
+}
+Scene in_sun(const Scene& scene) {
   return apply(scene, read_edit({{"op", "light"}, {"source", "sky"}, {"sun", {sun.x(), sun.y(), sun.z()}}}, scene))
       .scene;
 }
+Scene plate(double highlight) { return in_sun(unlit_plate(highlight)); }
 
 Scene tilted(Scene scene, double degrees) {
   for (const json& line : std::vector<json>{{{"op", "select"}, {"box", {{"min", {-9, -9, -9}}, {"max", {9, 9, 9}}}}},
@@ -116,6 +120,66 @@ TEST(Highlights, StayWithTheLightWhenASurfaceTurns) {
     }
   }
   EXPECT_TRUE(plan(scene, looking(to_sun), {}, nullptr, &lighting).runs(effects::highlights));
+}
+
+// Where an eye meets the sun in a plate that was tilted so far, about x.
+Vec3 towards_highlight(double degrees) {
+  const Vec3 now(0, std::cos(degrees * std::numbers::pi / 180), std::sin(degrees * std::numbers::pi / 180));
+  return sun - 2 * now.dot(sun) * now;
+}
+
+TEST(Highlights, OfAMirroredNodeAreThoseOfTheMirroredScene) {
+  // Across a plane that holds the sun and the axis of the tilt, which turns the other way.
+  const Vec3 across = Vec3::UnitX().cross(sun).normalized();
+  const Mat3 mirror = Mat3::Identity() - 2 * across * across.transpose();
+  Scene mirrored_plate = unlit_plate(6);
+  mirrored_plate = with_changed(mirrored_plate, mirrored_plate.roots.front()->id,
+                                [&](Node& node) { node.to_parent.linear() = mirror; });
+  const Scene scene = tilted(plate(6), 45), other = tilted(in_sun(mirrored_plate), -45);
+  const Lighting lighting = lighting_of(scene), other_lighting = lighting_of(other);
+  ASSERT_TRUE(runs(other_lighting, "highlights plate")) << decided(other_lighting, "highlights plate")->why;
+  Renderer renderer;
+  for (const Vec3& direction : {towards_highlight(45), Vec3(Vec3(0.1, -0.8, -0.5).normalized())}) {
+    const View view = looking(direction), other_view = looking(mirror * direction);
+    EXPECT_NEAR(middle(renderer.render(other, other_view, {}, &other_lighting)),
+                middle(renderer.render(scene, view, {}, &lighting)), 3);
+    EXPECT_NEAR(middle(renderer.render(other, other_view)), middle(renderer.render(scene, view)), 1);
+  }
+}
+
+TEST(Highlights, OfSeveralPatchesAreThoseOfOne) {
+  // The second one's normal points the other way: both sides mirror.
+  const std::vector<LitQuad> two{flat_quad({-1, 0, -1}, {0, 0, 2}, {0.9, 0, 0}, 4, 2),
+                                 flat_quad({-0.1, 0, -1}, {1.1, 0, 0}, {0, 0, 2}, 2, 4)};
+  const Scene scene = tilted(plate(6), 45), other = tilted(in_sun(unlit_plate(6, two)), 45);
+  const Lighting lighting = lighting_of(scene), other_lighting = lighting_of(other);
+  ASSERT_TRUE(runs(other_lighting, "highlights plate")) << decided(other_lighting, "highlights plate")->why;
+  Renderer renderer;
+  const View view = looking(towards_highlight(45));
+  const Image as_one = renderer.render(scene, view, {}, &lighting),
+              as_two = renderer.render(other, view, {}, &other_lighting);
+  // Left and right of the middle lie on one patch each.
+  for (const std::size_t x : {26U, 40U}) {
+    const std::size_t at = (32 * 65 + x) * 3;
+    EXPECT_NEAR(as_two.rgb[at], as_one.rgb[at], 3) << x;
+    EXPECT_GT(as_two.rgb[at], middle(renderer.render(other, view)) + 15) << x;
+  }
+}
+
+TEST(Highlights, AreInPlainFolders) {
+  const Scene scene = tilted(plate(6), 45);
+  const Lighting lighting = lighting_of(scene);
+  FuseOptions options;
+  options.sample = 1024;
+  options.training.steps = 600;
+  PlainReport report;
+  const Scene plain = plain_scene(scene, lighting, options, report, {});
+  Renderer renderer;
+  const View view = looking(towards_highlight(45));
+  const int lit = middle(renderer.render(scene, view, {}, &lighting)), unlit = middle(renderer.render(scene, view)),
+            baked = middle(renderer.render(plain, view));
+  ASSERT_GT(lit, unlit + 20);
+  EXPECT_GT(baked, unlit + 0.8 * (lit - unlit)) << "most of what light adds: " << unlit << " to " << lit;
 }
 
 TEST(Highlights, OfMatteSurfacesAreLeftOut) {

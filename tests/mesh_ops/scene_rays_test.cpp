@@ -70,52 +70,57 @@ TEST(SceneRays, WhatIsPassedByIsNotAskedAndChangesNothing) {
   }
 }
 
-// Whichever way a tree is built: what a brush finds must not depend on what was indexed before.
-TEST(RayTree, SomeTrianglesAndBundlesGiveWhatAllDoOneByOne) {
-  // Every triangle twice, at the same places, and rays to corners and edges: most of what is met is met at one t.
+TEST(RayTree, SomeTrianglesAreMetAsAmongAll) {
   auto object = std::make_shared<BakedObject>(*made_object({.holes = false}));
-  object->sets.push_back(object->sets[0]);
-  const Soup& soup = object->sets[0].soup;
-  const RayTree all(*object);
+  object->sets.push_back(made_object({.radius = 0.6, .holes = false})->sets[0]);
+  const std::size_t outer = object->sets[0].soup.triangle_count();
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t f = 0; f < object->triangle_count(); ++f)
+    if (f >= outer || f % 3 != 0) some.push_back(f);
+  const RayTree all(*object), part(std::make_shared<const RayTriangles>(*object, some), *object);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
-  std::vector<std::uint32_t> met;
-  std::vector<Vec3> eyes, ways;
+  int same = 0, inner = 0;
   for (int k = 0; k < 4000; ++k) {
-    const Face& face = soup.faces()[random() % soup.triangle_count()];
-    const Vec3 &a = soup.positions()[face[0]], &b = soup.positions()[face[1]];
-    eyes.push_back(4 * Vec3(unit(random), unit(random), unit(random)));
-    ways.push_back((k % 2 == 0 ? a : Vec3((a + b) / 2)) - eyes.back());
-    if (const auto hit = all.nearest(eyes.back(), ways.back(), 0, 9)) {
-      EXPECT_LT(hit->triangle, soup.triangle_count()) << "the lower number of two";
-      met.push_back(hit->triangle);
+    const Vec3 eye = 4 * Vec3(unit(random), unit(random), unit(random)),
+               way = 0.3 * Vec3(unit(random), unit(random), unit(random)) - eye;
+    if (eye.norm() < 1.5) continue;
+    const auto expected = all.nearest(eye, way, 0, 9), found = part.nearest(eye, way, 0, 9);
+    ASSERT_TRUE(expected && found);
+    if (expected->triangle % 3 != 0) {
+      EXPECT_EQ(std::tuple(found->t, found->triangle), std::tuple(expected->t, expected->triangle));
+      ++same;
+    } else {
+      EXPECT_GT(found->t, expected->t);
+      EXPECT_TRUE(found->triangle >= outer || found->triangle % 3 != 0);
+      inner += found->triangle >= outer ? 1 : 0;
     }
   }
-  ASSERT_GT(met.size(), 3000U);
-  for (std::uint32_t f = 0; f < object->triangle_count(); f += 3) met.push_back(f);
-  std::sort(met.begin(), met.end());
-  met.erase(std::unique(met.begin(), met.end()), met.end());
-  const RayTree some(std::make_shared<const RayTriangles>(*object, met), *object);
-  for (std::size_t first = 0; first < eyes.size(); first += 8) {
-    RayTree::Bundle bundle;
-    for (std::size_t k = 0; k < 8; ++k) {
-      bundle.origins[k] = eyes[first + k];
-      bundle.directions[k] = ways[first + k];
-      bundle.far[k] = 9;
-    }
-    RayTree::Bundle of_some = bundle;
-    all.nearest(bundle, 0);
-    some.nearest(of_some, 0);
-    for (std::size_t k = 0; k < 8; ++k) {
-      const auto hit = all.nearest(eyes[first + k], ways[first + k], 0, 9),
-                 here = some.nearest(eyes[first + k], ways[first + k], 0, 9);
-      ASSERT_EQ(bundle.hit[k], hit.has_value());
-      ASSERT_EQ(of_some.hit[k], hit.has_value());
-      ASSERT_EQ(here.has_value(), hit.has_value());
-      if (!hit) continue;
-      EXPECT_EQ(std::tuple(here->t, here->triangle), std::tuple(hit->t, hit->triangle));
-      EXPECT_EQ(std::tuple(bundle.far[k], bundle.triangle[k]), std::tuple(hit->t, hit->triangle));
-      EXPECT_EQ(std::tuple(of_some.far[k], of_some.triangle[k]), std::tuple(hit->t, hit->triangle));
+  EXPECT_GT(same, 1000);
+  EXPECT_GT(inner, 200);
+}
+
+// A brush over a closed surface must not select its far side through the edges of its triangles.
+TEST(RayTree, NothingLeaksThroughSharedEdges) {
+  for (const int rows : {8, 60}) {
+    const auto object = made_object({.columns = 2 * rows, .rows = rows, .cell = 5, .holes = false});
+    const Soup& soup = object->sets[0].soup;
+    const RayTree tree(*object);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-1, 1), along(0, 1);
+    int sent = 0;
+    while (sent < 200000) {
+      const Face& face = soup.faces()[random() % soup.triangle_count()];
+      const std::size_t k = random() % 3;
+      const Vec3 &a = soup.positions()[face[k]], &b = soup.positions()[face[(k + 1) % 3]];
+      const Vec3 eye = 3 * Vec3(unit(random), unit(random), unit(random)), at = a + along(random) * (b - a),
+                 way = at - eye;
+      // From outside, onto the near half.
+      if (eye.norm() < 1.5 || way.normalized().dot(at.normalized()) > -0.3) continue;
+      ++sent;
+      const auto hit = tree.nearest(eye, way, 0, 9);
+      ASSERT_TRUE(hit) << eye.transpose() << " to " << at.transpose();
+      ASSERT_LT(hit->t, 1.001) << eye.transpose() << " to " << at.transpose();
     }
   }
 }

@@ -228,7 +228,7 @@ void Viewport::picture(Desk& desk) {
   const auto stays_full = [&] {
     return made_ && same_view(made_->view, view) &&
            ((same_scene(made_->scene, scene) && made_->lighting == lighting && made_->guides == wanted.guides) ||
-            renderer_.keeps(scene, view, wanted.guides, lighting.get()));
+            (!desk.view.wipe && renderer_.keeps(scene, view, wanted.guides, lighting.get())));
   };
   double scale = 1;
   const bool quick = !still && full_ms_ > wanted_picture_ms && !stays_full();
