@@ -249,8 +249,10 @@ void Viewport::picture(Desk& desk) {
   }
   if (made_ && same_scene(made_->scene, wanted.scene) && made_->lighting == wanted.lighting &&
       same_view(made_->view, view) && made_->guides == wanted.guides && made_->each_pass == each_pass_ &&
-      made_->wipe == desk.view.wipe)
+      made_->wipe == desk.view.wipe) {
+    if (!quick) keep_picture(desk);
     return;
+  }
   // Whether it can be drawn or not: what cannot is said once.
   made_ = wanted;
   texture_ = 0;
@@ -281,11 +283,13 @@ void Viewport::picture(Desk& desk) {
   }
   texture_ = shown.texture;
   drew_ = true;
-  if (still && !desk.preview && !arrival_ && view.width == desk.view.width) keep_picture(desk);
+  if (!quick) keep_picture(desk);
 }
 
-// Of what was just opened or saved, for the list of recent files.
+// Of what was just opened or saved, for the list of recent files: the first picture of it in full, whether the scene
+// rests yet or not. A quick driver has drawn it before it rests, and does not draw it again then.
 void Viewport::keep_picture(const Desk& desk) {
+  if (desk.view.flying || desk.preview || arrival_ || texture_ == 0) return;
   const std::vector<Edit>& done = desk.now->done;
   const bool imported = done.size() == 1 && done.front().is<Import>() && !desk.settings.recent.empty();
   const std::string of = !desk.project.path.empty() ? (desk.project.unsaved() ? "" : desk.project.path.string())
