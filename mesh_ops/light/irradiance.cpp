@@ -1,8 +1,11 @@
 #include "mesh_ops/light/irradiance.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
+#include "mesh_ops/light/site_bundles.h"
 #include "mesh_ops/light/site_rays.h"
 
 namespace rebake {
@@ -17,45 +20,63 @@ namespace {
 
 std::size_t rays_to_sun(int rays) { return static_cast<std::size_t>(std::max(4, rays / 4)); }
 
-// What a site sees of a sun; `open(ray, direction)` says whether nothing hides it.
-struct Sunlight {
-  Radiance irradiance = Radiance::Zero();  // over π
-  double share = 0;                        // of its disk
-};
-template <class Open>
-Sunlight sunlight(const SiteFrame& frame, const Sun& sun, const Vec3& towards, const std::vector<DiskPoint>& disk,
-                  Open open) {
-  const double r = std::tan(sun.radius);
-  if (frame.normal().dot(towards) <= -r) return {};
-  const Vec3 u = towards.unitOrthogonal(), v = towards.cross(u);
-  double cosines = 0;
-  int seen = 0;
-  for (std::size_t k = 0; k < disk.size(); ++k) {
-    const DiskPoint p = frame.turned(disk[k]);
-    const Vec3 d = (towards + r * (p.x * u + p.y * v)).normalized();
-    const double above = frame.normal().dot(d);
-    if (!(above > 0) || !open(k, d)) continue;
-    cosines += above;
-    ++seen;
-  }
-  const auto count = static_cast<double>(disk.size());
-  return {cosines / count * sun.irradiance, seen / count};
+SiteBundles::MayPass may_pass(const SiteBundles& bundles, const OpenRays* known, std::size_t first_ray) {
+  if (known == nullptr) return {};
+  return [&bundles, known, first_ray](std::size_t side, std::size_t ray) {
+    const SiteBundles::Side& one = bundles.sides()[side];
+    return known->at(one.site, one.side, first_ray + ray);
+  };
 }
 
-// Adds what a side of a site sees of some suns.
-template <class Open>
-void add_suns(SiteLight& lit, std::size_t side, const SiteFrame& frame, const Light& light, const Mat3& to_light,
-              const std::vector<DiskPoint>& disk, Open open) {
-  double all = 0, seen = 0;
+// So many sets have enough directions together that none matters to what sites of a part have in common.
+std::size_t sets_for(int rays, std::size_t sites) {
+  constexpr std::size_t enough = 512, least_sites = 32;
+  return std::clamp<std::size_t>(enough / static_cast<std::size_t>(rays), 1,
+                                 std::max<std::size_t>(1, sites / least_sites));
+}
+
+// Directions to a sun's disk.
+std::vector<Vec3> sun_directions(const Sun& sun, const Mat3& to_light, const std::vector<DiskPoint>& disk,
+                                 std::size_t set) {
+  const double r = std::tan(sun.radius), cosine = std::cos(own_angle(set)), sine = std::sin(own_angle(set));
+  const Vec3 u = sun.direction.unitOrthogonal(), v = sun.direction.cross(u);
+  std::vector<Vec3> directions;
+  for (const DiskPoint& p : disk) {
+    const Vec3 aside = (cosine * p.x - sine * p.y) * u + (sine * p.x + cosine * p.y) * v;
+    directions.push_back(to_light.transpose() * (sun.direction + r * aside).normalized());
+  }
+  return directions;
+}
+
+// Adds what sides see of some suns. `known` and `found`, which may be null, count their rays from `first_ray` on.
+void add_suns(std::vector<SiteLight>& lit, const SiteBundles& bundles, const Light& light, const Mat3& to_light,
+              const std::vector<DiskPoint>& disk, const OpenRays* known, OpenRays* found, std::size_t first_ray,
+              const Progress& progress, double from) {
+  double all = 0;
+  for (const Sun& sun : light.suns) all += sun.irradiance.sum();
+  const auto count = static_cast<double>(disk.size());
+  const double step = (1 - from) / static_cast<double>(light.suns.size() * bundles.sets());
   for (std::size_t s = 0; s < light.suns.size(); ++s) {
     const Sun& sun = light.suns[s];
-    const Sunlight found = sunlight(frame, sun, to_light.transpose() * sun.direction, disk,
-                                    [&](std::size_t ray, const Vec3& d) { return open(s, ray, d); });
-    lit.irradiance[side] += found.irradiance;
-    all += sun.irradiance.sum();
-    seen += found.share * sun.irradiance.sum();
+    const std::size_t offset = first_ray + s * disk.size();
+    for (std::size_t set = 0; set < bundles.sets(); ++set, from += step) {
+      const std::vector<Vec3> directions = sun_directions(sun, to_light, disk, set);
+      bundles.send(set, directions, SiteBundles::Ways::forward, may_pass(bundles, known, offset), progress,
+                   "tracing light", from, from + step, [&](std::size_t i, const SiteBundles::Batch& batch) {
+                     const auto& [site, side, normal] = bundles.sides()[i];
+                     double cosines = 0;
+                     for (std::uint64_t left = batch.passes; left != 0; left &= left - 1) {
+                       const std::size_t ray = batch.first + static_cast<std::size_t>(std::countr_zero(left));
+                       cosines += normal.dot(directions[ray]);
+                       if (found != nullptr) found->set(site, side, offset + ray);
+                     }
+                     lit[site].irradiance[side] += cosines / count * sun.irradiance;
+                     if (all > 0)
+                       lit[site].sunny[side] +=
+                           static_cast<float>(std::popcount(batch.passes) / count * sun.irradiance.sum() / all);
+                   });
+    }
   }
-  if (all > 0) lit.sunny[side] = static_cast<float>(seen / all);
 }
 
 }  // namespace
@@ -73,39 +94,47 @@ std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<
                                     const SceneRays& around, const Light& light, const Mat3& to_light,
                                     const IrradianceOptions& options, const Progress& progress) {
   std::vector<SiteLight> result(sites.size());
-  const std::vector<DiskPoint> disk = disk_points(options.rays),
-                               sun_disk = disk_points(static_cast<int>(rays_to_sun(options.rays)));
-  const bool sky = !light.sky.black();
-  for_each_site(sites.size(), progress, "tracing light", 0, 1, [&](std::size_t i) {
-    const LightSite& site = sites[i];
-    if ((!wanted.empty() && wanted[i] == 0) || !(site.normal.squaredNorm() > 0.5)) return;
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (!wanted.empty() && (wanted[i] >> side & 1) == 0) continue;
-      const SiteFrame frame(site, i, side == 1);
-      const Vec3& from = frame.from();
-      const auto passes = [&](std::size_t ray, const Vec3& d) {
-        if ((options.known != nullptr && !options.known->at(i, side, ray)) || around.shaded(from, d)) return false;
-        if (options.found != nullptr) options.found->set(i, side, ray);
-        return true;
-      };
-      Radiance sum = Radiance::Zero();
-      int open = 0;
-      for (std::size_t k = 0; k < disk.size(); ++k) {
-        const Vec3 d = frame.direction(disk[k]);
-        if (!passes(k, d)) {
-          sum += light.bounce;
-          continue;
-        }
-        ++open;
-        if (sky) sum += light.sky.at(to_light * d);
-      }
-      result[i].irradiance[side] = sum / options.rays;
-      result[i].open[side] = static_cast<float>(open) / static_cast<float>(options.rays);
-      add_suns(result[i], side, frame, light, to_light, sun_disk, [&](std::size_t sun, std::size_t ray, const Vec3& d) {
-        return passes(disk.size() + sun * sun_disk.size() + ray, d);
-      });
+  const SiteBundles bundles(sites, wanted, around, sets_for(options.rays, sites.size()));
+  struct Sum {
+    Radiance light = Radiance::Zero();
+    double open = 0, all = 0;  // cosines
+  };
+  std::vector<Sum> sums(bundles.sides().size());
+  const auto rays = static_cast<double>(options.rays),
+             sun_rays = static_cast<double>(light.suns.size() * rays_to_sun(options.rays));
+  const double share = rays / (rays + sun_rays), step = share / static_cast<double>(bundles.sets());
+  for (std::size_t set = 0; set < bundles.sets(); ++set) {
+    // They stand in the light's space: what turns with its light sees the same.
+    std::vector<Vec3> axes = even_axes(options.rays, set);
+    std::vector<std::array<Radiance, 2>> sky;  // along and against each
+    for (Vec3& axis : axes) {
+      sky.push_back({light.sky.at(axis), light.sky.at(-axis)});
+      axis = to_light.transpose() * axis;
     }
-  });
+    bundles.send(set, axes, SiteBundles::Ways::outwards, may_pass(bundles, options.known, 0), progress, "tracing light",
+                 step * static_cast<double>(set), step * static_cast<double>(set + 1),
+                 [&](std::size_t i, const SiteBundles::Batch& batch) {
+                   const auto& [site, side, normal] = bundles.sides()[i];
+                   Sum& sum = sums[i];
+                   for (std::size_t k = 0; k < batch.count; ++k) {
+                     const double above = normal.dot(axes[batch.first + k]), cosine = std::abs(above);
+                     sum.all += cosine;
+                     if ((batch.passes >> k & 1) == 0) continue;
+                     sum.open += cosine;
+                     sum.light += cosine * sky[batch.first + k][above > 0 ? 0 : 1];
+                     if (options.found != nullptr) options.found->set(site, side, batch.first + k);
+                   }
+                 });
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const auto& [site, side, normal] = bundles.sides()[i];
+    const Sum& sum = sums[i];
+    if (!(sum.all > 0)) continue;
+    result[site].irradiance[side] = (sum.light + (sum.all - sum.open) * light.bounce) / sum.all;
+    result[site].open[side] = static_cast<float>(sum.open / sum.all);
+  }
+  add_suns(result, bundles, light, to_light, disk_points(static_cast<int>(rays_to_sun(options.rays))), options.known,
+           options.found, static_cast<std::size_t>(options.rays), progress, share);
   return result;
 }
 
@@ -113,17 +142,9 @@ std::vector<SiteLight> traced_suns(std::span<const LightSite> sites, std::span<c
                                    const SceneRays& around, const Light& light, const Mat3& to_light, int rays,
                                    const Progress& progress) {
   std::vector<SiteLight> result(sites.size());
-  if (light.suns.empty()) return result;
-  const std::vector<DiskPoint> disk = disk_points(rays);
-  for_each_site(sites.size(), progress, "tracing suns", 0, 1, [&](std::size_t i) {
-    if (!(sites[i].normal.squaredNorm() > 0.5)) return;
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (!wanted.empty() && (wanted[i] >> side & 1) == 0) continue;
-      const SiteFrame frame(sites[i], i, side == 1);
-      add_suns(result[i], side, frame, light, to_light, disk,
-               [&](std::size_t, std::size_t, const Vec3& d) { return !around.shaded(frame.from(), d); });
-    }
-  });
+  if (!light.suns.empty())
+    add_suns(result, SiteBundles(sites, wanted, around, sets_for(16 * rays, sites.size())), light, to_light,
+             disk_points(rays), nullptr, nullptr, 0, progress, 0);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 
 #include "mesh_ops/light/relighting.h"
 
@@ -36,6 +37,47 @@ void append(std::string& bytes, const Decoder& d) {
 void append_place(std::string& bytes, const Sun& sun) {
   append(bytes, sun.direction.data(), 3 * sizeof(double));
   append(bytes, &sun.radius, sizeof(double));
+}
+
+// Ten floats a site, five a side.
+constexpr std::size_t site_floats = 10, side_floats = 5;
+
+std::string bytes_of_light(const std::vector<SiteLight>& lit) {
+  std::string bytes;
+  for (const SiteLight& one : lit)
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Eigen::Vector3f e = one.irradiance[side].cast<float>();
+      append(bytes, e.data(), sizeof(e));
+      append(bytes, &one.open[side], sizeof(float));
+      append(bytes, &one.sunny[side], sizeof(float));
+    }
+  return bytes;
+}
+
+std::vector<SiteLight> light_of_bytes(std::string_view bytes) {
+  std::vector<SiteLight> lit(bytes.size() / (site_floats * sizeof(float)));
+  for (std::size_t i = 0; i < lit.size(); ++i) {
+    std::array<float, site_floats> f{};
+    std::memcpy(f.data(), bytes.data() + i * sizeof(f), sizeof(f));
+    for (std::size_t side = 0; side < 2; ++side) {
+      const float* const own = f.data() + side * side_floats;
+      lit[i].irradiance[side] = Eigen::Vector3f(own[0], own[1], own[2]).cast<double>();
+      lit[i].open[side] = own[3];
+      lit[i].sunny[side] = own[4];
+    }
+  }
+  return lit;
+}
+
+std::vector<sh::Coefficients> transfer_of_bytes(std::string_view bytes) {
+  using Rounded = Eigen::Matrix<float, sh::count, 1>;
+  std::vector<sh::Coefficients> transfer(bytes.size() / sizeof(Rounded));
+  for (std::size_t i = 0; i < transfer.size(); ++i) {
+    Rounded one;
+    std::memcpy(one.data(), bytes.data() + i * sizeof(one), sizeof(one));
+    transfer[i] = one.cast<double>();
+  }
+  return transfer;
 }
 
 }  // namespace
@@ -80,35 +122,13 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
   append(inputs, light.bounce.data(), 3 * sizeof(double));
   append(inputs, to_light.data(), 9 * sizeof(double));
   append(inputs, &rays, sizeof(rays));
-  const std::string key = result_key("light3", inputs);
-  constexpr std::size_t floats = 10, floats_a_side = 5;
-  if (const auto bytes = results->find(key); bytes && bytes->size() == sites.size() * floats * sizeof(float)) {
-    std::vector<SiteLight> lit(sites.size());
-    for (std::size_t i = 0; i < lit.size(); ++i) {
-      std::array<float, floats> f{};
-      std::memcpy(f.data(), bytes->data() + i * sizeof(f), sizeof(f));
-      for (std::size_t side = 0; side < 2; ++side) {
-        const float* const own = f.data() + side * floats_a_side;
-        lit[i].irradiance[side] = Eigen::Vector3f(own[0], own[1], own[2]).cast<double>();
-        lit[i].open[side] = own[3];
-        lit[i].sunny[side] = own[4];
-      }
-    }
-    return lit;
-  }
-  std::vector<SiteLight> lit = trace();
-  std::string bytes;
-  for (SiteLight& one : lit)
-    for (std::size_t side = 0; side < 2; ++side) {
-      const Eigen::Vector3f e = one.irradiance[side].cast<float>();
-      append(bytes, e.data(), sizeof(e));
-      append(bytes, &one.open[side], sizeof(float));
-      append(bytes, &one.sunny[side], sizeof(float));
-      // The same whether it was kept or not.
-      one.irradiance[side] = e.cast<double>();
-    }
+  const std::string key = result_key("light4", inputs);
+  if (const auto bytes = results->find(key); bytes && bytes->size() == sites.size() * site_floats * sizeof(float))
+    return light_of_bytes(*bytes);
+  // Read back, so that it is the same whether it was kept or not.
+  const std::string bytes = bytes_of_light(trace());
   results->keep(key, bytes);
-  return lit;
+  return light_of_bytes(bytes);
 }
 
 OpenRays kept_open_rays(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
@@ -123,7 +143,7 @@ OpenRays kept_open_rays(const std::vector<LightSite>& sites, const std::vector<s
     append(inputs, {occluder});
     for (const Sun& sun : suns) append_place(inputs, sun);
     append(inputs, &rays, sizeof(rays));
-    key = result_key("openrays1", inputs);
+    key = result_key("openrays2", inputs);
     std::vector<std::uint64_t>& words = open.words();
     const std::size_t size = words.size() * sizeof(words[0]);
     if (const auto bytes = results->find(key); bytes && bytes->size() == size) {
@@ -166,32 +186,23 @@ std::vector<sh::Coefficients> kept_transfer(const std::vector<LightSite>& sites,
                                             const std::vector<Occluder>& occluders, int rays, Results* results,
                                             const Progress& progress) {
   std::string key;
-  std::vector<sh::Coefficients> transfer(sites.size(), sh::Coefficients::Zero());
   if (results != nullptr) {
     std::string inputs;
     append(inputs, sites);
     append(inputs, facing);
     append(inputs, occluders);
     append(inputs, &rays, sizeof(rays));
-    key = result_key("transfer1", inputs);
-    if (const auto bytes = results->find(key); bytes && bytes->size() == sites.size() * sh::count * sizeof(float)) {
-      for (std::size_t i = 0; i < sites.size(); ++i) {
-        Eigen::Matrix<float, sh::count, 1> one;
-        std::memcpy(one.data(), bytes->data() + i * sizeof(one), sizeof(one));
-        transfer[i] = one.cast<double>();
-      }
-      return transfer;
-    }
+    key = result_key("transfer2", inputs);
+    if (const auto bytes = results->find(key); bytes && bytes->size() == sites.size() * sh::count * sizeof(float))
+      return transfer_of_bytes(*bytes);
   }
-  transfer = shown_transfer(sites, facing, rays_among(occluders), rays, progress);
   std::string bytes;
-  for (sh::Coefficients& one : transfer) {
+  for (const sh::Coefficients& one : shown_transfer(sites, facing, rays_among(occluders), rays, progress)) {
     const Eigen::Matrix<float, sh::count, 1> rounded = one.cast<float>();
     append(bytes, rounded.data(), sizeof(rounded));
-    one = rounded.cast<double>();
   }
   if (results != nullptr) results->keep(key, bytes);
-  return transfer;
+  return transfer_of_bytes(bytes);
 }
 
 LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t most_nodes, Results* results,

@@ -62,6 +62,27 @@ class SiteFrame {
   double cosine_, sine_;
 };
 
+/// Directions of a half sphere, evenly over all of it: a Fibonacci lattice (Hannay and Nye 2004) in general position to
+/// the axes, each `set` of them turned another way. With their opposites each half sphere has about as many.
+inline std::vector<Vec3> even_axes(int count, std::size_t set = 0) {
+  constexpr double golden = 0.6180339887498949;
+  Eigen::Quaterniond turn = Eigen::Quaterniond(0.82, 0.31, -0.39, 0.28).normalized();
+  if (set > 0) {
+    // Any rotation as likely as any other (Shoemake 1992).
+    const auto share = [&](std::uint64_t part) { return static_cast<double>(mixed(set, 0x53, part) >> 11) * 0x1p-53; };
+    const double u = share(0), a = 2 * std::numbers::pi * share(1), b = 2 * std::numbers::pi * share(2);
+    turn = Eigen::Quaterniond(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a),
+                              std::sqrt(1 - u) * std::cos(a), std::sqrt(u) * std::sin(b));
+  }
+  std::vector<Vec3> axes;
+  for (int k = 0; k < count; ++k) {
+    const double z = (k + 0.5) / count, r = std::sqrt(1 - z * z),
+                 phi = 2 * std::numbers::pi * std::fmod(k * golden, 1.0);
+    axes.push_back(turn * Vec3(r * std::cos(phi), r * std::sin(phi), z));
+  }
+  return axes;
+}
+
 /// Calls visit(i) for every number below `count`, many at once; `what` is being done, from one share of it to another.
 template <class Visit>
 void for_each_site(std::size_t count, const Progress& progress, std::string_view what, double from, double to,

@@ -14,12 +14,13 @@ namespace rebake {
 /// hides the sky, as spherical harmonics. Its product with a sky's radiance is irradiance over π.
 struct Transfer {
   std::vector<sh::Coefficients> sites;
-  /// Root mean square error over that of the coefficients, as half of the rays says of the others. Two halves of a
-  /// Fibonacci lattice are each less even than the whole: it errs on the large side.
+  /// Root mean square error over that of the coefficients, as half of the rays says of all. Half of a Fibonacci lattice
+  /// is less even than one of as many points: it errs on the large side (1 to 2 times).
   double relative_error = 0;
 };
 
-/// Traced over the half space that each site's normal points to, as traced_light does; sites without a normal get 0.
+/// Traced over the half space that each site's normal points to, with so many rays that are the same for all sites, as
+/// traced_light does; sites without a normal get 0.
 Transfer traced_transfer(std::span<const LightSite> sites, const SceneRays& around, int rays,
                          const Progress& progress = {});
 

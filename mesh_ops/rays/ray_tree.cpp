@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -25,6 +26,11 @@ struct Surface {
 
   std::uint32_t face(std::uint32_t primitive) const { return numbers != nullptr ? numbers[primitive] : primitive; }
   std::uint32_t triangle(std::uint32_t primitive) const { return first_triangle + face(primitive); }
+  bool opaque(std::uint32_t primitive, double u, double v) const {
+    const Face& corners = (*faces)[face(primitive)];
+    const Vec2 uv = (*uvs)[corners[0]] * (1 - u - v) + (*uvs)[corners[1]] * u + (*uvs)[corners[2]] * v;
+    return texels->opaque_at(uv.x(), uv.y());
+  }
 };
 
 // Passed along with each ray, so that trees with other texels share their triangles.
@@ -45,12 +51,8 @@ void let_through_transparent(const RTCFilterFunctionNArguments* args) {
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
     const Surface& surface = surfaces[RTCHitN_geomID(args->hit, args->N, i)];
-    const unsigned primitive = RTCHitN_primID(args->hit, args->N, i);
     const double u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
-    const Face& face = (*surface.faces)[surface.face(primitive)];
-    const std::vector<Vec2>& uvs = *surface.uvs;
-    const Vec2 uv = uvs[face[0]] * (1 - u - v) + uvs[face[1]] * u + uvs[face[2]] * v;
-    if (!surface.texels->opaque_at(uv.x(), uv.y())) args->valid[i] = 0;
+    if (!surface.opaque(RTCHitN_primID(args->hit, args->N, i), u, v)) args->valid[i] = 0;
   }
 }
 
@@ -91,14 +93,17 @@ class RayTriangles::Impl {
       // One without triangles keeps the geometry numbers those of the sets.
       const std::size_t end = first + set.soup.triangle_count();
       std::vector<std::uint32_t>& numbers = numbers_.emplace_back();
+      counts_.push_back(set.soup.triangle_count());
       if (some_) {
         for (; next < only->size() && (*only)[next] < end; ++next)
           numbers.push_back((*only)[next] - static_cast<std::uint32_t>(first));
+        counts_.back() = numbers.size();
         if (!numbers.empty()) add_triangles(geometry, set.soup, numbers);
       } else if (set.soup.triangle_count() > 0) {
         add_triangles(geometry, set.soup);
       }
       first = end;
+      triangle_count_ += counts_.back();
       rtcSetGeometryIntersectFilterFunction(geometry, let_through_transparent);
       rtcSetGeometryOccludedFilterFunction(geometry, let_through_transparent);
       rtcCommitGeometry(geometry);
@@ -121,6 +126,28 @@ class RayTriangles::Impl {
   RTCScene scene() const { return scene_; }
   const std::uint32_t* numbers(std::size_t set) const { return some_ ? numbers_[set].data() : nullptr; }
   Box bounds() const { return Box(Vec3(center_ - half_ / scale_), Vec3(center_ + half_ / scale_)); }
+  Affine to_frame() const { return Eigen::Scaling(scale_) * Eigen::Translation3d(-center_); }
+  std::size_t triangle_count() const { return triangle_count_; }
+  std::vector<std::array<std::vector<float>, 9>> corners(std::size_t room) const {
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    std::vector<std::array<std::vector<float>, 9>> sets;
+    for (unsigned set = 0; set < numbers_.size(); ++set) {
+      std::array<std::vector<float>, 9>& columns = sets.emplace_back();
+      RTCGeometry geometry = rtcGetGeometry(scene_, set);
+      const auto* vertices = static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+      const auto* faces =
+          static_cast<const std::uint32_t*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
+      const std::size_t count = counts_[set];
+      for (std::size_t column = 0; column < 9; ++column) {
+        columns[column].assign(count + room, none);
+        for (std::size_t f = 0; f < count; ++f) {
+          const float value = vertices[3 * std::size_t{faces[3 * f + column / 3]} + column % 3];
+          columns[column][f] = std::isfinite(value) ? value : none;
+        }
+      }
+    }
+    return sets;
+  }
   LocalRay local_ray(const Vec3& origin, const Vec3& direction, double near, double far) const {
     LocalRay ray;
     const Vec3 d = direction * scale_, o = (origin - center_) * scale_;
@@ -197,6 +224,8 @@ class RayTriangles::Impl {
   RTCScene scene_;
   bool some_;                                        ///< not all triangles are there
   std::vector<std::vector<std::uint32_t>> numbers_;  ///< of those, in each set
+  std::vector<std::size_t> counts_;                  ///< of the triangles that are there, in each set
+  std::size_t triangle_count_ = 0;
   Vec3 center_{0, 0, 0};
   double scale_ = 1;             ///< a power of two
   Vec3 half_{1e-6, 1e-6, 1e-6};  ///< of the box, in the tree's frame, with some room
@@ -253,7 +282,17 @@ class RayTree::Impl {
       rays.triangle[i] = surfaces_[query.hit.geomID[i]].triangle(query.hit.primID[i]);
     }
   }
-  Box bounds() const { return triangles_->impl_->bounds(); }
+  const RayTriangles::Impl& triangles() const { return *triangles_->impl_; }
+  bool solid(std::size_t set) const {
+    const FeatureTexture& texels = *surfaces_[set].texels;
+    std::uint64_t opaque = 0;
+    for (int row = 0; row < texels.tile_rows(); ++row)
+      for (int column = 0; column < texels.tile_columns(); ++column) opaque += texels.tile(column, row)->opaque_count();
+    return opaque == static_cast<std::uint64_t>(texels.width()) * static_cast<std::uint64_t>(texels.height());
+  }
+  bool opaque(std::size_t set, std::uint32_t primitive, double b1, double b2) const {
+    return surfaces_[set].opaque(primitive, b1, b2);
+  }
   bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
     const LocalRay local = triangles_->impl_->local_ray(origin, direction, near, far);
     if (!local.meets) return false;
@@ -299,7 +338,16 @@ std::optional<RayTree::Hit> RayTree::nearest(const Vec3& origin, const Vec3& dir
   return impl_->nearest(origin, direction, near, far);
 }
 void RayTree::nearest(Bundle& rays, double near) const { impl_->nearest(rays, near); }
-Box RayTree::bounds() const { return impl_->bounds(); }
+Box RayTree::bounds() const { return impl_->triangles().bounds(); }
+Affine RayTree::to_frame() const { return impl_->triangles().to_frame(); }
+std::size_t RayTree::triangle_count() const { return impl_->triangles().triangle_count(); }
+std::vector<std::array<std::vector<float>, 9>> RayTree::corners(std::size_t room) const {
+  return impl_->triangles().corners(room);
+}
+bool RayTree::solid(std::size_t set) const { return impl_->solid(set); }
+bool RayTree::opaque(std::size_t set, std::uint32_t triangle, double b1, double b2) const {
+  return impl_->opaque(set, triangle, b1, b2);
+}
 bool RayTree::blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
   return impl_->blocked(origin, direction, near, far);
 }

@@ -56,6 +56,16 @@ class RayTree {
   bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const;
   /// Of the triangles, in object space, with some room.
   Box bounds() const;
+
+  /// What ParallelRays asks instead of the tree, in the tree's own frame: there the box is about 1 wide.
+  Affine to_frame() const;
+  std::size_t triangle_count() const;
+  /// Corners as the tree knows them, in vectors [set][3 · corner + axis], `room` numbers longer that are none.
+  std::vector<std::array<std::vector<float>, 9>> corners(std::size_t room) const;
+  /// Whether all of a set's texels are opaque.
+  bool solid(std::size_t set) const;
+  /// Of a triangle in `corners`, at weights of its second and third corner.
+  bool opaque(std::size_t set, std::uint32_t triangle, double b1, double b2) const;
   std::uint64_t memory() const;  ///< bytes, without the triangles
 
  private:

@@ -47,6 +47,7 @@ class SceneRays {
   bool shaded(const Vec3& from, const Vec3& direction) const;
 
  private:
+  friend class ParallelRays;
   struct Ball {
     Vec3 middle{0, 0, 0};  ///< in world space
     double radius = 0;

@@ -199,7 +199,7 @@ TEST(TracedTransfer, IsTheCosineLobeInTheOpenAndLightWhereShaded) {
   sky[0] = std::sqrt(4 * pi);
   sky[3] = 0.5 * std::sqrt(4 * pi / 3);
   sky[1] = -0.3 * std::sqrt(4 * pi / 3);
-  const Transfer shaded = traced_transfer(std::vector<LightSite>{tilted}, rays, 4096);
+  const Transfer shaded = traced_transfer(std::vector<LightSite>{tilted}, rays, 16384);
   EXPECT_NEAR(shaded.sites[0].dot(sky), traced(tilted, rays, light).irradiance[0][0], 2e-3);
   // A part that moves rigidly takes its transfer along.
   const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(1, 2, -1).normalized()).toRotationMatrix();
@@ -211,16 +211,20 @@ TEST(TracedTransfer, IsTheCosineLobeInTheOpenAndLightWhereShaded) {
   for (Vec3& p : positions) p = turn * p;
   moved->sets.front().soup = Soup(std::make_shared<const std::vector<Vec3>>(std::move(positions)),
                                   box->sets.front().soup.shared_uvs(), box->sets.front().soup.shared_faces());
-  const Transfer traced_again = traced_transfer(std::vector<LightSite>{turned}, rays_of_objects({moved}), 4096);
-  EXPECT_LT(relative_difference(turned_transfer(shaded, std::vector<Mat3>{turn}).sites, traced_again.sites), 5e-3);
+  const Transfer traced_again = traced_transfer(std::vector<LightSite>{turned}, rays_of_objects({moved}), 16384);
+  EXPECT_LT(relative_difference(turned_transfer(shaded, std::vector<Mat3>{turn}).sites, traced_again.sites), 3e-3);
 }
 
 // light.md: 4.2, 1.3 and 0.43 % at 64, 256 and 1024 rays, of 16k.
 TEST(TracedTransfer, SaysHowFarOffItIs) {
   const auto object = lit_object(box_quads({-1, 0, -1}, {1, 1, 1}, 3), [](const Vec3&) { return grey(0.5); });
   const SceneRays rays = rays_of_objects({object});
+  // All around it: sites that see much the same are off by much the same.
   std::vector<LightSite> sites;
-  for (int k = 0; k < 60; ++k) sites.push_back(site({-3 + 0.1 * k, 0, 1.4}, {0.2 * std::sin(k), 1, 0.1}));
+  for (int k = 0; k < 60; ++k) {
+    const Vec3 out(std::cos(0.105 * k), 0, std::sin(0.105 * k));
+    sites.push_back(site((1.5 + 0.02 * k) * out, {0.2 * std::sin(k), 1, 0.2 * std::cos(2.0 * k)}));
+  }
   const Transfer truth = traced_transfer(sites, rays, 16384);
   const double bars[] = {0.045, 0.014, 0.005};
   int count = 64;
@@ -229,7 +233,7 @@ TEST(TracedTransfer, SaysHowFarOffItIs) {
     const double error = relative_difference(some.sites, truth.sites);
     EXPECT_LT(error, bar) << count;
     EXPECT_GT(some.relative_error, 0.7 * error) << count;
-    EXPECT_LT(some.relative_error, 5 * error) << count;
+    EXPECT_LT(some.relative_error, 3 * error) << count;
     count *= 4;
   }
 }
@@ -429,13 +433,18 @@ TEST(LightEstimate, FindsTheSunByWhatItShades) {
   const LightSites sites = light_sites(*shape, charts);
   const auto lit = traced_light(sites.baked, {}, rays, truth, Mat3::Identity(), {.rays = 1024});
   std::vector<Radiance> colors;
-  for (std::size_t i = 0; i < sites.size(); ++i) colors.push_back(0.5 * lit[i].irradiance[0]);
+  // The ground is open to both sides and shows both.
+  for (const SiteLight& one : lit) {
+    const double first = facing_by_openness(static_cast<double>(one.open[0]), static_cast<double>(one.open[1]));
+    colors.push_back(0.5 * shown_light(one, static_cast<float>(first)));
+  }
   const LightEstimate found = estimated_light(sites, colors, rays, {.sites = 1500, .rays = 128});
   ASSERT_TRUE(found.sun);
   EXPECT_GT(found.light.suns.front().direction.dot(towards), std::cos(4 * pi / 180));
   const double ratio = found.light.suns.front().irradiance[0] / found.light.sky.mean()[0];
-  EXPECT_GT(ratio, 0.7 * 0.9 / 0.4);
-  EXPECT_LT(ratio, 1.5 * 0.9 / 0.4);
+
+  EXPECT_GT(ratio, 0.8 * 0.9 / 0.4);
+  EXPECT_LT(ratio, 1.3 * 0.9 / 0.4);
   EXPECT_GT(found.confidence, 0.9);
 }
 

@@ -1,0 +1,172 @@
+// Compiled for several kinds of processors (mesh_ops/CMakeLists.txt), to the same bits.
+#include "mesh_ops/rays/covered_points.h"
+
+#include <bit>
+#include <cstring>
+#include <limits>
+
+#ifndef REBAKE_PARALLEL_NAME
+#define REBAKE_PARALLEL_NAME parallel_kernels_baseline
+#endif
+
+#define REBAKE_INLINE [[gnu::always_inline]] inline
+
+namespace rebake {
+
+namespace {
+
+#if defined(__AVX__)
+constexpr std::size_t lanes = 8;
+#else
+constexpr std::size_t lanes = 4;
+#endif
+static_assert(lanes <= PointGrid::room);
+using Floats = float __attribute__((vector_size(lanes * sizeof(float))));
+using Integers = std::int32_t __attribute__((vector_size(lanes * sizeof(std::int32_t))));
+
+REBAKE_INLINE Floats all(float value) { return Floats{} + value; }
+REBAKE_INLINE Floats least(Floats a, Floats b) { return a < b ? a : b; }
+REBAKE_INLINE Floats greatest(Floats a, Floats b) { return a > b ? a : b; }
+template <class Vector, class Value>
+REBAKE_INLINE Vector load(const Value* from) {
+  Vector v;
+  std::memcpy(&v, from, sizeof(v));
+  return v;
+}
+template <class Vector, class Value>
+REBAKE_INLINE void store(Vector v, Value* to) {
+  std::memcpy(to, &v, sizeof(v));
+}
+REBAKE_INLINE Integers bits(Floats v) { return __builtin_bit_cast(Integers, v); }
+// A bit for each lane whose sign is set.
+REBAKE_INLINE unsigned signs(Integers v) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(__builtin_bit_cast(Floats, v)));
+#elif defined(__SSE__)
+  return static_cast<unsigned>(__builtin_ia32_movmskps(__builtin_bit_cast(Floats, v)));
+#else
+  unsigned result = 0;
+  for (std::size_t k = 0; k < lanes; ++k) result |= static_cast<unsigned>(v[k] < 0) << k;
+  return result;
+#endif
+}
+
+// Points are found to lie in cells, and triangles over them, by the same rounded sums; what both are rounded by before
+// is less than this.
+constexpr float rounding = 1e-6F;
+
+// Of a number of a part that may lie outside of all of them.
+REBAKE_INLINE Integers part(Floats number) {
+  const Floats last = all(static_cast<float>(PointGrid::parts - 1));
+  return __builtin_convertvector(least(greatest(number, all(0)), last), Integers);
+}
+
+template <bool endless, bool solid>
+void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes& axes, const PointGrid& grid,
+             float reach, const OpaqueAt& opaque, std::int32_t* marks) {
+  const auto along = [](const std::array<float, 3>& axis, Floats x, Floats y, Floats z) {
+    return x * axis[0] + y * axis[1] + z * axis[2];
+  };
+  float on_line[9][lanes];  // u, v, w of three corners
+  std::int32_t left[lanes], right[lanes], bottom[lanes], top[lanes];
+  const float beyond = static_cast<float>(PointGrid::parts);
+  // Kept apart from `marks`, which might be anything's.
+  const float *const points_u = grid.u.data(), *const points_v = grid.v.data(), *const points_w = grid.w.data();
+  const std::int32_t* const points_along = grid.along.data();
+  const std::uint32_t* const first = grid.first.data();
+  const std::uint16_t *const columns_of = grid.columns_of.data(), *const rows_of = grid.rows_of.data();
+  const std::size_t columns = grid.columns;
+  for (std::size_t t = 0; t < triangles; t += lanes) {
+    Floats u[3], v[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto x = load<Floats>(corners[3 * k] + t), y = load<Floats>(corners[3 * k + 1] + t),
+                 z = load<Floats>(corners[3 * k + 2] + t);
+      u[k] = along(axes.u, x, y, z);
+      v[k] = along(axes.v, x, y, z);
+      store(u[k], on_line[3 * k]);
+      store(v[k], on_line[3 * k + 1]);
+      store(along(axes.w, x, y, z), on_line[3 * k + 2]);
+    }
+    const auto from = [](const Floats* c) { return least(c[0], least(c[1], c[2])) - rounding; };
+    const auto to = [](const Floats* c) { return greatest(c[0], greatest(c[1], c[2])) + rounding; };
+    const Floats u0 = (from(u) - grid.u_from) * grid.u_scale, u1 = (to(u) - grid.u_from) * grid.u_scale,
+                 v0 = (from(v) - grid.v_from) * grid.v_scale, v1 = (to(v) - grid.v_from) * grid.v_scale;
+    // Comparisons of what is no number are false; the least of several may be one all the same.
+    const Floats sum = u[0] + u[1] + u[2];
+    const Integers there = (u1 >= 0.F) & (v1 >= 0.F) & (u0 < beyond) & (v0 < beyond) & (sum == sum);
+    unsigned asked = signs(there);
+    if (asked == 0) continue;
+    store(part(u0), left);
+    store(part(u1), right);
+    store(part(v0), bottom);
+    store(part(v1), top);
+    for (; asked != 0; asked &= asked - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(asked));
+      const std::uint32_t first_column = columns_of[static_cast<std::size_t>(left[lane])],
+                          end_column = columns_of[static_cast<std::size_t>(right[lane])] + 1U,
+                          first_row = rows_of[static_cast<std::size_t>(bottom[lane])],
+                          last_row = rows_of[static_cast<std::size_t>(top[lane])];
+      const Floats ua = all(on_line[0][lane]), va = all(on_line[1][lane]), wa = all(on_line[2][lane]),
+                   ub = all(on_line[3][lane]), vb = all(on_line[4][lane]), wb = all(on_line[5][lane]),
+                   uc = all(on_line[6][lane]), vc = all(on_line[7][lane]), wc = all(on_line[8][lane]);
+      const std::uint32_t* row = first + std::size_t{first_row} * columns;
+      for (std::uint32_t r = first_row; r <= last_row; ++r, row += columns)
+        // Points of the next cells that come along are asked for too: what covers them covers them.
+        for (std::uint32_t s = row[first_column], end = row[end_column]; s < end; s += lanes) {
+          const auto pu = load<Floats>(points_u + s), pv = load<Floats>(points_v + s), pw = load<Floats>(points_w + s);
+          const Floats au = ua - pu, bu = ub - pu, cu = uc - pu, av = va - pv, bv = vb - pv, cv = vc - pv;
+          // Twice the signed areas over the edges. Two triangles find an edge's to be each other's opposite, to the
+          // bit.
+          const Floats a = bu * cv - cu * bv, b = cu * av - au * cv, c = au * bv - bu * av;
+          const Floats area = a + b + c;
+          const Floats height = a * (wa - pw) + b * (wb - pw) + c * (wc - pw);
+          // The sign bit is set where it is not hidden.
+          const Integers behind = bits(height) ^ bits(area) ^ load<Integers>(points_along + s);
+          Integers hidden =
+              ((least(a, least(b, c)) >= 0.F) | (greatest(a, greatest(b, c)) <= 0.F)) & (area != 0.F) & ~behind;
+          if constexpr (!endless) {
+            const Floats far = reach * area;
+            hidden &= ((height <= far) & (height >= -far)) | ((height >= far) & (height <= -far));
+          }
+          unsigned found = signs(hidden);
+          if (found == 0) continue;
+          if constexpr (solid) {
+            for (; found != 0; found &= found - 1) marks[s + static_cast<std::size_t>(std::countr_zero(found))] = -1;
+            continue;
+          }
+          found &= ~signs(load<Integers>(marks + s));
+          if (found == 0) continue;
+          const Floats b1 = b / area, b2 = c / area;
+          for (; found != 0; found &= found - 1) {
+            const auto k = static_cast<std::size_t>(std::countr_zero(found));
+            if (opaque.ask(opaque.of, static_cast<std::uint32_t>(t + lane), b1[k], b2[k])) marks[s + k] = -1;
+          }
+        }
+    }
+  }
+}
+
+void mark_covered(const CornerColumns& corners, std::size_t triangles, const LineAxes& axes, const PointGrid& grid,
+                  float reach, const OpaqueAt& opaque, std::int32_t* marks) {
+  const bool endless = reach > std::numeric_limits<float>::max(), solid = opaque.ask == nullptr;
+  const auto mark = endless ? (solid ? mark_by<true, true> : mark_by<true, false>)
+                            : (solid ? mark_by<false, true> : mark_by<false, false>);
+  mark(corners, triangles, axes, grid, reach, opaque, marks);
+}
+
+void project_points(const std::array<const double*, 3>& points, std::size_t count,
+                    const std::array<std::array<double, 4>, 3>& rows, const std::array<float*, 3>& to) {
+  const double *const x = points[0], *const y = points[1], *const z = points[2];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double a = rows[k][0], b = rows[k][1], c = rows[k][2], d = rows[k][3];
+    float* const out = to[k];
+    for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<float>(a * x[i] + b * y[i] + c * z[i] + d);
+  }
+}
+
+}  // namespace
+
+extern const ParallelKernels REBAKE_PARALLEL_NAME;
+const ParallelKernels REBAKE_PARALLEL_NAME = {mark_covered, project_points};
+
+}  // namespace rebake

@@ -1,0 +1,238 @@
+#include "mesh_ops/rays/parallel_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "mesh_ops/base/processor.h"
+
+namespace rebake {
+
+namespace {
+
+// So many triangles are looked at in the time of one ray.
+constexpr std::size_t triangles_a_ray = 30;
+
+const ParallelKernels& kernels() {
+  static const ParallelKernels* const best = all_parallel_kernels().front();
+  return *best;
+}
+
+}  // namespace
+
+std::vector<const ParallelKernels*> all_parallel_kernels() {
+  std::vector<const ParallelKernels*> kernels;
+#ifdef REBAKE_WIDE_VECTORS
+  if (processor_has_v3()) kernels.push_back(&parallel_kernels_v3);
+#endif
+  kernels.push_back(&parallel_kernels_baseline);
+  return kernels;
+}
+
+// Points that one object may hide, in the order of their cells. Kept by each thread from one call to the next.
+struct ParallelRays::Scratch {
+  std::array<std::vector<float>, 3> seen;           // all points: u, v, w
+  std::vector<std::uint32_t> asked;                 // numbers of those that are asked for,
+  std::array<std::vector<float>, 3> near;           // where they are,
+  std::array<std::vector<std::uint16_t>, 2> parts;  // and in which parts of u and v
+  std::array<std::vector<float>, 3> sorted;
+  std::vector<std::int32_t> along, marks;
+  std::vector<std::uint32_t> numbers, first;
+  std::array<std::vector<std::uint16_t>, 2> cell_of;  // columns and rows of parts
+
+  PointGrid grid(std::span<const std::int8_t> ways);
+
+ private:
+  void find_cells(std::size_t axis, std::uint32_t cells);
+};
+
+// Columns and rows hold as many points as the others, wherever those are.
+void ParallelRays::Scratch::find_cells(std::size_t axis, std::uint32_t cells) {
+  std::array<std::uint32_t, PointGrid::parts> counts{};
+  for (const std::uint16_t part : parts[axis]) ++counts[part];
+  cell_of[axis].resize(PointGrid::parts);
+  const double cells_a_point = static_cast<double>(cells) / static_cast<double>(asked.size());
+  std::uint32_t before = 0;
+  for (std::size_t part = 0; part < PointGrid::parts; ++part) {
+    cell_of[axis][part] =
+        static_cast<std::uint16_t>(std::min(cells - 1, static_cast<std::uint32_t>(before * cells_a_point)));
+    before += counts[part];
+  }
+}
+
+PointGrid ParallelRays::Scratch::grid(std::span<const std::int8_t> ways) {
+  const std::size_t count = asked.size();
+  PointGrid result;
+  std::array<float, 2> from{}, extent{}, scale{};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    float least = std::numeric_limits<float>::infinity(), most = -least;
+    for (const float value : near[axis]) {
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+    from[axis] = least;
+    extent[axis] = most - least;
+    constexpr float last = PointGrid::parts - 1;
+    scale[axis] = extent[axis] > 0 && last / extent[axis] < std::numeric_limits<float>::max() ? last / extent[axis] : 0;
+    parts[axis].resize(count);
+    for (std::size_t k = 0; k < count; ++k)
+      parts[axis][k] = static_cast<std::uint16_t>(std::min(last, (near[axis][k] - least) * scale[axis]));
+  }
+  // Cells are twice as high as wide: a row of them is asked for at once.
+  constexpr double most_columns = 2048;
+  const double aspect = extent[1] > 0 ? static_cast<double>(extent[0] / extent[1]) : most_columns * most_columns;
+  const auto points = static_cast<double>(count);
+  result.columns =
+      static_cast<std::uint32_t>(std::clamp(std::sqrt(points * aspect), 1.0, std::min(points, most_columns)));
+  result.rows = static_cast<std::uint32_t>(std::clamp(points / (2 * result.columns), 1.0, most_columns));
+  find_cells(0, result.columns);
+  find_cells(1, result.rows);
+  const auto cell = [&](std::size_t k) { return cell_of[1][parts[1][k]] * result.columns + cell_of[0][parts[0][k]]; };
+  first.assign(std::size_t{result.columns} * result.rows + 2, 0);
+  for (std::size_t k = 0; k < count; ++k) ++first[cell(k) + 2];
+  for (std::size_t c = 2; c < first.size(); ++c) first[c] += first[c - 1];
+  for (std::vector<float>& column : sorted) {
+    column.resize(count + PointGrid::room);
+    std::fill(column.end() - PointGrid::room, column.end(), std::numeric_limits<float>::quiet_NaN());
+  }
+  along.assign(count + PointGrid::room, 0);
+  marks.assign(count + PointGrid::room, 0);
+  numbers.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = asked[k], place = first[cell(k) + 1]++;
+    for (std::size_t axis = 0; axis < 3; ++axis) sorted[axis][place] = near[axis][k];
+    along[place] = ways[i] > 0 ? 0 : -1;
+    numbers[place] = i;
+  }
+  result.u = sorted[0];
+  result.v = sorted[1];
+  result.w = sorted[2];
+  result.along = along;
+  result.first = first;
+  result.columns_of = cell_of[0];
+  result.rows_of = cell_of[1];
+  result.u_from = from[0];
+  result.v_from = from[1];
+  result.u_scale = scale[0];
+  result.v_scale = scale[1];
+  return result;
+}
+
+ParallelRays::ParallelRays(const SceneRays& around, std::span<const Vec3> origins) : around_(around) {
+  Box box;
+  for (std::size_t axis = 0; axis < 3; ++axis) points_[axis].reserve(origins.size());
+  for (const Vec3& origin : origins) {
+    for (std::size_t axis = 0; axis < 3; ++axis) points_[axis].push_back(origin[static_cast<Eigen::Index>(axis)]);
+    if (origin.allFinite()) box.extend(origin);
+  }
+  if (!box.isEmpty()) ball_ = {box.center(), box.diagonal().norm() / 2};
+  std::map<const RayTree*, std::size_t> numbers;
+  for (const SceneRays::Placed& placed : around_.placed_) {
+    const auto [tree, fresh] = numbers.try_emplace(placed.tree.get(), trees_.size());
+    if (fresh) trees_.push_back(std::make_unique<Triangles>());
+    tree_of_.push_back(tree->second);
+  }
+}
+ParallelRays::~ParallelRays() = default;
+
+const ParallelRays::Triangles& ParallelRays::triangles_of(std::size_t instance) const {
+  Triangles& triangles = *trees_[tree_of_[instance]];
+  std::call_once(triangles.made, [&] {
+    const RayTree& tree = *around_.placed_[instance].tree;
+    triangles.corners = tree.corners(PointGrid::room);
+    for (std::size_t set = 0; set < triangles.corners.size(); ++set) triangles.solid.push_back(tree.solid(set));
+  });
+  return triangles;
+}
+
+void ParallelRays::shade(const Vec3& direction, std::size_t first, std::span<const std::int8_t> ways,
+                         std::span<std::uint8_t> hidden) const {
+  thread_local Scratch scratch;
+  for (std::size_t k = 0; k < around_.placed_.size(); ++k) {
+    const SceneRays::Ball& ball = around_.placed_[k].ball;
+    const Vec3 way = ball.middle - ball_.middle;
+    const double aside = (way - way.dot(direction) * direction).norm(), radii = ball.radius + ball_.radius;
+    if (aside > radii + 1e-12 * (radii + way.norm())) continue;
+    shade_by(k, direction, first, ways, hidden, scratch);
+  }
+}
+
+void ParallelRays::shade_by(std::size_t instance, const Vec3& direction, std::size_t first,
+                            std::span<const std::int8_t> ways, std::span<std::uint8_t> hidden, Scratch& scratch) const {
+  const SceneRays::Placed& placed = around_.placed_[instance];
+  const RayTree& tree = *placed.tree;
+  const Affine to_frame = tree.to_frame() * placed.to_object;
+  const Vec3 along = to_frame.linear() * direction;
+  const double length = along.stableNorm();
+  if (!(length > 0) || !std::isfinite(length) || tree.triangle_count() == 0) return;
+  const Vec3 w = along / length, u = w.unitOrthogonal(), v = w.cross(u);
+  const Box box = tree.bounds();
+  const Vec3 half = tree.to_frame() * box.max();
+  std::array<std::array<double, 4>, 3> rows{};
+  std::array<float, 3> reach{};
+  std::array<float*, 3> to{};
+  LineAxes axes{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& axis = k == 0 ? u : k == 1 ? v : w;
+    const Vec3 row = to_frame.linear().transpose() * axis;
+    rows[k] = {row.x(), row.y(), row.z(), axis.dot(to_frame.translation())};
+    reach[k] = static_cast<float>(axis.cwiseAbs().dot(half));
+    scratch.seen[k].resize(ways.size());
+    to[k] = scratch.seen[k].data();
+    std::array<float, 3>& target = k == 0 ? axes.u : k == 1 ? axes.v : axes.w;
+    for (std::size_t c = 0; c < 3; ++c) target[c] = static_cast<float>(axis[static_cast<Eigen::Index>(c)]);
+  }
+  kernels().project_points({points_[0].data() + first, points_[1].data() + first, points_[2].data() + first},
+                           ways.size(), rows, to);
+  scratch.asked.resize(ways.size());
+  for (std::vector<float>& column : scratch.near) column.resize(ways.size());
+  const float *const seen_u = to[0], *const seen_v = to[1], *const seen_w = to[2];
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    // Written where the next one goes, kept if it is asked for: most are, in no order that could be foreseen.
+    scratch.asked[count] = static_cast<std::uint32_t>(i);
+    scratch.near[0][count] = seen_u[i];
+    scratch.near[1][count] = seen_v[i];
+    scratch.near[2][count] = seen_w[i];
+    count += static_cast<std::size_t>(static_cast<int>(ways[i] != 0) & static_cast<int>(hidden[i] == 0) &
+                                      static_cast<int>(std::abs(seen_u[i]) <= reach[0]) &
+                                      static_cast<int>(std::abs(seen_v[i]) <= reach[1]) &
+                                      static_cast<int>(static_cast<float>(ways[i]) * seen_w[i] <= reach[2]));
+  }
+  scratch.asked.resize(count);
+  for (std::vector<float>& column : scratch.near) column.resize(count);
+  if (scratch.asked.empty()) return;
+  if (scratch.asked.size() * triangles_a_ray < tree.triangle_count()) {
+    const Vec3 in_object = placed.to_object.linear() * direction;
+    for (const std::uint32_t i : scratch.asked)
+      if (tree.blocked(placed.to_object * Vec3(points_[0][first + i], points_[1][first + i], points_[2][first + i]),
+                       ways[i] * in_object, 0, placed.reach))
+        hidden[i] = 1;
+    return;
+  }
+  const PointGrid grid = scratch.grid(ways);
+  const Triangles& triangles = triangles_of(instance);
+  struct Asked {
+    const RayTree& tree;
+    std::size_t set;
+  };
+  for (std::size_t set = 0; set < triangles.corners.size(); ++set) {
+    const std::array<std::vector<float>, 9>& columns = triangles.corners[set];
+    CornerColumns corners{};
+    for (std::size_t k = 0; k < 9; ++k) corners[k] = columns[k].data();
+    const Asked asked{tree, set};
+    OpaqueAt opaque{&asked, nullptr};
+    if (!triangles.solid[set])
+      opaque.ask = [](const void* of, std::uint32_t triangle, float b1, float b2) {
+        const auto& [in, number] = *static_cast<const Asked*>(of);
+        return in.opaque(number, triangle, static_cast<double>(b1), static_cast<double>(b2));
+      };
+    kernels().mark_covered(corners, columns[0].size() - PointGrid::room, axes, grid,
+                           static_cast<float>(placed.reach * length), opaque, scratch.marks.data());
+  }
+  for (std::size_t place = 0; place < scratch.asked.size(); ++place)
+    if (scratch.marks[place] != 0) hidden[scratch.numbers[place]] = 1;
+}
+
+}  // namespace rebake

@@ -1,0 +1,228 @@
+// Rays that are all parallel, asked all at once, find what each finds alone.
+#include "mesh_ops/rays/parallel_rays.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::uint8_t> hidden_from(const ParallelRays& rays, const Vec3& direction,
+                                      const std::vector<std::int8_t>& ways) {
+  std::vector<std::uint8_t> hidden(ways.size(), 0);
+  rays.shade(direction, 0, ways, hidden);
+  return hidden;
+}
+
+// Where they differ, the ray must pass a border closely: its neighbours find both.
+TEST(ParallelRays, SayWhatSingleRaysSay) {
+  const auto object = made_object({.columns = 24, .rows = 12});
+  const auto tree = std::make_shared<const RayTree>(*object);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto some = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  for (const double scale : {1.0, 1e-6, 1e6}) {
+    SCOPED_TRACE(scale);
+    std::vector<SceneRays::Instance> instances;
+    for (int k = 0; k < 5; ++k) {
+      // Some mirrored or squeezed; some that shade nothing from afar.
+      Affine place = Affine::Identity();
+      place.translate(scale * 2 * some()).rotate(Eigen::AngleAxisd(3 * unit(random), some().normalized()));
+      place.scale(scale * Vec3(k % 2 == 0 ? -1 : 1, std::pow(3, unit(random)), 0.5));
+      instances.push_back({tree, place, object->bounds().diagonal().norm(),
+                           k % 3 == 0 ? 1.5 * scale : std::numeric_limits<double>::infinity()});
+    }
+    const SceneRays around(instances);
+    std::vector<Vec3> origins;
+    std::vector<std::int8_t> ways;
+    for (int k = 0; k < 3000; ++k) {
+      origins.push_back(scale * (k % 10 == 0 ? 50 : 2.5) * some());
+      ways.push_back(static_cast<std::int8_t>(k % 7 == 0 ? 0 : k % 2 == 0 ? 1 : -1));
+    }
+    origins[5] = Vec3(0, no_number, 0);
+    const ParallelRays rays(around, origins);
+    int shaded = 0, at_borders = 0, asked = 0;
+    for (int turn = 0; turn < 12; ++turn) {
+      const Vec3 direction = turn == 0 ? Vec3(Vec3::UnitY()) : some().normalized();
+      const std::vector<std::uint8_t> hidden = hidden_from(rays, direction, ways);
+      for (std::size_t k = 0; k < origins.size(); ++k) {
+        const Vec3 way = ways[k] * direction;
+        if (ways[k] == 0 || !origins[k].allFinite()) {
+          EXPECT_EQ(hidden[k], 0) << "not asked for";
+          continue;
+        }
+        ++asked;
+        shaded += hidden[k];
+        if ((hidden[k] != 0) == around.shaded(origins[k], way)) continue;
+        ++at_borders;
+        bool any = false, all = true;
+        for (int near = 0; near < 64; ++near) {
+          const bool one = around.shaded(origins[k] + 1e-5 * scale * some(), way);
+          any |= one;
+          all &= one;
+        }
+        EXPECT_TRUE(any && !all) << "origin " << origins[k].transpose() << " way " << way.transpose();
+      }
+    }
+    EXPECT_GT(shaded, asked / 8);
+    EXPECT_LT(shaded, asked * 9 / 10);
+    EXPECT_LT(at_borders, asked / 2000);
+  }
+}
+
+TEST(ParallelRays, FewAreSentOneByOne) {
+  const auto object = made_object({.columns = 24, .rows = 12});
+  const SceneRays around(
+      {{std::make_shared<const RayTree>(*object), Affine::Identity(), object->bounds().diagonal().norm()}});
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Vec3> origins;
+  for (int k = 0; k < 12; ++k) origins.emplace_back(unit(random), unit(random), unit(random));
+  const ParallelRays rays(around, origins);
+  int shaded = 0;
+  for (int turn = 0; turn < 60; ++turn) {
+    const Vec3 direction = Vec3(unit(random), unit(random), unit(random)).normalized();
+    const auto hidden = hidden_from(rays, direction, std::vector<std::int8_t>(origins.size(), 1));
+    for (std::size_t k = 0; k < origins.size(); ++k) {
+      EXPECT_EQ(hidden[k] != 0, around.shaded(origins[k], direction));
+      shaded += hidden[k];
+    }
+  }
+  EXPECT_GT(shaded, 100);
+}
+
+// Out of a closed surface no ray finds its way, through edges and corners neither.
+TEST(ParallelRays, NothingLeaksThroughSharedEdges) {
+  for (const int rows : {8, 60}) {
+    const auto object = made_object({.columns = 2 * rows, .rows = rows, .cell = 5, .holes = false});
+    const Soup& soup = object->sets[0].soup;
+    const SceneRays around(
+        {{std::make_shared<const RayTree>(*object), Affine::Identity(), object->bounds().diagonal().norm()}});
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-1, 1), along(0, 1);
+    for (int turn = 0; turn < 8; ++turn) {
+      const Vec3 direction =
+          turn == 0 ? Vec3(Vec3::UnitX()) : Vec3(unit(random), unit(random), unit(random)).normalized();
+      std::vector<Vec3> origins;
+      std::vector<std::int8_t> ways;
+      while (origins.size() < 20000) {
+        const Face& face = soup.faces()[random() % soup.triangle_count()];
+        const std::size_t k = random() % 3;
+        const Vec3 &a = soup.positions()[face[k]], &b = soup.positions()[face[(k + 1) % 3]];
+        const Vec3 at = a + (random() % 4 == 0 ? 0 : along(random)) * (b - a);
+        const double towards = at.normalized().dot(direction);
+        if (std::abs(towards) < 0.3) continue;
+        ways.push_back(towards > 0 ? 1 : -1);
+        origins.push_back(at - 0.4 * ways.back() * direction);
+      }
+      const auto hidden = hidden_from(ParallelRays(around, origins), direction, ways);
+      EXPECT_EQ(std::count(hidden.begin(), hidden.end(), 0), 0) << rows << " rows, " << direction.transpose();
+    }
+  }
+}
+
+TEST(ParallelRays, HardPointsAndTriangles) {
+  // A slab of two triangles, one without an area, and one with a corner that is no number.
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 2, .holes = false}));
+  const Soup& soup = object->sets[0].soup;
+  std::vector<Vec3> positions{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}, {0, 2, 0}, {no_number, 2, 0}};
+  std::vector<Face> faces{{0, 1, 2}, {0, 2, 3}, {4, 4, 0}, {1, 2, 5}};
+  object->sets[0].soup = Soup(std::make_shared<const std::vector<Vec3>>(positions),
+                              std::make_shared<const std::vector<Vec2>>(positions.size(), soup.uvs()[0]),
+                              std::make_shared<const std::vector<Face>>(faces));
+  const SceneRays around({{std::make_shared<const RayTree>(*object), Affine::Identity(), 3.0}});
+  const auto hidden = [&](std::vector<Vec3> origins, const Vec3& direction) {
+    return hidden_from(ParallelRays(around, origins), direction, std::vector<std::int8_t>(origins.size(), 1));
+  };
+  const Vec3 up = Vec3::UnitY();
+  EXPECT_TRUE(hidden({}, up).empty());
+  EXPECT_EQ(hidden(std::vector<Vec3>(40, Vec3(0.1, -1, 0.2)), up), std::vector<std::uint8_t>(40, 1)) << "one place";
+  EXPECT_EQ(hidden(std::vector<Vec3>(40, Vec3(0.1, 1, 0.2)), up), std::vector<std::uint8_t>(40, 0));
+  std::vector<Vec3> line, tower;
+  for (int k = 0; k < 40; ++k) line.emplace_back(-0.9 + 0.045 * k, -1, 0.3);
+  for (int k = 0; k < 40; ++k) tower.emplace_back(0.1, k < 20 ? -1 - k : k, 0.3);
+  EXPECT_EQ(hidden(line, up), std::vector<std::uint8_t>(40, 1)) << "on one line";
+  const auto half = hidden(tower, up);
+  for (std::size_t k = 0; k < half.size(); ++k) EXPECT_EQ(half[k], k < 20 ? 1 : 0) << "along the line of sight, " << k;
+  EXPECT_EQ(hidden(line, Vec3::UnitX()), std::vector<std::uint8_t>(40, 0)) << "triangles seen from their edges";
+  std::vector<Vec3> far(40, Vec3(0.1, -1e7, 0.2));
+  EXPECT_EQ(hidden(far, up), std::vector<std::uint8_t>(40, 1)) << "from afar";
+}
+
+// Against the same in double, where products of differences of floats are exact: they may differ where a point is as
+// near to an edge or to the triangle as floats are rounded.
+TEST(ParallelRays, KernelsFindTheSameBitsAndWhatIsThere) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(-0.5F, 0.5F);
+  constexpr std::size_t points = 700, triangles = 203;
+  std::array<std::vector<float>, 9> columns;
+  for (std::size_t k = 0; k < 9; ++k) {
+    columns[k].assign(triangles + PointGrid::room, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t t = 0; t < triangles; ++t)
+      columns[k][t] = k < 3 ? unit(random) : columns[k - 3][t] + 0.4F * unit(random);
+  }
+  std::array<std::vector<float>, 3> at;
+  for (std::vector<float>& column : at) {
+    column.assign(points + PointGrid::room, std::numeric_limits<float>::quiet_NaN());
+    std::generate_n(column.begin(), points, [&] { return unit(random); });
+  }
+  std::vector<std::int32_t> along(points + PointGrid::room, 0);
+  for (std::size_t i = 0; i < points; ++i) along[i] = i % 3 == 0 ? -1 : 0;
+  // All in one cell.
+  const std::vector<std::uint32_t> first{0, points};
+  const std::vector<std::uint16_t> cell(PointGrid::parts, 0);
+  const PointGrid grid{at[0], at[1], at[2], along, first, cell, cell, 1, 1, -0.5F, -0.5F, 2047, 2047};
+  const LineAxes axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  CornerColumns corners{};
+  for (std::size_t k = 0; k < 9; ++k) corners[k] = columns[k].data();
+  for (const float reach : {std::numeric_limits<float>::infinity(), 0.2F})
+    for (const bool solid : {true, false}) {
+      const OpaqueAt opaque{nullptr, solid ? nullptr : +[](const void*, std::uint32_t t, float, float b2) {
+                              return t % 2 == 0 && b2 < 0.5F;
+                            }};
+      std::vector<std::vector<std::int32_t>> found;
+      for (const ParallelKernels* kernels : all_parallel_kernels()) {
+        found.emplace_back(points + PointGrid::room, 0);
+        kernels->mark_covered(corners, triangles, axes, grid, reach, opaque, found.back().data());
+      }
+      for (const std::vector<std::int32_t>& one : found) EXPECT_EQ(one, found.front());
+      int hidden = 0, sure = 0;
+      for (std::size_t i = 0; i < points; ++i) {
+        bool is = false, close = false;
+        for (std::size_t t = 0; t < triangles; ++t) {
+          const auto d = [&](std::size_t corner, std::size_t axis) {
+            return static_cast<double>(columns[3 * corner + axis][t]) - static_cast<double>(at[axis][i]);
+          };
+          const auto twice = [&](std::size_t p, std::size_t q) { return d(p, 0) * d(q, 1) - d(q, 0) * d(p, 1); };
+          const double a = twice(1, 2), b = twice(2, 0), c = twice(0, 1), area = a + b + c;
+          const double height = (a * d(0, 2) + b * d(1, 2) + c * d(2, 2)) / area * (along[i] == 0 ? 1 : -1);
+          const double within = std::min({a / area, b / area, c / area});
+          constexpr double rounding = 1e-4;  // of slivers a thousand times as long as wide
+          if (std::abs(within) < rounding && std::abs(height) < 1) close = true;
+          if (within > -rounding &&
+              (std::abs(height) < rounding || std::abs(height - static_cast<double>(reach)) < rounding))
+            close = true;
+          if (!solid && std::abs(c / area - 0.5) < rounding) close = true;
+          is |= within >= 0 && height > 0 && height <= static_cast<double>(reach) &&
+                (solid || (t % 2 == 0 && c / area < 0.5));
+        }
+        hidden += found.front()[i] != 0 ? 1 : 0;
+        if (close) continue;
+        ++sure;
+        EXPECT_EQ(found.front()[i] != 0, is) << "point " << i;
+      }
+      EXPECT_GT(sure, static_cast<int>(points) / 2);
+      EXPECT_GT(hidden, 20);
+    }
+}
+
+}  // namespace
+}  // namespace rebake::test
