@@ -1,5 +1,7 @@
 #include "mesh_ops/light/irradiance.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -31,7 +33,7 @@ SiteBundles::MayPass may_pass(const SiteBundles& bundles, const OpenRays* known,
 // So many sets have enough directions together that none matters to what sites of a part have in common.
 std::size_t sets_for(int rays, std::size_t sites) {
   constexpr std::size_t enough = 512, least_sites = 32;
-  return std::clamp<std::size_t>(enough / static_cast<std::size_t>(rays), 1,
+  return std::clamp<std::size_t>(enough / static_cast<std::size_t>(std::max(1, rays)), 1,
                                  std::max<std::size_t>(1, sites / least_sites));
 }
 
@@ -55,14 +57,17 @@ void add_suns(std::vector<SiteLight>& lit, const SiteBundles& bundles, const Lig
   double all = 0;
   for (const Sun& sun : light.suns) all += sun.irradiance.sum();
   const auto count = static_cast<double>(disk.size());
-  const double step = (1 - from) / static_cast<double>(light.suns.size() * bundles.sets());
+  const double step = (1 - from) / static_cast<double>(light.suns.size());
+  std::vector<double> seen(bundles.sides().size(), 0);  // of suns, by their irradiance
   for (std::size_t s = 0; s < light.suns.size(); ++s) {
     const Sun& sun = light.suns[s];
     const std::size_t offset = first_ray + s * disk.size();
-    for (std::size_t set = 0; set < bundles.sets(); ++set, from += step) {
+    // Few rays to a sun would leave most processors idle: all sets at once.
+    tbb::parallel_for(std::size_t{0}, bundles.sets(), [&](std::size_t set) {
       const std::vector<Vec3> directions = sun_directions(sun, to_light, disk, set);
       bundles.send(set, directions, SiteBundles::Ways::forward, may_pass(bundles, known, offset), progress,
-                   "tracing light", from, from + step, [&](std::size_t i, const SiteBundles::Batch& batch) {
+                   "tracing light", from + step * static_cast<double>(s), from + step * static_cast<double>(s),
+                   [&](std::size_t i, const SiteBundles::Batch& batch) {
                      const auto& [site, side, normal] = bundles.sides()[i];
                      double cosines = 0;
                      for (std::uint64_t left = batch.passes; left != 0; left &= left - 1) {
@@ -71,11 +76,14 @@ void add_suns(std::vector<SiteLight>& lit, const SiteBundles& bundles, const Lig
                        if (found != nullptr) found->set(site, side, offset + ray);
                      }
                      lit[site].irradiance[side] += cosines / count * sun.irradiance;
-                     if (all > 0)
-                       lit[site].sunny[side] +=
-                           static_cast<float>(std::popcount(batch.passes) / count * sun.irradiance.sum() / all);
+                     seen[i] += std::popcount(batch.passes) / count * sun.irradiance.sum();
                    });
-    }
+    });
+  }
+  if (!(all > 0)) return;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto& [site, side, normal] = bundles.sides()[i];
+    lit[site].sunny[side] = static_cast<float>(seen[i] / all);
   }
 }
 

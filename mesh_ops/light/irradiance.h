@@ -33,7 +33,7 @@ class OpenRays {
   bool at(std::size_t site, std::size_t side, std::size_t ray) const {
     return (words_[word(site, side, ray)] >> ray % 64 & 1) != 0;
   }
-  /// Callable from many threads for different sites.
+  /// Callable from many threads for different sides, whose words are their own.
   void set(std::size_t site, std::size_t side, std::size_t ray) {
     words_[word(site, side, ray)] |= std::uint64_t{1} << ray % 64;
   }
@@ -55,9 +55,10 @@ struct IrradianceOptions {
 };
 
 /// Traced light at sites among `around`, with directions of their space turned by `to_light` into the light's. Many
-/// sites see it along the same lines, even_axes() of the light's space, cosine-weighted (3 to 4.5 % off at 64 rays):
-/// what turned with its light and with all that it sees gets the same. With fewer than 512 rays neighbours take others.
-/// Deterministic. `wanted`: of each site 1 for the first side, 2 for the other, 3 for both; empty: both of all.
+/// sites see it along the same lines, even_axes() of the light's space, cosine-weighted (3 to 4 % off at 64 rays over a
+/// smooth body): what turned with its light and with all that it sees gets the same, but for rays that pass borders by
+/// the rounding of floats. With fewer than 512 rays neighbours take others. Deterministic. `wanted`: of each site 1 for
+/// the first side, 2 for the other, 3 for both; empty: both of all.
 std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
                                     const SceneRays& around, const Light& light, const Mat3& to_light,
                                     const IrradianceOptions& options, const Progress& progress = {});

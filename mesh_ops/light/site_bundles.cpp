@@ -40,25 +40,28 @@ SiteBundles::SiteBundles(std::span<const LightSite> sites, std::span<const std::
 void SiteBundles::send(std::size_t set, std::span<const Vec3> directions, Ways ways, const MayPass& may_pass,
                        const Progress& progress, std::string_view what, double from, double to,
                        const std::function<void(std::size_t side, const Batch& batch)>& visit) const {
-  constexpr std::size_t most = 64, sides_at_once = 256;
-  const std::size_t begin = first_[set], size = first_[set + 1] - begin;
+  // Of sides at once: what each thread keeps of them is a few megabytes.
+  constexpr std::size_t most = 64, sides_at_once = 256, chunk = std::size_t{1} << 17;
+  const std::size_t begin = first_[set], size = first_[set + 1] - begin, chunks = (size + chunk - 1) / chunk;
   std::vector<std::vector<std::uint8_t>> hidden(std::min(most, directions.size()));
   std::atomic<std::size_t> done = 0;
   for (std::size_t first = 0; first < directions.size(); first += most) {
     const std::size_t count = std::min(most, directions.size() - first);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
-      progress.at(what, from + (to - from) * static_cast<double>(done++) / static_cast<double>(directions.size()));
+    for (std::size_t k = 0; k < count; ++k) hidden[k].assign(size, 0);
+    tbb::parallel_for(std::size_t{0}, count * chunks, [&](std::size_t task) {
+      progress.at(what,
+                  from + (to - from) * static_cast<double>(done++) / static_cast<double>(directions.size() * chunks));
+      const std::size_t k = task / chunks, start = task % chunks * chunk, end = std::min(size, start + chunk);
       const Vec3& direction = directions[first + k];
-      std::vector<std::int8_t> asked(size);
-      hidden[k].assign(size, 0);
-      for (std::size_t i = 0; i < size; ++i) {
+      std::vector<std::int8_t> asked(end - start);
+      for (std::size_t i = start; i < end; ++i) {
         const double above = sides_[begin + i].normal.dot(direction);
         if (above == 0 || (above < 0 && ways == Ways::forward) || (may_pass && !may_pass(begin + i, first + k)))
           hidden[k][i] = 1;
         else
-          asked[i] = above > 0 ? 1 : -1;
+          asked[i - start] = above > 0 ? 1 : -1;
       }
-      rays_.shade(direction, begin, asked, hidden[k]);
+      rays_.shade(direction, begin + start, asked, std::span(hidden[k]).subspan(start, end - start));
     });
     tbb::parallel_for(std::size_t{0}, (size + sides_at_once - 1) / sides_at_once, [&](std::size_t block) {
       const std::size_t end = std::min(size, (block + 1) * sides_at_once);

@@ -32,9 +32,9 @@ inline std::vector<DiskPoint> disk_points(int count) {
   return points;
 }
 
-/// The angle by which a site turns its points: each its own, so that errors of neighbours differ.
-inline double own_angle(std::size_t site) {
-  return 2 * std::numbers::pi * static_cast<double>(mixed(site, 0x51, 7) >> 11) * 0x1p-53;
+/// The angle by which a site, or a set of them, turns its points: each its own, so that errors of neighbours differ.
+inline double own_angle(std::size_t number) {
+  return 2 * std::numbers::pi * static_cast<double>(mixed(number, 0x51, 7) >> 11) * 0x1p-53;
 }
 
 /// Directions over a side of a site, going with its tangent.

@@ -25,27 +25,34 @@ Transfer traced_transfer(std::span<const LightSite> sites, const SceneRays& arou
   result.sites.assign(sites.size(), sh::Coefficients::Zero());
   std::vector<sh::Coefficients> half = result.sites;
   const std::vector<Vec3> axes = even_axes(rays);
-  // Along and against each.
-  std::vector<std::array<sh::Coefficients, 2>> bases;
-  for (const Vec3& axis : axes) bases.push_back({sh::basis(axis), sh::basis(-axis)});
+  // Along and against each. The few rays of a batch are summed in floats.
+  using Floats = Eigen::Matrix<float, sh::count, 1>;
+  std::vector<std::array<Floats, 2>> bases;
+  for (const Vec3& axis : axes) bases.push_back({sh::basis(axis).cast<float>(), sh::basis(-axis).cast<float>()});
   const std::vector<std::uint8_t> first_sides(sites.size(), 1);
   const SiteBundles bundles(sites, first_sides, around);
-  std::vector<double> cosines(bundles.sides().size());
+  // All take the same directions: at 64 rays what they are off by matters less than the time that more sets take.
+  std::vector<std::array<double, 2>> cosines(bundles.sides().size(), {0, 0});  // of odd and even rays
   bundles.send(0, axes, SiteBundles::Ways::outwards, {}, progress, "tracing transfer", 0, 1,
                [&](std::size_t i, const SiteBundles::Batch& batch) {
                  const auto& [site, side, normal] = bundles.sides()[i];
-                 for (std::size_t k = batch.first; k < batch.first + batch.count; ++k) {
-                   const double above = normal.dot(axes[k]), cosine = std::abs(above);
-                   cosines[i] += cosine;
-                   if ((batch.passes >> (k - batch.first) & 1) == 0) continue;
-                   const sh::Coefficients one = cosine * bases[k][above > 0 ? 0 : 1];
-                   (k % 2 == 0 ? half : result.sites)[site] += one;
+                 std::array<Floats, 2> sums{Floats::Zero(), Floats::Zero()};  // of odd and even rays
+                 for (std::size_t k = 0; k < batch.count; ++k) {
+                   const std::size_t ray = batch.first + k, even = ray % 2 == 0 ? 1 : 0;
+                   const double above = normal.dot(axes[ray]), cosine = std::abs(above);
+                   cosines[i][even] += cosine;
+                   const double seen = (batch.passes >> k & 1) != 0 ? cosine : 0;
+                   sums[even] += static_cast<float>(seen) * bases[ray][above > 0 ? 0 : 1];
                  }
+                 result.sites[site] += sums[0].cast<double>();
+                 half[site] += sums[1].cast<double>();
                });
   for (std::size_t i = 0; i < cosines.size(); ++i) {
+    const auto& [odd, even] = cosines[i];
     const std::uint32_t site = bundles.sides()[i].site;
-    result.sites[site] = (result.sites[site] + half[site]) / cosines[i];
-    half[site] *= 2 / cosines[i];
+    if (!(even > 0)) continue;
+    result.sites[site] = (result.sites[site] + half[site]) / (odd + even);
+    half[site] /= even;
   }
   // What a lattice is off by goes with the number of its points to the power of −¾ (as its discrepancy: Brauchart and
   // Dick 2012).

@@ -15,7 +15,7 @@ namespace rebake {
 struct Transfer {
   std::vector<sh::Coefficients> sites;
   /// Root mean square error over that of the coefficients, as half of the rays says of all. Half of a Fibonacci lattice
-  /// is less even than one of as many points: it errs on the large side (1 to 2 times).
+  /// is less even than one of as many points: from 64 rays on it says 1 to 2.2 times what it is off by.
   double relative_error = 0;
 };
 

@@ -55,11 +55,9 @@ REBAKE_INLINE unsigned signs(Integers v) {
 // is less than this.
 constexpr float rounding = 1e-6F;
 
-// Of a number of a part that may lie outside of all of them.
-REBAKE_INLINE Integers part(Floats number) {
-  const Floats last = all(static_cast<float>(PointGrid::parts - 1));
-  return __builtin_convertvector(least(greatest(number, all(0)), last), Integers);
-}
+// Of triangles, by the square of their longest edge. The signs that points find at what is narrower are rounding, far
+// along its line too: there it counts how far that reaches.
+constexpr float narrow = 1e-4F;
 
 template <bool endless, bool solid>
 void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes& axes, const PointGrid& grid,
@@ -69,7 +67,13 @@ void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes
   };
   float on_line[9][lanes];  // u, v, w of three corners
   std::int32_t left[lanes], right[lanes], bottom[lanes], top[lanes];
-  const float beyond = static_cast<float>(PointGrid::parts);
+  const auto beyond = static_cast<float>(grid.columns_of.size());
+  // Of a number of a part that may lie outside of all of them.
+  const auto part = [&](Floats number) {
+    return __builtin_convertvector(least(greatest(number, all(0)), all(beyond - 1)), Integers);
+  };
+  Integers lane_numbers;
+  for (std::size_t k = 0; k < lanes; ++k) lane_numbers[k] = static_cast<std::int32_t>(k);
   // Kept apart from `marks`, which might be anything's.
   const float *const points_u = grid.u.data(), *const points_v = grid.v.data(), *const points_w = grid.w.data();
   const std::int32_t* const points_along = grid.along.data();
@@ -93,7 +97,12 @@ void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes
                  v0 = (from(v) - grid.v_from) * grid.v_scale, v1 = (to(v) - grid.v_from) * grid.v_scale;
     // Comparisons of what is no number are false; the least of several may be one all the same.
     const Floats sum = u[0] + u[1] + u[2];
+    const auto squared = [](Floats x, Floats y) { return x * x + y * y; };
+    const Floats abu = u[1] - u[0], abv = v[1] - v[0], acu = u[2] - u[0], acv = v[2] - v[0],
+                 turned = abu * acv - acu * abv,
+                 longest = greatest(squared(abu, abv), greatest(squared(acu, acv), squared(acu - abu, acv - abv)));
     const Integers there = (u1 >= 0.F) & (v1 >= 0.F) & (u0 < beyond) & (v0 < beyond) & (sum == sum);
+    const unsigned narrow_ones = signs(greatest(turned, -turned) < narrow * longest);
     unsigned asked = signs(there);
     if (asked == 0) continue;
     store(part(u0), left);
@@ -111,7 +120,6 @@ void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes
                    uc = all(on_line[6][lane]), vc = all(on_line[7][lane]), wc = all(on_line[8][lane]);
       const std::uint32_t* row = first + std::size_t{first_row} * columns;
       for (std::uint32_t r = first_row; r <= last_row; ++r, row += columns)
-        // Points of the next cells that come along are asked for too: what covers them covers them.
         for (std::uint32_t s = row[first_column], end = row[end_column]; s < end; s += lanes) {
           const auto pu = load<Floats>(points_u + s), pv = load<Floats>(points_v + s), pw = load<Floats>(points_w + s);
           const Floats au = ua - pu, bu = ub - pu, cu = uc - pu, av = va - pv, bv = vb - pv, cv = vc - pv;
@@ -120,10 +128,16 @@ void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes
           const Floats a = bu * cv - cu * bv, b = cu * av - au * cv, c = au * bv - bu * av;
           const Floats area = a + b + c;
           const Floats height = a * (wa - pw) + b * (wb - pw) + c * (wc - pw);
-          // The sign bit is set where it is not hidden.
+          // The sign bit is set where it is not hidden. Points of the next cells come along, and are not asked for.
           const Integers behind = bits(height) ^ bits(area) ^ load<Integers>(points_along + s);
-          Integers hidden =
-              ((least(a, least(b, c)) >= 0.F) | (greatest(a, greatest(b, c)) <= 0.F)) & (area != 0.F) & ~behind;
+          Integers hidden = ((least(a, least(b, c)) >= 0.F) | (greatest(a, greatest(b, c)) <= 0.F)) & (area != 0.F) &
+                            ~behind & (lane_numbers < static_cast<std::int32_t>(end - s));
+          if ((narrow_ones >> lane & 1) != 0) {
+            const auto reaches = [](Floats p, Floats x, Floats y, Floats z) {
+              return (p >= least(x, least(y, z)) - rounding) & (p <= greatest(x, greatest(y, z)) + rounding);
+            };
+            hidden &= reaches(pu, ua, ub, uc) & reaches(pv, va, vb, vc);
+          }
           if constexpr (!endless) {
             const Floats far = reach * area;
             hidden &= ((height <= far) & (height >= -far)) | ((height >= far) & (height <= -far));

@@ -14,13 +14,13 @@ using CornerColumns = std::array<const float*, 9>;
 /// Points seen along a line: across it (u, v) and along it (w), in cells that hold about as many each. Arrays go on for
 /// `room` points that nothing covers.
 struct PointGrid {
-  static constexpr std::size_t room = 16, parts = 2048;
+  static constexpr std::size_t room = 16;
 
   std::span<const float> u, v, w;
   std::span<const std::int32_t> along;        ///< 0: what lies at larger w hides them, −1: at smaller w
   std::span<const std::uint32_t> first;       ///< number of a cell's first point, row by row, and the end
-  std::span<const std::uint16_t> columns_of;  ///< of `parts` equal parts of what u spans
-  std::span<const std::uint16_t> rows_of;     ///< likewise of v
+  std::span<const std::uint16_t> columns_of;  ///< of equal parts of what u spans
+  std::span<const std::uint16_t> rows_of;     ///< of as many parts of what v spans
   std::uint32_t columns = 0, rows = 0;
   float u_from = 0, v_from = 0, u_scale = 0, v_scale = 0;  ///< (u − u_from) · u_scale is the number of a part
 };

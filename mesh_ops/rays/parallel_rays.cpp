@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "mesh_ops/base/processor.h"
 
@@ -13,6 +14,10 @@ namespace {
 
 // So many triangles are looked at in the time of one ray.
 constexpr std::size_t triangles_a_ray = 30;
+// Points of a block, which lie near each other where neighbours follow each other.
+constexpr std::size_t block_size = 256;
+// Points of a cell, as points have it: beyond it rays are sooner.
+constexpr double crowd = 64;
 
 const ParallelKernels& kernels() {
   static const ParallelKernels* const best = all_parallel_kernels().front();
@@ -32,52 +37,54 @@ std::vector<const ParallelKernels*> all_parallel_kernels() {
 
 // Points that one object may hide, in the order of their cells. Kept by each thread from one call to the next.
 struct ParallelRays::Scratch {
-  std::array<std::vector<float>, 3> seen;           // all points: u, v, w
-  std::vector<std::uint32_t> asked;                 // numbers of those that are asked for,
-  std::array<std::vector<float>, 3> near;           // where they are,
+  std::size_t count = 0;                            // of those that are asked for,
+  std::vector<std::uint32_t> asked;                 // their numbers,
+  std::array<std::vector<float>, 3> near;           // where they are: u, v, w,
   std::array<std::vector<std::uint16_t>, 2> parts;  // and in which parts of u and v
   std::array<std::vector<float>, 3> sorted;
   std::vector<std::int32_t> along, marks;
-  std::vector<std::uint32_t> numbers, first;
+  std::vector<std::uint32_t> numbers, first, counts;
   std::array<std::vector<std::uint16_t>, 2> cell_of;  // columns and rows of parts
 
-  PointGrid grid(std::span<const std::int8_t> ways);
+  /// Nothing where they crowd.
+  std::optional<PointGrid> grid(std::span<const std::int8_t> ways);
 
  private:
-  void find_cells(std::size_t axis, std::uint32_t cells);
+  void find_cells(std::size_t axis, std::size_t part_count, std::uint32_t cells);
 };
 
 // Columns and rows hold as many points as the others, wherever those are.
-void ParallelRays::Scratch::find_cells(std::size_t axis, std::uint32_t cells) {
-  std::array<std::uint32_t, PointGrid::parts> counts{};
-  for (const std::uint16_t part : parts[axis]) ++counts[part];
-  cell_of[axis].resize(PointGrid::parts);
-  const double cells_a_point = static_cast<double>(cells) / static_cast<double>(asked.size());
+void ParallelRays::Scratch::find_cells(std::size_t axis, std::size_t part_count, std::uint32_t cells) {
+  counts.assign(part_count, 0);
+  for (std::size_t k = 0; k < count; ++k) ++counts[parts[axis][k]];
+  cell_of[axis].resize(part_count);
+  const double cells_a_point = static_cast<double>(cells) / static_cast<double>(count);
   std::uint32_t before = 0;
-  for (std::size_t part = 0; part < PointGrid::parts; ++part) {
+  for (std::size_t part = 0; part < part_count; ++part) {
     cell_of[axis][part] =
         static_cast<std::uint16_t>(std::min(cells - 1, static_cast<std::uint32_t>(before * cells_a_point)));
     before += counts[part];
   }
 }
 
-PointGrid ParallelRays::Scratch::grid(std::span<const std::int8_t> ways) {
-  const std::size_t count = asked.size();
+std::optional<PointGrid> ParallelRays::Scratch::grid(std::span<const std::int8_t> ways) {
   PointGrid result;
+  const std::size_t part_count = count > 32768 ? 16384 : 2048;
   std::array<float, 2> from{}, extent{}, scale{};
   for (std::size_t axis = 0; axis < 2; ++axis) {
+    const float* const at = near[axis].data();
     float least = std::numeric_limits<float>::infinity(), most = -least;
-    for (const float value : near[axis]) {
-      least = std::min(least, value);
-      most = std::max(most, value);
+    for (std::size_t k = 0; k < count; ++k) {
+      least = std::min(least, at[k]);
+      most = std::max(most, at[k]);
     }
     from[axis] = least;
     extent[axis] = most - least;
-    constexpr float last = PointGrid::parts - 1;
+    const auto last = static_cast<float>(part_count - 1);
     scale[axis] = extent[axis] > 0 && last / extent[axis] < std::numeric_limits<float>::max() ? last / extent[axis] : 0;
     parts[axis].resize(count);
     for (std::size_t k = 0; k < count; ++k)
-      parts[axis][k] = static_cast<std::uint16_t>(std::min(last, (near[axis][k] - least) * scale[axis]));
+      parts[axis][k] = static_cast<std::uint16_t>(std::min(last, (at[k] - least) * scale[axis]));
   }
   // Cells are twice as high as wide: a row of them is asked for at once.
   constexpr double most_columns = 2048;
@@ -86,11 +93,14 @@ PointGrid ParallelRays::Scratch::grid(std::span<const std::int8_t> ways) {
   result.columns =
       static_cast<std::uint32_t>(std::clamp(std::sqrt(points * aspect), 1.0, std::min(points, most_columns)));
   result.rows = static_cast<std::uint32_t>(std::clamp(points / (2 * result.columns), 1.0, most_columns));
-  find_cells(0, result.columns);
-  find_cells(1, result.rows);
+  find_cells(0, part_count, result.columns);
+  find_cells(1, part_count, result.rows);
   const auto cell = [&](std::size_t k) { return cell_of[1][parts[1][k]] * result.columns + cell_of[0][parts[0][k]]; };
   first.assign(std::size_t{result.columns} * result.rows + 2, 0);
   for (std::size_t k = 0; k < count; ++k) ++first[cell(k) + 2];
+  double pairs = 0;
+  for (const std::uint32_t in_cell : first) pairs += static_cast<double>(in_cell) * in_cell;
+  if (pairs > crowd * points) return std::nullopt;
   for (std::size_t c = 2; c < first.size(); ++c) first[c] += first[c - 1];
   for (std::vector<float>& column : sorted) {
     column.resize(count + PointGrid::room);
@@ -120,13 +130,15 @@ PointGrid ParallelRays::Scratch::grid(std::span<const std::int8_t> ways) {
 }
 
 ParallelRays::ParallelRays(const SceneRays& around, std::span<const Vec3> origins) : around_(around) {
-  Box box;
   for (std::size_t axis = 0; axis < 3; ++axis) points_[axis].reserve(origins.size());
-  for (const Vec3& origin : origins) {
-    for (std::size_t axis = 0; axis < 3; ++axis) points_[axis].push_back(origin[static_cast<Eigen::Index>(axis)]);
-    if (origin.allFinite()) box.extend(origin);
+  for (std::size_t first = 0; first < origins.size(); first += block_size) {
+    Box box;
+    for (const Vec3& origin : origins.subspan(first, std::min(block_size, origins.size() - first))) {
+      for (std::size_t axis = 0; axis < 3; ++axis) points_[axis].push_back(origin[static_cast<Eigen::Index>(axis)]);
+      if (origin.allFinite()) box.extend(origin);
+    }
+    blocks_.push_back(box.isEmpty() ? SceneRays::Ball{} : SceneRays::Ball{box.center(), box.diagonal().norm() / 2});
   }
-  if (!box.isEmpty()) ball_ = {box.center(), box.diagonal().norm() / 2};
   std::map<const RayTree*, std::size_t> numbers;
   for (const SceneRays::Placed& placed : around_.placed_) {
     const auto [tree, fresh] = numbers.try_emplace(placed.tree.get(), trees_.size());
@@ -149,13 +161,7 @@ const ParallelRays::Triangles& ParallelRays::triangles_of(std::size_t instance) 
 void ParallelRays::shade(const Vec3& direction, std::size_t first, std::span<const std::int8_t> ways,
                          std::span<std::uint8_t> hidden) const {
   thread_local Scratch scratch;
-  for (std::size_t k = 0; k < around_.placed_.size(); ++k) {
-    const SceneRays::Ball& ball = around_.placed_[k].ball;
-    const Vec3 way = ball.middle - ball_.middle;
-    const double aside = (way - way.dot(direction) * direction).norm(), radii = ball.radius + ball_.radius;
-    if (aside > radii + 1e-12 * (radii + way.norm())) continue;
-    shade_by(k, direction, first, ways, hidden, scratch);
-  }
+  for (std::size_t k = 0; k < around_.placed_.size(); ++k) shade_by(k, direction, first, ways, hidden, scratch);
 }
 
 void ParallelRays::shade_by(std::size_t instance, const Vec3& direction, std::size_t first,
@@ -166,52 +172,59 @@ void ParallelRays::shade_by(std::size_t instance, const Vec3& direction, std::si
   const Vec3 along = to_frame.linear() * direction;
   const double length = along.stableNorm();
   if (!(length > 0) || !std::isfinite(length) || tree.triangle_count() == 0) return;
-  const Vec3 w = along / length, u = w.unitOrthogonal(), v = w.cross(u);
+  const Vec3 exact_w = along / length, exact_u = exact_w.unitOrthogonal(), exact_v = exact_w.cross(exact_u);
+  // Points are seen along the same axes as triangles.
+  const auto rounded = [](const Vec3& axis) -> Vec3 { return axis.cast<float>().eval().cast<double>(); };
+  const Vec3 u = rounded(exact_u), v = rounded(exact_v), w = rounded(exact_w);
   const Box box = tree.bounds();
   const Vec3 half = tree.to_frame() * box.max();
   std::array<std::array<double, 4>, 3> rows{};
   std::array<float, 3> reach{};
-  std::array<float*, 3> to{};
   LineAxes axes{};
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& axis = k == 0 ? u : k == 1 ? v : w;
     const Vec3 row = to_frame.linear().transpose() * axis;
     rows[k] = {row.x(), row.y(), row.z(), axis.dot(to_frame.translation())};
     reach[k] = static_cast<float>(axis.cwiseAbs().dot(half));
-    scratch.seen[k].resize(ways.size());
-    to[k] = scratch.seen[k].data();
     std::array<float, 3>& target = k == 0 ? axes.u : k == 1 ? axes.v : axes.w;
     for (std::size_t c = 0; c < 3; ++c) target[c] = static_cast<float>(axis[static_cast<Eigen::Index>(c)]);
   }
-  kernels().project_points({points_[0].data() + first, points_[1].data() + first, points_[2].data() + first},
-                           ways.size(), rows, to);
-  scratch.asked.resize(ways.size());
-  for (std::vector<float>& column : scratch.near) column.resize(ways.size());
-  const float *const seen_u = to[0], *const seen_v = to[1], *const seen_w = to[2];
+  scratch.asked.resize(std::max(scratch.asked.size(), ways.size()));
+  for (std::vector<float>& column : scratch.near) column.resize(std::max(column.size(), ways.size()));
+  std::array<std::array<float, block_size>, 3> seen;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    // Written where the next one goes, kept if it is asked for: most are, in no order that could be foreseen.
-    scratch.asked[count] = static_cast<std::uint32_t>(i);
-    scratch.near[0][count] = seen_u[i];
-    scratch.near[1][count] = seen_v[i];
-    scratch.near[2][count] = seen_w[i];
-    count += static_cast<std::size_t>(static_cast<int>(ways[i] != 0) & static_cast<int>(hidden[i] == 0) &
-                                      static_cast<int>(std::abs(seen_u[i]) <= reach[0]) &
-                                      static_cast<int>(std::abs(seen_v[i]) <= reach[1]) &
-                                      static_cast<int>(static_cast<float>(ways[i]) * seen_w[i] <= reach[2]));
+  const std::size_t end = first + ways.size();
+  for (std::size_t block = first / block_size; block * block_size < end; ++block) {
+    const Vec3 way = placed.ball.middle - blocks_[block].middle;
+    const double aside = (way - way.dot(direction) * direction).norm(),
+                 radii = placed.ball.radius + blocks_[block].radius;
+    if (aside > radii + 1e-12 * (radii + way.norm())) continue;
+    const std::size_t from = std::max(first, block * block_size), to = std::min(end, (block + 1) * block_size);
+    kernels().project_points({points_[0].data() + from, points_[1].data() + from, points_[2].data() + from}, to - from,
+                             rows, {seen[0].data(), seen[1].data(), seen[2].data()});
+    for (std::size_t k = 0; k < to - from; ++k) {
+      const std::size_t i = from - first + k;
+      // Written where the next one goes, kept if it is asked for: most are, in no order that could be foreseen.
+      scratch.asked[count] = static_cast<std::uint32_t>(i);
+      for (std::size_t axis = 0; axis < 3; ++axis) scratch.near[axis][count] = seen[axis][k];
+      count += static_cast<std::size_t>(static_cast<int>(ways[i] != 0) & static_cast<int>(hidden[i] == 0) &
+                                        static_cast<int>(std::abs(seen[0][k]) <= reach[0]) &
+                                        static_cast<int>(std::abs(seen[1][k]) <= reach[1]) &
+                                        static_cast<int>(static_cast<float>(ways[i]) * seen[2][k] <= reach[2]));
+    }
   }
-  scratch.asked.resize(count);
-  for (std::vector<float>& column : scratch.near) column.resize(count);
-  if (scratch.asked.empty()) return;
-  if (scratch.asked.size() * triangles_a_ray < tree.triangle_count()) {
+  if (count == 0) return;
+  scratch.count = count;
+  const std::optional<PointGrid> grid =
+      count * triangles_a_ray < tree.triangle_count() ? std::nullopt : scratch.grid(ways);
+  if (!grid) {
     const Vec3 in_object = placed.to_object.linear() * direction;
-    for (const std::uint32_t i : scratch.asked)
+    for (const std::uint32_t i : std::span(scratch.asked).first(count))
       if (tree.blocked(placed.to_object * Vec3(points_[0][first + i], points_[1][first + i], points_[2][first + i]),
                        ways[i] * in_object, 0, placed.reach))
         hidden[i] = 1;
     return;
   }
-  const PointGrid grid = scratch.grid(ways);
   const Triangles& triangles = triangles_of(instance);
   struct Asked {
     const RayTree& tree;
@@ -228,10 +241,10 @@ void ParallelRays::shade_by(std::size_t instance, const Vec3& direction, std::si
         const auto& [in, number] = *static_cast<const Asked*>(of);
         return in.opaque(number, triangle, static_cast<double>(b1), static_cast<double>(b2));
       };
-    kernels().mark_covered(corners, columns[0].size() - PointGrid::room, axes, grid,
+    kernels().mark_covered(corners, columns[0].size() - PointGrid::room, axes, *grid,
                            static_cast<float>(placed.reach * length), opaque, scratch.marks.data());
   }
-  for (std::size_t place = 0; place < scratch.asked.size(); ++place)
+  for (std::size_t place = 0; place < count; ++place)
     if (scratch.marks[place] != 0) hidden[scratch.numbers[place]] = 1;
 }
 

@@ -2,6 +2,7 @@
 #include "mesh_ops/rays/parallel_rays.h"
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +53,11 @@ TEST(ParallelRays, SayWhatSingleRaysSay) {
     int shaded = 0, at_borders = 0, asked = 0;
     for (int turn = 0; turn < 12; ++turn) {
       const Vec3 direction = turn == 0 ? Vec3(Vec3::UnitY()) : some().normalized();
-      const std::vector<std::uint8_t> hidden = hidden_from(rays, direction, ways);
+      std::vector<std::uint8_t> hidden(ways.size(), 0);
+      // In one go, or in two.
+      const std::size_t half = turn % 2 == 0 ? 0 : 1111;
+      rays.shade(direction, 0, std::span(ways).first(half), std::span(hidden).first(half));
+      rays.shade(direction, half, std::span(ways).subspan(half), std::span(hidden).subspan(half));
       for (std::size_t k = 0; k < origins.size(); ++k) {
         const Vec3 way = ways[k] * direction;
         if (ways[k] == 0 || !origins[k].allFinite()) {
@@ -90,13 +95,48 @@ TEST(ParallelRays, FewAreSentOneByOne) {
   int shaded = 0;
   for (int turn = 0; turn < 60; ++turn) {
     const Vec3 direction = Vec3(unit(random), unit(random), unit(random)).normalized();
-    const auto hidden = hidden_from(rays, direction, std::vector<std::int8_t>(origins.size(), 1));
+    const auto hidden = hidden_from(rays, direction, std::vector<std::int8_t>(origins.size(), -1));
     for (std::size_t k = 0; k < origins.size(); ++k) {
-      EXPECT_EQ(hidden[k] != 0, around.shaded(origins[k], direction));
+      EXPECT_EQ(hidden[k] != 0, around.shaded(origins[k], -direction));
       shaded += hidden[k];
     }
   }
   EXPECT_GT(shaded, 100);
+}
+
+// Of an object of two sets some triangles alone, asked by many threads at once, of points that crowd in a corner of
+// what they span.
+TEST(ParallelRays, PartsOfObjectsManyThreadsAndCrowds) {
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 24, .rows = 12}));
+  object->sets.push_back(made_object({.columns = 24, .rows = 12, .radius = 0.6})->sets[0]);
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t f = 0; f < object->triangle_count(); ++f)
+    if (f % 3 != 1) some.push_back(f);
+  const auto tree = std::make_shared<const RayTree>(std::make_shared<const RayTriangles>(*object, some), *object);
+  const SceneRays around({{tree, Affine::Identity(), object->bounds().diagonal().norm()}});
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vec = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  for (const double crowded : {1.0, 1e-4}) {
+    std::vector<Vec3> origins;
+    for (int k = 0; k < 4000; ++k) origins.push_back(k < 4 ? vec() : Vec3(Vec3(0.3, 0.1, 0.2) + crowded * vec()));
+    const ParallelRays rays(around, origins);
+    std::vector<Vec3> directions;
+    for (int k = 0; k < 16; ++k) directions.push_back(vec().normalized());
+    const std::vector<std::int8_t> ways(origins.size(), 1);
+    std::vector<std::vector<std::uint8_t>> hidden(directions.size());
+    tbb::parallel_for(std::size_t{0}, directions.size(),
+                      [&](std::size_t k) { hidden[k] = hidden_from(rays, directions[k], ways); });
+    std::size_t others = 0, shaded = 0;
+    for (std::size_t k = 0; k < directions.size(); ++k)
+      for (std::size_t i = 0; i < origins.size(); ++i) {
+        others += (hidden[k][i] != 0) != around.shaded(origins[i], directions[k]) ? 1 : 0;
+        shaded += hidden[k][i];
+      }
+    EXPECT_LT(others, directions.size() * origins.size() / 2000);
+    EXPECT_GT(shaded, directions.size() * origins.size() / 10);
+    EXPECT_LT(shaded, directions.size() * origins.size() * 9 / 10);
+  }
 }
 
 // Out of a closed surface no ray finds its way, through edges and corners neither.
@@ -157,6 +197,65 @@ TEST(ParallelRays, HardPointsAndTriangles) {
   EXPECT_EQ(hidden(far, up), std::vector<std::uint8_t>(40, 1)) << "from afar";
 }
 
+// Points on the extension of triangles that are seen from their edges, some of which follow a cell's last.
+TEST(ParallelRays, KernelsFindTheSameOfWhatIsSeenFromItsEdge) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> unit(-0.5F, 0.5F);
+  constexpr std::size_t points = 4096, triangles = 60, cells = 64;
+  const std::array<float, 2> line{0.8F, 0.6F};  // all lies on it
+  std::array<std::vector<float>, 9> columns;
+  for (std::vector<float>& column : columns)
+    column.assign(triangles + PointGrid::room, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const float middle = unit(random);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const float place = middle + 0.02F * unit(random);
+      columns[3 * corner][t] = place * line[0];
+      columns[3 * corner + 1][t] = place * line[1];
+      columns[3 * corner + 2][t] = unit(random);
+    }
+  }
+  std::vector<float> places(points);
+  std::generate(places.begin(), places.end(), [&] { return unit(random); });
+  std::sort(places.begin(), places.end());
+  std::array<std::vector<float>, 3> at;
+  for (std::vector<float>& column : at)
+    column.assign(points + PointGrid::room, std::numeric_limits<float>::quiet_NaN());
+  std::vector<std::uint32_t> first(cells + 1, points);
+  std::vector<std::uint16_t> columns_of(2048), rows_of(2048, 0);
+  for (std::size_t p = 0; p < columns_of.size(); ++p) columns_of[p] = static_cast<std::uint16_t>(p * cells / 2048);
+  for (std::size_t i = points; i-- > 0;) {
+    at[0][i] = places[i] * line[0];
+    at[1][i] = places[i] * line[1];
+    at[2][i] = unit(random);
+    first[columns_of[static_cast<std::size_t>((at[0][i] + 0.5F) * 2047)]] = static_cast<std::uint32_t>(i);
+  }
+  for (std::size_t c = cells; c-- > 0;) first[c] = std::min(first[c], first[c + 1]);
+  const std::vector<std::int32_t> along(points + PointGrid::room, 0);
+  const PointGrid grid{at[0], at[1], at[2], along, first, columns_of, rows_of, cells, 1, -0.5F, -0.5F, 2047, 2047};
+  CornerColumns corners{};
+  for (std::size_t k = 0; k < 9; ++k) corners[k] = columns[k].data();
+  std::vector<std::vector<std::int32_t>> found;
+  for (const ParallelKernels* kernels : all_parallel_kernels()) {
+    found.emplace_back(points + PointGrid::room, 0);
+    kernels->mark_covered(corners, triangles, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, grid,
+                          std::numeric_limits<float>::infinity(), {nullptr, nullptr}, found.back().data());
+    EXPECT_EQ(found.back(), found.front());
+  }
+  std::size_t beyond = 0;
+  for (std::size_t i = 0; i < points; ++i) {
+    bool reached = false;
+    for (std::size_t t = 0; t < triangles; ++t) {
+      const auto [least, most] = std::minmax({columns[0][t], columns[3][t], columns[6][t]});
+      reached |= at[0][i] >= least - 2e-6F && at[0][i] <= most + 2e-6F;
+    }
+    if (reached) continue;
+    ++beyond;
+    EXPECT_EQ(found.front()[i], 0) << "point " << i;
+  }
+  EXPECT_GT(beyond, 100U);
+}
+
 // Against the same in double, where products of differences of floats are exact: they may differ where a point is as
 // near to an edge or to the triangle as floats are rounded.
 TEST(ParallelRays, KernelsFindTheSameBitsAndWhatIsThere) {
@@ -178,7 +277,7 @@ TEST(ParallelRays, KernelsFindTheSameBitsAndWhatIsThere) {
   for (std::size_t i = 0; i < points; ++i) along[i] = i % 3 == 0 ? -1 : 0;
   // All in one cell.
   const std::vector<std::uint32_t> first{0, points};
-  const std::vector<std::uint16_t> cell(PointGrid::parts, 0);
+  const std::vector<std::uint16_t> cell(2048, 0);
   const PointGrid grid{at[0], at[1], at[2], along, first, cell, cell, 1, 1, -0.5F, -0.5F, 2047, 2047};
   const LineAxes axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   CornerColumns corners{};
