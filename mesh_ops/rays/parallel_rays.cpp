@@ -19,6 +19,12 @@ constexpr std::size_t block_size = 256;
 // Points of a cell, as points have it: beyond it rays are sooner.
 constexpr double crowd = 64;
 
+// In a function of its own: GCC 12 makes vectors of pairs of numbers, and leaves out that they are rounded where it
+// sees them become doubles again.
+[[gnu::noinline]] std::array<float, 3> in_floats(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
 const ParallelKernels& kernels() {
   static const ParallelKernels* const best = all_parallel_kernels().front();
   return *best;
@@ -174,20 +180,20 @@ void ParallelRays::shade_by(std::size_t instance, const Vec3& direction, std::si
   if (!(length > 0) || !std::isfinite(length) || tree.triangle_count() == 0) return;
   const Vec3 exact_w = along / length, exact_u = exact_w.unitOrthogonal(), exact_v = exact_w.cross(exact_u);
   // Points are seen along the same axes as triangles.
-  const auto rounded = [](const Vec3& axis) -> Vec3 { return axis.cast<float>().eval().cast<double>(); };
-  const Vec3 u = rounded(exact_u), v = rounded(exact_v), w = rounded(exact_w);
+  const LineAxes axes{in_floats(exact_u), in_floats(exact_v), in_floats(exact_w)};
+  const auto rounded = [](const std::array<float, 3>& axis) -> Vec3 {
+    return Eigen::Vector3f(axis[0], axis[1], axis[2]).cast<double>();
+  };
+  const Vec3 u = rounded(axes.u), v = rounded(axes.v), w = rounded(axes.w);
   const Box box = tree.bounds();
   const Vec3 half = tree.to_frame() * box.max();
   std::array<std::array<double, 4>, 3> rows{};
   std::array<float, 3> reach{};
-  LineAxes axes{};
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& axis = k == 0 ? u : k == 1 ? v : w;
     const Vec3 row = to_frame.linear().transpose() * axis;
     rows[k] = {row.x(), row.y(), row.z(), axis.dot(to_frame.translation())};
     reach[k] = static_cast<float>(axis.cwiseAbs().dot(half));
-    std::array<float, 3>& target = k == 0 ? axes.u : k == 1 ? axes.v : axes.w;
-    for (std::size_t c = 0; c < 3; ++c) target[c] = static_cast<float>(axis[static_cast<Eigen::Index>(c)]);
   }
   scratch.asked.resize(std::max(scratch.asked.size(), ways.size()));
   for (std::vector<float>& column : scratch.near) column.resize(std::max(column.size(), ways.size()));

@@ -169,6 +169,49 @@ TEST(ParallelRays, NothingLeaksThroughSharedEdges) {
   }
 }
 
+// A flat patch of fine triangles, however it is turned, does not hide the sky from what lies just above it.
+TEST(ParallelRays, PointsJustAboveASurfaceAreNotHiddenByIt) {
+  constexpr std::uint32_t side = 64;
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 2, .holes = false}));
+  const Vec2 uv = object->sets[0].soup.uvs()[0];
+  for (int turn = 0; turn < 4; ++turn) {
+    const Mat3 turned = Eigen::AngleAxisd(3 * unit(random), Vec3(unit(random), unit(random), unit(random)).normalized())
+                            .toRotationMatrix();
+    std::vector<Vec3> positions;
+    std::vector<Face> faces;
+    for (std::uint32_t row = 0; row < side; ++row)
+      for (std::uint32_t column = 0; column < side; ++column) {
+        positions.push_back(turned * Vec3(column / 63.0 - 0.5, 0, row / 63.0 - 0.5));
+        if (row + 1 == side || column + 1 == side) continue;
+        const std::uint32_t a = row * side + column;
+        faces.push_back({a, a + 1, a + side + 1});
+        faces.push_back({a, a + side + 1, a + side});
+      }
+    const std::size_t count = positions.size();
+    object->sets[0].soup = Soup(std::make_shared<const std::vector<Vec3>>(std::move(positions)),
+                                std::make_shared<const std::vector<Vec2>>(count, uv),
+                                std::make_shared<const std::vector<Face>>(std::move(faces)));
+    const SceneRays around({{std::make_shared<const RayTree>(*object), Affine::Identity(), 1.5}});
+    const Vec3 normal = turned.col(1);
+    for (const double offset : {1e-6, 1e-7}) {
+      std::vector<Vec3> origins;
+      for (int k = 0; k < 4000; ++k)
+        origins.push_back(turned * Vec3(0.49 * unit(random), 0, 0.49 * unit(random)) + offset * normal);
+      const ParallelRays rays(around, origins);
+      std::ptrdiff_t hidden = 0;
+      for (int sent = 0; sent < 8; ++sent) {
+        Vec3 direction = Vec3(unit(random), unit(random), unit(random)).normalized();
+        if (direction.dot(normal) < 0) direction = -direction;
+        const auto found = hidden_from(rays, direction, std::vector<std::int8_t>(origins.size(), 1));
+        hidden += std::count(found.begin(), found.end(), 1);
+      }
+      EXPECT_EQ(hidden, 0) << offset;
+    }
+  }
+}
+
 TEST(ParallelRays, HardPointsAndTriangles) {
   // A slab of two triangles, one without an area, and one with a corner that is no number.
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 2, .holes = false}));
