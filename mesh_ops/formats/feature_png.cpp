@@ -1,7 +1,5 @@
 #include "mesh_ops/formats/feature_png.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
 
@@ -11,6 +9,8 @@
 #include <vector>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/picture_codecs.h"
+#include "mesh_ops/formats/png_writer.h"
 #include "mesh_ops/formats/rgba_png.h"
 
 namespace rebake {
@@ -26,32 +26,27 @@ class OtherPng : public RgbaRows {
   static std::unique_ptr<RgbaRows> open(std::string_view bytes, const std::filesystem::path& name) {
     if (bytes.empty()) throw FileError(name, "is empty (0 bytes); a feature PNG was expected");
     if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) throw FileError(name, "is not a PNG file");
-    auto source = std::make_unique<OIIO::Filesystem::IOMemReader>(const_cast<char*>(bytes.data()), bytes.size());
-    OIIO::ImageSpec config, spec;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    auto input = OIIO::ImageInput::create("png");
-    if (!input) throw Error("OpenImageIO has no PNG reader; install libopenimageio with PNG support");
-    void* proxy = source.get();
-    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    if (!input->open(name.string(), spec, config)) throw FileError(name, "cannot be decoded: " + input->geterror());
-    if (spec.width < 1 || spec.height < 1 || spec.width > largest_png_side || spec.height > largest_png_side)
-      throw FileError(name, fmt::format("declares {}×{} texels; at most {}² can be read", spec.width, spec.height,
+    std::string problem;
+    auto reader = picture_codecs().open_png(bytes, name.string(), problem);
+    if (!reader) throw FileError(name, "cannot be decoded: " + problem);
+    const PictureLayout& layout = reader->layout();
+    if (layout.width < 1 || layout.height < 1 || layout.width > largest_png_side || layout.height > largest_png_side)
+      throw FileError(name, fmt::format("declares {}×{} texels; at most {}² can be read", layout.width, layout.height,
                                         largest_png_side));
-    if (spec.nchannels != 4)
-      throw FileError(name, fmt::format("has {} channels; feature textures have 4 (RGBA)", spec.nchannels));
-    if (spec.format != OIIO::TypeDesc::UINT8)
-      throw FileError(name, fmt::format("is not 8 bits a channel (it holds {})", spec.format.c_str()));
-    return std::make_unique<OtherPng>(spec.width, spec.height, std::move(source), std::move(input), name);
+    if (layout.channels != 4)
+      throw FileError(name, fmt::format("has {} channels; feature textures have 4 (RGBA)", layout.channels));
+    if (layout.type != "uint8")
+      throw FileError(name, fmt::format("is not 8 bits a channel (it holds {})", layout.type));
+    return std::make_unique<OtherPng>(std::move(reader), name);
   }
-  OtherPng(int width, int height, std::unique_ptr<OIIO::Filesystem::IOMemReader> source,
-           std::unique_ptr<OIIO::ImageInput> input, const std::filesystem::path& name)
-      : RgbaRows(width, height), name_(name), source_(std::move(source)), input_(std::move(input)) {}
+  OtherPng(std::unique_ptr<PictureReader> reader, const std::filesystem::path& name)
+      : RgbaRows(reader->layout().width, reader->layout().height), name_(name), reader_(std::move(reader)) {}
 
   void read(int count) override {
     const int end = std::min(first_ + count, height());
     rgba_.resize(static_cast<std::size_t>(width()) * static_cast<std::size_t>(end - first_) * 4);
-    if (!input_->read_scanlines(0, 0, first_, end, 0, 0, 4, OIIO::TypeDesc::UINT8, rgba_.data()))
-      throw FileError(name_, "cannot be decoded, it may be truncated: " + input_->geterror());
+    if (!reader_->read(first_, end - first_, 4, rgba_.data()))
+      throw FileError(name_, "cannot be decoded, it may be truncated: " + reader_->error());
     first_ = end;
   }
   const std::uint8_t* row(int k) const override {
@@ -60,8 +55,7 @@ class OtherPng : public RgbaRows {
 
  private:
   const std::filesystem::path& name_;
-  std::unique_ptr<OIIO::Filesystem::IOMemReader> source_;
-  std::unique_ptr<OIIO::ImageInput> input_;
+  std::unique_ptr<PictureReader> reader_;
   std::vector<std::uint8_t> rgba_;
   int first_ = 0;
 };
@@ -95,17 +89,6 @@ FeatureTexture read_feature_pngs(std::string_view feat0, const std::filesystem::
 }
 
 std::string write_feature_png(const FeatureTexture& texture, int image) {
-  std::vector<unsigned char> encoded;
-  OIIO::Filesystem::IOVecOutput sink(encoded);
-  const auto output = OIIO::ImageOutput::create("png");
-  if (!output) throw Error("OpenImageIO has no PNG writer; install libopenimageio with PNG support");
-  OIIO::ImageSpec spec(texture.width(), texture.height(), 4, OIIO::TypeDesc::UINT8);
-  spec.alpha_channel = 3;
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  spec.attribute("png:compressionLevel", compression_level);
-  void* proxy = static_cast<OIIO::Filesystem::IOProxy*>(&sink);
-  spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  if (!output->open("feature.png", spec)) throw Error("a feature PNG cannot be encoded: " + output->geterror());
   std::vector<std::uint8_t> rgba(static_cast<std::size_t>(texture.width()) *
                                  static_cast<std::size_t>(texture.height()) * 4);
   // Unpacked a row of tiles at a time.
@@ -118,9 +101,7 @@ std::string write_feature_png(const FeatureTexture& texture, int image) {
                   rgba.begin() + static_cast<std::ptrdiff_t>(at));
   }
   texels.reset();
-  if (!output->write_image(OIIO::TypeDesc::UINT8, rgba.data()) || !output->close())
-    throw Error("a feature PNG cannot be encoded: " + output->geterror());
-  return {encoded.begin(), encoded.end()};
+  return encode_png(texture.width(), texture.height(), 4, rgba, compression_level);
 }
 
 }  // namespace rebake

@@ -1,6 +1,5 @@
 #include "mesh_ops/formats/light_picture.h"
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/picture_codecs.h"
 
 namespace rebake {
 
@@ -56,45 +56,41 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 // Reads it part by part, averaging blocks of pixels of what is wider than is kept.
 Panorama read_panorama(const fs::path& path) {
-  const auto input = OIIO::ImageInput::open(path.string());
+  std::string problem;
+  const auto input = picture_codecs().open(path, problem);
   if (!input)
-    throw FileError(path, "cannot be read as a picture: " + first_line(OIIO::geterror()) +
-                              "; use OpenEXR, Radiance HDR, PNG, JPEG or TIFF");
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-      spec.height != spec.full_height)
-    throw FileError(path, fmt::format("holds {}×{} pixels of a picture of {}×{}; save it whole", spec.width,
-                                      spec.height, spec.full_width, spec.full_height));
-  if (spec.width % 2 != 0 || spec.width / 2 != spec.height || spec.width < 4)
+    throw FileError(
+        path, "cannot be read as a picture: " + first_line(problem) + "; use OpenEXR, Radiance HDR, PNG, JPEG or TIFF");
+  const PictureLayout& layout = input->layout();
+  if (layout.part)
+    throw FileError(path, fmt::format("holds {}×{} pixels of a picture of {}×{}; save it whole", layout.width,
+                                      layout.height, layout.whole_width, layout.whole_height));
+  if (layout.width % 2 != 0 || layout.width / 2 != layout.height || layout.width < 4)
     throw FileError(path, fmt::format("is {}×{} pixels; a picture of all directions is twice as wide as high",
-                                      spec.width, spec.height));
-  if (spec.width > largest_width)
-    throw FileError(path, fmt::format("is {} pixels wide; at most {} can be read", spec.width, largest_width));
-  const std::string colors = spec.get_string_attribute("oiio:ColorSpace");
+                                      layout.width, layout.height));
+  if (layout.width > largest_width)
+    throw FileError(path, fmt::format("is {} pixels wide; at most {} can be read", layout.width, largest_width));
+  const std::string& colors = layout.color_space;
   // Whole numbers are display colours unless they say otherwise, others radiances.
-  const bool display = spec.format.is_floating_point()
+  const bool display = layout.floating
                            ? colors == "sRGB"
                            : colors.find("inear") == std::string::npos && colors.find("lin_") == std::string::npos;
-  const int block = (spec.width + kept_width - 1) / kept_width, channels = std::min(3, spec.nchannels);
+  const int block = (layout.width + kept_width - 1) / kept_width, channels = std::min(3, layout.channels);
   Panorama result;
-  result.width = spec.width / block;
-  result.height = spec.height / block;
+  result.width = layout.width / block;
+  result.height = layout.height / block;
   result.pixels.assign(static_cast<std::size_t>(result.width) * static_cast<std::size_t>(result.height),
                        Eigen::Vector3f::Zero());
-  const int rows_at_once = spec.tile_height > 0 ? spec.tile_height : block;
-  std::vector<float> rows(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(rows_at_once) *
+  const int rows_at_once = layout.rows_at_once > 1 ? layout.rows_at_once : block;
+  std::vector<float> rows(static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(rows_at_once) *
                           static_cast<std::size_t>(channels));
-  for (int first = 0; first < spec.height; first += rows_at_once) {
-    const int count = std::min(rows_at_once, spec.height - first);
-    const bool read = spec.tile_height > 0
-                          ? input->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + first + count,
-                                              0, 1, 0, channels, OIIO::TypeDesc::FLOAT, rows.data())
-                          : input->read_scanlines(0, 0, spec.y + first, spec.y + first + count, 0, 0, channels,
-                                                  OIIO::TypeDesc::FLOAT, rows.data());
-    if (!read) throw FileError(path, "cannot be decoded, it may be truncated: " + first_line(input->geterror()));
+  for (int first = 0; first < layout.height; first += rows_at_once) {
+    const int count = std::min(rows_at_once, layout.height - first);
+    if (!input->read(first, count, channels, rows.data()))
+      throw FileError(path, "cannot be decoded, it may be truncated: " + first_line(input->error()));
     for (int y = first; y < first + count; ++y)
       for (int x = 0; x < result.width * block && y / block < result.height; ++x) {
-        const float* pixel = &rows[(static_cast<std::size_t>(y - first) * static_cast<std::size_t>(spec.width) +
+        const float* pixel = &rows[(static_cast<std::size_t>(y - first) * static_cast<std::size_t>(layout.width) +
                                     static_cast<std::size_t>(x)) *
                                    static_cast<std::size_t>(channels)];
         Eigen::Vector3f color(pixel[0], pixel[channels >= 3 ? 1 : 0], pixel[channels >= 3 ? 2 : 0]);

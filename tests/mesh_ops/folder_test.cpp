@@ -1,6 +1,5 @@
 // Folders of every layout: what is read is what is written, unedited folders byte for byte, and bad ones are refused by
 // name.
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -18,6 +17,7 @@
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "tests/support/made_scenes.h"
+#include "tests/support/picture_files.h"
 
 namespace rebake::test {
 namespace {
@@ -237,14 +237,10 @@ TEST(Folder, TexturesAreWholeWhereWorkAroundThemIsStopped) {
     }
 }
 
-std::string png_of(int width, int height, int channels, OIIO::TypeDesc type) {
+std::string png_of(int width, int height, int channels, const std::string& type) {
   const fs::path path = fs::temp_directory_path() / ("rebake-png-" + std::to_string(getpid()) + ".png");
-  const auto out = OIIO::ImageOutput::create("png");
-  const OIIO::ImageSpec spec(width, height, channels, type);
-  const std::vector<std::uint16_t> zeros(static_cast<std::size_t>(width * height * channels));
-  out->open(path.string(), spec);
-  out->write_image(type, zeros.data());
-  out->close();
+  write_picture(path, {width, height, channels, type},
+                std::vector<float>(static_cast<std::size_t>(width * height * channels)));
   const std::string bytes = read_file(path);
   fs::remove(path);
   return bytes;
@@ -320,11 +316,11 @@ TEST_F(BadFolder, Images) {
   expect_refused("is not a PNG");
   write_text(png, good.substr(0, good.size() / 2));
   expect_refused("shape0.pngfeat1.png: is truncated");
-  write_text(png, png_of(16, 16, 4, OIIO::TypeDesc::UINT8));
+  write_text(png, png_of(16, 16, 4, "uint8"));
   expect_refused("both images of a set must be of one size");
-  write_text(png, png_of(16, 16, 3, OIIO::TypeDesc::UINT8));
+  write_text(png, png_of(16, 16, 3, "uint8"));
   expect_refused("has 3 channels");
-  write_text(png, png_of(16, 16, 4, OIIO::TypeDesc::UINT16));
+  write_text(png, png_of(16, 16, 4, "uint16"));
   expect_refused("is not 8 bits");
   std::string huge = good;
   huge[16] = huge[17] = 0x7f;  // the width in the header

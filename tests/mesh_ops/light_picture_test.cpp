@@ -1,5 +1,4 @@
 // Pictures of all directions as light: what lies where, what becomes a sun, and files that are refused by name.
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -11,6 +10,7 @@
 #include "mesh_ops/formats/light_picture.h"
 #include "tests/support/light_pictures.h"
 #include "tests/support/made_scenes.h"
+#include "tests/support/picture_files.h"
 #include "tests/support/thorough.h"
 
 namespace rebake::test {
@@ -120,13 +120,8 @@ TEST_F(LightPictureTest, BytesAreDisplayColours) {
 
 TEST_F(LightPictureTest, WholeNumbersAreDisplayColoursOthersRadiances) {
   for (const char* name : {"grey8.tif", "grey16.tif", "grey16.png"}) {
-    const auto format =
-        std::string(name).find("16") == std::string::npos ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
-    const auto out = OIIO::ImageOutput::create(path(name).string());
-    ASSERT_TRUE(out->open(path(name).string(), OIIO::ImageSpec(8, 4, 1, format)));
-    const std::vector<float> half(32, 0.5F);
-    out->write_image(OIIO::TypeDesc::FLOAT, half.data());
-    out->close();
+    const bool wide = std::string(name).find("16") != std::string::npos;
+    write_picture(path(name), {8, 4, 1, wide ? "uint16" : "uint8"}, std::vector<float>(32, 0.5F));
     EXPECT_NEAR(read(name).light.sky.mean()[0], to_linear(0.5), 0.005) << name;
   }
   write_light_picture(path("half.exr"), 8, [](const Vec3&) { return Radiance::Constant(0.5); });
@@ -134,20 +129,10 @@ TEST_F(LightPictureTest, WholeNumbersAreDisplayColoursOthersRadiances) {
 }
 
 TEST_F(LightPictureTest, TiledOnesAreReadAndPartsOfPicturesRefused) {
-  OIIO::ImageSpec spec(256, 128, 3, OIIO::TypeDesc::FLOAT);
   const std::vector<float> pixels(std::size_t{256} * 128 * 3, 0.25F);
-  const auto write = [&](const char* name) {
-    const auto out = OIIO::ImageOutput::create(path(name).string());
-    ASSERT_TRUE(out->open(path(name).string(), spec)) << out->geterror();
-    out->write_image(OIIO::TypeDesc::FLOAT, pixels.data());
-    out->close();
-  };
-  spec.full_height = 256;
-  write("part.exr");
+  write_picture(path("part.exr"), {256, 128, 3, "float", 0, 256}, pixels);
   EXPECT_THROW(read("part.exr"), FileError);
-  spec.full_height = 128;
-  spec.tile_width = spec.tile_height = 32;
-  write("tiled.exr");
+  write_picture(path("tiled.exr"), {256, 128, 3, "float", 32}, pixels);
   EXPECT_NEAR(read("tiled.exr").light.sky.mean()[0], 0.25, 1e-6);
 }
 
@@ -168,11 +153,7 @@ TEST_F(LightPictureTest, FilesThatAreNoPicturesOfAllDirectionsAreRefusedByName) 
   write_light_picture(path("whole.exr"), 64, [](const Vec3& d) { return Radiance(d.cwiseAbs()); });
   const std::string bytes = read_file(path("whole.exr"));
   write_text(path("cut.exr"), bytes.substr(0, bytes.size() / 2));
-  const auto out = OIIO::ImageOutput::create("png");
-  ASSERT_TRUE(out->open(path("square.png").string(), OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8)));
-  const std::vector<std::uint8_t> zeros(192);
-  out->write_image(OIIO::TypeDesc::UINT8, zeros.data());
-  out->close();
+  write_picture(path("square.png"), {8, 8, 3}, std::vector<float>(192));
   for (const char* name : {"text.exr", "cut.exr", "square.png", "missing.exr", "."}) try {
       read(name);
       ADD_FAILURE() << name << " was read";

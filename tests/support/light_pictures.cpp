@@ -1,10 +1,10 @@
 #include "tests/support/light_pictures.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "tests/support/picture_files.h"
 
 namespace rebake::test {
 
@@ -21,12 +21,7 @@ void write_light_picture(const std::filesystem::path& path, int width,
       for (const double c : radiance(std::cos(height_angle) * level + std::sin(height_angle) * up))
         pixels.push_back(static_cast<float>(c));
     }
-  const auto output = OIIO::ImageOutput::create(path.string());
-  const OIIO::ImageSpec spec(width, height, 3,
-                             path.extension() == ".exr" ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
-  if (!output || !output->open(path.string(), spec) || !output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) ||
-      !output->close())
-    throw std::runtime_error("cannot write " + path.string());
+  write_picture(path, {width, height, 3, path.extension() == ".exr" ? "float" : "uint8"}, pixels);
 }
 
 }  // namespace rebake::test
