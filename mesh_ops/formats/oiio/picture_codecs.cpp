@@ -38,7 +38,7 @@ class Reader : public PictureReader {
   std::string error() const override { return input_->geterror(); }
 
  private:
-  bool read_as(OIIO::TypeDesc type, int first, int count, int channels, void* to) {
+  bool read_as(const OIIO::TypeDesc& type, int first, int count, int channels, void* to) {
     const OIIO::ImageSpec& spec = input_->spec();
     const int top = spec.y + first;
     return spec.tile_height > 0
