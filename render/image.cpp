@@ -15,7 +15,7 @@ Image read_image(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw FileError(path, "does not exist");
   if (!std::filesystem::is_regular_file(path)) throw FileError(path, "is no regular file");
   std::string problem;
-  const auto reader = picture_codecs().open(path, problem);
+  const auto reader = picture_codecs(path).open(path, problem);
   if (!reader) throw FileError(path, "cannot be read as a picture: " + problem);
   const PictureLayout& layout = reader->layout();
   if (layout.width > 32768 || layout.height > 32768) throw FileError(path, "is larger than 32768 pixels a side");

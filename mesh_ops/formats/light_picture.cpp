@@ -57,7 +57,7 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 // Reads it part by part, averaging blocks of pixels of what is wider than is kept.
 Panorama read_panorama(const fs::path& path) {
   std::string problem;
-  const auto input = picture_codecs().open(path, problem);
+  const auto input = picture_codecs(path).open(path, problem);
   if (!input)
     throw FileError(
         path, "cannot be read as a picture: " + first_line(problem) + "; use OpenEXR, Radiance HDR, PNG, JPEG or TIFF");

@@ -5,12 +5,14 @@
 
 namespace rebake {
 
-const PictureCodecs& picture_codecs() {
+const PictureCodecs& picture_codecs(const std::filesystem::path& picture) {
   static const ModuleSymbol found = module_symbol("librebake_pictures.so", picture_codecs_symbol);
   if (found.symbol == nullptr)
-    throw Error(found.problem.empty() ? "librebake_pictures.so, which reads such pictures, lies neither beside Rebake "
-                                        "nor in lib/rebake: build or install it again"
-                                      : found.problem);
+    throw FileError(picture,
+                    "cannot be read: " + (found.problem.empty()
+                                              ? "librebake_pictures.so, which reads such pictures, lies neither beside "
+                                                "Rebake nor in lib/rebake; build or install Rebake again"
+                                              : found.problem));
   static const PictureCodecs* const codecs = reinterpret_cast<GivePictureCodecs>(found.symbol)();
   return *codecs;
 }

@@ -51,8 +51,9 @@ class PictureCodecs {
   PictureCodecs(const PictureCodecs&) = delete;
   PictureCodecs& operator=(const PictureCodecs&) = delete;
 
+  /// Colours are not multiplied by alpha where the format does not store them so.
   virtual std::unique_ptr<PictureReader> open(const std::filesystem::path& path, std::string& error) const = 0;
-  /// A PNG's bytes, which have to stay; colours are not multiplied by alpha. `name` is for messages.
+  /// A PNG's bytes, which have to stay. `name` is for messages.
   virtual std::unique_ptr<PictureReader> open_png(std::string_view bytes, const std::string& name,
                                                   std::string& error) const = 0;
 
@@ -60,8 +61,8 @@ class PictureCodecs {
   PictureCodecs() = default;
 };
 
-/// Loads the module. Throws Error where it is not there.
-const PictureCodecs& picture_codecs();
+/// Loads the module, to read a picture. Throws FileError, of that picture, where the module is not there.
+const PictureCodecs& picture_codecs(const std::filesystem::path& picture);
 
 /// The module's function that gives them.
 using GivePictureCodecs = const PictureCodecs* (*)();

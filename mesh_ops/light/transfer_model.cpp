@@ -107,10 +107,7 @@ TransferModel learnt_model(const TurnedLight& start,
   model.rays = options.rays;
   std::optional<UnetTransfer::Training> images;
   if (options.net) {
-    if (!can_train_unet())
-      throw Error(
-          "nets are trained by LibTorch, which this program was built without: install libtorch-dev and "
-          "libopenblas0-pthread, and build again");
+    need_unet_training();
     BodyImage image = body_image(*from.object, from.sites.now, from.facing, options.coarseness, progress);
     model.keys = image.sites;
     images.emplace(std::move(image.mesh), GeometryImage(image.chart, image_side));

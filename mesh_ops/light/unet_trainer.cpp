@@ -20,7 +20,9 @@ const ModuleSymbol& module() {
     ModuleSymbol result = module_symbol("librebake_unet.so", train_unet_symbol);
     if (result.symbol == nullptr && result.problem.empty())
       result.problem =
-          "training a U-Net needs LibTorch: install libtorch-dev and libopenblas0-pthread, and build again";
+          "librebake_unet.so, which trains nets, lies neither beside Rebake nor in lib/rebake; it is built where "
+          "LibTorch "
+          "is: install libtorch-dev and libopenblas0-pthread, and build or install Rebake again";
     return result;
   }();
   return found;
@@ -30,12 +32,16 @@ const ModuleSymbol& module() {
 
 bool can_train_unet() { return module().symbol != nullptr; }
 
+void need_unet_training() {
+  if (!can_train_unet()) throw Error(module().problem);
+}
+
 Unet trained_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress) {
   const auto texels = static_cast<std::size_t>(images.side) * static_cast<std::size_t>(images.side);
   if (images.images.size() != images.poses * unet_inputs * texels ||
       images.targets.size() != images.poses * unet_outputs * texels || images.poses == 0)
     throw std::invalid_argument("images of another size");
-  if (!can_train_unet()) throw Error(module().problem);
+  need_unet_training();
   struct Watch {
     const Progress& progress;
     std::exception_ptr thrown;

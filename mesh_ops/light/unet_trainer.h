@@ -23,6 +23,8 @@ struct UnetTraining {
 
 /// Whether the module that trains is there: it is built where LibTorch is (samples/install_packages brings it).
 bool can_train_unet();
+/// Throws Error, which says what to do, where it is not.
+void need_unet_training();
 /// Throws Error where the module is not there or fails.
 Unet trained_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress = {});
 

@@ -7,6 +7,7 @@
 
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
+#include "render/image.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -17,14 +18,18 @@ struct Outcome {
   std::string text;  // standard output and error
 };
 
-Outcome rebake_run(const std::string& arguments, const std::string& before = "") {
-  FILE* pipe = popen((before + " " + REBAKE_PROGRAM + " " + arguments + " 2>&1").c_str(), "r");
+Outcome run(const std::string& program, const std::string& arguments) {
+  FILE* pipe = popen((program + " " + arguments + " 2>&1").c_str(), "r");
   Outcome outcome{};
   char buffer[4096];
   while (const std::size_t got = std::fread(buffer, 1, sizeof buffer, pipe)) outcome.text.append(buffer, got);
   const int status = pclose(pipe);
   outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
   return outcome;
+}
+
+Outcome rebake_run(const std::string& arguments, const std::string& before = "") {
+  return run(before + " " + REBAKE_PROGRAM, arguments);
 }
 
 class Cli : public ::testing::Test {
@@ -57,6 +62,20 @@ TEST_F(Cli, RenderCompareAndTimes) {
   EXPECT_EQ(rebake_run("render " + in("ball") + " -o " + in("b.png") + " --size 64x48 --background 0,0,0").code, 0);
   EXPECT_EQ(rebake_run("compare " + in("a.png") + " " + in("a.png") + " --min-psnr 90").code, 0);
   EXPECT_EQ(rebake_run("compare " + in("a.png") + " " + in("b.png") + " --min-psnr 90").code, 3);
+}
+
+TEST_F(Cli, WithoutItsModulesItSaysWhichPictureAndWhatToDo) {
+  write_png({1, 1, {1, 2, 3}}, in("a.png"), {});
+  const std::string alone = in("rebake");
+  std::filesystem::copy_file(REBAKE_PROGRAM, alone);
+  const Outcome compared = run(alone, "compare " + in("a.png") + " " + in("a.png"));
+  EXPECT_EQ(compared.code, 1);
+  EXPECT_NE(compared.text.find("a.png: cannot be read: librebake_pictures.so"), std::string::npos) << compared.text;
+  const Outcome trained = run(alone, "light train " + in("ball") + " --way net --poses 8 --edit " +
+                                         R"('{"op": "bend", "node": "ball", "degrees": 20}')");
+  EXPECT_EQ(trained.code, 1);
+  EXPECT_NE(trained.text.find("librebake_unet.so"), std::string::npos) << trained.text;
+  EXPECT_NE(trained.text.find("libtorch-dev"), std::string::npos) << trained.text;
 }
 
 TEST_F(Cli, WrongUseIsTwoFailureIsOne) {

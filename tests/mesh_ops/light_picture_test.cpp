@@ -8,6 +8,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/light_picture.h"
+#include "mesh_ops/formats/png_writer.h"
 #include "tests/support/light_pictures.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/picture_files.h"
@@ -116,6 +117,13 @@ TEST_F(LightPictureTest, ManyBrightPointsAreNoSuns) {
 TEST_F(LightPictureTest, BytesAreDisplayColours) {
   write_light_picture(path("grey.png"), 64, [](const Vec3&) { return Radiance::Constant(to_display(0.2)); });
   EXPECT_LT((read("grey.png").light.sky.at({0, 1, 0}) - Radiance::Constant(0.2)).norm(), 0.005);
+}
+
+TEST_F(LightPictureTest, AlphaIsPassedOver) {
+  std::vector<std::uint8_t> bytes;
+  for (int k = 0; k < 32; ++k) bytes.insert(bytes.end(), {127, 127, 127, 100});
+  write_text(path("through.png"), encode_png(8, 4, 4, bytes, 6));
+  EXPECT_NEAR(read("through.png").light.sky.mean()[0], to_linear(127 / 255.0), 1e-4);
 }
 
 TEST_F(LightPictureTest, WholeNumbersAreDisplayColoursOthersRadiances) {

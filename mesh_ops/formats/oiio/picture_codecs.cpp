@@ -53,7 +53,9 @@ class Reader : public PictureReader {
 class Codecs : public rebake::PictureCodecs {
  public:
   std::unique_ptr<PictureReader> open(const std::filesystem::path& path, std::string& error) const override {
-    auto input = OIIO::ImageInput::open(path.string());
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    auto input = OIIO::ImageInput::open(path.string(), &config);
     if (!input) {
       error = OIIO::geterror();
       return nullptr;
