@@ -71,8 +71,8 @@ TEST_F(Cli, WithoutItsModulesItSaysWhichPictureAndWhatToDo) {
   const Outcome compared = run(alone, "compare " + in("a.png") + " " + in("a.png"));
   EXPECT_EQ(compared.code, 1);
   EXPECT_NE(compared.text.find("a.png: cannot be read: librebake_pictures.so"), std::string::npos) << compared.text;
-  const Outcome trained = run(alone, "light train " + in("ball") + " --way net --poses 8 --edit " +
-                                         R"('{"op": "bend", "node": "ball", "degrees": 20}')");
+  const Outcome trained = run(alone, "light train " + in("ball") + " --way net --poses 8 -o " + in("n.light") +
+                                         " --edit " + R"('{"op": "bend", "node": "ball", "degrees": 20}')");
   EXPECT_EQ(trained.code, 1);
   EXPECT_NE(trained.text.find("librebake_unet.so"), std::string::npos) << trained.text;
   EXPECT_NE(trained.text.find("libtorch-dev"), std::string::npos) << trained.text;
