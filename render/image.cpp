@@ -14,9 +14,7 @@ constexpr int compression_level = 6;  // zlib's own choice
 Image read_image(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw FileError(path, "does not exist");
   if (!std::filesystem::is_regular_file(path)) throw FileError(path, "is no regular file");
-  std::string problem;
-  const auto reader = picture_codecs(path).open(path, problem);
-  if (!reader) throw FileError(path, "cannot be read as a picture: " + problem);
+  const auto reader = open_picture(path);
   const PictureLayout& layout = reader->layout();
   if (layout.width > 32768 || layout.height > 32768) throw FileError(path, "is larger than 32768 pixels a side");
   const int channels = layout.channels;
@@ -24,7 +22,7 @@ Image read_image(const std::filesystem::path& path) {
                                 static_cast<std::size_t>(channels));
   Image image{layout.width, layout.height, {}};
   if (!reader->read(0, layout.height, channels, raw.data()))
-    throw FileError(path, "cannot be decoded, it may be truncated: " + reader->error());
+    throw FileError(path, "cannot be decoded, it may be truncated: " + picture_problem(reader->error(), path));
   image.rgb.reserve(raw.size());
   for (std::size_t p = 0; p < raw.size(); p += static_cast<std::size_t>(channels))
     for (std::size_t c = 0; c < 3; ++c) image.rgb.push_back(raw[p + (channels >= 3 ? c : 0)]);

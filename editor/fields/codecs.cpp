@@ -297,7 +297,8 @@ json Codec<FuseWay>::write(const FuseWay& value) {
 
 FieldType Codec<std::vector<std::string>>::type() { return {FieldKind::other, "list of names", "Sequence[str]", {}}; }
 std::vector<std::string> Codec<std::vector<std::string>>::read(const json& value, const Scene& scene) {
-  if (!value.is_array() || value.empty()) throw Error("must be a list of names");
+  if (!value.is_array()) throw Error("must be a list of names");
+  if (value.empty()) throw Error("must name at least one");
   std::vector<std::string> names;
   for (const json& name : value) names.push_back(Codec<std::string>::read(name, scene));
   return names;
@@ -437,7 +438,8 @@ void FieldReader::finish() const {
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   std::string best;
-  std::size_t best_distance = word.size() / 3 + 2;
+  // Less than half of a short word may be another.
+  std::size_t best_distance = std::max(std::size_t{2}, std::min(word.size() / 3 + 2, word.size() / 2 + 1));
   for (const std::string& candidate : known) {
     std::vector<std::size_t> row(candidate.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});

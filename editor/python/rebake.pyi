@@ -193,21 +193,21 @@ class Document:
 
         color: display red, green and blue (share)
         """
-    def light(self, *, effects: Sequence[str] = ["auto"], source: str = "estimated", zenith: Vector = [0.75,0.88,1.1], ground: Vector = [0.34,0.3,0.27], sun: Vector = [0.5,0.8,0.45], sun_color: Vector = [1.15,1.05,0.9], sun_degrees: float = 5.0, picture: str = "", picture_degrees: float = 0.0, content: str = "", bounce: Vector = [0.0,0.0,0.0], budget: float = 1.0, rays: int = 256) -> None:
+    def light(self, *, effects: Sequence[str] = ["auto"], source: str = "", zenith: Vector = [0.75,0.88,1.1], ground: Vector = [0.34,0.3,0.27], sun: Vector = [0.5,0.8,0.45], sun_color: Vector = [1.15,1.05,0.9], sun_degrees: float = 5.0, picture: str = "", picture_degrees: float = 0.0, content: str = "", bounce: Vector = [0.0,0.0,0.0], budget: float = 1.0, rays: int = 256) -> None:
         """Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone; highlights.
 
-        effects: auto: self, cast, removed and highlights, each where it would be seen; or some of them (highlights with self), and match: all objects in one light; none: colours stay as baked
-        source: of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground and a sun, about the objects' own upright axis; picture: of all directions
+        effects: auto: self, cast, removed and highlights, each where it would be seen; or some of them: self (shadows of what moved in itself), highlights (that it mirrors; self must be named too), cast (between objects), removed (of what is gone); and match: all objects in one light, the given one, or as the first object's is spread; none: colours stay as baked
+        source: of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground and a sun, about the objects' own upright axis; picture: of all directions; left out: the picture where one is named, else estimated
         zenith: uniform and sky: linear radiance from above, red, green and blue
         ground: sky: the same from below
         sun: sky: direction towards the sun, in the objects' own space as they were read; with match in the world
         sun_color: sky: linear, what the sun sends back from a white surface that faces it; 0, 0, 0: none
-        sun_degrees: sky: the sun's radius as seen, which softens shadows (degrees)
-        picture: file with an equirectangular picture, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF; its middle towards -z; bright spots in it become suns
+        sun_degrees: sky: the sun's radius as seen, up to 45, which softens shadows (degrees)
+        picture: file with an equirectangular picture, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF, WebP; its middle towards -z; bright spots in it become suns
         picture_degrees: by which it is turned about the upright axis (degrees)
         content: hash of the picture as projects and journals record it: anything else there is refused
         bounce: given light: linear radiance of surfaces that hide it
-        budget: how far colours may be off for what is left out, of 255
+        budget: how far colours may be off for what is left out, of 255; at most 255
         rays: from each point, 16 to 16384: about 4 % off at 64, 1.1 % at 256
         """
     def transform(self, *, node: Node, selection: bool = False, translate: Vector = [0.0,0.0,0.0], rotate: Rotation = [1.0,0.0,0.0,0.0], scale: float | Vector = [1.0,1.0,1.0], scale_axes: Rotation = [1.0,0.0,0.0,0.0], pivot: Vector | None = None) -> None:

@@ -52,20 +52,17 @@ double luminance(const Eigen::Vector3f& c) {
   return static_cast<double>(0.2126F * c[0] + 0.7152F * c[1] + 0.0722F * c[2]);  // of BT.709's primaries
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 // Reads it part by part, averaging blocks of pixels of what is wider than is kept.
 Panorama read_panorama(const fs::path& path) {
-  std::string problem;
-  const auto input = picture_codecs(path).open(path, problem);
-  if (!input)
-    throw FileError(
-        path, "cannot be read as a picture: " + first_line(problem) + "; use OpenEXR, Radiance HDR, PNG, JPEG or TIFF");
+  const auto input = open_picture(path);
   const PictureLayout& layout = input->layout();
   if (layout.part)
     throw FileError(path, fmt::format("holds {}×{} pixels of a picture of {}×{}; save it whole", layout.width,
                                       layout.height, layout.whole_width, layout.whole_height));
-  if (layout.width % 2 != 0 || layout.width / 2 != layout.height || layout.width < 4)
+  if (layout.width < 4)
+    throw FileError(path, fmt::format("is {}×{} pixels; a picture of all directions has at least 4×2", layout.width,
+                                      layout.height));
+  if (layout.width % 2 != 0 || layout.width / 2 != layout.height)
     throw FileError(path, fmt::format("is {}×{} pixels; a picture of all directions is twice as wide as high",
                                       layout.width, layout.height));
   if (layout.width > largest_width)
@@ -87,7 +84,7 @@ Panorama read_panorama(const fs::path& path) {
   for (int first = 0; first < layout.height; first += rows_at_once) {
     const int count = std::min(rows_at_once, layout.height - first);
     if (!input->read(first, count, channels, rows.data()))
-      throw FileError(path, "cannot be decoded, it may be truncated: " + first_line(input->error()));
+      throw FileError(path, "cannot be decoded, it may be truncated: " + picture_problem(input->error(), path));
     for (int y = first; y < first + count; ++y)
       for (int x = 0; x < result.width * block && y / block < result.height; ++x) {
         const float* pixel = &rows[(static_cast<std::size_t>(y - first) * static_cast<std::size_t>(layout.width) +

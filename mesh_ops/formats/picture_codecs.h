@@ -63,6 +63,11 @@ class PictureCodecs {
 
 /// Loads the module, to read a picture. Throws FileError, of that picture, where the module is not there.
 const PictureCodecs& picture_codecs(const std::filesystem::path& picture);
+/// Opens a picture of any format. Throws FileError, also for PNGs and JPEGs that end before their end is marked: JPEG
+/// readers make up what is missing.
+std::unique_ptr<PictureReader> open_picture(const std::filesystem::path& path);
+/// What codecs say of a file, on one line, without its path.
+std::string picture_problem(const std::string& error, const std::filesystem::path& path);
 
 /// The module's function that gives them.
 using GivePictureCodecs = const PictureCodecs* (*)();

@@ -16,6 +16,37 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+// The light that all objects are to stand in.
+struct MatchedLight {
+  std::shared_ptr<const Light> light;  // null: the object stays in its own
+  Mat3 to_light = Mat3::Identity();    // turns the world's directions into the light's
+  std::string why;
+};
+std::vector<MatchedLight> matched_lights(const SceneLight& settings, std::vector<LightReceiver>& receivers,
+                                         const Progress& progress) {
+  std::vector<MatchedLight> result(receivers.size());
+  if (!settings.match || receivers.empty()) return result;
+  LightReceiver& first = receivers.front();
+  if (settings.source != SceneLight::Source::estimated) {
+    // A given light stands in the world.
+    for (MatchedLight& match : result) match = {first.light(progress), Mat3::Identity(), "the given light"};
+    return result;
+  }
+  const Radiance common = first.light(progress)->mean_irradiance();
+  for (std::size_t k = 1; k < receivers.size(); ++k) {
+    // Colours tell how a light is spread, not how bright it is and of what tint beside their albedos: those stay.
+    const Radiance own = receivers[k].light(progress)->mean_irradiance();
+    if (!((common.array() > 0).all() && (own.array() > 0).all())) {
+      result[k].why = "no light could be told from colours of " + (own.minCoeff() > 0 ? first : receivers[k]).name();
+      continue;
+    }
+    result[k] = {std::make_shared<const Light>(first.light(progress)->scaled(own.cwiseQuotient(common))),
+                 first.turn().transpose(),
+                 fmt::format("spread as that of {}; as bright and of the tint that it was", first.name())};
+  }
+  return result;
+}
+
 }  // namespace
 
 std::shared_ptr<const LightMap> Lighting::map_of(NodeId node, std::size_t number, const TextureSet& set) const {
@@ -50,14 +81,11 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     result.decisions.push_back({std::move(name), false, bound, 0, std::move(why)});
     return result.decisions.size() - 1;
   };
-  LightReceiver::Shared shared;
-  if (settings.match && !receivers.empty()) {
-    shared.light = receivers.front().light(progress).get();
-    // A given light stands in the world.
-    if (estimated) shared.to_light = receivers.front().turn().transpose();
-  }
-  const auto matched = [&](std::size_t k) { return shared.light != nullptr && (!estimated || k > 0); };
-  const auto light_for = [&](std::size_t k) { return matched(k) ? shared : LightReceiver::Shared{}; };
+  const std::vector<MatchedLight> matches = matched_lights(settings, receivers, progress);
+  const auto matched = [&](std::size_t k) { return matches[k].light != nullptr; };
+  const auto light_for = [&](std::size_t k) {
+    return LightReceiver::Shared{matches[k].light.get(), matches[k].to_light};
+  };
   // Of an object that moved in itself and lost parts both shadows are traced as one; the line that follows another.
   std::map<std::size_t, std::size_t> follows;
   std::vector<std::shared_ptr<const GlossFit>> gloss(receivers.size());
@@ -140,6 +168,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     return gloss[k];
   };
   for (std::size_t k = 0; k < receivers.size(); ++k) {
+    if (!matched(k) && !matches[k].why.empty()) say("matched light " + receivers[k].name(), 0, matches[k].why);
     bool self = false, removed = false, highlights = false;
     std::vector<std::size_t> casters;
     std::vector<std::size_t> running;
@@ -174,8 +203,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       result.decisions.back().runs = true;
     }
     if (matched(k)) {
-      say("matched light " + receivers[k].name(), 1,
-          !estimated ? "the given light" : "that of " + receivers.front().name());
+      say("matched light " + receivers[k].name(), 1, matches[k].why);
       result.decisions.back().runs = true;
       result.decisions.back().seconds = seconds;
     }

@@ -51,6 +51,12 @@ SkyMap SkyMap::coarser(int factor) const {
   return result;
 }
 
+SkyMap SkyMap::scaled(const Radiance& factors) const {
+  SkyMap result = *this;
+  for (Eigen::Vector3f& texel : result.texels_) texel = texel.cwiseProduct(factors.cast<float>());
+  return result;
+}
+
 bool SkyMap::black() const {
   return std::all_of(texels_.begin(), texels_.end(), [](const Eigen::Vector3f& t) { return t.isZero(0); });
 }
@@ -71,6 +77,19 @@ Radiance SkyMap::brightest() const {
   Radiance most = Radiance::Zero();
   for (const Eigen::Vector3f& texel : texels_) most = most.cwiseMax(texel.cast<double>());
   return most;
+}
+
+Radiance Light::mean_irradiance() const {
+  Radiance sum = sky.mean();
+  // The mean of a clamped cosine over the sphere is a quarter.
+  for (const Sun& sun : suns) sum += sun.irradiance / 4;
+  return sum;
+}
+
+Light Light::scaled(const Radiance& factors) const {
+  Light result{sky.scaled(factors), suns, bounce.cwiseProduct(factors)};
+  for (Sun& sun : result.suns) sun.irradiance = sun.irradiance.cwiseProduct(factors);
+  return result;
 }
 
 Light sky_and_sun(const Radiance& ground, const Radiance& zenith, const Sun& sun, const Radiance& bounce) {

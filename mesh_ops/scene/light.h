@@ -32,6 +32,7 @@ class SkyMap {
   int side() const { return side_; }
   /// Means of `factor`² texels each; `factor` divides the side.
   SkyMap coarser(int factor) const;
+  SkyMap scaled(const Radiance& factors) const;
   const std::vector<Eigen::Vector3f>& texels() const { return texels_; }
   /// Of a texel's centre.
   Vec3 direction(std::size_t texel) const;
@@ -57,6 +58,10 @@ struct Light {
   SkyMap sky;
   std::vector<Sun> suns;
   Radiance bounce{0, 0, 0};  ///< radiance of what hides the sky: light between surfaces, roughly
+  /// Of a surface that nothing hides anything of, over π: its mean over all ways it may face.
+  Radiance mean_irradiance() const;
+  /// A channel by a factor.
+  Light scaled(const Radiance& factors) const;
   bool operator==(const Light&) const = default;
 };
 
@@ -74,7 +79,7 @@ struct SceneLight {
   bool cast = true;           ///< objects shade each other
   bool removed = true;        ///< what is gone shades no more
   bool highlights = true;     ///< what surfaces mirror stays with the light where triangles have turned
-  bool match = false;         ///< all objects stand in one light: the given one, or the first object's
+  bool match = false;         ///< all objects stand in one light: the given one, or as the first object's shines
   double budget = 1.0 / 255;  ///< of display colours, by which a picture may be off for what is left out
   int rays = 256;             ///< from each point of a surface, 16 … 16384
 

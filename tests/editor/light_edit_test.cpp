@@ -88,7 +88,9 @@ TEST_F(DocumentTest, PictureOfLightIsASourceLikeWhatIsImported) {
   Document document;
   document.keep_journal(path("journal"));
   import(document);
-  act(document, {{"op", "light"}, {"source", "picture"}, {"picture", path("sky.exr").string()}});
+  // Which source is meant goes without saying.
+  act(document, {{"op", "light"}, {"picture", path("sky.exr").string()}});
+  EXPECT_EQ(document.scene().light->source, SceneLight::Source::picture);
   const SceneLight light = *document.scene().light;
   // Turned by a quarter, +x comes to lie where −z was.
   act(document,

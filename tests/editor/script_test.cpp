@@ -345,6 +345,8 @@ TEST_F(Script, ErrorsNameLineAndField) {
   expect_error(R"({"op": "select", "node": "bal", "all": true})", "did you mean \"ball\"?");
   expect_error(R"({"op": "select", "node": "ball", "all": true, "framee": "node"})",
                "field \"framee\": is not known here; did you mean \"frame\"?");
+  expect_error(R"({"op": "select", "node": "ball", "all": true, "foo": 1})", "\"foo\": is not known here (known: ");
+  expect_error(R"({"op": "light", "effects": []})", "field \"effects\": must name at least one");
   expect_error(R"({"op": "select", "node": "ball"})", "exactly one of");
   expect_error(R"({"op": "select", "node": "ball", "sphere": {"center": [0, 0], "radius": 1}})",
                "field \"sphere\": must be a list of three numbers");

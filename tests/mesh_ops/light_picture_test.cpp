@@ -170,5 +170,52 @@ TEST_F(LightPictureTest, FilesThatAreNoPicturesOfAllDirectionsAreRefusedByName) 
     }
 }
 
+// JPEG readers make up what is missing, and say nothing.
+TEST_F(LightPictureTest, PicturesThatEndTooEarlyAreRefusedInOneLine) {
+  for (const char* name : {"a.jpg", "a.png", "a.exr", "a.tif"}) {
+    const bool floating = std::string(name) == "a.exr";
+    std::vector<float> pixels(std::size_t{64} * 32 * 3);
+    for (std::size_t k = 0; k < pixels.size(); ++k) pixels[k] = static_cast<float>(k * 37 % 101) / 101;
+    write_picture(path(name), {64, 32, 3, floating ? "float" : "uint8"}, pixels);
+    EXPECT_NO_THROW(read(name)) << name;
+    const std::string bytes = read_file(path(name));
+    for (const double share : {0.5, 0.95}) {
+      const std::string cut = std::string("cut_") + name;
+      write_text(path(cut), bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
+      try {
+        read(cut);
+        ADD_FAILURE() << cut << " was read";
+      } catch (const FileError& error) {
+        const std::string text = error.what(), file = path(cut).string();
+        EXPECT_EQ(text.find(file), text.rfind(file)) << "the path once: " << text;
+        EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+        EXPECT_NE(text.back(), '.') << text;
+      }
+    }
+  }
+}
+
+TEST_F(LightPictureTest, AThumbnailsEndIsNotThePictures) {
+  std::vector<float> pixels(std::size_t{64} * 32 * 3, 0.5F);
+  write_picture(path("a.jpg"), {64, 32, 3}, pixels);
+  std::string bytes = read_file(path("a.jpg"));
+  const std::string thumbnail = "\xff\xd8\xff\xda thumbnail \xff\xd9";
+  bytes.insert(2, std::string("\xff\xe1\x00", 3) + static_cast<char>(thumbnail.size() + 2) + thumbnail);
+  write_text(path("whole.jpg"), bytes + "a maker's own data");
+  EXPECT_NO_THROW(read("whole.jpg"));
+  write_text(path("cut.jpg"), bytes.substr(0, bytes.size() - 2));
+  EXPECT_THROW(read("cut.jpg"), FileError);
+}
+
+TEST_F(LightPictureTest, TooSmallIsSaid) {
+  write_picture(path("tiny.png"), {2, 1, 3}, std::vector<float>(6));
+  try {
+    read("tiny.png");
+    ADD_FAILURE();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("at least 4×2"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace rebake::test

@@ -1,6 +1,7 @@
 // Light that follows edits: against closed forms, known lights, and itself where nothing changed.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -408,6 +409,54 @@ TEST(Lighting, HoldsInHardCases) {
   EXPECT_NEAR(static_cast<double>(gain_of(folded_by(90, 1), sheared, {0.2, 0, 0})[0]), one, 0.03);
   // Folded onto itself, and past it.
   for (const double degrees : {179.9999, 180.0, 181.0}) gain_of(folded_by(degrees, 1), Affine::Identity(), {0.2, 0, 0});
+}
+
+// Which of two things is blue, the light or a kettle, colours do not say: what is matched takes the other's light as it
+// is spread, and keeps its own brightness and tint.
+TEST(Lighting, WhatIsMatchedKeepsItsTintAndTakesTheSideOfTheLight) {
+  // Boxes in a sky of 0.4 with 0.6 more for what faces +x.
+  const auto box_of = [](const Radiance& albedo) {
+    return lit_object(box_quads({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, 2),
+                      [&](const Vec3& at) -> Radiance { return albedo * (at.x() > 0.499 ? 1.0 : 0.4); });
+  };
+  const auto green = box_of({0.1, 0.6, 0.2}), blue = box_of({0.05, 0.2, 0.7});
+  SceneLight light;
+  light.match = true;
+  light.cast = false;
+  Scene scene = scene_with({{"green", green}, {"blue", blue}}, light);
+  scene = with_changed(scene, scene.roots[1]->id, [](Node& node) {
+    node.to_parent.linear() = Eigen::AngleAxisd(pi, Vec3::UnitY()).toRotationMatrix();
+    node.to_parent.translation() = Vec3(3, 0, 0);
+  });
+  const Lighting lighting = lighting_of(scene);
+  EXPECT_FALSE(lighting.maps.contains(scene.roots[0]->id)) << "the others are matched to it";
+  ASSERT_TRUE(lighting.maps.contains(scene.roots[1]->id));
+  const LightMap& map = *lighting.maps.at(scene.roots[1]->id).front();
+  for (int c = 0; c < 3; ++c) {
+    const auto gain = [&](const Vec3& at, double shown) {
+      return static_cast<double>(factor_at(*blue, map, at, static_cast<float>(shown))[c]);
+    };
+    const double albedo = std::array{0.05, 0.2, 0.7}[static_cast<std::size_t>(c)];
+    EXPECT_NEAR(gain({-0.5, 0.2, 0.2}, 0.4 * albedo), 2.5, 0.4) << "its back, which faces the light now";
+    EXPECT_NEAR(gain({0.5, 0.2, 0.2}, albedo), 0.4, 0.08) << "what was lit";
+    EXPECT_NEAR(gain({0.2, 0.5, 0.2}, 0.4 * albedo), 1, 0.15) << "its top";
+  }
+  EXPECT_NE(decision(lighting, "matched light blue")->why.find("spread as that of green"), std::string::npos);
+}
+
+// A first object that tells no light leaves the others in their own.
+TEST(Lighting, NothingIsMatchedToALightThatCannotBeTold) {
+  const auto line = lit_object({flat_quad({-1, 0, 0}, {2, 0, 0}, {1, 0, 0})}, [](const Vec3&) { return grey(0.4); });
+  const auto box = lit_object(box_quads({2, 0, 0}, {3, 1, 1}), [](const Vec3&) { return grey(0.4); });
+  SceneLight light;
+  light.match = true;
+  light.cast = false;
+  const Lighting lighting = lighting_of(scene_with({{"line", line}, {"box", box}}, light));
+  EXPECT_TRUE(lighting.maps.empty());
+  const LightDecision* left_out = decision(lighting, "matched light box");
+  ASSERT_NE(left_out, nullptr);
+  EXPECT_FALSE(left_out->runs);
+  EXPECT_EQ(left_out->why, "no light could be told from colours of line");
 }
 
 TEST(Lighting, InTheDarkChangesNothing) {

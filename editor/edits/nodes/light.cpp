@@ -88,7 +88,7 @@ Scene apply(const Scene& scene, const LightEdit& edit) {
     throw FieldError("sun_degrees", "must be above 0 and at most 45");
   light->sun.radius = edit.sun_degrees * std::numbers::pi / 180;
   light->sun.direction.stableNormalize();
-  const auto word = std::find(source_words.begin(), source_words.end(), edit.source);
+  const auto word = std::find(source_words.begin(), source_words.end(), edit.light_source());
   if (word == source_words.end())
     throw FieldError("source", "\"" + edit.source + "\" is not known: use estimated, uniform, sky or picture");
   light->source = static_cast<SceneLight::Source>(word - source_words.begin());
@@ -124,12 +124,17 @@ REBAKE_DESCRIBE_EDIT(
     LightEdit,
     "Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone; highlights.",
     (auto& edit, auto& visit) {
-      visit("effects", edit.effects, Need::optional,
-            "auto: self, cast, removed and highlights, each where it would be seen; or some of them (highlights with "
-            "self), and match: all objects in one light; none: colours stay as baked");
-      visit("source", edit.source, Need::optional,
-            "of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground "
-            "and a sun, about the objects' own upright axis; picture: of all directions");
+      visit(
+          "effects", edit.effects, Need::optional,
+          "auto: self, cast, removed and highlights, each where it would be seen; or some of them: self (shadows of "
+          "what moved in itself), highlights (that it mirrors; self must be named too), cast (between objects), "
+          "removed (of what is gone); and match: all objects in one light, the given one, or as the first object's is "
+          "spread; none: colours stay as baked");
+      visit(
+          "source", edit.source, Need::optional,
+          "of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground "
+          "and a sun, about the objects' own upright axis; picture: of all directions; left out: the picture where one "
+          "is named, else estimated");
       visit("zenith", edit.light.zenith, Need::optional,
             "uniform and sky: linear radiance from above, red, green and blue");
       visit("ground", edit.light.ground, Need::optional, "sky: the same from below");
@@ -137,18 +142,19 @@ REBAKE_DESCRIBE_EDIT(
             "sky: direction towards the sun, in the objects' own space as they were read; with match in the world");
       visit("sun_color", edit.light.sun.irradiance, Need::optional,
             "sky: linear, what the sun sends back from a white surface that faces it; 0, 0, 0: none");
-      visit("sun_degrees", edit.sun_degrees, Need::optional, "sky: the sun's radius as seen, which softens shadows",
-            Unit::degrees);
-      visit("picture", edit.picture, Need::optional,
-            "file with an equirectangular picture, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF; its "
-            "middle "
-            "towards -z; bright spots in it become suns");
+      visit("sun_degrees", edit.sun_degrees, Need::optional,
+            "sky: the sun's radius as seen, up to 45, which softens shadows", Unit::degrees);
+      visit(
+          "picture", edit.picture, Need::optional,
+          "file with an equirectangular picture, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF, WebP; "
+          "its middle towards -z; bright spots in it become suns");
       visit("picture_degrees", edit.picture_degrees, Need::optional, "by which it is turned about the upright axis",
             Unit::degrees);
       visit("content", edit.content, Need::optional,
             "hash of the picture as projects and journals record it: anything else there is refused");
       visit("bounce", edit.light.bounce, Need::optional, "given light: linear radiance of surfaces that hide it");
-      visit("budget", edit.budget, Need::optional, "how far colours may be off for what is left out, of 255");
+      visit("budget", edit.budget, Need::optional,
+            "how far colours may be off for what is left out, of 255; at most 255");
       visit("rays", edit.light.rays, Need::optional, "from each point, 16 to 16384: about 4 % off at 64, 1.1 % at 256");
     })
 

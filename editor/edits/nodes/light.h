@@ -8,12 +8,15 @@ namespace rebake {
 struct LightEdit {
   static constexpr const char* op = "light";
   std::vector<std::string> effects{"auto"};
-  std::string source = "estimated";
+  std::string source;  ///< empty: a picture where one is named, else estimated
   double sun_degrees = 5;
   double budget = 1;  ///< of 255
   std::string picture, content;
   double picture_degrees = 0;
   SceneLight light;  ///< the rest
+
+  /// What `source` means.
+  std::string light_source() const { return !source.empty() ? source : picture.empty() ? "estimated" : "picture"; }
 };
 template <>
 const EditType& edit_type<LightEdit>();

@@ -125,7 +125,7 @@ std::string verb_of(const Edit& edit) {
 // Sentences of edits that speak of something beside nodes and triangles; empty for others.
 std::string special(const Edit& edit) {
   if (const auto* import = edit.as<Import>()) return "Imported " + folder_title(import->path);
-  if (const auto* light = edit.as<LightEdit>(); light != nullptr && light->source == "picture")
+  if (const auto* light = edit.as<LightEdit>(); light != nullptr && light->light_source() == "picture")
     return "Light from " + std::filesystem::path(light->picture).filename().string();
   if (const auto* view = edit.as<StoreView>()) return "Stored the view \"" + view->name + "\"";
   if (const auto* view = edit.as<RenameView>())
