@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -125,6 +126,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
     if (std::filesystem::is_directory(action.report)) throw FieldError("report", "is a folder; name a file");
   }
   PlainReport report;
+  const auto start = std::chrono::steady_clock::now();
   const Lighting lighting = lit(session.scene(), session.progress);
   const Scene plain = plain_scene(scene, lighting, options, report, session.progress);
   const ExportReport written =
@@ -138,6 +140,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
       session.say(fmt::format("note: pictures cannot be compared here: {}", error.what()));
     }
   }
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (const std::string& line : lines_of(report)) session.say(line);
   const bool seen_less = report.pictures_measured && report.whole.psnr_db < options.psnr_db;
   if (!report.exact && (report.texels.whole.psnr_db < options.psnr_db || seen_less))

@@ -14,6 +14,9 @@ struct PictureErrors {
   double psnr_db = 100;        ///< over all views; 100 at most
   double worst_psnr_db = 100;  ///< of the worst view
   double ssim = 1;             ///< mean over views
+  /// Share of pixels one channel of which is further off than `far_off` of 255: what is seen as a speckle.
+  double far_off_share = 0;
+  static constexpr int far_off = 32;
 };
 
 /// What a plain folder shows, measured.
@@ -29,6 +32,7 @@ struct PlainReport {
   };
   std::vector<OfNode> nodes;
   double frame_ms = 0, composition_frame_ms = 0;  ///< medians, measured in turn
+  double seconds = 0;  ///< of the whole command: light, trials, fitting, writing and measuring; 0 where nobody took it
 };
 
 /// Twenty views all around (of forward-facing scenes: from the front), none of which features were fitted to.

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/features/branch_fit.h"
 
 namespace rebake {
 
@@ -152,7 +153,8 @@ struct FittedBlock {
 };
 
 FittedBlock fitted(const Composition& composition, const Sightlines& sightlines, const Student& student,
-                   const std::vector<FeatureNetwork>& teachers, std::size_t number, const TexelFit& fit) {
+                   const std::vector<FeatureNetwork>& teachers, const BranchFit& branches, std::size_t number,
+                   const std::optional<std::uint32_t>& branch, const TexelFit& fit) {
   const Composition::Block& block = composition.blocks[number];
   const Composition::Part& part = composition.parts[block.part];
   const FeatureNetwork& teacher = teachers[part.teacher];
@@ -169,10 +171,14 @@ FittedBlock fitted(const Composition& composition, const Sightlines& sightlines,
     const TexelGroup& group = groups[g];
     const auto seen = sightings_of(teacher, group, directions, number + g, work.data());
     Lanes features[texel_features], error;
-    first_guess(student, teacher, part, group, seen, features, work.data());
-    TexelFit own = fit;
-    if (shown_exactly(student, part)) own.iterations = 0;
-    kernels.fit_texels(student.decoder.view(), seen.data(), seen.size(), own, features, &error, work.data());
+    if (branch) {
+      branches.fit(*branch, part, group, seen, fit, features, &error, work.data());
+    } else {
+      first_guess(student, teacher, part, group, seen, features, work.data());
+      TexelFit own = fit;
+      if (shown_exactly(student, part)) own.iterations = 0;
+      kernels.fit_texels(student.decoder.view(), seen.data(), seen.size(), own, features, &error, work.data());
+    }
     for (std::size_t l = 0; l < group.count; ++l) {
       auto& bytes = result.bytes[group.site[l]];
       for (std::size_t c = 0; c < texel_features; ++c)
@@ -335,6 +341,8 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
   for (const FuseCandidate& candidate : plan.candidates) report.trials.push_back(candidate.trial);
   report.chosen = plan.chosen;
   std::vector<std::vector<float>> errors(composition.blocks.size());
+  const BranchFit branches(composition, student);
+  const auto branch_of = branches.choose(sightlines, static_cast<std::size_t>(options.iterations), progress);
   // False where time ended it.
   const auto pass = [&](const TexelFit& fit, const char* what, bool may_stop) {
     constexpr std::size_t at_once = 128;
@@ -345,7 +353,8 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
       const std::size_t some = std::min(at_once, order.size() - first);
       results.assign(some, {});
       tbb::parallel_for(std::size_t{0}, some, [&](std::size_t k) {
-        results[k] = fitted(composition, sightlines, student, teachers, order[first + k], fit);
+        results[k] = fitted(composition, sightlines, student, teachers, branches, order[first + k],
+                            branch_of[order[first + k]], fit);
       });
       for (std::size_t k = 0; k < some; ++k) {
         FeatureTexture::Change& page = *pages[composition.blocks[order[first + k]].page];

@@ -213,8 +213,12 @@ Student keeping(const Composition& composition, const TexelSample& sample, std::
                 const TrainingOptions& options, const Progress& progress) {
   const Decoder decoder =
       fold_turn(*composition.teachers[base], composition.frames[base], Axes::forward, Axes::forward);
-  Student student{
-      FeatureNetwork(decoder), new_encoder(options.seed), {{base, composition.frames[base].transpose()}}, true, true};
+  Student student{FeatureNetwork(decoder),
+                  new_encoder(options.seed),
+                  {{base, composition.frames[base].transpose()}},
+                  0,
+                  true,
+                  true};
   train_together(student, Lesson(composition, sample), options.steps / 2, false, options.rate / 4, options, progress);
   return student;
 }
@@ -231,7 +235,7 @@ Student adapted(const Student& student, const Composition& composition, const Te
 
 Student from_scratch(const Composition& composition, const TexelSample& sample, std::size_t width,
                      const TrainingOptions& options, const Progress& progress) {
-  Student student{FeatureNetwork(decoder_inputs, width, width, 3), new_encoder(options.seed), {}, false, false};
+  Student student{FeatureNetwork(decoder_inputs, width, width, 3), new_encoder(options.seed), {}, 0, false, false};
   randomise(student.decoder, options.seed + 3);
   train_together(student, Lesson(composition, sample), options.steps, true, options.rate, options, progress);
   return student;
@@ -248,6 +252,17 @@ std::array<FeatureLevels, texel_features> feature_levels(int bits, AlphaCode cod
     if (c == 0 && dropped == 0) levels[c].lowest = 1;
   }
   return levels;
+}
+
+void store_in(const Student::Branch& branch, Lanes* features) {
+  for (std::size_t l = 0; l < network_lanes; ++l) {
+    Eigen::Matrix<double, 8, 1> own;
+    for (std::size_t c = 0; c < texel_features; ++c)
+      own[static_cast<Eigen::Index>(c)] = static_cast<double>(features[c].at[l]);
+    const Eigen::Matrix<double, 8, 1> stored = branch.encode * own + branch.offset;
+    for (std::size_t c = 0; c < texel_features; ++c)
+      features[c].at[l] = static_cast<float>(std::clamp(stored[static_cast<Eigen::Index>(c)], 0.0, 1.0));
+  }
 }
 
 void first_guess(const Student& student, const FeatureNetwork& teacher, const Composition::Part& part,
@@ -273,14 +288,8 @@ void first_guess(const Student& student, const FeatureNetwork& teacher, const Co
   }
   for (const Student::Branch& branch : student.branches) {
     if (student.encoder && branch.teacher != part.teacher) continue;
-    for (std::size_t l = 0; l < network_lanes; ++l) {
-      Eigen::Matrix<double, 8, 1> own;
-      for (std::size_t c = 0; c < texel_features; ++c)
-        own[static_cast<Eigen::Index>(c)] = static_cast<double>(group.features[c].at[l]);
-      const Eigen::Matrix<double, 8, 1> stored = branch.encode * own + branch.offset;
-      for (std::size_t c = 0; c < texel_features; ++c)
-        guess[c].at[l] = static_cast<float>(std::clamp(stored[static_cast<Eigen::Index>(c)], 0.0, 1.0));
-    }
+    std::copy_n(group.features, texel_features, guess);
+    store_in(branch, guess);
     consider(guess);
   }
 }

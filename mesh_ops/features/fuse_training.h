@@ -35,7 +35,8 @@ struct Student {
     Eigen::Matrix<double, 8, 1> offset = Eigen::Matrix<double, 8, 1>::Zero();
   };
   std::vector<Branch> branches;
-  bool keeps = false;  ///< the decoder is its one branch's own, and the texels of that stay bit for bit
+  std::uint32_t selectors = 0;  ///< a bit for each feature that tells branches apart
+  bool keeps = false;           ///< the decoder is its one branch's own, and the texels of that stay bit for bit
   bool exact = false;  ///< the decoder shows what its branches' teachers show, but for the rounding of features
 };
 
@@ -74,6 +75,9 @@ Student from_scratch(const Composition& composition, const TexelSample& sample, 
 
 /// The rounding of stored features. `bits` (1 … 8) a feature; features 3 and 7 have 7 at most in halved alpha.
 std::array<FeatureLevels, texel_features> feature_levels(int bits, AlphaCode code);
+
+/// A teacher's features as a branch stores them, in place.
+void store_in(const Student::Branch& branch, Lanes* features);
 
 /// Where features start: as the branch of their teacher says that fits best, else, or where that is better, as encoded.
 void first_guess(const Student& student, const FeatureNetwork& teacher, const Composition::Part& part,

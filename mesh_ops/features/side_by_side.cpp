@@ -132,11 +132,16 @@ Eigen::VectorXd reach(const Eigen::MatrixXd& weights, const Eigen::VectorXd& bia
 }  // namespace
 
 Student side_by_side(const Composition& composition, const TexelSample& sample, std::size_t bent_turns) {
-  Student student{FeatureNetwork(decoder_inputs, 1, 1, 3), std::nullopt,
-                  chosen_branches(composition, sample, bent_turns), false, true};
+  Student student{FeatureNetwork(decoder_inputs, 1, 1, 3),
+                  std::nullopt,
+                  chosen_branches(composition, sample, bent_turns),
+                  0,
+                  false,
+                  true};
   std::vector<Branch>& branches = student.branches;
   const auto [c, e] = least_features(composition, sample);
   const std::size_t n = branches.size();
+  if (n > 1) student.selectors = 1U << c | 1U << e;
   // Every texel lies so far inside its sector that rounding to bytes cannot bring it near a border.
   const double inside = 5.0 / 255 / narrowest(n);
   std::vector<Decoder> decoders;

@@ -310,17 +310,18 @@ REBAKE_INLINE Vector on_level(Vector value, const FeatureLevels& level) {
 }
 
 // Coordinate descent over levels on the quadratic model, from the nearest ones.
-void search_levels(const Model& model, const FeatureLevels* levels, const Vector* own, Vector* found) {
+void search_levels(const Model& model, const TexelFit& fit, const Vector* own, Vector* found) {
   Vector off[features_count];
   for (std::size_t i = 0; i < features_count; ++i) off[i] = found[i] - own[i];
   for (int sweep = 0; sweep < 3; ++sweep)
     for (std::size_t i = 0; i < features_count; ++i) {
+      if ((fit.not_searched >> i & 1) != 0) continue;
       Vector slope = model.slope[i];
       for (std::size_t j = 0; j < features_count; ++j) slope += model.curvature[entry(i, j)] * off[j];
       const Vector curvature = model.curvature[entry(i, i)];
       const Vector wanted = found[i] - slope / (curvature > 0.F ? curvature : all(1.F));
-      const Vector level = on_level(greatest(least(wanted, all(1.F)), Vector{}), levels[i]);
-      found[i] = curvature > 0.F ? levels[i].first + level * levels[i].step : found[i];
+      const Vector level = on_level(greatest(least(wanted, all(1.F)), Vector{}), fit.levels[i]);
+      found[i] = curvature > 0.F ? fit.levels[i].first + level * fit.levels[i].step : found[i];
       off[i] = found[i] - own[i];
     }
 }
@@ -349,7 +350,7 @@ void fit_texels(const NetworkView& decoder, const Sighting* sightings, std::size
       linearise(decoder, sightings, count, own, mixed, at, model);
       Vector found[features_count];
       for (std::size_t c = 0; c < features_count; ++c) found[c] = tried[c];
-      search_levels(model, fit.levels, own, found);
+      search_levels(model, fit, own, found);
       const Integers better = error_of(decoder, sightings, count, found, own, mixed, at) <
                               error_of(decoder, sightings, count, tried, own, mixed, at);
       for (std::size_t c = 0; c < features_count; ++c) tried[c] = better ? found[c] : tried[c];

@@ -45,6 +45,7 @@ struct TexelFit {
   std::size_t iterations = 0;             ///< of damped Gauss–Newton on the 8 features; 0: none
   const FeatureLevels* levels = nullptr;  ///< of the 8 features, to round to; null: not rounded
   bool search = false;                    ///< looks among neighbouring levels for what fits better than the nearest
+  std::uint32_t not_searched = 0;         ///< a bit for each feature that takes its nearest level all the same
 };
 
 struct NetworkKernels {

@@ -13,16 +13,16 @@
 namespace rebake::test {
 namespace {
 
-constexpr int size = 600;  // three tiles a side, the last ones in part
+constexpr int texture_size = 600;  // three tiles a side, the last ones in part
 
 // Rectangles of all sorts that do not overlap, across tiles too.
 std::vector<PackedRect> many_rects() {
   std::vector<PackedRect> rects;
   std::mt19937 random(3);
-  for (int top = 0; top < size;) {
-    const int height = std::min<int>(1 + static_cast<int>(random() % 40), size - top);
-    for (int left = 0; left < size;) {
-      const int width = std::min<int>(1 + static_cast<int>(random() % 40), size - left);
+  for (int top = 0; top < texture_size;) {
+    const int height = std::min<int>(1 + static_cast<int>(random() % 40), texture_size - top);
+    for (int left = 0; left < texture_size;) {
+      const int width = std::min<int>(1 + static_cast<int>(random() % 40), texture_size - left);
       rects.push_back({static_cast<std::uint16_t>(left), static_cast<std::uint16_t>(top),
                        static_cast<std::uint16_t>(width), static_cast<std::uint16_t>(height)});
       left += width;
@@ -44,23 +44,24 @@ class CodedTexelKinds : public ::testing::TestWithParam<Kind> {};
 TEST_P(CodedTexelKinds, AreWhatWasCoded) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(0, 1);
-  std::vector<Texel> texels(static_cast<std::size_t>(size) * size);
+  std::vector<Texel> texels(static_cast<std::size_t>(texture_size) * texture_size);
   for (Texel& texel : texels) {
     for (auto* feat : {&texel.feat0, &texel.feat1})
       for (std::uint8_t& channel : *feat)
         channel = static_cast<std::uint8_t>(GetParam().least + random() % (GetParam().most - GetParam().least + 1U));
     if (share(random) >= GetParam().opaque) texel.feat0[0] = 0;
   }
-  const FeatureTexture texture = FeatureTexture::from_rows(size, size, AlphaCode::plain, [&](int y, Texel* row) {
-    std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(y) * size, size, row);
-  });
+  const FeatureTexture texture =
+      FeatureTexture::from_rows(texture_size, texture_size, AlphaCode::plain, [&](int y, Texel* row) {
+        std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(y) * texture_size, texture_size, row);
+      });
   const std::vector<PackedRect> rects = many_rects();
   const CodedTexels made = coded(rects, texture);
   ASSERT_EQ(made.first_block.size(), rects.size() + 1);
   for (std::size_t k = 0; k < rects.size(); ++k)
     for (int y = 0; y < rects[k].height; ++y)
       for (int x = 0; x < rects[k].width; ++x) {
-        const Texel& texel = texels[static_cast<std::size_t>(rects[k].y + y) * size + rects[k].x + x];
+        const Texel& texel = texels[static_cast<std::size_t>(rects[k].y + y) * texture_size + rects[k].x + x];
         ASSERT_EQ(decoded(made, rects[k], k, x, y), texel.opaque() ? texel : Texel{}) << k << ": " << x << ", " << y;
       }
 }
