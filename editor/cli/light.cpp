@@ -84,8 +84,9 @@ void say(const TransferModel& model) {
         "{:.1f})\n",
         100 * model.net_error, 100 * model.turning_error, 100 * model.learnt.held_back_error);
   else
-    fmt::print("error       {:.1f} % of transfer, over poses that were held back\n",
-               100 * model.learnt.held_back_error);
+    fmt::print("error       {:.1f} % of transfer, over poses that were held back{}\n",
+               100 * model.learnt.held_back_error,
+               model.turning_error > 0 ? fmt::format(" (turned along only: {:.1f})", 100 * model.turning_error) : "");
   if (model.net)
     fmt::print("net         a U-Net of {} channels on an image of {}²\n", model.net->state().channels,
                model.net->state().side);
@@ -154,7 +155,12 @@ void train(const Options& options) {
     const json edit = json::parse(text, nullptr, false);
     if (!edit.is_object()) throw FieldError("edit", "is no JSON object: " + text);
     // What is wrong with it is said before anything is traced.
-    const NodePtr after = find(apply(scene, read_edit(edit, scene)).scene, node->id);
+    NodePtr after;
+    try {
+      after = find(apply(scene, read_edit(edit, scene)).scene, node->id);
+    } catch (const EditError& error) {
+      throw FieldError("edit", std::string(error.what()) + ": " + text);
+    }
     if (!after || !after->object) throw FieldError("edit", "takes the object away that is learnt: " + text);
     edits.push_back(edit);
   }
@@ -181,7 +187,13 @@ void train(const Options& options) {
   say(model);
   const std::string bytes = bytes_of(model);
   if (!options.out.empty()) write_file_atomically(options.out, bytes, sources);
-  if (options.out.empty() || kept_results()) keep(bytes, *node->object, model.sites);
+  if (model.error() >= model.turning_error) {
+    const std::string why = "it is no better than turning alone, which drags go by without it";
+    if (options.out.empty()) throw Error("the model is not kept: " + why);
+    fmt::print("not kept: {}\n", why);
+  } else if (options.out.empty() || kept_results()) {
+    keep(bytes, *node->object, model.sites);
+  }
 }
 
 void keep_model(const Options& options) {
@@ -218,13 +230,13 @@ void describe_light(CommandDescription& command) {
                  "train, needed: what moves the object, a line as in scripts; poses take it as far as -1 to 1 times",
                  "JSON...");
   command.option("--node", options->node, "train: the object; left out: the only one", "NAME");
-  command.option("--poses", options->poses, "train: so many", "N [200]").between(8, 2000);
-  command.option("--rays", options->rays, "train: from each point", "N [128]").between(16, 16384);
+  command.option("--poses", options->poses, "train: so many, 8 to 2000", "N [200]").between(8, 2000);
+  command.option("--rays", options->rays, "train: from each point, 16 to 16384", "N [128]").between(16, 16384);
   command
       .option("--way", options->way,
               "train: linear in the pose, or net: a U-Net on an image of a smooth body around the object", "linear|net")
       .one_of(std::vector<std::string>{"linear", "net"});
-  command.option("--channels", options->channels, "train, net: of its first layer, a multiple of 8", "N [8]")
+  command.option("--channels", options->channels, "train, net: of its first layer, a multiple of 8 up to 64", "N [8]")
       .between(8, 64);
   command.option("--coarseness", options->coarseness,
                  "train, net: at least, of that body, as a share of the object's diagonal; it is coarser where it "

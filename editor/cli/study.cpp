@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include <memory>
 
 #include "editor/cli/commands.h"
@@ -52,7 +54,8 @@ void describe_study(CommandDescription& command) {
       for (const StudyTable::Row& row : table.rows) {
         fmt::print("{:<{}}", row.choice, width);
         for (std::size_t k = 0; k < row.values.size(); ++k)
-          fmt::print("  {:>{}.4g}", row.values[k], table.columns[k].size());
+          fmt::print("  {:>{}}", std::isnan(row.values[k]) ? "-" : fmt::format("{:.4g}", row.values[k]),
+                     table.columns[k].size());
         fmt::print("\n");
       }
       write_study(study, table, options->out, sources);

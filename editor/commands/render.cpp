@@ -19,7 +19,7 @@ void run(Session& session, const RenderAction& action) {
   const Image picture = session.renderer().render(scene, view, {}, &lighting);
   write_png(picture, action.out, session.document.sources());
   session.say(fmt::format("rendered {}", action.out));
-  for (const LightDecision& decision : lighting.decisions)
+  for (const LightDecision& decision : lighting.summary)
     session.say(fmt::format("light: {} {}: {}", decision.runs ? "runs" : "left out", decision.name, decision.why));
   if (const auto why = why_blank(scene, view, picture)) session.say(*why);
 }

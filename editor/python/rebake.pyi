@@ -389,10 +389,10 @@ class Document:
         """Removes triangles that nobody sees and duplicates, packs the texels that are left, and, where psnr is given, lets patches that look alike share texels and keeps fewer bits of the features: smaller folders, faster pictures.
 
         node: only this node and those inside it; left out: all that is visible. Objects hide themselves only
-        views: names of stored views: what none of their eyes sees goes
+        views: names of stored views: what none of their eyes sees goes, as far as rays find out: what was done says how sure that is
         eyes: box in the world: what no eye in it sees goes; with neither, what no eye outside the object sees
-        rays: at most, from each triangle before it counts as unseen: 1024, doubled until that finds nothing more
-        psnr: dB that texels' colours keep, against those as they are now, while patches that look alike become one (so that erasing in one erases in all of them) and features lose bits; 0: nothing of what is seen is lost
+        rays: at most, from each triangle before it counts as unseen, 16 to 1048576: 1024, doubled until that finds nothing more
+        psnr: dB that texels' colours keep, 20 to 80, against those as they are now, while patches that look alike become one (so that erasing in one erases in all of them) and features lose bits; 0: texels that are kept stay as they are
         """
     def cage(self, *, moves: Sequence[dict[str, Any]], node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, lattice: Sequence[int] | None = None, wrap: float | None = None, mesh: str | dict[str, Any] | None = None, coordinates: Literal["mean_value", "green", "harmonic"] = "mean_value", resolution: int = 32) -> None:
         """Deforms triangles by a cage around them: its points move, what is inside follows, colours turn along.

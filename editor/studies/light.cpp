@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -175,11 +176,11 @@ StudyTable study_light(const StudyInput& input) {
     const auto found = body.irradiance(estimate.light, 256, input.progress);
     const auto seen = static_cast<double>(
         std::count_if(colors.begin(), colors.end(), [](const Radiance& color) { return color.sum() > 0; }));
-    // Without a sun: 180 where there is one, 0 where there is none.
+    // 180 where only one of them has a sun; of none there is nothing to say.
     const double degrees =
         light.suns.empty() != estimate.light.suns.empty() ? 180
         : light.suns.empty()
-            ? 0
+            ? std::numeric_limits<double>::quiet_NaN()
             : std::acos(std::clamp(light.suns[0].direction.dot(estimate.light.suns[0].direction), -1.0, 1.0)) * 180 /
                   std::numbers::pi;
     table.rows.push_back({name,

@@ -140,8 +140,11 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder, "cannot be created: " + error.message());
   std::string csv = fmt::format("choice,{}\n", fmt::join(table.columns, ","));
-  for (const StudyTable::Row& row : table.rows)
-    csv += fmt::format("\"{}\",{:.6g}\n", row.choice, fmt::join(row.values, ","));
+  for (const StudyTable::Row& row : table.rows) {
+    csv += '"' + row.choice + '"';
+    for (const double value : row.values) csv += std::isnan(value) ? "," : fmt::format(",{:.6g}", value);
+    csv += '\n';
+  }
   const std::string base = (folder / study.name).string();
   write_file_atomically(base + ".csv", csv, guard);
   write_plot(study, table, table.x, base, guard);

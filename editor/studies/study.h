@@ -16,7 +16,7 @@ namespace rebake {
 struct StudyTable {
   struct Row {
     std::string choice;
-    std::vector<double> values;  ///< as many as columns
+    std::vector<double> values;  ///< as many as columns; NaN where there is none
   };
   std::vector<std::string> columns;  ///< names with units
   std::vector<Row> rows;

@@ -77,8 +77,8 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
   receivers.reserve(objects.size());
   for (std::size_t k = 0; k < objects.size(); ++k) receivers.emplace_back(objects, k, settings, options, known);
   std::vector<Candidate> candidates;
-  const auto say = [&](std::string name, double bound, std::string why) {
-    result.decisions.push_back({std::move(name), false, bound, 0, std::move(why)});
+  const auto say = [&](const char* kind, const std::string& whose, double bound, std::string why) {
+    result.decisions.push_back({kind, fmt::format("{} {}", kind, whose), false, bound, 0, std::move(why)});
     return result.decisions.size() - 1;
   };
   const std::vector<MatchedLight> matches = matched_lights(settings, receivers, progress);
@@ -95,37 +95,37 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     const bool self = settings.self && receiver.moved(), removed = settings.removed && receiver.missing();
     std::optional<std::size_t> own;
     if (!settings.self)
-      say("self-shadow " + receiver.name(), 0, "not asked for");
+      say("self-shadow", receiver.name(), 0, "not asked for");
     else if (!self)
-      say("self-shadow " + receiver.name(), 0, "no triangle moved against its object");
+      say("self-shadow", receiver.name(), 0, "no triangle moved against its object");
     else
-      own = say("self-shadow " + receiver.name(), removed ? 0 : receiver.sampled_change(true, false, progress), "");
+      own = say("self-shadow", receiver.name(), removed ? 0 : receiver.sampled_change(true, false, progress), "");
     own_line[k] = own;
     if (own && !removed) candidates.push_back({*own, k, Candidate::Kind::self});
-    if (self && !settings.highlights) say("highlights " + receiver.name(), 0, "not asked for");
+    if (self && !settings.highlights) say("highlights", receiver.name(), 0, "not asked for");
     if (self && settings.highlights) {
       gloss[k] = receiver.gloss(light_for(k), progress);
       if (gloss[k])
-        candidates.push_back({say("highlights " + receiver.name(), receiver.mirrored_change(*gloss[k]), ""), k,
+        candidates.push_back({say("highlights", receiver.name(), receiver.mirrored_change(*gloss[k]), ""), k,
                               Candidate::Kind::highlights});
       else
-        say("highlights " + receiver.name(), 0, receiver.why_matte(light_for(k)));
+        say("highlights", receiver.name(), 0, receiver.why_matte(light_for(k)));
     }
-    if (receiver.missing() && !removed) say("removed shadow " + receiver.name(), 0, "not asked for");
+    if (receiver.missing() && !removed) say("removed shadow", receiver.name(), 0, "not asked for");
     if (removed) {
       const std::size_t line =
-          say("removed shadow " + receiver.name(), receiver.sampled_change(receiver.moved(), true, progress), "");
+          say("removed shadow", receiver.name(), receiver.sampled_change(receiver.moved(), true, progress), "");
       candidates.push_back({line, k, Candidate::Kind::removed});
       if (own) follows[*own] = line;
     }
     for (std::size_t other = 0; other < receivers.size(); ++other) {
       if (other == k || receiver.related(other)) continue;
-      const std::string name = fmt::format("cast shadow {}→{}", receivers[other].name(), receiver.name());
+      const std::string pair = fmt::format("{}→{}", receivers[other].name(), receiver.name());
       if (!settings.cast)
-        say(name, 0, "not asked for");
+        say("cast shadow", pair, 0, "not asked for");
       else
-        candidates.push_back(
-            {say(name, receiver.cast_bound(other, light_for(k), progress), ""), k, Candidate::Kind::cast, other});
+        candidates.push_back({say("cast shadow", pair, receiver.cast_bound(other, light_for(k), progress), ""), k,
+                              Candidate::Kind::cast, other});
     }
   }
   // The least bounds are left out while their sum stays within the budget.
@@ -168,7 +168,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     return gloss[k];
   };
   for (std::size_t k = 0; k < receivers.size(); ++k) {
-    if (!matched(k) && !matches[k].why.empty()) say("matched light " + receivers[k].name(), 0, matches[k].why);
+    if (!matched(k) && !matches[k].why.empty()) say("matched light", receivers[k].name(), 0, matches[k].why);
     bool self = false, removed = false, highlights = false;
     std::vector<std::size_t> casters;
     std::vector<std::size_t> running;
@@ -195,21 +195,25 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     result.maps[objects[k].node->id] = receivers[k].maps(change);
     const double seconds = seconds_since(start);
     result.lights[objects[k].node->id] = receivers[k].light(progress);
-    for (const std::size_t decision : running)
+    if (matched(k)) {
+      say("matched light", receivers[k].name(), 1, matches[k].why);
+      result.decisions.back().runs = true;
+      running.push_back(result.decisions.size() - 1);
+    }
+    // An object's effects are traced as one.
+    for (const std::size_t decision : running) {
       result.decisions[decision].seconds = seconds / static_cast<double>(running.size());
+      result.decisions[decision].why +=
+          fmt::format(", took {:.2f} s{}", seconds,
+                      running.size() > 1 ? fmt::format(" with all others of {}", receivers[k].name()) : "");
+    }
     if (estimated) {
-      say("light estimate " + receivers[k].name(), 0,
+      say("light estimate", receivers[k].name(), 0,
           fmt::format("explains {:.0f} % of its colours' variance", 100 * receivers[k].confidence()));
       result.decisions.back().runs = true;
     }
-    if (matched(k)) {
-      say("matched light " + receivers[k].name(), 1, matches[k].why);
-      result.decisions.back().runs = true;
-      result.decisions.back().seconds = seconds;
-    }
   }
-  for (LightDecision& decision : result.decisions)
-    if (decision.runs && decision.seconds > 0) decision.why += fmt::format(", took {:.2f} s", decision.seconds);
+  result.summary = summed_up(result.decisions);
   return result;
 }
 
@@ -240,8 +244,10 @@ std::optional<Lighting> turned_lighting(const Scene& start_scene, const Lighting
     const std::string name = "self-shadow " + b.node->name;
     // In place of what was decided where it started.
     std::erase_if(result.decisions, [&](const LightDecision& decision) { return decision.name == name; });
-    result.decisions.push_back({name, true, 0, seconds, fmt::format("{}, took {:.0f} ms", why, 1000 * seconds)});
+    result.decisions.push_back(
+        {"self-shadow", name, true, 0, seconds, fmt::format("{}, took {:.0f} ms", why, 1000 * seconds)});
   }
+  result.summary = summed_up(result.decisions);
   return result;
 }
 

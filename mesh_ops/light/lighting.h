@@ -8,25 +8,18 @@
 #include <vector>
 
 #include "mesh_ops/base/results.h"
+#include "mesh_ops/light/light_decision.h"
 #include "mesh_ops/light/turned_light.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {
-
-/// Whether an effect of light was worked out, and why.
-struct LightDecision {
-  std::string name;  ///< such as "cast shadow kettle→ficus"
-  bool runs = false;
-  double bound = 0;    ///< of what it changes, in display colours 0 … 1; of an object's own shadows an estimate
-  double seconds = 0;  ///< of tracing, where it runs: its share of its object's
-  std::string why;
-};
 
 /// What light does to a scene's colours: a map for each texture set of the nodes where it changes any.
 struct Lighting {
   std::map<NodeId, std::vector<std::shared_ptr<const LightMap>>> maps;
   std::map<NodeId, std::shared_ptr<const Light>> lights;  ///< of those, what they were baked in
   std::vector<LightDecision> decisions;
+  std::vector<LightDecision> summary;                            ///< of these, for people
   std::map<NodeId, std::shared_ptr<const TurnedLight>> turning;  ///< of LightingOptions::turning
   double left_out = 0;                                           ///< the sum of bounds of what was left out
 

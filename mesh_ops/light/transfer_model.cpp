@@ -127,8 +127,8 @@ TransferModel learnt_model(const TurnedLight& start,
     std::vector<LightSite> sites;
   };
   std::vector<Held> held;
-  std::vector<Eigen::VectorXf> at_rest;  // transfer of the keys where nothing moved, for nets to be compared with
-  for (int k = options.net ? -1 : 0; k < options.poses; ++k) {
+  Eigen::VectorXf at_rest;  // transfer of the keys where nothing moved, which turning alone predicts
+  for (int k = -1; k < options.poses; ++k) {
     progress.at("tracing poses", std::max(0.0, static_cast<double>(k) / options.poses));
     const std::shared_ptr<const BakedObject> posed = k < 0 ? from.object : pose(k);
     if (!start.fits(*posed)) throw Error("a pose has other triangles than the object; only move them");
@@ -149,9 +149,9 @@ TransferModel learnt_model(const TurnedLight& start,
     const std::vector<sh::Coefficients> transfer =
         shown_transfer(key_sites, model.facing, rays_among({{posed, Affine::Identity()}}), options.rays);
     if (k < 0) {
-      at_rest.emplace_back(static_cast<Eigen::Index>(transfer.size() * sh::count));
+      at_rest.resize(static_cast<Eigen::Index>(transfer.size() * sh::count));
       for (std::size_t i = 0; i < transfer.size(); ++i)
-        at_rest.front().segment<sh::count>(static_cast<Eigen::Index>(i * sh::count)) = transfer[i].cast<float>();
+        at_rest.segment<sh::count>(static_cast<Eigen::Index>(i * sh::count)) = transfer[i].cast<float>();
       continue;
     }
     training.set(static_cast<std::size_t>(k), key_places, key_turns, transfer);
@@ -167,17 +167,21 @@ TransferModel learnt_model(const TurnedLight& start,
   if (!(seen.largest > least)) throw Error("nothing moves in these poses: the edit must move triangles of the object");
   // By `rebake study transfer` kernels gain nothing over it.
   model.learnt = LearntTransfer::learnt(training, {.way = TransferWay::turned_linear}, progress);
+  double off = 0, turned = 0, all = 0;
+  for (int k = 0; k < options.poses; ++k) {
+    if (!held_back(k)) continue;
+    const Eigen::VectorXf truth = training.local.row(k).transpose();
+    turned += static_cast<double>((at_rest - truth).squaredNorm());
+    all += static_cast<double>(truth.squaredNorm());
+  }
+  model.turning_error = relative(turned, all);
   if (!images) return model;
   model.net = images->learnt(*options.net, progress);
-  double off = 0, turned = 0, all = 0;
   for (const Held& one : held) {
     const Eigen::VectorXf truth = training.local.row(one.pose).transpose();
     off += static_cast<double>((model.net->predict(one.sites) - truth).squaredNorm());
-    turned += static_cast<double>((at_rest.front() - truth).squaredNorm());
-    all += static_cast<double>(truth.squaredNorm());
   }
   model.net_error = relative(off, all);
-  model.turning_error = relative(turned, all);
   return model;
 }
 
@@ -192,6 +196,7 @@ std::string bytes_of(const TransferModel& model) {
                          {"tracing_seconds", model.tracing_seconds},
                          {"learning_seconds", learnt.seconds},
                          {"held_back_error", learnt.held_back_error},
+                         {"turning_error", model.turning_error},
                          {"largest_displacement", learnt.space.largest * learnt.space.size},
                          {"keys", model.keys.size()},
                          {"probes", learnt.probes.size()},
@@ -204,8 +209,7 @@ std::string bytes_of(const TransferModel& model) {
                    {"vertices", net.chart.source.size()},
                    {"faces", net.chart.faces.size()},
                    {"learning_seconds", net.seconds},
-                   {"held_back_error", model.net_error},
-                   {"turning_error", model.turning_error}};
+                   {"held_back_error", model.net_error}};
   }
   Writer writer;
   writer.bytes = head.dump() + "\n";
@@ -238,6 +242,8 @@ TransferModel transfer_model_of(std::string_view bytes) {
     model.tracing_seconds = head.at("tracing_seconds");
     model.learnt.seconds = head.at("learning_seconds");
     model.learnt.held_back_error = head.at("held_back_error");
+    // Older files had it of nets only, beside what is said of these.
+    model.turning_error = head.value("turning_error", 0.0);
     model.learnt.way = TransferWay::turned_linear;
     const Sizes n{head.at("keys"), head.at("probes"), head.at("dimensions"), head.at("components")};
     // What is promised must be there before room is made for it; in doubles, which do not overflow.
@@ -269,7 +275,7 @@ TransferModel transfer_model_of(std::string_view bytes) {
       net->channels = about.at("channels");
       net->seconds = about.at("learning_seconds");
       model.net_error = about.at("held_back_error");
-      model.turning_error = about.at("turning_error");
+      model.turning_error = about.value("turning_error", model.turning_error);
       constexpr int most_channels = 64;
       if (net->channels < 8 || net->channels > most_channels || net->channels % 8 != 0)
         throw Error("its net has another number of channels than 8, 16 … 64");

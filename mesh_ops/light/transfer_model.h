@@ -23,7 +23,9 @@ struct TransferModel {
   LearntTransfer learnt;            ///< of the keys: TransferWay::turned_linear; with a net its range is what counts
   std::optional<UnetTransfer> net;  ///< then it is what predicts, its vertices are the keys
   double net_error = 0;             ///< relative, of the poses held back
-  double turning_error = 0;         ///< of these, when only turned along
+  double turning_error = 0;         ///< of these, when only turned along; 0 where an older file does not tell
+  /// Relative, of the poses held back, by what predicts.
+  double error() const { return net ? net_error : learnt.held_back_error; }
 
   /// Coefficients of each key in turned frames, 16 after each other, in a pose: where it lies among those learnt from,
   /// and the sites of the keys there.

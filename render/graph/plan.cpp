@@ -169,7 +169,7 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
   if (result.kept) result.covered = *changed.pixels;
   plan_passes(result, {result, device, turned, culled, hidden, changed.why}, guides != nullptr);
   if (lighting != nullptr)
-    for (const LightDecision& decision : lighting->decisions)
+    for (const LightDecision& decision : lighting->summary)
       result.passes.push_back({nullptr, decision.name, decision.runs, decision.why});
   return result;
 }

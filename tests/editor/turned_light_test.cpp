@@ -92,6 +92,7 @@ TEST(LightEdit, WhatWasLearntIsUsedWithinItsRange) {
   const auto plain = turning_now(rest);
   const TransferModel model = learnt_model(*plain, [&](int k) { return lifted(0.02 * k).roots.front()->object; },
                                            {.poses = 24, .rays = 64, .keys = 600});
+  EXPECT_LT(model.error(), 0.8 * model.turning_error) << "what was learnt says more than turning";
   const std::string bytes = bytes_of(model);
   store.keep(transfer_model_key(*rest.roots.front()->object, model.sites), bytes);
   const auto learnt = turning_now(rest);

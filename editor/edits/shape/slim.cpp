@@ -239,14 +239,20 @@ REBAKE_DESCRIBE_EDIT(
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
             "only this node and those inside it; left out: all that is visible. Objects hide themselves only");
-      visit("views", edit.views, Need::optional, "names of stored views: what none of their eyes sees goes");
+      visit("views", edit.views, Need::optional,
+            "names of stored views: what none of their eyes sees goes, as far as rays find out: what was done says how "
+            "sure that is");
       visit("eyes", edit.eyes, Need::optional,
             "box in the world: what no eye in it sees goes; with neither, what no eye outside the object sees");
       visit("rays", edit.rays, Need::optional,
-            "at most, from each triangle before it counts as unseen: 1024, doubled until that finds nothing more");
-      visit("psnr", edit.psnr, Need::optional,
-            "dB that texels' colours keep, against those as they are now, while patches that look alike become one (so "
-            "that erasing in one erases in all of them) and features lose bits; 0: nothing of what is seen is lost");
+            "at most, from each triangle before it counts as unseen, 16 to 1048576: 1024, doubled until that finds "
+            "nothing "
+            "more");
+      visit(
+          "psnr", edit.psnr, Need::optional,
+          "dB that texels' colours keep, 20 to 80, against those as they are now, while patches that look alike become "
+          "one (so that erasing in one erases in all of them) and features lose bits; 0: texels that are kept stay as "
+          "they are");
     })
 
 }  // namespace rebake

@@ -68,7 +68,7 @@ void draw_decisions(const Lighting& lighting) {
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, px(56));
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 2);
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 3);
-  for (const LightDecision& decision : lighting.decisions) {
+  for (const LightDecision& decision : lighting.summary) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     if (decision.runs)

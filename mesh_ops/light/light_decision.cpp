@@ -1,0 +1,47 @@
+#include "mesh_ops/light/light_decision.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+namespace rebake {
+
+std::vector<LightDecision> summed_up(const std::vector<LightDecision>& decisions, std::size_t most) {
+  // Those that a bound decided are alike whatever it is.
+  const auto reason = [](const LightDecision& one) {
+    return std::tuple(!one.runs, one.kind, one.bound > 0 ? std::string() : one.why);
+  };
+  std::map<decltype(reason(decisions.front())), std::vector<const LightDecision*>> alike;
+  for (const LightDecision& one : decisions) alike[reason(one)].push_back(&one);
+  std::vector<LightDecision> result;
+  for (const LightDecision& one : decisions) {
+    const std::vector<const LightDecision*>& those = alike[reason(one)];
+    if (those.size() <= most) {
+      result.push_back(one);
+      continue;
+    }
+    if (&one != those.front()) continue;
+    LightDecision sum{one.kind, fmt::format("{} {}s", those.size(), one.kind), one.runs, 0, 0, one.why};
+    double bounds = 0;
+    const LightDecision* largest = those.front();
+    for (const LightDecision* other : those) {
+      if (other->bound > largest->bound) largest = other;
+      bounds += other->bound;
+      sum.seconds += other->seconds;
+    }
+    sum.bound = largest->bound;
+    if (one.runs)
+      sum.why = fmt::format("{} changes most, by up to {:.3g} of 255; took {:.2f} s", largest->name,
+                            largest->bound * 255, sum.seconds);
+    else if (one.bound > 0)
+      sum.why = fmt::format("up to {:.3g} of 255 each, {:.3g} together", largest->bound * 255, bounds * 255);
+    result.push_back(std::move(sum));
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const LightDecision& a, const LightDecision& b) { return a.runs && !b.runs; });
+  return result;
+}
+
+}  // namespace rebake
