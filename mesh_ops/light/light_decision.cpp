@@ -32,7 +32,7 @@ std::vector<LightDecision> summed_up(const std::vector<LightDecision>& decisions
       sum.seconds += other->seconds;
     }
     sum.bound = largest->bound;
-    if (one.runs)
+    if (one.runs && one.bound > 0)
       sum.why = fmt::format("{} changes most, by up to {:.3g} of 255; took {:.2f} s", largest->name,
                             largest->bound * 255, sum.seconds);
     else if (one.bound > 0)

@@ -22,17 +22,19 @@ TEST(LightDecisions, ManyOfOneKindThatWereDecidedAlikeAreOneLine) {
     many.push_back({"cast shadow", fmt::format("cast shadow {}→a", k), false, k / 255.0, 0, "a bound"});
     many.push_back({"cast shadow", fmt::format("cast shadow a→{}", k), true, k / 51.0, 0.25, "a bound"});
     many.push_back({"self-shadow", fmt::format("self-shadow {}", k), false, 0, 0, "no triangle moved"});
+    many.push_back({"light estimate", fmt::format("light estimate {}", k), true, 0, 0, "explains 90 %"});
   }
   many.push_back({"self-shadow", "self-shadow a", false, 0, 0, "not asked for"});
   const auto said = summed_up(many);
-  ASSERT_EQ(said.size(), 4U);
+  ASSERT_EQ(said.size(), 5U);
   EXPECT_EQ(said[0].name, "20 cast shadows");
   EXPECT_TRUE(said[0].runs);
   EXPECT_EQ(said[0].why, "cast shadow a→20 changes most, by up to 100 of 255; took 5.00 s");
-  EXPECT_EQ(said[1].why, "up to 20 of 255 each, 210 together");
-  EXPECT_EQ(said[2].name, "20 self-shadows");
-  EXPECT_EQ(said[2].why, "no triangle moved");
-  EXPECT_EQ(said[3].name, "self-shadow a");
+  EXPECT_EQ(said[1].why, "explains 90 %");
+  EXPECT_EQ(said[2].why, "up to 20 of 255 each, 210 together");
+  EXPECT_EQ(said[3].name, "20 self-shadows");
+  EXPECT_EQ(said[3].why, "no triangle moved");
+  EXPECT_EQ(said[4].name, "self-shadow a");
 }
 
 }  // namespace
