@@ -138,10 +138,11 @@ void PlainPreview::show(Desk& desk, std::size_t row) {
 }
 
 void PlainPreview::draw_table(Desk& desk) {
-  if (!ImGui::BeginTable("ways", 5, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_BordersInnerH)) return;
+  if (!ImGui::BeginTable("ways", 6, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_BordersInnerH)) return;
   ImGui::TableSetupColumn("decoder", 0, 3.2F);
   ImGui::TableSetupColumn("width");
-  ImGui::TableSetupColumn("dB");
+  ImGui::TableSetupColumn("texels dB", 0, 1.4F);
+  ImGui::TableSetupColumn("here dB", 0, 1.2F);
   ImGui::TableSetupColumn("ms a frame", 0, 1.6F);
   ImGui::TableSetupColumn("seconds", 0, 1.2F);
   ImGui::TableHeadersRow();
@@ -153,12 +154,16 @@ void PlainPreview::draw_table(Desk& desk) {
     const std::string name = words_of(row.trial.way);
     if (ImGui::Selectable(name.c_str(), row_ == k, ImGuiSelectableFlags_SpanAllColumns) && row_ != k) show(desk, k);
     announce::item(fmt::format("way {}", k));
-    ui::tip(name, "",
-            k == measured_->chosen ? "What an export takes by itself. Click to compare it." : "Click to compare it.");
+    // Of the one that is shown there is nothing to say that would be worth covering the others for.
+    if (row_ != k)
+      ui::tip(name, "",
+              k == measured_->chosen ? "What an export takes by itself. Click to compare it." : "Click to compare it.");
     ImGui::TableNextColumn();
     ImGui::Text("%d", row.trial.width);
     ImGui::TableNextColumn();
     ImGui::Text("%.1f", row.trial.psnr_db);
+    ImGui::TableNextColumn();
+    row.picture ? ImGui::Text("%.1f", row.psnr_db) : ImGui::TextDisabled("–");
     ImGui::TableNextColumn();
     row.picture ? ImGui::Text("%.1f", row.frame_ms) : ImGui::TextDisabled("–");
     ImGui::TableNextColumn();
@@ -193,7 +198,8 @@ void PlainPreview::draw_wipe(float width) {
     list.AddText({corner.x + pad.x, corner.y + pad.y}, color32(theme().text), text.c_str());
   };
   caption("as it is", false);
-  caption(plain_ ? fmt::format("plain folder: {:.1f} dB", measured_->rows[shown_].psnr_db) : "plain folder ...", true);
+  caption(plain_ ? fmt::format("plain folder: {:.1f} dB here", measured_->rows[shown_].psnr_db) : "plain folder ...",
+          true);
 }
 
 bool PlainPreview::leave(Desk& desk) {
@@ -253,8 +259,10 @@ bool PlainPreview::draw(Desk& desk) {
     const float aspect = static_cast<float>(measured_->view.width) / static_cast<float>(measured_->view.height);
     draw_wipe(std::clamp(most * aspect, px(160), ImGui::GetContentRegionAvail().x));
     draw_table(desk);
-    ui::muted(fmt::format("A frame of the composition takes {:.1f} ms. dB: over a sample of texels and directions.",
-                          measured_->reference_ms));
+    ui::muted(fmt::format(
+        "Texels: a sample, each for itself. Here: this picture, where edges mix them. A frame of the composition takes "
+        "{:.1f} ms.",
+        measured_->reference_ms));
   }
   ImGui::EndChild();
   const float width = px(120);
