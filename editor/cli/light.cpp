@@ -158,8 +158,8 @@ void train(const Options& options) {
     NodePtr after;
     try {
       after = find(apply(scene, read_edit(edit, scene)).scene, node->id);
-    } catch (const EditError& error) {
-      throw FieldError("edit", std::string(error.what()) + ": " + text);
+    } catch (const Error& error) {
+      throw FieldError("edit", fmt::format("{}: {}", error.what(), text));
     }
     if (!after || !after->object) throw FieldError("edit", "takes the object away that is learnt: " + text);
     edits.push_back(edit);
@@ -246,8 +246,8 @@ void describe_light(CommandDescription& command) {
   add_axes_option(command, options->axes);
   command.footer(
       "A model lets light that goes along with drags know what turning alone cannot, at poses like those it saw. It is "
-      "kept "
-      "by the object's content; a later one of the same object takes its place.");
+      "kept by the object's content; a later one of the same object takes its place. What train finds to be no better "
+      "than turning alone is not kept.");
   command.does([options] {
     if (options->action == "train") return train(*options);
     if (options->action == "keep") return keep_model(*options);

@@ -170,6 +170,22 @@ void measure_pictures(Renderer& renderer, const Scene& composition, const Lighti
   report.pictures_measured = true;
 }
 
+namespace {
+
+void add_picture_lines(const PlainReport& report, std::vector<std::string>& lines) {
+  for (const PlainReport::OfNode& node : report.nodes)
+    lines.push_back(fmt::format("{} in pictures: {:.1f} dB", node.node, node.psnr_db));
+  lines.push_back(fmt::format(
+      "in pictures from 20 sides, where something is seen: {:.1f} dB, {:.1f} dB at the worst, SSIM {:.4f}; {:.3g} % of "
+      "pixels are more than {} of 255 off",
+      report.whole.psnr_db, report.whole.worst_psnr_db, report.whole.ssim, 100 * report.whole.far_off_share,
+      PictureErrors::far_off));
+  lines.push_back(
+      fmt::format("a frame takes {:.1f} ms, the composition {:.1f} ms", report.frame_ms, report.composition_frame_ms));
+}
+
+}  // namespace
+
 std::vector<std::string> lines_of(const PlainReport& report) {
   std::vector<std::string> lines;
   if (report.exact) {
@@ -194,18 +210,9 @@ std::vector<std::string> lines_of(const PlainReport& report) {
   if (texels.parts.size() > 1)
     lines.push_back(fmt::format("all texels: {:.1f} dB, 99 % of them {:.1f} dB or better", texels.whole.psnr_db,
                                 texels.whole.worst_psnr_db));
-  if (!report.pictures_measured) return lines;
-  for (const PlainReport::OfNode& node : report.nodes)
-    lines.push_back(fmt::format("{} in pictures: {:.1f} dB", node.node, node.psnr_db));
-  lines.push_back(fmt::format(
-      "in pictures from 20 sides, where something is seen: {:.1f} dB, {:.1f} dB at the worst, SSIM {:.4f}; {:.2g} % of "
-      "pixels are more than {} of 255 off",
-      report.whole.psnr_db, report.whole.worst_psnr_db, report.whole.ssim, 100 * report.whole.far_off_share,
-      PictureErrors::far_off));
-  lines.push_back(
-      fmt::format("a frame takes {:.1f} ms, the composition {:.1f} ms", report.frame_ms, report.composition_frame_ms));
+  if (report.pictures_measured) add_picture_lines(report, lines);
   if (report.seconds > 0)
-    lines.push_back(fmt::format("took {:.0f} s in all, with trials and measuring", report.seconds));
+    lines.push_back(fmt::format("took {:.0f} s in all, with trials and measuring", std::ceil(report.seconds)));
   return lines;
 }
 

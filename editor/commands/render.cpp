@@ -20,7 +20,7 @@ void run(Session& session, const RenderAction& action) {
   write_png(picture, action.out, session.document.sources());
   session.say(fmt::format("rendered {}", action.out));
   for (const LightDecision& decision : lighting.summary)
-    session.say(fmt::format("light: {} {}: {}", decision.runs ? "runs" : "left out", decision.name, decision.why));
+    session.say(fmt::format("light: {} {}: {}", decision.runs ? "runs" : "left out", decision.name, decision.words()));
   if (const auto why = why_blank(scene, view, picture)) session.say(*why);
 }
 

@@ -438,8 +438,8 @@ void FieldReader::finish() const {
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   std::string best;
-  // Less than half of a short word may be another.
-  std::size_t best_distance = std::max(std::size_t{2}, std::min(word.size() / 3 + 2, word.size() / 2 + 1));
+  // Less than half of a short word may be another, of two letters one.
+  std::size_t best_distance = std::max(std::size_t{2}, std::min(word.size() / 3 + 2, (word.size() + 1) / 2));
   for (const std::string& candidate : known) {
     std::vector<std::size_t> row(candidate.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});

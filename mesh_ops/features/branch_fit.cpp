@@ -133,13 +133,17 @@ std::vector<std::optional<std::uint32_t>> BranchFit::choose(const Sightlines& si
                                          std::vector<double>(student_.branches.size(), never));
   std::atomic<bool> any_choice = false;
   const std::vector<FeatureNetwork> teachers = networks_of(composition_);
-  progress.at("choosing branches", 0);
-  tbb::parallel_for(std::size_t{0}, costs.size(), [&](std::size_t b) {
+  const auto cost_of = [&](std::size_t b) {
     const Composition::Block& block = composition_.blocks[b];
     const Composition::Part& part = composition_.parts[block.part];
     const std::vector<std::uint32_t>& branches = branches_of(block);
+    if (branches.empty()) {
+      // It is fitted in any, and has no say in its neighbours'.
+      costs[b].assign(student_.branches.size(), 0);
+      return;
+    }
     if (branches.size() < 2 || shown_exactly(student_, part)) {
-      costs[b][branches.empty() ? 0 : branches.front()] = 0;
+      costs[b][branches.front()] = 0;
       return;
     }
     any_choice = true;
@@ -162,7 +166,13 @@ std::vector<std::optional<std::uint32_t>> BranchFit::choose(const Sightlines& si
                               block.opaque / static_cast<double>(looked_at);
       }
     }
-  });
+  };
+  // Between these it can be stopped.
+  constexpr std::size_t at_once = 128;
+  for (std::size_t first = 0; first < costs.size(); first += at_once) {
+    progress.at("choosing branches", static_cast<double>(first) / static_cast<double>(costs.size()));
+    tbb::parallel_for(first, std::min(first + at_once, costs.size()), cost_of);
+  }
   std::vector<std::uint32_t> labels(costs.size());
   if (any_choice)
     labels = smooth_labels(costs, borders_of(composition_));

@@ -72,8 +72,8 @@ double error_over(const Student& student, const std::vector<Sighting>& sightings
   return sum / weight_of(sightings) / static_cast<double>(texels);
 }
 
-// PSNR over the sample, as fitting would leave it: of texels alone or as pixels mix them, whichever is worse. A picture
-// shows the one or the other, by its distance.
+// PSNR over the sample, about as fitting would leave it (side by side, that keeps to one branch a block): of texels
+// alone or as pixels mix them, whichever is worse. A picture shows the one or the other, by its distance.
 double judged(const Student& student, const Composition& composition, const TexelSample& sample,
               const FuseOptions& options, const Progress& progress) {
   const std::vector<FeatureNetwork> teachers = networks_of(composition);

@@ -35,9 +35,15 @@ bool has_its_end(std::string_view bytes) {
     return false;
   }
   if (bytes.starts_with("\xff\xd8\xff")) {
-    // After the last scan's start; what embedded thumbnails hold comes before it.
-    const std::size_t scan = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
-    return scan == std::string_view::npos || (end != std::string_view::npos && end > scan);
+    // Segments say how long they are, thumbnails within them too, up to the first scan; scans hold no markers of
+    // others.
+    const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
+    for (std::size_t at = 2; at + 4 <= bytes.size() && byte(at) == 0xff;) {
+      if (byte(at + 1) == 0xda) return bytes.find("\xff\xd9", at) != std::string_view::npos;
+      // Bytes of 255 may fill the room before a marker.
+      at += byte(at + 1) == 0xff ? 1U : 2U + (byte(at + 2) << 8U | byte(at + 3));
+    }
+    return false;
   }
   return true;
 }
@@ -58,10 +64,13 @@ const PictureCodecs& picture_codecs(const std::filesystem::path& picture) {
 
 std::string picture_problem(const std::string& error, const std::filesystem::path& path) {
   std::string text = error.substr(0, error.find('\n'));
-  // What comes before the path says what the rest of the message does.
+  // What comes before the path says what the rest of the message does, if there is a rest.
   const std::string quoted = '"' + path.string() + '"';
-  if (const std::size_t at = text.find(quoted); at != std::string::npos) text.erase(0, at + quoted.size());
-  const auto left_out = [](char c) { return c == '.' || c == ' '; };
+  if (const std::size_t at = text.find(quoted); at != std::string::npos) {
+    const bool rest = text.find_first_not_of(" .)", at + quoted.size()) != std::string::npos;
+    text.erase(rest ? 0 : at, rest ? at + quoted.size() : std::string::npos);
+  }
+  const auto left_out = [](char c) { return c == '.' || c == ' ' || c == '('; };
   while (!text.empty() && left_out(text.front())) text.erase(text.begin());
   while (!text.empty() && left_out(text.back())) text.pop_back();
   return text.empty() ? "its format is not known" : text;
@@ -73,9 +82,9 @@ std::unique_ptr<PictureReader> open_picture(const std::filesystem::path& path) {
   std::string error;
   std::unique_ptr<PictureReader> reader = codecs.open(path, error);
   if (reader) return reader;
-  std::string message = "cannot be read as a picture: " + picture_problem(error, path);
-  if (!known_extension(path)) message.append("; use ").append(formats);
-  throw FileError(path, message);
+  if (!known_extension(path))
+    throw FileError(path, std::string("is in no format of pictures that is known; use ").append(formats));
+  throw FileError(path, "cannot be read as a picture: " + picture_problem(error, path));
 }
 
 }  // namespace rebake

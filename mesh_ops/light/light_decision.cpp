@@ -23,7 +23,10 @@ std::vector<LightDecision> summed_up(const std::vector<LightDecision>& decisions
       continue;
     }
     if (&one != those.front()) continue;
-    LightDecision sum{one.kind, fmt::format("{} {}s", those.size(), one.kind), one.runs, 0, 0, one.why};
+    LightDecision sum{one.kind, fmt::format("{} {}{}", those.size(), one.kind, one.kind.ends_with('s') ? "" : "s"),
+                      one.runs, 0,
+                      0,        one.why,
+                      ""};
     double bounds = 0;
     const LightDecision* largest = those.front();
     for (const LightDecision* other : those) {
@@ -33,10 +36,10 @@ std::vector<LightDecision> summed_up(const std::vector<LightDecision>& decisions
     }
     sum.bound = largest->bound;
     if (one.runs && one.bound > 0)
-      sum.why = fmt::format("{} changes most, by up to {:.3g} of 255; took {:.2f} s", largest->name,
-                            largest->bound * 255, sum.seconds);
+      sum.why = fmt::format("{} changes most, by up to {:.3g} of 255", largest->name, largest->bound * 255);
     else if (one.bound > 0)
       sum.why = fmt::format("up to {:.3g} of 255 each, {:.3g} together", largest->bound * 255, bounds * 255);
+    if (sum.seconds > 0) sum.took = fmt::format("took {:.2f} s", sum.seconds);
     result.push_back(std::move(sum));
   }
   std::stable_sort(result.begin(), result.end(),

@@ -13,6 +13,9 @@ struct LightDecision {
   double bound = 0;    ///< of what it changes, in display colours 0 … 1; of an object's own shadows an estimate
   double seconds = 0;  ///< of tracing, where it runs: its share of its object's
   std::string why;
+  std::string took;  ///< where it runs: that time, and what else it was for
+  /// Why, and how long it took.
+  std::string words() const { return took.empty() ? why : why + ", " + took; }
 };
 
 /// For people: what runs first, and of more than `most` of one kind that were decided alike one line.

@@ -37,7 +37,8 @@ std::vector<MatchedLight> matched_lights(const SceneLight& settings, std::vector
     // Colours tell how a light is spread, not how bright it is and of what tint beside their albedos: those stay.
     const Radiance own = receivers[k].light(progress)->mean_irradiance();
     if (!((common.array() > 0).all() && (own.array() > 0).all())) {
-      result[k].why = "no light could be told from colours of " + (own.minCoeff() > 0 ? first : receivers[k]).name();
+      result[k].why = "no light in all three channels could be told from colours of " +
+                      (own.minCoeff() > 0 ? first : receivers[k]).name();
       continue;
     }
     result[k] = {std::make_shared<const Light>(first.light(progress)->scaled(own.cwiseQuotient(common))),
@@ -78,7 +79,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
   for (std::size_t k = 0; k < objects.size(); ++k) receivers.emplace_back(objects, k, settings, options, known);
   std::vector<Candidate> candidates;
   const auto say = [&](const char* kind, const std::string& whose, double bound, std::string why) {
-    result.decisions.push_back({kind, fmt::format("{} {}", kind, whose), false, bound, 0, std::move(why)});
+    result.decisions.push_back({kind, fmt::format("{} {}", kind, whose), false, bound, 0, std::move(why), ""});
     return result.decisions.size() - 1;
   };
   const std::vector<MatchedLight> matches = matched_lights(settings, receivers, progress);
@@ -196,16 +197,16 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     const double seconds = seconds_since(start);
     result.lights[objects[k].node->id] = receivers[k].light(progress);
     if (matched(k)) {
-      say("matched light", receivers[k].name(), 1, matches[k].why);
+      say("matched light", receivers[k].name(), 0, matches[k].why);
       result.decisions.back().runs = true;
       running.push_back(result.decisions.size() - 1);
     }
     // An object's effects are traced as one.
     for (const std::size_t decision : running) {
       result.decisions[decision].seconds = seconds / static_cast<double>(running.size());
-      result.decisions[decision].why +=
-          fmt::format(", took {:.2f} s{}", seconds,
-                      running.size() > 1 ? fmt::format(" with all others of {}", receivers[k].name()) : "");
+      result.decisions[decision].took =
+          running.size() > 1 ? fmt::format("took {:.2f} s for all that changes {}", seconds, receivers[k].name())
+                             : fmt::format("took {:.2f} s", seconds);
     }
     if (estimated) {
       say("light estimate", receivers[k].name(), 0,
@@ -245,7 +246,7 @@ std::optional<Lighting> turned_lighting(const Scene& start_scene, const Lighting
     // In place of what was decided where it started.
     std::erase_if(result.decisions, [&](const LightDecision& decision) { return decision.name == name; });
     result.decisions.push_back(
-        {"self-shadow", name, true, 0, seconds, fmt::format("{}, took {:.0f} ms", why, 1000 * seconds)});
+        {"self-shadow", name, true, 0, seconds, why, fmt::format("took {:.0f} ms", 1000 * seconds)});
   }
   result.summary = summed_up(result.decisions);
   return result;

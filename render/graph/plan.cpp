@@ -170,7 +170,7 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
   plan_passes(result, {result, device, turned, culled, hidden, changed.why}, guides != nullptr);
   if (lighting != nullptr)
     for (const LightDecision& decision : lighting->summary)
-      result.passes.push_back({nullptr, decision.name, decision.runs, decision.why});
+      result.passes.push_back({nullptr, decision.name, decision.runs, decision.words()});
   return result;
 }
 

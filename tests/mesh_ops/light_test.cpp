@@ -456,7 +456,7 @@ TEST(Lighting, NothingIsMatchedToALightThatCannotBeTold) {
   const LightDecision* left_out = decision(lighting, "matched light box");
   ASSERT_NE(left_out, nullptr);
   EXPECT_FALSE(left_out->runs);
-  EXPECT_EQ(left_out->why, "no light could be told from colours of line");
+  EXPECT_EQ(left_out->why, "no light in all three channels could be told from colours of line");
 }
 
 TEST(Lighting, InTheDarkChangesNothing) {

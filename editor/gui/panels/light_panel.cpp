@@ -78,8 +78,8 @@ void draw_decisions(const Lighting& lighting) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(ui::shortened(decision.name, ImGui::GetContentRegionAvail().x).c_str());
     ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", ui::shortened(decision.why, ImGui::GetContentRegionAvail().x).c_str());
-    ui::tip(decision.name, "", decision.why);
+    ImGui::TextDisabled("%s", ui::shortened(decision.words(), ImGui::GetContentRegionAvail().x).c_str());
+    ui::tip(decision.name, "", decision.words());
   }
   ImGui::EndTable();
 }
