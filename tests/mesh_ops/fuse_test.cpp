@@ -352,15 +352,20 @@ TEST_P(FuseHardCases, OneTexelAndNone) {
       0U);
 }
 
-TEST(Fuse, BendsAreFittedTriangleByTriangle) {
-  const auto straight = made_object(small(1));
-  auto bent = std::make_shared<BakedObject>(*straight);
-  const Soup& soup = straight->sets[0].soup;
+// Turned about z, by so many radians a unit of height.
+std::shared_ptr<const BakedObject> bent_by(double radians) {
+  auto bent = std::make_shared<BakedObject>(*made_object(small(1)));
+  const Soup& soup = bent->sets[0].soup;
   bent->sets[0].soup = change_vertices(soup, std::vector<std::uint8_t>(soup.triangle_count(), 1), 0,
-                                       [](std::uint32_t /*vertex*/, Vec3& p, Mat3& turn) {
-                                         turn = Eigen::AngleAxisd(0.8 * p.y(), Vec3::UnitZ()).toRotationMatrix();
+                                       [radians](std::uint32_t /*vertex*/, Vec3& p, Mat3& turn) {
+                                         turn = Eigen::AngleAxisd(radians * p.y(), Vec3::UnitZ()).toRotationMatrix();
                                          p = turn * p;
                                        });
+  return bent;
+}
+
+TEST(Fuse, BendsAreFittedTriangleByTriangle) {
+  const auto bent = bent_by(0.8);
   FuseOptions options;
   options.width = 80;
   const Result result = fused(with({}, bent), options);
@@ -377,14 +382,7 @@ TEST(Fuse, BendsAreFittedTriangleByTriangle) {
 
 // Where two branches meet in a pixel, it shows neither's colour: a patch is of one, and no fit takes texels out of it.
 TEST(Fuse, TexelsOfABlockStayInOneBranch) {
-  const auto straight = made_object(small(1));
-  auto bent = std::make_shared<BakedObject>(*straight);
-  const Soup& soup = straight->sets[0].soup;
-  bent->sets[0].soup = change_vertices(soup, std::vector<std::uint8_t>(soup.triangle_count(), 1), 0,
-                                       [](std::uint32_t /*vertex*/, Vec3& p, Mat3& turn) {
-                                         turn = Eigen::AngleAxisd(2 * p.y(), Vec3::UnitZ()).toRotationMatrix();
-                                         p = turn * p;
-                                       });
+  const auto bent = bent_by(2);
   const Scene scene = with({}, bent);
   FuseOptions options;
   options.way = FuseWay::side_by_side;

@@ -109,7 +109,8 @@ TEST_F(LightPictureTest, ManyBrightPointsAreNoSuns) {
                       [&](const Vec3&) { return Radiance::Constant(++number % 97 == 0 ? 50 + number % 89 : 0.2); });
   const auto start = std::chrono::steady_clock::now();
   const LightPicture picture = read("stars.exr");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  // A second, and minutes where thousands of them are looked at; sanitized on a busy machine half a minute.
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(thorough > 1 ? 20 : 200));
   EXPECT_LE(picture.light.suns.size(), 4U);
   EXPECT_NEAR(picture.light.sky.mean()[0], 0.2 + 94.0 / 97, 0.15);
 }
