@@ -1,5 +1,9 @@
 #include "render/image.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/picture_codecs.h"
@@ -29,8 +33,19 @@ Image read_image(const std::filesystem::path& path) {
   return image;
 }
 
+void check_png_path(const std::filesystem::path& path, const SourceGuard& guard) {
+  static constexpr std::array other_formats{".jpg", ".jpeg", ".webp", ".gif", ".bmp",  ".tif",  ".tiff", ".exr",
+                                            ".hdr", ".tga",  ".ppm",  ".jxl", ".avif", ".heic", ".svg",  ".pdf"};
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (std::find(other_formats.begin(), other_formats.end(), extension) != other_formats.end())
+    throw FileError(path, "pictures are written as PNG; name a .png file");
+  guard.check_file(path);
+}
+
 void write_png(const Image& image, const std::filesystem::path& path, const SourceGuard& guard) {
-  guard.check_file(path);  // before the work
+  check_png_path(path, guard);
   write_file_atomically(path, encode_png(image.width, image.height, 3, image.rgb, compression_level), guard);
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/cli/commands.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 
@@ -27,6 +28,7 @@ void describe_compare(CommandDescription& command) {
   command.option("--min-psnr", options->least_psnr, "exit with 3 below this", "dB");
   command.flag("--json", options->json, "machine-readable; psnr_db is null for equal pictures");
   command.does([options] {
+    if (std::isnan(options->least_psnr)) throw FieldError("--min-psnr", "must be a number of decibels");
     const Difference d = compare(read_image(options->a), read_image(options->b), options->tolerance);
     if (options->json) {
       nlohmann::json out = {{"ssim", d.ssim},

@@ -66,6 +66,7 @@ Opened read_all(const std::vector<std::string>& folders, const std::string& axes
       const Document document = Document::open(folder, {}, progress);
       read = document.scene();
       add_sources(opened.sources, document.history().edits());
+      opened.sources.add_file(folder, "the project that is open");
     } else {
       read = read_any(folder, axes_of(axes), progress);
       opened.sources.add(scene_folder_of(folder));
@@ -153,6 +154,10 @@ View ViewOptions::view(const Scene& scene) const {
   view.camera = fitted(scene, view.camera, aspect);
   check(view);
   return view;
+}
+
+void ViewOptions::protect_files(SourceGuard& sources) const {
+  if (std::filesystem::is_regular_file(camera_file)) sources.add_file(camera_file, "the camera file of this run");
 }
 
 RenderOptions ViewOptions::render_options() const {

@@ -40,6 +40,8 @@ struct ViewOptions {
   View view(const Scene& scene) const;
   RenderOptions render_options() const;
   void set_background(Scene& scene) const;
+  /// Protects the camera file, if one is given.
+  void protect_files(SourceGuard& sources) const;
 };
 
 }  // namespace rebake

@@ -93,9 +93,10 @@ json audited(const Scene& scene, const View& view, const RenderOptions& how, con
 void render(const Rendering& options) {
   if (options.out.empty() && !options.plan && !options.audit && options.time == 0)
     throw FieldError("-o", "is missing: name a PNG to write (or give --plan, --audit or --time)");
-  if (!options.out.empty() && std::filesystem::path(options.out).extension() == ".jpg")
-    throw FieldError("-o", "pictures are written as PNG; name a .png file");
+  if (!options.out.empty()) check_png_path(options.out, {});
   auto [scene, sources] = read_all(options.folders, options.axes, progress_bar());
+  options.view.protect_files(sources);
+  if (!options.out.empty()) check_png_path(options.out, sources);
   options.view.set_background(scene);
   const View view = options.view.view(scene);
   const RenderOptions how = options.view.render_options();

@@ -108,6 +108,7 @@ void describe_run(CommandDescription& command) {
       }
     }
     const std::string script = read_input(options->script);
+    session.document.protect_file(options->script, "the script of this run");
     if (!options->journal.empty()) session.document.keep_journal(options->journal);
     if (!options->scene.empty()) {
       variables["name"] = folder_title(options->scene);

@@ -37,6 +37,8 @@ void describe_study(CommandDescription& command) {
       if (options->scenes.empty()) options->scenes.push_back(default_study_scene().string());
       auto [scene, sources] = read_all(options->scenes, options->axes, progress_bar());
       options->view.set_background(scene);
+      options->view.protect_files(sources);
+      prepare_study_folder(study, options->out, sources);
       std::unique_ptr<Renderer> renderer;
       const auto on_demand = [&]() -> Renderer& {
         if (!renderer) renderer = std::make_unique<Renderer>();

@@ -12,6 +12,7 @@
 namespace rebake {
 
 void run(Session& session, const RenderAction& action) {
+  check_png_path(action.out, session.document.sources());
   const Scene scene = with_only(session.scene(), action.nodes);
   const View view = chosen_view(scene, action.camera, action.view, action.width, action.height, action.samples);
   // What is not shown still shades.

@@ -54,12 +54,37 @@ Box dense_bounds(const Scene& scene) {
   return box;
 }
 
+// Names what lies so far out that no camera can hold it, before a camera's own numbers are blamed.
+void check_reach(const Scene& scene) {
+  constexpr double farthest = 1e150;  // the square of a distance must be a number
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.visible || !placed.node->object) continue;
+    const Box box = transformed(placed.node->object->bounds(), placed.to_world);
+    if (box.isEmpty() || (box.min().cwiseAbs().maxCoeff() <= farthest && box.max().cwiseAbs().maxCoeff() <= farthest))
+      continue;
+    for (std::size_t set = 0; set < placed.node->object->sets.size(); ++set) {
+      const std::vector<Vec3>& positions = placed.node->object->sets[set].soup.positions();
+      const auto far = std::find_if(positions.begin(), positions.end(), [&](const Vec3& p) {
+        const Vec3 world = placed.to_world * p;
+        return world.allFinite() && world.cwiseAbs().maxCoeff() > farthest;
+      });
+      if (far == positions.end()) continue;
+      const Vec3 world = placed.to_world * *far;
+      throw EditError(fmt::format(
+          "node \"{}\": vertex {} of texture set {} lies at ({:.3g}, {:.3g}, {:.3g}), too far out to be drawn; delete "
+          "it, or hide or move the node",
+          placed.node->name, far - positions.begin(), set, world.x(), world.y(), world.z()));
+    }
+  }
+}
+
 }  // namespace
 
 Camera framing_of(const Scene& scene, double aspect, double fov_degrees) {
   bool forward = true;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.visible && placed.node->object) forward = forward && placed.node->object->axes == Axes::forward;
+  check_reach(scene);
   const Box all = world_bounds(scene);
   if (forward) return framing(all, aspect, forward, fov_degrees);
   // A backdrop far around what was photographed is no place to look from.
@@ -75,6 +100,7 @@ Camera framing_of(const Scene& scene, double aspect, double fov_degrees) {
 
 Camera fitted(const Scene& scene, const Camera& camera, double aspect) {
   if (camera.near_plane > 0 && camera.far_plane > 0) return camera;
+  check_reach(scene);
   return with_planes(camera, world_bounds(scene), aspect);
 }
 

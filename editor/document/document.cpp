@@ -153,7 +153,13 @@ std::vector<std::string> Document::Recovered::first_lost() const {
 SourceGuard Document::sources() const {
   SourceGuard guard = imported_;
   add_sources(guard, scene());
+  if (journal_) guard.add_file(journal_->path(), "the journal that keeps this work safe");
   return guard;
+}
+
+void Document::protect_files_of(const json& edit) {
+  if (edit.is_object() && edit.contains("mesh") && edit.at("mesh").is_string())
+    protect_file(edit.at("mesh").get<std::string>(), "the mesh of a cage that this run reads");
 }
 
 void Document::keep_journal(const fs::path& path) {
@@ -240,6 +246,9 @@ bool Document::redo_step(const Progress& progress) {
 
 void Document::save(const fs::path& project, const Progress& progress) const {
   if (!starts_empty_) throw Error("only what was imported by edits can be saved as a project");
+  if (Journal::is_journal(project))
+    throw FileError(project,
+                    "is a journal that may hold work: get it back with \"rebake recover\", or name another file");
   write_project(project, history_.edits(), history_.joined(), sources(), progress);
 }
 

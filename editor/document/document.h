@@ -32,6 +32,10 @@ class Document {
   SourceGuard sources() const;
   /// Nothing may be written over this folder either.
   void protect(const std::filesystem::path& source) { imported_.add(source); }
+  /// Nothing may be written over this file either. `role` as SourceGuard::add_file takes it.
+  void protect_file(const std::filesystem::path& file, const std::string& role) { imported_.add_file(file, role); }
+  /// Protects the files that reading an edit's JSON reads: the mesh of a cage.
+  void protect_files_of(const nlohmann::json& edit);
 
   /// From here on every edit is in a journal and on the disk before edit() returns. What was done before is written
   /// first. Throws FileError when there is a journal at that path already, and Error for a document that did not start

@@ -3,10 +3,12 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -86,7 +88,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
     } else if (follows && number > 0) {
       contents.entries.push_back(text);
       parsed.good_bytes = begin;
-    } else if (number > 0 && begin == bytes.size()) {
+    } else if (number > 0 && !ends) {
       contents.torn = true;  // the last line: it was being written
     } else if (number > 0) {
       contents.damaged_line = number + 1;
@@ -123,6 +125,8 @@ class Journal::File {
 
   void append(const std::vector<json>& entries) {
     if (damaged_) throw FileError(path_, "is damaged: nothing can be written behind that");
+    if (!is_in_place())
+      throw FileError(path_, "was removed or replaced by another file, so work cannot be kept safe in it; save now");
     std::string lines;
     std::uint64_t next = next_;
     for (json entry : entries) {
@@ -145,7 +149,19 @@ class Journal::File {
   }
   const fs::path& path() const { return path_; }
 
+  void discard() {
+    if (is_in_place()) remove_file(path_);
+  }
+
  private:
+  // Whether the path still names the file that is written.
+  bool is_in_place() const {
+    struct stat written {
+    }, named{};
+    return ::fstat(descriptor_.value, &written) == 0 && file_calls().stat(path_.c_str(), &named) == 0 &&
+           written.st_dev == named.st_dev && written.st_ino == named.st_ino;
+  }
+
   static int open(const fs::path& path, int flags) {
     const int descriptor = file_calls().open(path.c_str(), flags | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno == EEXIST)
@@ -204,7 +220,18 @@ Journal Journal::resume(const fs::path& path, Contents& contents) {
 
 void Journal::append(const json& entry) { file_->append({entry}); }
 const fs::path& Journal::path() const { return file_->path(); }
-void Journal::discard() { remove_file(file_->path()); }
+void Journal::discard() { file_->discard(); }
+
+bool Journal::is_journal(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return false;
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(256, '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(file.gcount()));
+  const std::string first = begin.substr(0, begin.find('\n'));
+  return first.find("\"rebake_journal\"") != std::string::npos;
+}
 
 bool Journal::in_use(const fs::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);

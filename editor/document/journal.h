@@ -32,10 +32,11 @@ class Journal {
   Journal(Journal&&) noexcept;
   Journal& operator=(Journal&&) noexcept;
 
-  /// Appends one entry and waits until it is on the disk. Throws FileError; the journal then ends before the entry.
+  /// Appends one entry and waits until it is on the disk. Throws FileError, also when another file has taken its path;
+  /// the journal then ends before the entry.
   void append(const nlohmann::json& entry);
   const std::filesystem::path& path() const;
-  /// Removes the file: the work is safe elsewhere. Throws FileError.
+  /// Removes the file: the work is safe elsewhere. Leaves a file that has taken its path. Throws FileError.
   void discard();
 
   /// What a journal holds, in order.
@@ -49,6 +50,8 @@ class Journal {
     };
     std::vector<Line> after;  ///< whole lines behind the damage
   };
+  /// Whether the file begins as a journal does, whole or damaged.
+  static bool is_journal(const std::filesystem::path& path);
   /// Whether another process is writing it now.
   static bool in_use(const std::filesystem::path& path);
   /// Throws FileError for a file that is no journal or is from a newer version.

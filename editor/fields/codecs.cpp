@@ -166,7 +166,12 @@ json Codec<Scale>::write(const Scale& value) { return list(value.value); }
 
 FieldType Codec<BoxRegion>::type() { return {FieldKind::other, "{\"min\": [x, y, z], \"max\": [x, y, z]}", "Box", {}}; }
 BoxRegion Codec<BoxRegion>::read(const json& value, const Scene&) {
-  return {vector(part(value, "min", {"min", "max"})), vector(part(value, "max", {"min", "max"}))};
+  const BoxRegion box{vector(part(value, "min", {"min", "max"})), vector(part(value, "max", {"min", "max"}))};
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.min[axis] > box.max[axis])
+      throw Error(fmt::format("min {0} is above max {0} ({1} > {2}), so nothing lies inside; exchange them",
+                              "xyz"[axis], box.min[axis], box.max[axis]));
+  return box;
 }
 json Codec<BoxRegion>::write(const BoxRegion& value) { return {{"min", list(value.min)}, {"max", list(value.max)}}; }
 
@@ -411,10 +416,10 @@ std::string words_of(const FieldLine& field) {
   return fmt::format("{}, {} {}", field.type.words, bare ? "as a" : "in", to_string(field.unit));
 }
 
-const json* FieldReader::find(const char* name, Need need) const {
+const json* FieldReader::find(const char* name, Need need) {
   const auto found = object_.find(name);
   if (found != object_.end()) return &*found;
-  if (need == Need::required) throw FieldError(name, "is missing");
+  if (need == Need::required) missing_.emplace_back(name);
   return nullptr;
 }
 
@@ -430,10 +435,12 @@ void FieldLister::add(const char* name, FieldType type, const json& initial, Nee
 void FieldReader::finish() const {
   for (const auto& [name, value] : object_.items()) {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    const std::string near = nearest_word(name, known_);
+    // Of similar names the one that is missing was meant.
+    const std::string meant = nearest_word(name, missing_), near = meant.empty() ? nearest_word(name, known_) : meant;
     throw FieldError(name, near.empty() ? fmt::format("is not known here (known: {})", fmt::join(known_, ", "))
                                         : fmt::format("is not known here; did you mean \"{}\"?", near));
   }
+  if (!missing_.empty()) throw FieldError(missing_.front(), "is missing");
 }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {

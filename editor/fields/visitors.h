@@ -38,16 +38,17 @@ class FieldReader {
       throw FieldError(name, error.what());
     }
   }
-  /// Throws FieldError for a field that nothing has read, suggesting the nearest known one.
+  /// Throws FieldError for a field that nothing has read, suggesting the nearest known one, and for a required field
+  /// that is missing. To be called when all fields are read.
   void finish() const;
 
  private:
-  // Null where it is left out; throws FieldError where it must not be.
-  const nlohmann::json* find(const char* name, Need need) const;
+  // Null when it is left out.
+  const nlohmann::json* find(const char* name, Need need);
 
   const nlohmann::json& object_;
   const Scene& scene_;
-  std::vector<std::string> known_{"op"};
+  std::vector<std::string> known_{"op"}, missing_;
 };
 
 /// Writes all fields that have a value.

@@ -124,6 +124,7 @@ py::dict selections_of(PyDocument& document) {
 Edit edit_once(PyDocument& document, const json& line) {
   std::optional<Edit> made;
   document.work([&](Session& session) {
+    session.document.protect_files_of(line);
     made = read_edit(line, session.scene());
     session.edit(*made);
   });

@@ -97,7 +97,9 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
     };
     try {
       const json object = read_line(std::string_view(line).substr(first));
-      const ScriptCommand command = read_command(with_variables(object, variables), session.scene());
+      const json filled = with_variables(object, variables);
+      session.document.protect_files_of(filled);
+      const ScriptCommand command = read_command(filled, session.scene());
       if (const Edit* edit = std::get_if<Edit>(&command))
         session.edit(*edit);
       else

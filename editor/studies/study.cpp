@@ -1,7 +1,6 @@
 #include "editor/studies/study.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
@@ -103,12 +103,25 @@ double median_milliseconds(int repeats, const std::function<void()>& run) {
 
 namespace {
 
-// BASE.svg and BASE.png: the column `x` against the table's `y`.
+// A field of a CSV file (RFC 4180).
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
+}
+
+// BASE.svg and BASE.png: the column `x` against the table's `y`; nothing when no row has finite numbers for both.
 void write_plot(const Study& study, const StudyTable& table, std::size_t x, const std::string& base,
                 const SourceGuard& guard) {
   std::string data, points;
-  for (std::size_t k = 0; k < table.rows.size(); ++k) {
-    const StudyTable::Row& row = table.rows[k];
+  std::vector<StudyTable::Row> rows;
+  std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(rows), [&](const StudyTable::Row& row) {
+    return std::isfinite(row.values[x]) && std::isfinite(row.values[table.y]);
+  });
+  if (rows.empty()) return;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const StudyTable::Row& row = rows[k];
     // A logarithm has no zero: what is exact is drawn at the bottom.
     const auto drawn = [](double value, bool log) { return log ? std::max(value, 1e-17) : value; };
     data += fmt::format("{} {}\n", drawn(row.values[x], table.log_x), drawn(row.values[table.y], table.log_y));
@@ -133,15 +146,22 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
 
 }  // namespace
 
-void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
-                 const SourceGuard& guard) {
+void prepare_study_folder(const Study& study, const std::filesystem::path& folder, const SourceGuard& guard) {
   guard.check_file(folder / study.name);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder, "cannot be created: " + error.message());
-  std::string csv = fmt::format("choice,{}\n", fmt::join(table.columns, ","));
+  if (::access(folder.c_str(), W_OK) != 0) throw FileError(folder, "cannot be written to");
+}
+
+void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
+                 const SourceGuard& guard) {
+  prepare_study_folder(study, folder, guard);
+  std::string csv = quoted("choice");
+  for (const std::string& column : table.columns) csv += ',' + quoted(column);
+  csv += '\n';
   for (const StudyTable::Row& row : table.rows) {
-    csv += '"' + row.choice + '"';
+    csv += quoted(row.choice);
     for (const double value : row.values) csv += std::isnan(value) ? "," : fmt::format(",{:.6g}", value);
     csv += '\n';
   }

@@ -82,5 +82,7 @@ double median_milliseconds(int repeats, const std::function<void()>& run);
 /// without it). `guard` says where nothing may be written.
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
                  const SourceGuard& guard);
+/// Makes the folder, so that what is in the way is found before anything is measured. Throws FileError.
+void prepare_study_folder(const Study& study, const std::filesystem::path& folder, const SourceGuard& guard);
 
 }  // namespace rebake

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <limits>
 #include <set>
 
 #include "editor/studies/deforming.h"
@@ -25,7 +26,9 @@ StudyTable study_wrap(const StudyInput& input) {
     table.rows.push_back(
         {fmt::format("{}", coarseness),
          {time, bind, static_cast<double>(cage.vertices.size()), static_cast<double>(cage.faces.size()),
-          static_cast<double>(std::set(component.begin(), component.end()).size()), volume(cage) / box.volume()}});
+          static_cast<double>(std::set(component.begin(), component.end())
+                                  .size()),  // A flat object's box has no volume to compare with.
+          box.volume() > 0 ? volume(cage) / box.volume() : std::numeric_limits<double>::quiet_NaN()}});
   }
   return table;
 }

@@ -21,6 +21,7 @@ int FileCalls::rename(const char* from, const char* to, unsigned flags) {
   return flags == 0 ? ::rename(from, to) : ::renameat2(AT_FDCWD, from, AT_FDCWD, to, flags);
 }
 int FileCalls::unlink(const char* path) { return ::unlink(path); }
+int FileCalls::stat(const char* path, struct stat* about) { return ::stat(path, about); }
 
 namespace {
 

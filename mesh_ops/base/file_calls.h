@@ -1,13 +1,14 @@
 #pragma once
 
+#include <sys/stat.h>
 #include <sys/types.h>
 
 #include <cstddef>
 
 namespace rebake {
 
-/// What writing asks of the system, all in one place: tests put another in its stead, to see the order of calls and to
-/// let one fail. Each returns what the call of its name does, and sets errno.
+/// System calls for writing and for telling files apart, in one place: tests replace them to see the order of calls, to
+/// let one fail or to inject answers. Each returns what the call of its name does, and sets errno.
 class FileCalls {
  public:
   virtual ~FileCalls() = default;
@@ -20,6 +21,7 @@ class FileCalls {
   /// `flags` as of renameat2.
   virtual int rename(const char* from, const char* to, unsigned flags);
   virtual int unlink(const char* path);
+  virtual int stat(const char* path, struct stat* about);
 };
 
 /// Those in use.

@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/file_calls.h"
@@ -113,6 +115,20 @@ void make_folders(const fs::path& folder) {
   sync_folder(folder.parent_path());
 }
 
+// Opening a pipe that nobody reads would block for ever.
+void wait_for_reader(const fs::path& pipe) {
+  constexpr std::chrono::seconds patience(5);
+  constexpr std::chrono::milliseconds pause(20);
+  for (const auto end = std::chrono::steady_clock::now() + patience;;) {
+    const Descriptor reader{::open(pipe.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK)};
+    if (reader.value >= 0) return;
+    if (errno != ENXIO && errno != EINTR) fail(pipe, "cannot be written");
+    if (std::chrono::steady_clock::now() > end)
+      throw FileError(pipe, "is a pipe that no program reads; start its reader first, or name a file");
+    std::this_thread::sleep_for(pause);
+  }
+}
+
 // Through symbolic links: what they point to is replaced, not the link.
 fs::path followed(const fs::path& path) {
   std::error_code error;
@@ -182,6 +198,7 @@ void write_file_atomically(const fs::path& named, std::string_view bytes, const 
   if (fs::is_directory(path)) throw FileError(named, "is a folder; name a file to write to");
   if (fs::exists(path) && !fs::is_regular_file(path)) {
     // Devices and pipes are written to; a rename would put a file in their place.
+    if (fs::is_fifo(path)) wait_for_reader(named);
     const OutputFile file(path, O_WRONLY);
     std::size_t written = 0;
     while (written < bytes.size()) {

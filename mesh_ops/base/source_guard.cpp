@@ -1,8 +1,11 @@
 #include "mesh_ops/base/source_guard.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/file_calls.h"
 
 namespace rebake {
 
@@ -10,7 +13,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Without links, dots and a slash at the end; what is not there yet by its name.
+// Folders with more entries than this hold no scene, and are not searched for links or protected files.
+constexpr std::size_t most_entries = 20000;
+
+// Without links, dots and a slash at the end; the part that does not exist yet by its name.
 fs::path plain_path(const fs::path& path) {
   std::error_code error;
   fs::path result = fs::weakly_canonical(fs::absolute(path), error);
@@ -22,40 +28,99 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
+// Calls `visit` with every entry below a folder, links not followed.
+template <class Visit>
+void for_each_entry(const fs::path& folder, const Visit& visit) {
+  std::error_code error;
+  std::size_t count = 0;
+  for (fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, error), end;
+       !error && at != end && count < most_entries; at.increment(error), ++count)
+    visit(*at);
+}
+
 }  // namespace
+
+std::vector<SourceGuard::Identity> SourceGuard::identity_of(const fs::path& path) {
+  struct stat about {};
+  if (file_calls().stat(path.c_str(), &about) != 0) return {};
+  return {{about.st_dev, about.st_ino}};
+}
+
+bool SourceGuard::is_same(const Source& source, const fs::path& path) {
+  const std::vector<Identity> there = identity_of(path);
+  return !there.empty() && (there == source.seen || there == identity_of(source.path));
+}
 
 void SourceGuard::add(const fs::path& source) {
   std::error_code error;
   const bool file = fs::is_regular_file(source, error) || source.filename() == "scene.json";
-  add_path(plain_path(file ? fs::absolute(source).parent_path() : source));
+  const fs::path folder = plain_path(file ? fs::absolute(source).parent_path() : source);
+  add_source({folder, true, "a source of this scene", identity_of(folder)});
+  for_each_entry(folder, [&](const fs::directory_entry& entry) {
+    std::error_code ignored;
+    if (!entry.is_symlink(ignored)) return;
+    const fs::path target = plain_path(entry.path());
+    if (lies_in(target, folder)) return;
+    add_source({target, fs::is_directory(target, ignored), "what a link in a source of this scene leads to",
+                identity_of(target)});
+  });
 }
 
-void SourceGuard::add_file(const fs::path& source) { add_path(plain_path(source)); }
+void SourceGuard::add_file(const fs::path& source, const std::string& role) {
+  const fs::path path = plain_path(source);
+  add_source({path, false, role, identity_of(path)});
+}
 
-void SourceGuard::add_path(fs::path path) {
-  if (std::find(sources_.begin(), sources_.end(), path) == sources_.end()) sources_.push_back(std::move(path));
+void SourceGuard::add_source(Source source) {
+  for (Source& known : sources_)
+    if (known.path == source.path && known.is_folder == source.is_folder) {
+      // The folder may have been replaced since.
+      known.seen = std::move(source.seen);
+      return;
+    }
+  sources_.push_back(std::move(source));
+}
+
+const SourceGuard::Source* SourceGuard::source_holding(const fs::path& wanted) const {
+  for (const Source& source : sources_) {
+    if (lies_in(wanted, source.path)) return &source;
+    for (fs::path at = wanted;; at = at.parent_path()) {
+      if (is_same(source, at)) return &source;
+      // Only a folder protects what is below it.
+      if (!source.is_folder || at == at.parent_path()) break;
+    }
+  }
+  return nullptr;
 }
 
 void SourceGuard::check_file(const fs::path& path) const {
   const fs::path wanted = plain_path(path);
-  for (const fs::path& source : sources_)
-    if (lies_in(wanted, source))
-      throw FileError(path, "would be written into the source \"" + source.string() +
-                                "\", which undo, journals and projects read again; choose another place");
+  if (const Source* source = source_holding(wanted))
+    throw FileError(path, source->is_folder
+                              ? "would be written into \"" + source->path.string() + "\", " + source->role +
+                                    ", which undo, journals and projects read again; choose another place"
+                              : "is " + source->role + "; choose another name");
 }
 
 void SourceGuard::check_folder(const fs::path& path) const {
   const fs::path wanted = plain_path(path);
-  for (const fs::path& source : sources_) {
-    if (wanted == source)
-      throw FileError(path,
-                      "is a source of what is open, which undo, journals and projects read again; write to another "
-                      "folder");
-    if (lies_in(source, wanted))
-      throw FileError(
-          path, "holds the source \"" + source.string() + "\", which would be lost with it; write to another folder");
-  }
   check_file(path);
+  const auto refuse = [&](const Source& source) {
+    throw FileError(path, "holds \"" + source.path.string() + "\", " + source.role +
+                              ", which would be lost with it; write to another folder");
+  };
+  for (const Source& source : sources_) {
+    if (lies_in(source.path, wanted)) refuse(source);
+    for (fs::path at = source.path.parent_path(); at != at.parent_path(); at = at.parent_path())
+      if (const auto there = identity_of(at); !there.empty() && there == identity_of(wanted)) refuse(source);
+  }
+  // A hard link or a mount below it may lead to one.
+  for_each_entry(wanted, [&](const fs::directory_entry& entry) {
+    std::error_code ignored;
+    if (entry.is_symlink(ignored)) return;
+    for (const Source& source : sources_)
+      if (is_same(source, entry.path())) refuse(source);
+  });
 }
 
 }  // namespace rebake

@@ -1,6 +1,5 @@
 #include "mesh_ops/deform/cage_frame.h"
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <map>
 
@@ -11,7 +10,6 @@ namespace rebake {
 
 namespace {
 
-using Wide = boost::multiprecision::cpp_bin_float_50;
 using Wide3 = std::array<Wide, 3>;
 
 Wide3 wide(const Vec3& v) { return {Wide(v.x()), Wide(v.y()), Wide(v.z())}; }
@@ -116,15 +114,15 @@ CageFrame frame_of(const Cage& cage) {
   return frame;
 }
 
-std::array<Quad, 3> wide_place(const CageFrame& cage, const Vec3& point) {
-  return rounded<Quad>(wide_local(cage, point));
+std::array<Wide, 3> wide_place(const CageFrame& cage, const Vec3& point) {
+  return rounded<Wide>(wide_local(cage, point));
 }
 
 WideFace wide_face(const CageFrame& cage, const FaceFrame& face) {
   std::array<Wide3, 3> corners;
   for (std::size_t k = 0; k < 3; ++k) corners[k] = wide_local(cage, cage.given[face.vertices[k]]);
-  WideFace wide{face_of<Quad>(face.vertices, corners), {}};
-  for (std::size_t k = 0; k < 3; ++k) wide.corners[k] = rounded<Quad>(corners[k]);
+  WideFace wide{face_of<Wide>(face.vertices, corners), {}};
+  for (std::size_t k = 0; k < 3; ++k) wide.corners[k] = rounded<Wide>(corners[k]);
   return wide;
 }
 

@@ -71,28 +71,29 @@ class Green final : public Coordinates {
  private:
   // As for other faces, by the map from the face's own plane: in doubles a needle's height is lost in its corners.
   Vec3 needle_motion(const FaceFrame& face, const std::vector<Vec3>& moved) const {
-    using Quad3 = std::array<Quad, 3>;
     const WideFace wide = wide_face(frame_, face);
-    std::array<Quad3, 3> corners;
+    std::array<std::array<Wide, 3>, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = wide_place(frame_, moved[face.vertices[k]]);
-    Quad3 along, out;
-    const FaceFrameOf<Quad>& f = wide.frame;
+    std::array<Wide, 3> along, out;
+    const FaceFrameOf<Wide>& f = wide.frame;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       along[axis] = (corners[2][axis] - corners[1][axis]) / f.length;
       out[axis] = (f.apex * along[axis] - (corners[0][axis] - corners[1][axis])) / f.height;
     }
-    const auto dot = [](const Quad3& a, const Quad3& b) { return Quad(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); };
-    const Quad stretch = real::sqrt(Quad((dot(along, along) + dot(out, out)) / 2));
-    Quad3 normal;
+    const auto dot = [](const std::array<Wide, 3>& a, const std::array<Wide, 3>& b) {
+      return Wide(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+    };
+    const Wide stretch = real::sqrt(Wide((dot(along, along) + dot(out, out)) / 2));
+    std::array<Wide, 3> normal;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
       normal[axis] = out[i] * along[j] - out[j] * along[i];
     }
-    const Quad length = real::sqrt(dot(normal, normal));
+    const Wide length = real::sqrt(dot(normal, normal));
     Vec3 motion;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Quad turned = length > 0 ? Quad(stretch * normal[axis] / length) : Quad(0);
-      motion[static_cast<int>(axis)] = static_cast<double>(Quad(turned - f.normal[axis])) / frame_.scale;
+      const Wide turned = length > 0 ? Wide(stretch * normal[axis] / length) : Wide(0);
+      motion[static_cast<int>(axis)] = static_cast<double>(Wide(turned - f.normal[axis])) / frame_.scale;
     }
     return motion;
   }

@@ -1,5 +1,6 @@
 #include "mesh_ops/deform/handles.h"
 
+#include <CGAL/Deformation_Eigen_closest_rotation_traits_3.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_deformation.h>
@@ -17,6 +18,16 @@ namespace {
 using Kernel = CGAL::Simple_cartesian<double>;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
+// Rotations by sums, products and square roots only. CGAL's default calls Eigen's closed-form eigenvalues, whose
+// arctangent has other last bits on other processors and C libraries.
+struct RotationTraits : CGAL::Deformation_Eigen_closest_rotation_traits_3 {
+  void compute_close_rotation(const Matrix& covariance, Matrix& rotation) {
+    rotation = local_rotation(covariance.transpose()).rotation;
+  }
+};
+using Deformation = CGAL::Surface_mesh_deformation<Mesh, CGAL::Default, CGAL::Default, CGAL::SPOKES_AND_RIMS,
+                                                   CGAL::Default, CGAL::Default, RotationTraits>;
+
 struct RigidMotion {
   Mat3 turn = Mat3::Identity();
   Vec3 shift{0, 0, 0};
@@ -25,14 +36,27 @@ struct RigidMotion {
   Vec3 operator()(const Vec3& p) const { return turn * p + shift; }
 };
 
+// The smallest rotation that takes unit vector a to unit vector b. Near opposite vectors it is the product of two
+// reflections: through the plane between them, and through a plane that holds b and stands on theirs. The half angle's
+// cosine, by which the usual form divides, is lost there.
+Mat3 rotation_between(const Vec3& a, const Vec3& b) {
+  constexpr double nearly_opposite = -0.99;
+  if (a.dot(b) > nearly_opposite) return Eigen::Quaterniond::FromTwoVectors(a, b).toRotationMatrix();
+  const Vec3 between = (b - a).normalized(), sum = a + b;
+  Vec3 across = sum - sum.dot(b) * b;
+  across = across.squaredNorm() > 0 ? Vec3(across.stableNormalized()) : b.unitOrthogonal();
+  across = (across - across.dot(b) * b).normalized();
+  const auto reflection = [](const Vec3& n) { return Mat3(Mat3::Identity() - 2 * n * n.transpose()); };
+  return reflection(across) * reflection(between);
+}
+
 // The rotation that takes the centred points nearest to their places; of those that do so equally, one that turns
 // least: a single line of points leaves the turn about it open, a single point every turn.
 Mat3 fitted_turn(const Mat3& covariance) {
   const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3& sizes = svd.singularValues();
   if (!(sizes[0] > 0)) return Mat3::Identity();
-  if (sizes[1] <= 1e-12 * sizes[0])
-    return Eigen::Quaterniond::FromTwoVectors(svd.matrixV().col(0), svd.matrixU().col(0)).toRotationMatrix();
+  if (sizes[1] <= 1e-12 * sizes[0]) return rotation_between(svd.matrixV().col(0), svd.matrixU().col(0));
   Vec3 signs(1, 1, 1);
   signs.z() = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
@@ -139,7 +163,7 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
       if (has_held[component[face[0]]] != 0 &&
           mesh.add_face(number[face[0]], number[face[1]], number[face[2]]) == Mesh::null_face())
         throw Error("two parts of the cage meet in a single point: handles need a cage without such places");
-    CGAL::Surface_mesh_deformation<Mesh> deformation(mesh);
+    Deformation deformation(mesh);
     for (const auto v : mesh.vertices()) deformation.insert_roi_vertex(v);
     // A point of no face is held where it is asked to be, and moves nothing else.
     for (const HandledVertex& h : held)

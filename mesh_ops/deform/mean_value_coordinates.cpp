@@ -146,7 +146,7 @@ class MeanValue final : public Coordinates {
   template <class T>
   void add_face(const FaceFrame& face, const Vec3& local, double* sums, std::vector<const FaceFrame*>& near) const {
     const pl::Seen<T> s = pl::seen(frame_, face, pl::local_point(local, T()));
-    if (distance_of(s) < near_distance) {
+    if (pl::distance_of(s) < near_distance) {
       near.push_back(&face);
       return;
     }

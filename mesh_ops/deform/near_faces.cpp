@@ -1,7 +1,9 @@
 #include "mesh_ops/deform/near_faces.h"
 
-#include "mesh_ops/deform/far_quadrature.h"
-#include "mesh_ops/deform/wide_frame.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 namespace rebake {
 
@@ -9,108 +11,163 @@ namespace {
 
 namespace pl = plane_local;
 
-// A point nearer than this lies on the surface, or on an edge or corner of it, and its gradients are taken so far
-// inside.
-constexpr double on_surface = 1e-12;
-constexpr double depth_inside = 1e-13;
+// Farther from all faces than this, double tells inside from outside and leaves eight digits of a gradient.
+constexpr double wide_green_distance = 1e-8;
+// Nearer to a face than this, the weights are those of the surface: they change by less than rounding.
+constexpr double on_surface = 1e-30;
+// Gradients on the surface are taken this far inside: thin cages are thicker, and 50 digits hold what cancels there.
+constexpr double depth_inside = 1e-20;
+// Faces that contain a point known to 50 digits are no farther from it than this.
+constexpr double wide_rounding = 1e-40;
 
-// The edge or corner that the point lies on, exactly: a gradient depends on the direction from there, and a point in
-// doubles is 1e-17 beside it.
-std::array<Quad, 3> snapped(const CageFrame& cage, const Vec3& local, std::span<const FaceFrame* const> near) {
-  const std::array<Quad, 3> point{Quad(local.x()), Quad(local.y()), Quad(local.z())};
-  std::array<Quad, 3> result = point;
-  for (const FaceFrame* face : near) {
-    const pl::Seen<double> s = pl::seen(cage, *face, pl::local_point(local, 0.0));
-    if (distance_of(s) > on_surface) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (s.r[k] <= on_surface) return wide_face(cage, *face).corners[k];
-      if (s.c[k] > on_surface) continue;
-      const WideFace wide = wide_face(cage, *face);
-      const auto &a = wide.corners[(k + 1) % 3], &b = wide.corners[(k + 2) % 3];
-      Quad along = 0, square = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        along += (point[axis] - a[axis]) * (b[axis] - a[axis]);
-        square += (b[axis] - a[axis]) * (b[axis] - a[axis]);
-      }
-      for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = a[axis] + (b[axis] - a[axis]) * (along / square);
-    }
-  }
+template <class T>
+pl::Seen<T> seen_from(const WideFace& face, const pl::Point<T>& place) {
+  std::array<pl::Point<T>, 3> offsets;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis) offsets[k][axis] = T(face.corners[k][axis]) - place[axis];
+  return pl::seen(face.frame, offsets);
+}
+
+std::vector<WideFace> wide_faces(const CageFrame& cage, std::span<const FaceFrame* const> near) {
+  std::vector<WideFace> faces;
+  for (const FaceFrame* face : near) faces.push_back(wide_face(cage, *face));
+  return faces;
+}
+
+WidePoint moved(const WidePoint& from, const WidePoint& along, const Wide& share) {
+  WidePoint result;
+  for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = from[axis] + along[axis] * share;
   return result;
 }
 
-// Where to take gradients: the point itself, or inside beside it where it lies on the surface. The direction is the
-// normal weighed by the angles under which the faces meet there, which points outwards at every corner (Bærentzen,
-// Aanæs 2005).
-pl::Point<WideDual> gradient_place(const CageFrame& cage, const Vec3& local, std::span<const FaceFrame* const> near) {
-  Vec3 normal(0, 0, 0);
-  for (const FaceFrame* face : near) {
-    const pl::Seen<double> s = pl::seen(cage, *face, pl::local_point(local, 0.0));
-    if (distance_of(s) > on_surface) continue;
-    double angle = 1;
+// Twice the tolerance that decides whether a point counts as on the surface, so that every such point is found here.
+const double snap_distance = 2 * pl::surface_tolerance<double>;
+
+// The nearest point of edge k.
+WidePoint nearest_of_edge(const WideFace& face, const pl::Seen<Wide>& s, std::size_t k) {
+  const std::array<Wide, 3>&a = face.corners[(k + 1) % 3], &b = face.corners[(k + 2) % 3];
+  if (s.begin[k] >= 0) return a;
+  if (s.end[k] <= 0) return b;
+  WidePoint along;
+  for (std::size_t axis = 0; axis < 3; ++axis) along[axis] = b[axis] - a[axis];
+  return moved(a, along, Wide(-s.begin[k] / face.frame.lengths[k]));
+}
+
+// The point of the surface that `point` counts as, when it lies within snap_distance: the nearest corner, else the
+// nearest point of an edge, else of a face.
+std::optional<WidePoint> snapped(const std::vector<WideFace>& faces, const WidePoint& point) {
+  constexpr std::size_t corner = 0, edge = 1, face_interior = 2, kinds = 3;
+  std::array<std::optional<WidePoint>, kinds> nearest;
+  std::array<double, kinds> least;
+  least.fill(snap_distance);
+  const auto offer = [&](std::size_t kind, double distance, const WidePoint& place) {
+    if (distance > least[kind]) return;
+    least[kind] = distance;
+    nearest[kind] = place;
+  };
+  for (const WideFace& face : faces) {
+    const pl::Seen<Wide> s = seen_from(face, point);
+    if (pl::distance_of(s) > snap_distance) continue;
+    if (pl::distance_in_plane(s) == 0)
+      offer(face_interior, std::abs(value_of(s.h)), moved(point, face.frame.normal, s.h));
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-      if (s.r[k] > on_surface) continue;
-      // Corner k lies between edges i and j.
-      angle = real::atan2(std::abs(face->edge_t[i] * face->edge_o[j] - face->edge_o[i] * face->edge_t[j]),
-                          -(face->edge_t[i] * face->edge_t[j] + face->edge_o[i] * face->edge_o[j]));
+      offer(corner, value_of(s.r[k]), face.corners[k]);
+      const double beyond = std::max({0.0, value_of(s.begin[k]), -value_of(s.end[k])});
+      offer(edge, std::hypot(value_of(s.c[k]), beyond), nearest_of_edge(face, s, k));
     }
-    normal += angle * Vec3(face->normal[0], face->normal[1], face->normal[2]);
   }
-  std::array<Quad, 3> place{Quad(local.x()), Quad(local.y()), Quad(local.z())};
-  if (normal.norm() > 0) {
-    place = snapped(cage, local, near);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      place[axis] -= Quad(normal[static_cast<int>(axis)]) * (Quad(depth_inside) / Quad(normal.norm()));
+  for (const auto& place : nearest)
+    if (place) return place;
+  return std::nullopt;
+}
+
+// The angle of the face at a point of it: at a corner that of the corner, else 1.
+double angle_at(const WideFace& face, const pl::Seen<Wide>& s) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (value_of(s.r[k]) > wide_rounding) continue;
+    // Corner k lies between edges i and j.
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    const FaceFrameOf<Wide>& f = face.frame;
+    return real::atan2(std::abs(static_cast<double>(Wide(f.edge_t[i] * f.edge_o[j] - f.edge_o[i] * f.edge_t[j]))),
+                       static_cast<double>(Wide(-(f.edge_t[i] * f.edge_t[j] + f.edge_o[i] * f.edge_o[j]))));
   }
+  return 1;
+}
+
+// Where to take gradients: the point itself, or inside beside it when it lies on the surface. There the direction is
+// the normal weighted by the angles of the faces that meet, which points outwards at every corner (Bærentzen, Aanæs
+// 2005).
+WidePoint gradient_place(const std::vector<WideFace>& faces, const WidePoint& point) {
+  const std::optional<WidePoint> on = snapped(faces, point);
+  if (!on) return point;
+  WidePoint normal{Wide(0), Wide(0), Wide(0)};
+  for (const WideFace& face : faces) {
+    const pl::Seen<Wide> s = seen_from(face, *on);
+    if (pl::distance_of(s) <= wide_rounding) normal = moved(normal, face.frame.normal, Wide(angle_at(face, s)));
+  }
+  const Wide length = sqrt(Wide(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]));
+  return length > 0 ? moved(*on, normal, Wide(-depth_inside / length)) : *on;
+}
+
+pl::Point<WideDual> with_gradients(const WidePoint& place) {
   return {WideDual(place[0], 1, 0, 0), WideDual(place[1], 0, 1, 0), WideDual(place[2], 0, 0, 1)};
 }
 
-pl::Seen<WideDual> seen_from(const WideFace& face, const pl::Point<WideDual>& place) {
-  std::array<pl::Point<WideDual>, 3> offsets;
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t axis = 0; axis < 3; ++axis) offsets[k][axis] = WideDual(face.corners[k][axis]) - place[axis];
-  return pl::seen(face.frame, offsets);
+template <class T>
+void add_terms(const WideFace& face, const pl::Seen<T>& s, std::vector<T>& sums) {
+  const std::array<T, 3> terms = pl::mean_value(face.frame, s);
+  for (std::size_t k = 0; k < 3; ++k) sums[face.frame.vertices[k]] += terms[k];
 }
 
 }  // namespace
 
-double near_faces::least_distance(const CageFrame& cage, const Vec3& local, std::span<const FaceFrame* const> near) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const FaceFrame* face : near)
-    least = std::min(least, distance_of(pl::seen(cage, *face, pl::local_point(local, 0.0))));
-  return least;
-}
-
-std::vector<WideDual> near_faces::wide_weights(const CageFrame& cage, const Vec3& local,
-                                               std::span<const FaceFrame* const> near, std::vector<WideDual> sums) {
-  const pl::Point<WideDual> place = gradient_place(cage, local, near);
-  WideDual total;
-  for (const WideDual& sum : sums) total += sum;
-  for (const FaceFrame* face : near) {
-    const WideFace wide = wide_face(cage, *face);
-    const auto terms = pl::mean_value(wide.frame, seen_from(wide, place));
-    for (std::size_t k = 0; k < 3; ++k) {
-      sums[face->vertices[k]] += terms[k];
-      total += terms[k];
+std::vector<Wide> near_faces::wide_values(const CageFrame& cage, const WidePoint& point,
+                                          std::span<const FaceFrame* const> near, std::vector<Wide> sums) {
+  for (const WideFace& face : wide_faces(cage, near)) {
+    const pl::Seen<Wide> s = seen_from(face, point);
+    if (pl::distance_of(s) <= on_surface) {
+      sums.assign(sums.size(), Wide(0));
+      const std::array<Wide, 3> lambda = pl::barycentric(face.frame, s);
+      for (std::size_t k = 0; k < 3; ++k) sums[face.frame.vertices[k]] = lambda[k];
+      return sums;
     }
+    add_terms(face, s, sums);
   }
-  for (WideDual& sum : sums) sum = sum / total;
+  normalise(sums);
   return sums;
 }
 
-bool mend_gradients(const CageFrame& cage, const pl::Point<Dual>& local, std::span<const FaceFrame* const> near,
-                    std::span<pl::GreenTerms<Dual>> terms) {
-  const Vec3 at = near_faces::values_of(local);
-  if (near.empty() || near_faces::least_distance(cage, at, near) >= near_faces::quad_distance) return false;
-  if (near.size() == 1 && near_faces::is_over(pl::seen(cage, *near.front(), local))) return false;
-  const pl::Point<WideDual> place = gradient_place(cage, at, near);
-  for (std::size_t n = 0; n < near.size(); ++n) {
-    const WideFace wide = wide_face(cage, *near[n]);
-    const auto exact = pl::green(wide.frame, seen_from(wide, place));
-    for (std::size_t k = 0; k < 3; ++k) near_faces::set_gradient(terms[n].corners[k], exact.corners[k]);
-    near_faces::set_gradient(terms[n].face, exact.face);
-  }
-  return true;
+std::vector<WideDual> near_faces::wide_gradients(const CageFrame& cage, const WidePoint& point,
+                                                 std::span<const FaceFrame* const> near, std::vector<WideDual> sums) {
+  const std::vector<WideFace> faces = wide_faces(cage, near);
+  const pl::Point<WideDual> place = with_gradients(gradient_place(faces, point));
+  for (const WideFace& face : faces) add_terms(face, seen_from(face, place), sums);
+  normalise(sums);
+  return sums;
 }
+
+template <class W>
+std::vector<pl::GreenTerms<W>> wide_green_terms(const CageFrame& cage, const Vec3& point,
+                                                std::span<const FaceFrame* const> near) {
+  const pl::Point<double> local{point.x(), point.y(), point.z()};
+  double least = std::numeric_limits<double>::infinity();
+  for (const FaceFrame* face : near) least = std::min(least, pl::distance_of(pl::seen(cage, *face, local)));
+  if (!(least < wide_green_distance)) return {};
+  if (near.size() == 1 && near_faces::is_over(pl::seen(cage, *near.front(), local))) return {};
+  const std::vector<WideFace> faces = wide_faces(cage, near);
+  const WidePoint at{Wide(point.x()), Wide(point.y()), Wide(point.z())};
+  std::vector<pl::GreenTerms<W>> terms;
+  if constexpr (pl::has_gradient<W>) {
+    const pl::Point<W> place = with_gradients(gradient_place(faces, at));
+    for (const WideFace& face : faces) terms.push_back(pl::green(face.frame, seen_from(face, place)));
+  } else {
+    for (const WideFace& face : faces) terms.push_back(pl::green(face.frame, seen_from(face, at)));
+  }
+  return terms;
+}
+template std::vector<pl::GreenTerms<Wide>> wide_green_terms(const CageFrame&, const Vec3&,
+                                                            std::span<const FaceFrame* const>);
+template std::vector<pl::GreenTerms<WideDual>> wide_green_terms(const CageFrame&, const Vec3&,
+                                                                std::span<const FaceFrame* const>);
 
 }  // namespace rebake

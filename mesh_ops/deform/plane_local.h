@@ -143,16 +143,25 @@ double distance_in_plane(const Seen<T>& s) {
   return inside ? 0 : least;
 }
 
+/// Distance of the point from the triangle as a set, within a factor of √2; 0 on it.
+template <class T>
+double distance_of(const Seen<T>& s) {
+  return std::max(std::abs(value_of(s.h)), distance_in_plane(s));
+}
+
+/// Points nearer than this (local units) lie on the surface, as far as rounding can tell. The same for every face of a
+/// cage and for weights and gradients alike: faces that disagree about a point lose it.
+template <class T>
+inline const double surface_tolerance = 8 * epsilon<T>;
+
 enum class Place { off_plane, in_plane, on_face };
 
-/// Where the point lies as far as rounding can tell.
+/// Position of the point relative to the triangle: on it (interior, edge or corner), in its plane but outside it, or
+/// elsewhere.
 template <class T>
 Place place(const Seen<T>& s) {
-  const double tolerance = 4 * epsilon<T> * s.far;
-  if (std::abs(value_of(s.h)) > tolerance) return Place::off_plane;
-  for (std::size_t k = 0; k < 3; ++k)
-    if (value_of(s.a[k]) < -tolerance) return Place::in_plane;
-  return Place::on_face;
+  if (distance_of(s) <= surface_tolerance<T>) return Place::on_face;
+  return std::abs(value_of(s.h)) <= 4 * epsilon<T> * s.far ? Place::in_plane : Place::off_plane;
 }
 
 /// What an edge's part needs where the point's projection lies beyond an end of the edge, near its line. There the

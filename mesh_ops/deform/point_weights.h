@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 #include <vector>
 
 #include "mesh_ops/deform/coordinates.h"
@@ -19,7 +20,7 @@ void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>
   std::vector<const FaceFrame*> near;
   for (const FaceFrame& face : cage.faces) {
     const plane_local::Seen<T> s = plane_local::seen(cage, face, x);
-    if (distance_of(s) < near_distance) {
+    if (plane_local::distance_of(s) < near_distance) {
       near.push_back(&face);
       continue;
     }
@@ -57,6 +58,31 @@ std::array<T, 3> nearest_coordinates(const FaceFrame& face, const plane_local::S
   return result;
 }
 
+/// Adds the gradients of the near faces' terms to φ and ψ, summed per vertex before they are rounded, and takes them
+/// out of `near_terms`, whose values remain to be added.
+inline void add_wide_gradients(const CageFrame& cage, const std::vector<std::size_t>& near_numbers,
+                               const std::vector<plane_local::GreenTerms<WideDual>>& wide_terms,
+                               std::vector<plane_local::GreenTerms<Dual>>& near_terms, std::vector<Dual>& phi,
+                               std::vector<Dual>& psi) {
+  const Wide share(1 / (4 * std::numbers::pi));
+  std::vector<WideDual> of_vertices(phi.size());
+  const auto add_gradient = [&](Dual& to, const WideDual& from) {
+    to.x += static_cast<double>(Wide(from.x * share));
+    to.y += static_cast<double>(Wide(from.y * share));
+    to.z += static_cast<double>(Wide(from.z * share));
+  };
+  for (std::size_t n = 0; n < near_numbers.size(); ++n) {
+    const std::size_t f = near_numbers[n];
+    for (std::size_t k = 0; k < 3; ++k) {
+      of_vertices[cage.faces[f].vertices[k]] += wide_terms[n].corners[k];
+      near_terms[n].corners[k] = Dual(near_terms[n].corners[k].v);
+    }
+    add_gradient(psi[cage.face_numbers[f]], wide_terms[n].face);
+    near_terms[n].face = Dual(near_terms[n].face.v);
+  }
+  for (std::size_t v = 0; v < phi.size(); ++v) add_gradient(phi[v], of_vertices[v]);
+}
+
 template <class T>
 bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_count, std::vector<T>& phi,
                    std::vector<T>& psi) {
@@ -65,14 +91,14 @@ bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_co
   const plane_local::Point<T> x = plane_local::local_point(local, T());
   const T share = plane_local::constant<T>(1 / (4 * std::numbers::pi));
   T sum = plane_local::constant<T>(0);
-  double nearest = std::numeric_limits<double>::infinity(), extent = 0;
+  double nearest = std::numeric_limits<double>::infinity();
   std::size_t nearest_face = 0;
   const auto add = [&](std::size_t f, const plane_local::GreenTerms<T>& terms) {
     for (std::size_t k = 0; k < 3; ++k) {
       phi[cage.faces[f].vertices[k]] += terms.corners[k] * share;
       sum += terms.corners[k] * share;
     }
-    psi[cage.face_numbers[f]] = terms.face * share;
+    psi[cage.face_numbers[f]] += terms.face * share;
   };
   std::vector<const FaceFrame*> near;
   std::vector<plane_local::GreenTerms<T>> near_terms;
@@ -83,31 +109,43 @@ bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_co
     // Rounding must not decide which side of its own face a point lies on.
     if (plane_local::place(s) == plane_local::Place::on_face) s.h = s.h - plane_local::constant<T>(value_of(s.h));
     const auto terms = plane_local::green_terms(face, s);
-    if (distance_of(s) < near_distance) {
+    if (plane_local::distance_of(s) < near_distance) {
       near.push_back(&face);
       near_terms.push_back(terms);
       near_numbers.push_back(f);
     } else {
       add(f, terms);
     }
-    const double distance = std::hypot(value_of(s.h), plane_local::distance_in_plane(s));
-    extent = std::max(extent, s.far);
-    if (distance < nearest) {
+    if (const double distance = plane_local::distance_of(s); distance < nearest) {
       nearest = distance;
       nearest_face = f;
     }
   }
-  bool mended = false;
-  if constexpr (std::is_same_v<T, Dual>) mended = mend_gradients(cage, x, near, near_terms);
-  for (std::size_t n = 0; n < near.size(); ++n) add(near_numbers[n], near_terms[n]);
   // Outside the sum is 0, inside 1; between them only on the surface.
-  if (!(value_of(sum) > 0.125 || nearest <= 4 * plane_local::epsilon<T> * extent)) return false;
+  double inside = 0;
+  std::vector<plane_local::GreenTerms<Wide>> wide_values;
+  std::vector<plane_local::GreenTerms<WideDual>> wide_gradients;
+  if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Dual>) {
+    inside = value_of(sum);
+    wide_values = wide_green_terms<Wide>(cage, local, near);
+    for (const auto& terms : wide_values)
+      for (const Wide& corner : terms.corners) inside += value_of(corner) / (4 * std::numbers::pi);
+  }
+  if constexpr (std::is_same_v<T, Dual>) {
+    wide_gradients = wide_green_terms<WideDual>(cage, local, near);
+    if (!wide_gradients.empty()) add_wide_gradients(cage, near_numbers, wide_gradients, near_terms, phi, psi);
+  }
+  for (std::size_t n = 0; n < near.size(); ++n) add(near_numbers[n], near_terms[n]);
+  if (wide_values.empty()) inside = value_of(sum);
+  if (!(inside > 0.125 || nearest <= plane_local::surface_tolerance<T>)) return false;
   const FaceFrame& face = cage.faces[nearest_face];
   auto lambda = nearest_coordinates(face, plane_local::seen(cage, face, x));
-  // Mended gradients are those of a place where nothing is missing.
-  if (mended)
+  T missing = plane_local::constant<T>(1) - sum;
+  // Gradients of wide terms are those of a place inside, where nothing is missing.
+  if (!wide_gradients.empty()) {
+    missing = plane_local::constant<T>(value_of(missing));
     for (T& share_of_corner : lambda) share_of_corner = plane_local::constant<T>(value_of(share_of_corner));
-  const T missing = plane_local::constant<T>(1) - sum;
+  }
   for (std::size_t k = 0; k < 3; ++k) phi[face.vertices[k]] += missing * lambda[k];
   return true;
 }

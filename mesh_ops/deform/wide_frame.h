@@ -6,16 +6,16 @@
 
 namespace rebake {
 
-/// 113 bits, for the few terms that cancel beyond what double holds.
-using Quad = boost::multiprecision::cpp_bin_float_quad;
+/// 50 decimal digits, for the few terms that cancel beyond what double holds.
+using Wide = boost::multiprecision::cpp_bin_float_50;
 
 /// A point of the cage's space in the cage's frame.
-std::array<Quad, 3> wide_place(const CageFrame& cage, const Vec3& point);
+std::array<Wide, 3> wide_place(const CageFrame& cage, const Vec3& point);
 
 /// A face of the cage in the cage's frame.
 struct WideFace {
-  FaceFrameOf<Quad> frame;
-  std::array<std::array<Quad, 3>, 3> corners;
+  FaceFrameOf<Wide> frame;
+  std::array<std::array<Wide, 3>, 3> corners;
 };
 WideFace wide_face(const CageFrame& cage, const FaceFrame& face);
 

@@ -51,7 +51,14 @@ std::vector<std::string> geometry_files(const fs::path& folder, bool unsplit, st
                                               geometry_name(Layout::chunked, set, 0), set_count));
 }
 
+// What exports put into a chunk that has no triangle (write_baked_folder): one triangle whose corners are one vertex.
+bool is_placeholder(const ObjMesh& chunk) {
+  return chunk.positions.size() == 1 && chunk.faces.size() == 1 && chunk.faces[0] == Face{0, 0, 0};
+}
+
 TextureSet joined(SetParts& parts) {
+  if (parts.chunks.size() > 1) std::erase_if(parts.chunks, is_placeholder);
+  if (parts.chunks.empty()) return {};
   std::size_t vertex_count = 0, face_count = 0;
   for (const ObjMesh& chunk : parts.chunks) {
     vertex_count += chunk.positions.size();
@@ -147,6 +154,7 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
   auto object = std::make_shared<BakedObject>();
   auto origin = std::make_shared<Origin>();
   object->decoder = std::make_shared<const Decoder>(std::move(mlp.decoder));
+  object->other_members = std::move(mlp.others);
   object->axes = axes;
   object->layout = unsplit ? Layout::unsplit : chunked ? Layout::chunked : Layout::split;
   origin->folder = absolute_path(folder);

@@ -137,9 +137,11 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
         group.object.layout = layout.value_or(object.layout);
         group.object.decoder = folded_into(object.axes);
         group.object.origin = object.origin;
+        group.object.other_members = object.other_members;
         groups.push_back(std::move(group));
         found = &groups.back();
       } else {
+        found->object.other_members.insert(object.other_members.begin(), object.other_members.end());
         if (found->object.origin != object.origin) found->object.origin = nullptr;
         if (reordered != nullptr && found != &groups.back()) *reordered = true;
       }

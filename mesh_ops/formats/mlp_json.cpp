@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/baked_folder.h"
+#include "mesh_ops/formats/json_text.h"
 
 namespace rebake {
 
@@ -39,20 +41,72 @@ Eigen::VectorXd read_bias(const json& root, const char* key, const std::filesyst
   return bias;
 }
 
+// "16×11" for rows of one length, else what is known.
+std::string shape_of(const json& values) {
+  if (!values.is_array()) return "no list";
+  if (values.empty() || !values[0].is_array()) return fmt::format("a list of {}", values.size());
+  for (std::size_t r = 1; r < values.size(); ++r)
+    if (!values[r].is_array() || values[r].size() != values[0].size())
+      return fmt::format("{} rows of unequal lengths (row {} differs from row 0)", values.size(), r);
+  return fmt::format("{}×{}", values.size(), values[0].size());
+}
+
 Eigen::MatrixXd read_weights(const json& root, const char* key, Eigen::Index rows, Eigen::Index columns,
                              const std::filesystem::path& name) {
   const json& values = member(root, key, name);
-  if (!values.is_array() || values.size() != static_cast<std::size_t>(rows))
-    throw FileError(name, fmt::format("\"{}\" must have {} rows (one an input)", key, rows));
+  const std::string expected = fmt::format("{}×{}", rows, columns);
+  if (shape_of(values) != expected)
+    throw FileError(name, fmt::format("\"{}\" is {}, expected {} (inputs × outputs){}", key, shape_of(values), expected,
+                                      shape_of(values) == fmt::format("{}×{}", columns, rows) ? ". Transpose it" : ""));
   Eigen::MatrixXd weights(rows, columns);
   for (Eigen::Index r = 0; r < rows; ++r) {
     const json& row = values[static_cast<std::size_t>(r)];
-    if (!row.is_array() || row.size() != static_cast<std::size_t>(columns))
-      throw FileError(name, fmt::format("\"{}\"[{}] must have {} numbers, as many as its bias", key, r, columns));
     for (Eigen::Index c = 0; c < columns; ++c)
       weights(r, c) = number(row[static_cast<std::size_t>(c)], fmt::format("\"{}\"[{}][{}]", key, r, c), name);
   }
   return weights;
+}
+
+// Exporters in Python write a count as 1, 1.0 or "1".
+int read_obj_num(const json& value, const std::filesystem::path& name) {
+  double count = 0;
+  if (value.is_number()) count = value.get<double>();
+  if (value.is_string()) {
+    const auto& text = value.get_ref<const std::string&>();
+    if (!text.empty() && text.size() < 6 && text.find_first_not_of("0123456789") == std::string::npos)
+      count = std::stod(text);
+  }
+  if (count != std::floor(count) || count < 1 || count > static_cast<double>(most_texture_sets))
+    throw FileError(name, fmt::format("\"obj_num\" must be a whole number from 1 to {}", most_texture_sets));
+  return static_cast<int>(count);
+}
+
+bool is_layer_key(const std::string& key) {
+  const std::size_t digits = key.find_first_not_of("0123456789");
+  return digits != 0 && digits != std::string::npos &&
+         (key.substr(digits) == "_weights" || key.substr(digits) == "_bias");
+}
+
+// The word at a byte of the text: a number that JSON does not have, or the byte itself.
+std::string word_at(std::string_view text, std::size_t byte) {
+  constexpr std::string_view letters = "+-.0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+  std::size_t begin = std::min(byte, text.size()), end = begin;
+  while (begin > 0 && letters.find(text[begin - 1]) != std::string_view::npos) --begin;
+  while (end < text.size() && letters.find(text[end]) != std::string_view::npos) ++end;
+  return std::string(text.substr(begin, end - begin));
+}
+
+json parsed(std::string_view text, const std::filesystem::path& name) {
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    // Its byte is counted from 1, and lies in or behind the word.
+    const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
+    const std::string word = word_at(text, byte), place = json_place(text, byte);
+    for (const char* other : {"NaN", "nan", "Infinity", "-Infinity", "inf", "-inf"})
+      if (word == other) throw FileError(name, fmt::format("{} is {}, which is not a number", place, word));
+    throw FileError(name, fmt::format("is not valid JSON{}: {}", place.empty() ? "" : " at " + place, error.what()));
+  }
 }
 
 json rows_of(const Eigen::MatrixXd& matrix) {
@@ -74,12 +128,7 @@ json list_of(const Eigen::VectorXd& vector) {
 }  // namespace
 
 MlpFile read_mlp_json(std::string_view text, const std::filesystem::path& name) {
-  json root;
-  try {
-    root = json::parse(text);
-  } catch (const json::exception& error) {
-    throw FileError(name, fmt::format("is not valid JSON (NaN and Infinity are not either): {}", error.what()));
-  }
+  const json root = parsed(text, name);
   if (!root.is_object()) throw FileError(name, "must hold a JSON object");
   MlpFile file;
   Decoder& d = file.decoder;
@@ -91,12 +140,13 @@ MlpFile read_mlp_json(std::string_view text, const std::filesystem::path& name) 
   d.weights0 = read_weights(root, "0_weights", Decoder::inputs, d.bias0.size(), name);
   d.weights1 = read_weights(root, "1_weights", d.bias0.size(), d.bias1.size(), name);
   d.weights2 = read_weights(root, "2_weights", d.bias1.size(), 3, name);
-  if (const auto found = root.find("obj_num"); found != root.end()) {
-    if (!found->is_number_integer() || found->get<std::int64_t>() < 1 ||
-        found->get<std::int64_t>() > std::int64_t{most_texture_sets})
-      throw FileError(name, fmt::format("\"obj_num\" must be a whole number from 1 to {}", most_texture_sets));
-    file.obj_num = found->get<int>();
-  }
+  if (const auto found = root.find("obj_num"); found != root.end()) file.obj_num = read_obj_num(*found, name);
+  file.others = json_members(text);
+  for (const char* key : {"0_weights", "0_bias", "1_weights", "1_bias", "2_weights", "2_bias", "obj_num"})
+    file.others.erase(key);
+  for (const auto& [key, value] : file.others)
+    if (is_layer_key(key))
+      throw FileError(name, fmt::format("\"{}\" belongs to a further layer; decoders have three (0, 1 and 2)", key));
   return file;
 }
 
@@ -109,7 +159,9 @@ std::string write_mlp_json(const MlpFile& file) {
   root["2_weights"] = rows_of(file.decoder.weights2);
   root["2_bias"] = list_of(file.decoder.bias2);
   if (file.obj_num) root["obj_num"] = *file.obj_num;
-  return root.dump();
+  std::string text = root.dump();
+  for (const auto& [key, value] : file.others) text.insert(text.size() - 1, fmt::format(",\"{}\":{}", key, value));
+  return text;
 }
 
 }  // namespace rebake

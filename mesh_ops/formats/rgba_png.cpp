@@ -124,6 +124,25 @@ class RgbaPng : public RgbaRows {
   inflate_state inflate_;
 };
 
+// Throws FileError for a header that the PNG specification does not allow, which other readers report on their own.
+void check_header(const std::optional<Chunk>& chunk, const std::filesystem::path& name) {
+  if (!chunk || chunk->kind != "IHDR")
+    throw FileError(name, "is damaged: its first chunk is not a header (IHDR); copy it again");
+  if (chunk->data.size() != 13)
+    throw FileError(name, fmt::format("is damaged: its header has {} bytes, not 13", chunk->data.size()));
+  const std::uint32_t width = big_endian(chunk->data), height = big_endian(chunk->data.substr(4));
+  constexpr std::uint32_t largest = largest_png_side;
+  if (width < 1 || height < 1 || width > largest || height > largest)
+    throw FileError(name, fmt::format("declares {}×{} texels; 1 to {} a side can be read", width, height, largest));
+  const int depth = chunk->data[8], color = chunk->data[9];
+  const bool known = (color == 0 && (depth == 1 || depth == 2 || depth == 4 || depth == 8 || depth == 16)) ||
+                     (color == 3 && (depth == 1 || depth == 2 || depth == 4 || depth == 8)) ||
+                     ((color == 2 || color == 4 || color == 6) && (depth == 8 || depth == 16));
+  if (!known || chunk->data[10] != 0 || chunk->data[11] != 0 || static_cast<unsigned char>(chunk->data[12]) > 1)
+    throw FileError(
+        name, fmt::format("is damaged: its header names no PNG format (bit depth {}, colour type {})", depth, color));
+}
+
 }  // namespace
 
 std::unique_ptr<RgbaRows> open_rgba_png(std::string_view bytes, const std::filesystem::path& name) {
@@ -131,12 +150,9 @@ std::unique_ptr<RgbaRows> open_rgba_png(std::string_view bytes, const std::files
   Chunks chunks(bytes, name);
   std::optional<Chunk> chunk = chunks.next();
   // 8 bits, RGBA, deflate, adaptive filters, not interlaced.
-  if (!chunk || chunk->kind != "IHDR" || chunk->data.size() != 13 ||
-      chunk->data.substr(8) != std::string_view("\x08\x06\0\0\0", 5))
-    return nullptr;
+  check_header(chunk, name);
+  if (chunk->data.substr(8) != std::string_view("\x08\x06\0\0\0", 5)) return nullptr;
   const std::uint32_t width = big_endian(chunk->data), height = big_endian(chunk->data.substr(4));
-  constexpr std::uint32_t largest = largest_png_side;
-  if (width < 1 || height < 1 || width > largest || height > largest) return nullptr;
   for (;;) {
     chunk = chunks.next();
     if (!chunk) throw FileError(name, "is truncated: it ends before its first row; copy it again");

@@ -46,6 +46,11 @@ std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFil
   return std::nullopt;
 }
 
+// A count for people: exact below a million.
+std::string counted(std::uint64_t count) {
+  return count < 1'000'000 ? fmt::format("{}", count) : fmt::format("{:.2f} million", static_cast<double>(count) / 1e6);
+}
+
 std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, bool all_texels,
                                std::vector<std::string>& notes) {
   const AlphaCode code = layout == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved;
@@ -80,24 +85,19 @@ std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, bool al
   if (edited.empty()) return kept;
   PackedSets packed = pack(edited, largest, code);
   if (packed.texel_area < edited_area) {
-    notes.push_back(
-        fmt::format("texels nobody uses were dropped: {:.2f} instead of {:.2f} million texels in the edited sets",
-                    static_cast<double>(packed.texel_area) / 1e6, static_cast<double>(edited_area) / 1e6));
+    notes.push_back(fmt::format("unused texels were dropped from the edited sets: {} texels instead of {}",
+                                counted(packed.texel_area), counted(edited_area)));
     edited = std::move(packed.sets);
   }
   kept.insert(kept.end(), edited.begin(), edited.end());
   return kept;
 }
 
-// Chunk viewers fail on an empty chunk: fewer than 8 triangles are drawn several times, which changes no pixel.
-Soup with_a_face_for_each_chunk(const Soup& soup) {
-  if (soup.triangle_count() >= chunks_a_set) return soup;
-  auto faces = std::make_shared<std::vector<Face>>(soup.faces());
-  std::vector<std::uint32_t> from(chunks_a_set);
-  for (std::uint32_t f = 0; f < chunks_a_set; ++f) from[f] = f % static_cast<std::uint32_t>(soup.triangle_count());
-  for (std::size_t f = faces->size(); f < chunks_a_set; ++f) faces->push_back((*faces)[from[f]]);
-  return Soup(soup.shared_positions(), soup.shared_uvs(), faces, soup.vertex_attributes(),
-              soup.face_attributes().picked(from));
+// Chunk viewers and the Unity importer fail on an empty chunk: it gets one triangle whose corners are one vertex, which
+// renders nothing. read_baked_folder drops it again.
+std::string placeholder_chunk(const Soup& soup) {
+  const std::uint32_t vertex = soup.faces().front()[0];
+  return write_obj({soup.positions()[vertex]}, {soup.uvs()[vertex]}, {Face{0, 0, 0}}, 0, 1);
 }
 
 std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
@@ -106,7 +106,8 @@ std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
   std::vector<std::string> texts(chunks_a_set);
   tbb::parallel_for(std::size_t{0}, chunks_a_set, [&](std::size_t j) {
     const std::size_t first = faces * j / chunks_a_set, last = faces * (j + 1) / chunks_a_set;
-    texts[j] = write_obj(soup.positions(), soup.uvs(), soup.faces(), first, last);
+    texts[j] =
+        first == last ? placeholder_chunk(soup) : write_obj(soup.positions(), soup.uvs(), soup.faces(), first, last);
   });
   return texts;
 }
@@ -121,8 +122,6 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
   BakedObject filled = object;
   std::erase_if(filled.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
   std::vector<TextureSet> sets = fitted(filled, layout, baked_places, notes);
-  if (layout == Layout::chunked)
-    for (TextureSet& set : sets) set.soup = with_a_face_for_each_chunk(set.soup);
   const bool same_layout = object.origin && object.origin->layout == layout;
 
   for (std::size_t i = 0; i < sets.size(); ++i) {
@@ -167,7 +166,7 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
       (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit))
     mlp = unchanged_bytes(*object.origin, object.origin->mlp);
   if (!mlp) {
-    MlpFile file{*object.decoder, std::nullopt};
+    MlpFile file{*object.decoder, std::nullopt, object.other_members};
     if (layout != Layout::unsplit) file.obj_num = static_cast<int>(sets.size());
     mlp = write_mlp_json(file);
   }

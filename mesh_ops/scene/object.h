@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -64,6 +65,8 @@ struct BakedObject {
   Axes axes = Axes::y_up;
   Layout layout = Layout::split;
   std::shared_ptr<const Origin> origin;  ///< null for objects that were not read from a folder
+  /// Members of mlp.json that the format does not know, which exports keep: key → JSON as it was spelt.
+  std::map<std::string, std::string> other_members = {};
   /// What it was made of by edits that move, remove or erase triangles; empty: it is as its light was baked.
   std::vector<BakedBody> bodies;
   /// The face attribute with the number of a face's body (std::uint16_t).

@@ -20,6 +20,7 @@
 #include "tests/support/document_fixture.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/power_loss.h"
+#include "tests/support/thorough.h"
 
 namespace rebake::test {
 namespace {
@@ -51,15 +52,17 @@ Scene two(const std::shared_ptr<const BakedObject>& a, const std::shared_ptr<con
 }
 
 TEST(Plain, TwoRealDecodersReachFortyDecibels) {
+  REBAKE_ONLY_DEEP();
   const auto ball = morpheus_object("lego_ball", 24), tractor = morpheus_object("lego_tractor", 24);
-  if (!ball) GTEST_SKIP() << "shared data is absent";
+  if (!ball) GTEST_SKIP() << "REBAKE_TEST_DATA has no lego_ball";
   const PlainReport report = plain_report(two(ball, tractor), {});
   EXPECT_GE(report.whole.psnr_db, 40);
 }
 
 TEST(Plain, TwoRealDecodersInOneOfTheirWidthReachThirtySeven) {
+  REBAKE_ONLY_DEEP();
   const auto ball = morpheus_object("lego_ball", 24), tractor = morpheus_object("lego_tractor", 24);
-  if (!ball) GTEST_SKIP() << "shared data is absent";
+  if (!ball) GTEST_SKIP() << "REBAKE_TEST_DATA has no lego_ball";
   FuseOptions options;
   options.width = 16;
   const PlainReport report = plain_report(two(ball, tractor), options);
@@ -80,6 +83,7 @@ Scene edited(const std::vector<const char*>& lines) {
 }
 
 TEST(Plain, SamplesComposedReachThirtyEightDecibels) {
+  REBAKE_ONLY_DEEP();
   const Scene scene = edited({R"({"op": "import", "as": "ficus"})", R"({"op": "import", "as": "kettle"})",
                               R"({"op": "transform", "node": "kettle", "translate": [1.25, -0.55, 0.5], "scale": 0.7,
                                   "rotate": {"axis": [0, 1, 0], "degrees": 150}})"});
@@ -90,6 +94,7 @@ TEST(Plain, SamplesComposedReachThirtyEightDecibels) {
 }
 
 TEST(Plain, ABentBranchKeepsItsColours) {
+  REBAKE_ONLY_DEEP();
   const Scene scene =
       edited({R"({"op": "import", "as": "ficus"})",
               R"({"op": "bend", "node": "ficus", "degrees": 70, "axis": [1, 0.3, 0], "direction": [0, -1, 0],

@@ -11,6 +11,7 @@
 #include "tests/support/lit_objects.h"
 #include "tests/support/lit_scenes.h"
 #include "tests/support/made_scenes.h"
+#include "tests/support/thorough.h"
 
 namespace rebake::test {
 namespace {
@@ -138,6 +139,7 @@ TEST(LightEdit, WhatWasLearntIsUsedWithinItsRange) {
 
 // Deep transfer in the product's way: learnt from poses, kept as bytes, used in a drag.
 TEST(LightEdit, ANetLearnsAnObjectsPoses) {
+  REBAKE_ONLY_DEEP();
   Scene rest = with_light(table());
   const NodeId node = rest.roots.front()->id;
   const auto bent = [&](double degrees) {

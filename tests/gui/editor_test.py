@@ -1,8 +1,10 @@
 """The editor as people use it: each test asserts the edits that arrived in the document, and what is seen.
 
-editor_test.py PROGRAM runs all; editor_test.py PROGRAM BendTest.NAME one.
+editor_test.py PROGRAM runs all; editor_test.py PROGRAM bend_cases.py one file; editor_test.py PROGRAM BendTest.NAME one.
 """
 
+import pathlib
+import sys
 import unittest
 
 from bend_cases import BendTest
@@ -13,4 +15,6 @@ from select_cases import SelectTest
 from view_cases import ViewTest
 
 if __name__ == "__main__":
+    if len(sys.argv) > 1 and sys.argv[-1].endswith("_cases.py"):
+        unittest.main(module=pathlib.Path(sys.argv.pop()).stem, verbosity=2)
     unittest.main(verbosity=2)

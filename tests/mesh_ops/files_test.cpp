@@ -4,10 +4,12 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 #include <sys/stat.h>
 
 #include <cerrno>
 #include <fstream>
+#include <functional>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/file_calls.h"
@@ -147,6 +149,118 @@ TEST(SourceGuard, RefusesWhatIsEqualAboveBelowAndBehindLinks) {
     EXPECT_THROW(guard.check_file(folder.path() / refused), FileError) << refused;
   for (const char* allowed : {"x/other", "y", "x/ficus2"}) EXPECT_NO_THROW(guard.check_folder(folder.path() / allowed));
   EXPECT_NO_THROW(guard.check_file(folder.path() / "x/p.png"));
+}
+
+// A path to a folder or file, and another way to name the same.
+struct Alias {
+  std::string name;
+  std::function<fs::path(const fs::path& real, const fs::path& scratch)> make;
+};
+const std::vector<Alias> aliases{
+    {"itself", [](const fs::path& real, const fs::path&) { return real; }},
+    {"dots",
+     [](const fs::path& real, const fs::path&) { return real.parent_path() / "." / real.filename() / "." / ""; }},
+    {"link",
+     [](const fs::path& real, const fs::path& scratch) {
+       fs::create_directory_symlink(real, scratch / "link");
+       return scratch / "link";
+     }},
+    {"link to a link",
+     [](const fs::path& real, const fs::path& scratch) {
+       fs::create_directory_symlink(real, scratch / "one");
+       fs::create_directory_symlink(scratch / "one", scratch / "two");
+       return scratch / "two";
+     }},
+    {"through a linked parent",
+     [](const fs::path& real, const fs::path& scratch) {
+       fs::create_directory_symlink(real.parent_path(), scratch / "parent");
+       return scratch / "parent" / real.filename();
+     }},
+};
+
+// Whatever a source is called when it is read, and whatever it is called when it is written to.
+TEST(SourceGuard, SeesThroughEveryAliasOfAFolder) {
+  for (const Alias& read : aliases)
+    for (const Alias& written : aliases) {
+      const TemporaryFolder folder;
+      const fs::path real = folder.path() / "data/scene";
+      fs::create_directories(real);
+      fs::create_directories(folder.path() / "a");
+      fs::create_directories(folder.path() / "b");
+      SourceGuard guard;
+      guard.add(read.make(real, folder.path() / "a"));
+      const fs::path out = written.make(real, folder.path() / "b");
+      EXPECT_THROW(guard.check_folder(out), FileError) << read.name << " / " << written.name;
+      EXPECT_THROW(guard.check_file(out / "shape0.obj"), FileError) << read.name << " / " << written.name;
+      EXPECT_THROW(guard.check_folder(out / "new"), FileError) << read.name << " / " << written.name;
+    }
+}
+
+TEST(SourceGuard, ProtectsFilesThatASourceLinksTo) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "real");
+  fs::create_directories(folder.path() / "linked");
+  for (const char* name : {"mlp.json", "shape0.obj"}) {
+    write_file_atomically(folder.path() / "real" / name, "text", {});
+    fs::create_symlink(folder.path() / "real" / name, folder.path() / "linked" / name);
+  }
+  SourceGuard guard;
+  guard.add(folder.path() / "linked");
+  EXPECT_THROW(guard.check_folder(folder.path() / "real"), FileError) << "a folder of links rests on it";
+  EXPECT_THROW(guard.check_file(folder.path() / "real/mlp.json"), FileError);
+  EXPECT_NO_THROW(guard.check_file(folder.path() / "real/other.json"));
+  fs::create_hard_link(folder.path() / "real/mlp.json", folder.path() / "hard.json");
+  EXPECT_THROW(guard.check_file(folder.path() / "hard.json"), FileError);
+}
+
+// Two paths that lead to one file with no link between them: a bind mount, or a file system that ignores case.
+class OneFileTwoNames : public FileCalls {
+ public:
+  OneFileTwoNames(fs::path name, fs::path other) : name_(std::move(name)), other_(std::move(other)) {}
+  int stat(const char* path, struct stat* about) override {
+    const fs::path asked(path);
+    const fs::path rest = asked.lexically_relative(other_);
+    const bool below = !rest.empty() && *rest.begin() != "..";
+    return FileCalls::stat(below ? (name_ / rest).lexically_normal().c_str() : path, about);
+  }
+
+ private:
+  fs::path name_, other_;
+};
+
+TEST(SourceGuard, ComparesDevicesAndInodes) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "data/Scene");
+  fs::create_directories(folder.path() / "mount/Scene");
+  OneFileTwoNames calls(folder.path() / "data/", folder.path() / "mount/");
+  const ReplacedFileCalls in_use(calls);
+  SourceGuard guard;
+  guard.add(folder.path() / "mount/Scene");
+  EXPECT_THROW(guard.check_folder(folder.path() / "data/Scene"), FileError);
+  EXPECT_THROW(guard.check_file(folder.path() / "data/Scene/shape0.obj"), FileError);
+  EXPECT_THROW(guard.check_folder(folder.path() / "data"), FileError) << "holds it under its other name";
+  EXPECT_NO_THROW(guard.check_folder(folder.path() / "elsewhere"));
+}
+
+TEST(SourceGuard, SeesThroughARealMount) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "data/scene");
+  fs::create_directories(folder.path() / "mount");
+  if (::mount((folder.path() / "data").c_str(), (folder.path() / "mount").c_str(), nullptr, MS_BIND, nullptr) != 0)
+    GTEST_SKIP() << "this test may not mount";
+  SourceGuard guard;
+  guard.add(folder.path() / "mount/scene");
+  EXPECT_THROW(guard.check_folder(folder.path() / "data/scene"), FileError);
+  EXPECT_THROW(guard.check_folder(folder.path() / "data"), FileError);
+  EXPECT_THROW(guard.check_file(folder.path() / "data/scene/shape0.obj"), FileError);
+  ::umount((folder.path() / "mount").c_str());
+}
+
+TEST(Files, APipeThatNobodyReadsIsRefused) {
+  const TemporaryFolder folder;
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(write_file_atomically(pipe, "bytes", {}), FileError);
 }
 
 }  // namespace

@@ -291,11 +291,11 @@ TEST_F(BadFolder, MissingKey) {
 }
 TEST_F(BadFolder, NanInTheDecoder) {
   replace_mlp("\"2_bias\":[", "\"2_bias\":[NaN,");
-  expect_refused("is not valid JSON");
+  expect_refused("mlp.json: \"2_bias\"[0] is NaN, which is not a number");
 }
 TEST_F(BadFolder, WrongSizeOfALayer) {
   replace_mlp("\"1_weights\":[[", "\"1_weights\":[[0.5,");
-  expect_refused("\"1_weights\"[0] must have 16 numbers");
+  expect_refused("\"1_weights\" is 16 rows of unequal lengths (row 1 differs from row 0), expected 16×16");
 }
 TEST_F(BadFolder, NoTriangles) {
   write_text(folder() / "shape0.obj", "v 0 0 0\nvt 0 0\n");

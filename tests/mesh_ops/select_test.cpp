@@ -367,7 +367,7 @@ TEST(Select, OnlyTheEarlierOfEqualTrianglesIsADuplicate) {
 
 TEST(Select, NineMicsAreAtLeastNineParts) {
   const auto mic = mic_object();
-  if (!mic) GTEST_SKIP() << "../shared is not here";
+  if (!mic) GTEST_SKIP() << "REBAKE_TEST_DATA has no mic";
   const auto one = tiled(*mic);
   EXPECT_EQ(one->triangle_count(), 741789U);
   const auto parts = components_of(*one);

@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, CodedTexelKinds,
 TEST(CodedTexels, TakeAboutHalfWhereFeaturesAreReal) {
   for (const char* name : {"lego_ball", "lego_tractor"}) {
     const auto object = morpheus_object(name);
-    if (!object) GTEST_SKIP() << "shared data are not here";
+    if (!object) GTEST_SKIP() << "REBAKE_TEST_DATA has no such scene";
     const PreparedSurface surface = prepared_surface(object->sets[0], true);
     ASSERT_TRUE(surface.coded);
     const double bytes = static_cast<double>(surface.coded->blocks.size() * sizeof(TexelBlock) +

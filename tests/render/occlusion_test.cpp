@@ -180,7 +180,7 @@ TEST(Occlusion, ChangesNoByteOfSamplesAndOfEdits) {
 
 TEST(Occlusion, ChangesNoByteOfTheRealMic) {
   const auto mic = mic_object();
-  if (!mic) GTEST_SKIP() << "../shared/data/mic is absent";
+  if (!mic) GTEST_SKIP() << "REBAKE_TEST_DATA has no mic";
   const Scene scene = scene_of(mic);
   for (int k = 0; k < 10; ++k) {
     const double turn = 0.03 * k * k;

@@ -246,7 +246,7 @@ TEST(Picture, FoldedRotationIsTheSamePicture) {
 
 TEST(Picture, RealMicGeometry) {
   const auto mic = mic_object();
-  if (!mic) GTEST_SKIP() << "../shared/data/mic is absent";
+  if (!mic) GTEST_SKIP() << "REBAKE_TEST_DATA has no mic";
   View view = view_from({0, 2, 3.464});
   view.camera.near_plane = 2;
   view.camera.far_plane = 6;

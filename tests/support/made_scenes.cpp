@@ -133,7 +133,7 @@ std::shared_ptr<const FeatureTexture> made_features(const Soup& soup, int width,
 }
 
 std::shared_ptr<const BakedObject> mic_object() {
-  const fs::path folder = fs::path(REBAKE_SHARED) / "data" / "mic";
+  const fs::path folder = fs::path(REBAKE_TEST_DATA) / "mic";
   if (!fs::exists(folder / "mlp.json")) return nullptr;
   ObjMesh all;
   for (int j = 0; j < 8; ++j) {
@@ -154,7 +154,7 @@ std::shared_ptr<const BakedObject> mic_object() {
 }
 
 std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int quads) {
-  const fs::path folder = fs::path(REBAKE_SHARED) / "data" / "morpheus" / name;
+  const fs::path folder = fs::path(REBAKE_TEST_DATA) / "morpheus" / name;
   if (!fs::exists(folder / "mlp.json")) return nullptr;
   const fs::path feat0 = folder / "shape0.pngfeat0.png", feat1 = folder / "shape0.pngfeat1.png";
   const FeatureTexture read = read_feature_pngs(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved);
@@ -200,7 +200,7 @@ std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int 
 
 std::shared_ptr<const FeatureTexture> with_real_features(const FeatureTexture& texture, const std::string& name,
                                                          int first_column) {
-  const fs::path folder = fs::path(REBAKE_SHARED) / "data" / "morpheus" / name;
+  const fs::path folder = fs::path(REBAKE_TEST_DATA) / "morpheus" / name;
   const fs::path feat0 = folder / "shape0.pngfeat0.png", feat1 = folder / "shape0.pngfeat1.png";
   if (!fs::exists(feat0)) return nullptr;
   const FeatureTexture read = read_feature_pngs(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved);

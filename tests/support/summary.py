@@ -1,17 +1,57 @@
-"""What a run of all tests should not pass over in silence: the slowest ten, and every one that was skipped."""
+"""Reports the slowest ten tests and every skipped one; fails for skips that tests/expected_skips does not list.
 
+summary.py TESTS.XML PRESET DATA, where DATA is the folder of real scenes or empty.
+"""
+
+import fnmatch
+import os
+import pathlib
+import re
 import sys
 import xml.etree.ElementTree
 
-cases = xml.etree.ElementTree.parse(sys.argv[1]).getroot().iter("testcase")
-times, skipped = [], []
-for case in cases:
-    if case.get("status") in ("notrun", "disabled"):
-        skipped.append((case.get("name"), (case.findtext("system-out") or "").strip().splitlines()))
-    else:
-        times.append((float(case.get("time", 0)), case.get("name")))
-print("\nslowest:")
-for seconds, name in sorted(times, reverse=True)[:10]:
-    print(f"  {seconds:7.1f} s  {name}")
-for name, said in skipped:
-    print(f"SKIPPED {name}: {said[-1] if said else 'no reason given'}")
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def expected(conditions):
+    """Pattern and reason of each test that may be skipped."""
+    for line in (ROOT / "tests/expected_skips").read_text().splitlines():
+        if line.strip() and not line.startswith("#"):
+            condition, pattern, reason = line.split(None, 2)
+            if condition in conditions:
+                yield pattern, reason
+
+
+def main(report, preset, data):
+    times, skipped = [], set()
+    for case in xml.etree.ElementTree.parse(report).getroot().iter("testcase"):
+        output = case.findtext("system-out") or ""
+        # One process may run many tests, and passes when some are skipped.
+        inner = set(re.findall(r"^\[  SKIPPED \] ([\w/.]+)(?: \(|$)", output, re.M))
+        skipped |= inner
+        if case.get("status") not in ("notrun", "disabled"):
+            times.append((float(case.get("time", 0)), case.get("name")))
+        elif not inner:
+            skipped.add(case.get("name"))
+    print("\nslowest:")
+    for seconds, name in sorted(times, reverse=True)[:10]:
+        print(f"  {seconds:7.1f} s  {name}")
+    conditions = {preset}
+    if not data:
+        conditions.add("without-data")
+    if "REBAKE_DEEP" not in os.environ:
+        conditions.add("quick")
+    if os.geteuid() != 0:
+        conditions.add("unprivileged")
+    allowed = list(expected(conditions))
+    unexpected = 0
+    for name in sorted(skipped):
+        reason = next((reason for pattern, reason in allowed if fnmatch.fnmatch(name, pattern)), None)
+        print(f"skipped {name}: {reason}" if reason else f"SKIPPED {name}: tests/expected_skips does not list it")
+        unexpected += reason is None
+    if unexpected:
+        sys.exit(f"{unexpected} tests were skipped that must run")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,118 @@
+// No output of a run overwrites what the run reads or keeps safe: its journal, its script, its project, a cage's mesh,
+// a camera file; by any name.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "editor/commands/session.h"
+#include "editor/edits/nodes/import.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Guards : public ::testing::Test {
+ protected:
+  fs::path path(const std::string& name) const { return folder_.path() / name; }
+  void write(const std::string& name, const std::string& text) const { write_file_atomically(path(name), text, {}); }
+  // The program's exit status; {} in the arguments stands for the test's folder.
+  int program(std::string arguments) const {
+    for (std::size_t at = 0; (at = arguments.find("{}", at)) != std::string::npos;)
+      arguments.replace(at, 2, folder_.path().string());
+    const std::string command = fmt::format("'{}' {} >'{}' 2>&1", REBAKE_PROGRAM, arguments, path("log").string());
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string log() const { return read_file(path("log")); }
+  std::string import_line() const {
+    return fmt::format("{{\"op\": \"import\", \"path\": \"{}/samples/scenes/kettle\", \"as\": \"kettle\"}}\n",
+                       REBAKE_SOURCE);
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(Guards, OutputsLeaveTheJournalOfTheRunAlone) {
+  fs::create_directory_symlink(path("."), path("link"));
+  for (const std::string out : {"work.journal", "link/work.journal", "./work.journal"})
+    for (const std::string line :
+         {R"({"op": "render", "out": "OUT", "width": 16, "height": 16})", R"({"op": "save_project", "out": "OUT"})",
+          R"({"op": "export", "out": "OUT-folder", "plain": true, "report": "OUT"})"}) {
+      std::string text = line;
+      text.replace(text.find("OUT\""), 3, path(out).string());
+      if (const std::size_t at = text.find("OUT-"); at != std::string::npos) text.replace(at, 3, path("x").string());
+      write("script.jsonl", import_line() + text);
+      EXPECT_EQ(program("run {}/script.jsonl --journal {}/work.journal"), 1) << line;
+      EXPECT_EQ(program("recover {}/work.journal -o {}/back.rebake --replace"), 0) << line << '\n' << log();
+      EXPECT_NE(log().find("1 edit recovered"), std::string::npos) << log();
+      fs::remove(path("work.journal"));
+    }
+  write("script.jsonl", import_line());
+  EXPECT_EQ(program("run {}/script.jsonl --journal {}/work.journal --list-files {}/work.journal"), 1);
+  EXPECT_EQ(program("recover {}/work.journal -o {}/back.rebake --replace"), 0) << log();
+}
+
+TEST_F(Guards, ProjectsDoNotReplaceTheJournalOfAnotherRun) {
+  write("script.jsonl", import_line() + R"({"op": "no such op"})");
+  EXPECT_EQ(program("run {}/script.jsonl --journal {}/other.rebake"), 1);
+  write("save.jsonl",
+        import_line() + fmt::format("{{\"op\": \"save_project\", \"out\": \"{}\"}}", path("other.rebake").string()));
+  EXPECT_EQ(program("run {}/save.jsonl"), 1);
+  EXPECT_NE(log().find("is a journal that may hold work"), std::string::npos) << log();
+  EXPECT_EQ(program("recover {}/other.rebake -o {}/back.rebake"), 0) << log();
+}
+
+TEST_F(Guards, AnEditFailsWhenItsJournalIsGone) {
+  Session session;
+  session.document.keep_journal(path("work.journal"));
+  Import import;
+  import.path = REBAKE_SOURCE "/samples/scenes/kettle";
+  session.edit(import);
+  for (const bool replaced : {false, true}) {
+    fs::remove(path("work.journal"));
+    if (replaced) write("work.journal", "something else");
+    EXPECT_THROW(session.edit(import), FileError);
+    EXPECT_EQ(session.scene().roots.size(), 1U) << "not acknowledged, so not done";
+  }
+  session.document.discard_journal();
+  EXPECT_EQ(read_file(path("work.journal")), "something else") << "another's file stays";
+}
+
+TEST_F(Guards, OutputsLeaveWhatTheRunReadsAlone) {
+  write("script.jsonl", import_line());
+  EXPECT_EQ(program("run {}/script.jsonl --list-files {}/script.jsonl"), 1);
+  EXPECT_EQ(read_file(path("script.jsonl")), import_line());
+
+  write("script.jsonl",
+        import_line() + fmt::format("{{\"op\": \"save_project\", \"out\": \"{}\"}}", path("p.rebake").string()));
+  ASSERT_EQ(program("run {}/script.jsonl"), 0) << log();
+  const std::string project = read_file(path("p.rebake"));
+  EXPECT_EQ(program("render {}/p.rebake -o {}/p.rebake --size 16x16"), 1);
+  EXPECT_EQ(read_file(path("p.rebake")), project);
+
+  write("camera.json", R"({"eye": [0, 0, 3], "target": [0, 0, 0]})");
+  EXPECT_EQ(program("render {}/p.rebake --camera {}/camera.json -o {}/camera.json --size 16x16"), 1);
+  EXPECT_EQ(read_file(path("camera.json")), R"({"eye": [0, 0, 3], "target": [0, 0, 0]})");
+
+  const std::string mesh = "v -9 -9 -9\nv 9 -9 -9\nv 0 9 -9\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+  write("cage.obj", mesh);
+  write(
+      "script.jsonl",
+      import_line() +
+          fmt::format(
+              "{{\"op\": \"cage\", \"node\": \"kettle\", \"mesh\": \"{0}\", \"moves\": [{{\"points\": [3], "
+              "\"translate\": [0, 0, 1]}}]}}\n{{\"op\": \"render\", \"out\": \"{0}\", \"width\": 16, \"height\": 16}}",
+              path("cage.obj").string()));
+  EXPECT_EQ(program("run {}/script.jsonl"), 1);
+  EXPECT_NE(log().find("the mesh of a cage that this run reads"), std::string::npos) << log();
+  EXPECT_EQ(read_file(path("cage.obj")), mesh);
+}
+
+}  // namespace
+}  // namespace rebake::test

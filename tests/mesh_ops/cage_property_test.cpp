@@ -1,0 +1,182 @@
+// Cage coordinates at random points within 1e-16 … 1e-6 of faces, edges and corners of random cages: sharp wedges,
+// lattices and stars. Sums of weights hide most faults, so cages move rigidly and weights are compared with 120 digits.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "mesh_ops/deform/coordinates.h"
+#include "tests/support/gold.h"
+#include "tests/support/random_cages.h"
+#include "tests/support/thorough.h"
+
+namespace rebake::test {
+namespace {
+
+struct Weighed {
+  std::vector<double> weights;
+  std::vector<Vec3> gradients;
+  bool outside;
+};
+
+std::vector<Weighed> weighed(const Coordinates& coordinates, const std::vector<Vec3>& points) {
+  std::vector<Weighed> result(points.size());
+  const std::size_t rows = coordinates.rows();
+  std::vector<double> weights(rows * batch_lanes), with_gradients(weights.size()), slopes(rows * 3 * batch_lanes);
+  for (std::size_t first = 0; first < points.size(); first += batch_lanes) {
+    std::array<Vec3, batch_lanes> block;
+    for (std::size_t lane = 0; lane < batch_lanes; ++lane)
+      block[lane] = points[std::min(first + lane, points.size() - 1)];
+    std::array<std::uint8_t, batch_lanes> outside, outside_too;
+    coordinates.weigh(block, weights.data(), nullptr, outside.data());
+    coordinates.weigh(block, with_gradients.data(), slopes.data(), outside_too.data());
+    for (std::size_t lane = 0; lane < batch_lanes && first + lane < points.size(); ++lane) {
+      Weighed& one = result[first + lane];
+      one.outside = outside[lane] != 0;
+      EXPECT_EQ(outside[lane], outside_too[lane]) << "inside or outside depends on whether gradients are asked for";
+      for (std::size_t row = 0; row < rows; ++row) {
+        one.weights.push_back(weights[row * batch_lanes + lane]);
+        const double* slope = slopes.data() + row * 3 * batch_lanes + lane;
+        one.gradients.emplace_back(slope[0], slope[batch_lanes], slope[2 * batch_lanes]);
+      }
+    }
+  }
+  return result;
+}
+
+double diagonal_of(const Cage& cage) {
+  Box box;
+  for (const Vec3& v : cage.vertices) box.extend(v);
+  return box.diagonal().norm();
+}
+
+// Errors of linear precision: Σ w v + Σ ψ n is the point, and its gradient the identity; both relative to the sum of
+// the parts' sizes, in diagonals. A rigid motion of the cage moves the point by as much.
+struct LinearErrors {
+  double position = 0, jacobian = 0;
+};
+LinearErrors linear_errors(const Cage& cage, const Weighed& one, const Vec3& point) {
+  const double size = diagonal_of(cage), scale = frame_of(cage).scale;
+  Vec3 place(0, 0, 0);
+  Mat3 jacobian = -Mat3::Identity();
+  double sum = 1, gradient_sum = 1;
+  for (std::size_t v = 0; v < cage.vertices.size(); ++v) {
+    const Vec3 offset = cage.vertices[v] - point;
+    place += one.weights[v] * offset;
+    jacobian += offset * one.gradients[v].transpose();
+    sum += std::abs(one.weights[v]);
+    gradient_sum += one.gradients[v].norm() * size;
+  }
+  for (std::size_t row = cage.vertices.size(); row < one.weights.size(); ++row) {
+    const Face& face = cage.faces[row - cage.vertices.size()];
+    const Vec3 normal = (cage.vertices[face[1]] - cage.vertices[face[0]])
+                            .cross(cage.vertices[face[2]] - cage.vertices[face[0]])
+                            .normalized();
+    place += one.weights[row] / scale * normal;
+    jacobian += normal * one.gradients[row].transpose() / scale;
+  }
+  return {place.norm() / size / sum, jacobian.norm() / gradient_sum};
+}
+
+using Make = std::unique_ptr<Coordinates> (*)(const Cage&);
+std::unique_ptr<Coordinates> make_mean_value(const Cage& cage) { return mean_value_coordinates(cage); }
+
+struct Kind {
+  RandomCage (*cage)(std::mt19937_64&);
+  double position_bound;
+};
+// On sharp wedges double leaves 1e-16 over the slope, which is 1e-4 at least.
+const std::array<Kind, 3> kinds{Kind{random_wedge, 2e-13}, Kind{random_lattice, 2e-14}, Kind{random_star, 2e-14}};
+
+void expect_linear_precision(Make make) {
+  std::mt19937_64 random(1);
+  constexpr int points_per_cage = 32;
+  for (int k = 0; k < cases(30, 2100); ++k) {
+    const Kind& kind = kinds[static_cast<std::size_t>(k) % kinds.size()];
+    const auto [name, cage] = kind.cage(random);
+    std::vector<Vec3> points;
+    for (int n = 0; n < points_per_cage; ++n) points.push_back(random_near_point(cage, random));
+    const std::vector<Weighed> all = weighed(*make(cage), points);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      if (all[n].outside) continue;
+      const LinearErrors errors = linear_errors(cage, all[n], points[n]);
+      EXPECT_LE(errors.position, kind.position_bound) << name << ", cage " << k << " at " << points[n].transpose();
+      EXPECT_LE(errors.jacobian, 1e-8) << name << ", cage " << k << " at " << points[n].transpose();
+    }
+  }
+}
+
+TEST(CageProperty, MeanValueIsLinearlyPreciseNearRandomSurfaces) { expect_linear_precision(make_mean_value); }
+TEST(CageProperty, GreenIsLinearlyPreciseNearRandomSurfaces) { expect_linear_precision(green_coordinates); }
+
+// Weights may differ from the exact ones by rounding, and by what moving the point by 1e-15 diagonals does to them.
+void expect_agreement_with_120_digits(Make make, std::vector<Gold> (*exact)(const Cage&, const Gold3&)) {
+  std::mt19937_64 random(2);
+  int compared = 0;
+  for (int k = 0; k < cases(60, 3000); ++k) {
+    const auto [name, cage] = kinds[static_cast<std::size_t>(k) % kinds.size()].cage(random);
+    const double size = diagonal_of(cage), scale = frame_of(cage).scale;
+    std::vector<Vec3> points;
+    for (int n = 0; n < cases(8, 34); ++n) points.push_back(random_near_point(cage, random));
+    const std::vector<Weighed> all = weighed(*make(cage), points);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      const std::vector<Gold> want = exact(cage, gold(points[n]));
+      Gold sum = 0;
+      for (std::size_t v = 0; v < cage.vertices.size(); ++v) sum += want[v];
+      // Outside, and exactly on the surface, the reference for Green's coordinates does not sum to 1, or is not a
+      // number.
+      if (all[n].outside || !(abs(sum - 1) <= 1e-9)) continue;
+      ++compared;
+      double largest = 1;
+      for (const Gold& weight : want) largest = std::max(largest, std::abs(static_cast<double>(weight)));
+      std::vector<Vec3> slopes;
+      for (std::size_t row = 0; row < want.size(); ++row) {
+        const double unit = row < cage.vertices.size() ? 1 : scale;
+        double error = std::abs(static_cast<double>(want[row] * unit - all[n].weights[row]));
+        if (error > 1e-14 * largest) {
+          if (slopes.empty()) slopes = gold_gradients(exact, cage, points[n]);
+          error -= 1e-15 * size * slopes[row].norm() * unit;
+        }
+        EXPECT_LE(error, 1e-14 * largest) << name << ", row " << row << " at " << points[n].transpose();
+      }
+    }
+  }
+  EXPECT_GT(compared, 100);
+}
+
+TEST(CageProperty, MeanValueAgreesWith120DigitsNearRandomSurfaces) {
+  expect_agreement_with_120_digits(make_mean_value, gold_mean_value);
+}
+TEST(CageProperty, GreenAgreesWith120DigitsNearRandomSurfaces) {
+  expect_agreement_with_120_digits(green_coordinates, gold_green);
+}
+
+// The example that was found first: both faces of a sharp edge see the point in their plane and outside themselves.
+TEST(CageProperty, PointBesideASharpEdgeFollowsTheCage) {
+  Cage cage;
+  cage.vertices = {{0, 0, 0}, {1, 0, -.2}, {1, 0, .2}, {0, 1, 0}};
+  cage.faces = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  const Vec3 point(-1e-15, 0.4, 0);
+  const Weighed one = weighed(*mean_value_coordinates(cage), {point}).front();
+  Vec3 place(0, 0, 0);
+  for (std::size_t v = 0; v < 4; ++v) place += one.weights[v] * cage.vertices[v].cwiseProduct(Vec3(-1, -1, 1));
+  EXPECT_LE((place - Vec3(1e-15, -0.4, 0)).norm(), 1e-15);
+}
+
+// One rounding outside a lattice's wall: the face and the cage once disagreed about what that is.
+TEST(CageProperty, GreenRotationOneRoundingOutsideALattice) {
+  const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 6, 6, 6);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> any(0, 1);
+  std::vector<Vec3> points;
+  for (int n = 0; n < 96; ++n) points.emplace_back(any(random), -2.2e-16, any(random));
+  const std::vector<Weighed> all = weighed(*green_coordinates(cage), points);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    ASSERT_FALSE(all[n].outside);
+    EXPECT_LE(linear_errors(cage, all[n], points[n]).jacobian, 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace rebake::test
