@@ -322,7 +322,11 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
     const Processes::Job& job = *ended_job;
     BatchResult& result = results[job.scene];
     result.seconds = std::chrono::duration<double>(Clock::now() - job.since).count();
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+    // 4: done, but below the quality that the script asked for.
+    const bool below = WIFEXITED(status) && WEXITSTATUS(status) == 4;
+    if (below || (WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
+      result.below_asked = below;
+      if (below) result.message = "an export missed the psnr that was asked for; the log says which object suffers";
       const std::string files = read_file(state_folder(options) / (result.name + ".files"));
       result.status = BatchResult::Status::done;
       for (const Mark::File& folder : mark_from(files).wrote)

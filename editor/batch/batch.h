@@ -28,7 +28,8 @@ struct BatchResult {
   std::string name;
   std::filesystem::path scene;
   Status status = Status::failed;
-  std::string message;  ///< why it failed
+  bool below_asked = false;  ///< done, but an export missed the quality that the script asked for
+  std::string message;       ///< why it failed
   double seconds = 0;
 };
 

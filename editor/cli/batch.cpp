@@ -112,6 +112,8 @@ void describe_batch(CommandDescription& command) {
     print_table(results);
     for (const BatchResult& result : results)
       if (result.status == BatchResult::Status::failed) throw ExitWith{1};
+    for (const BatchResult& result : results)
+      if (result.below_asked) throw ExitWith{4};
   });
 }
 

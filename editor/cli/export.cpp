@@ -72,6 +72,7 @@ void describe_export(CommandDescription& command) {
     action.report = options->report;
     run(session, action);
     if (replaces) say_line("note: it took the place of the folder that was there");
+    if (session.below_asked) throw ExitWith{4};
   });
 }
 

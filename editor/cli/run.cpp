@@ -133,6 +133,7 @@ void describe_run(CommandDescription& command) {
       throw;
     }
     session.document.discard_journal();
+    if (session.below_asked) throw ExitWith{4};
   });
 }
 

@@ -170,6 +170,13 @@ void measure_pictures(Renderer& renderer, const Scene& composition, const Lighti
   report.pictures_measured = true;
 }
 
+PlainReport::OfNode worst_object(const PlainReport& report) {
+  PlainReport::OfNode worst{"", report.whole.psnr_db};
+  for (const PlainReport::OfNode& node : report.nodes)
+    if (node.psnr_db < worst.psnr_db) worst = node;
+  return worst;
+}
+
 namespace {
 
 void add_picture_lines(const PlainReport& report, std::vector<std::string>& lines) {
@@ -196,17 +203,19 @@ std::vector<std::string> lines_of(const PlainReport& report) {
   const FuseTrial& chosen = texels.trials[texels.chosen];
   for (std::size_t k = 0; k < texels.trials.size(); ++k) {
     const FuseTrial& trial = texels.trials[k];
-    lines.push_back(fmt::format("tried width {}, {}: {:.1f} dB on a sample, {:.1f} s{}", trial.width,
-                                words_of(trial.way), trial.psnr_db, trial.seconds,
-                                k == texels.chosen ? " (taken)" : ""));
+    lines.push_back(fmt::format("tried width {}, {}: {:.1f} dB on a sample{}, {:.1f} s{}", trial.width,
+                                words_of(trial.way), trial.psnr_db,
+                                trial.worst_node.empty() ? "" : fmt::format(" ({} is worst)", trial.worst_node),
+                                trial.seconds, k == texels.chosen ? " (taken)" : ""));
   }
   lines.push_back(fmt::format("one decoder of width {} for all, {}: {} texels fitted in {:.1f} s{}", chosen.width,
                               words_of(chosen.way), texels.fitted_texels, texels.seconds,
                               texels.in_time ? "" : "; ended by the time given"));
   for (const FuseReport::Part& part : texels.parts)
-    lines.push_back(part.kept ? fmt::format("{}: {} texels kept bit for bit", part.node, part.errors.texels)
-                              : fmt::format("{}: {} texels, {:.1f} dB, 99 % of them {:.1f} dB or better", part.node,
-                                            part.errors.texels, part.errors.psnr_db, part.errors.worst_psnr_db));
+    lines.push_back(!part.shares.empty() ? fmt::format("{}: shares the texels of {}", part.node, part.shares)
+                    : part.kept          ? fmt::format("{}: {} texels kept bit for bit", part.node, part.errors.texels)
+                                : fmt::format("{}: {} texels, {:.1f} dB, 99 % of them {:.1f} dB or better", part.node,
+                                              part.errors.texels, part.errors.psnr_db, part.errors.worst_psnr_db));
   if (texels.parts.size() > 1)
     lines.push_back(fmt::format("all texels: {:.1f} dB, 99 % of them {:.1f} dB or better", texels.whole.psnr_db,
                                 texels.whole.worst_psnr_db));
@@ -232,6 +241,7 @@ nlohmann::json to_json(const PlainReport& report) {
     for (const FuseReport::Part& part : texels.parts) {
       nlohmann::json one = errors(part.errors);
       one["node"] = part.node;
+      if (!part.shares.empty()) one["shares"] = part.shares;
       one["kept"] = part.kept;
       json["parts"].push_back(std::move(one));
     }

@@ -47,6 +47,9 @@ void measure_pictures(Renderer& renderer, const Scene& composition, const Lighti
 double median_frame_ms(Renderer& renderer, const Scene& scene, const View& view, int frames,
                        const Lighting* lighting = nullptr);
 
+/// The node whose pixels differ most, or all of it when nodes were not told apart (then without a name).
+PlainReport::OfNode worst_object(const PlainReport& report);
+
 /// What a way is, for people.
 const char* words_of(FuseWay way);
 /// For people, a line each.

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/write_baked_folder.h"
@@ -52,24 +56,101 @@ Scene PlainParts::scene(const Scene& original, std::size_t candidate, const Fuse
   return with_one_object(original, fuse(composition, *sightlines, *plan, options, progress).object);
 }
 
+namespace {
+
+// The scene that one decoder shows exactly.
+Scene exact_scene(const Scene& scene, const FuseOptions& options, PlainReport& report) {
+  report.exact = true;
+  const std::vector<Node> merged = merged_for_export(without_bends(scene), options.layout);
+  if (merged.size() != 1) throw Error("what one decoder shows could not be put together");
+  report.hidden0 = merged.front().object->decoder->hidden0();
+  report.hidden1 = merged.front().object->decoder->hidden1();
+  return with_one_object(scene, merged.front().object);
+}
+
+// Names for each node without texels of its own the first one that shares its textures.
+void name_sharers(const Scene& scene, FuseReport& report) {
+  const std::vector<PlacedNode> nodes = placed_nodes(scene);
+  const auto shares = [](const PlacedNode& a, const PlacedNode& b) {
+    return a.node->object && b.node->object &&
+           std::any_of(a.node->object->sets.begin(), a.node->object->sets.end(), [&](const TextureSet& set) {
+             return std::any_of(b.node->object->sets.begin(), b.node->object->sets.end(),
+                                [&](const TextureSet& other) { return other.texels == set.texels; });
+           });
+  };
+  for (FuseReport::Part& part : report.parts) {
+    if (part.errors.texels > 0) continue;
+    const auto own =
+        std::find_if(nodes.begin(), nodes.end(), [&](const PlacedNode& n) { return n.node->name == part.node; });
+    if (own == nodes.end()) continue;
+    const auto first =
+        std::find_if(nodes.begin(), own, [&](const PlacedNode& n) { return n.visible && shares(n, *own); });
+    if (first != own) part.shares = first->node->name;
+  }
+}
+
+Scene fused_scene(PlainParts& parts, const Scene& scene, std::size_t candidate, const FuseOptions& options,
+                  PlainReport& report, const Progress& progress) {
+  parts.plan->chosen = candidate;
+  Fused fused = fuse(parts.composition, *parts.sightlines, *parts.plan, options, progress);
+  report.texels = std::move(fused.report);
+  name_sharers(scene, report.texels);
+  report.hidden0 = fused.object->decoder->hidden0();
+  report.hidden1 = fused.object->decoder->hidden1();
+  return with_one_object(scene, std::move(fused.object));
+}
+
+// Candidates in the order in which to try them: the plan's choice, then the others from the best on.
+std::vector<std::size_t> by_promise(const FusePlan& plan) {
+  std::vector<std::size_t> order(plan.candidates.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if ((a == plan.chosen) != (b == plan.chosen)) return a == plan.chosen;
+    return plan.candidates[a].trial.psnr_db > plan.candidates[b].trial.psnr_db;
+  });
+  return order;
+}
+
+}  // namespace
+
 Scene plain_scene(const Scene& scene, const Lighting& lighting, const FuseOptions& options, PlainReport& report,
                   const Progress& progress) {
   check(options);
   PlainParts parts(scene, lighting, options.layout, progress);
-  if (parts.composition.exact()) {
-    report.exact = true;
-    const std::vector<Node> merged = merged_for_export(without_bends(scene), options.layout);
-    if (merged.size() != 1) throw Error("what one decoder shows could not be put together");
-    report.hidden0 = merged.front().object->decoder->hidden0();
-    report.hidden1 = merged.front().object->decoder->hidden1();
-    return with_one_object(scene, merged.front().object);
+  if (parts.composition.exact()) return exact_scene(scene, options, report);
+  const std::size_t chosen = parts.make_plan(options, progress).chosen;
+  return fused_scene(parts, scene, chosen, options, report, progress);
+}
+
+Scene best_plain_scene(const Scene& scene, const Lighting& lighting, const FuseOptions& options,
+                       const std::function<Renderer&()>& renderer,
+                       const std::function<void(const DeviceError&)>& no_device, PlainReport& report,
+                       const Progress& progress) {
+  check(options);
+  PlainParts parts(scene, lighting, options.layout, progress);
+  if (parts.composition.exact()) return exact_scene(scene, options, report);
+  std::vector<std::size_t> order = by_promise(parts.make_plan(options, progress));
+  // Each is fitted as a whole; a limit of time leaves none for a second.
+  constexpr std::size_t most_tries = 3;
+  order.resize(options.seconds > 0 ? 1 : std::min(order.size(), most_tries));
+  std::optional<Scene> best;
+  for (const std::size_t candidate : order) {
+    PlainReport tried;
+    Scene made = fused_scene(parts, scene, candidate, options, tried, progress);
+    try {
+      measure_pictures(renderer(), scene, lighting, made, tried, progress);
+    } catch (const DeviceError& error) {
+      no_device(error);
+      report = std::move(tried);
+      return made;
+    }
+    if (!best || worst_object(tried).psnr_db > worst_object(report).psnr_db) {
+      report = std::move(tried);
+      best = std::move(made);
+    }
+    if (worst_object(report).psnr_db >= options.psnr_db) break;
   }
-  const FusePlan& plan = parts.make_plan(options, progress);
-  Fused fused = fuse(parts.composition, *parts.sightlines, plan, options, progress);
-  report.texels = std::move(fused.report);
-  report.hidden0 = fused.object->decoder->hidden0();
-  report.hidden1 = fused.object->decoder->hidden1();
-  return with_one_object(scene, std::move(fused.object));
+  return *best;
 }
 
 }  // namespace rebake

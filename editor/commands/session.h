@@ -27,6 +27,7 @@ class Session {
   void adjust(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
 
   std::vector<std::string> exports;  ///< folders that export wrote
+  bool below_asked = false;          ///< an export was done, but missed the quality that was asked for
   Progress progress;
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< one line for people
 

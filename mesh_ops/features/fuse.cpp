@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "mesh_ops/base/error.h"
@@ -72,10 +73,16 @@ double error_over(const Student& student, const std::vector<Sighting>& sightings
   return sum / weight_of(sightings) / static_cast<double>(texels);
 }
 
-// PSNR over the sample, about as fitting would leave it (side by side, that keeps to one branch a block): of texels
-// alone or as pixels mix them, whichever is worse. A picture shows the one or the other, by its distance.
-double judged(const Student& student, const Composition& composition, const TexelSample& sample,
-              const FuseOptions& options, const Progress& progress) {
+struct Judgement {
+  double psnr_db = 100;
+  std::string node;  ///< whose PSNR it is
+};
+
+// PSNR over the sample of the node that suffers most, about as fitting would leave it (side by side, that keeps to one
+// branch per block): of texels alone or as pixels mix them, whichever is worse. A picture shows the one or the other,
+// by its distance. Texels are averaged within a node only: a node of few texels may fill the picture.
+Judgement judged(const Student& student, const Composition& composition, const TexelSample& sample,
+                 const FuseOptions& options, const Progress& progress) {
   const std::vector<FeatureNetwork> teachers = networks_of(composition);
   const auto levels = feature_levels(options.bits, AlphaCode::halved);
   struct Errors {
@@ -114,15 +121,26 @@ double judged(const Student& student, const Composition& composition, const Texe
     sums[part].mixed += errors[k].mixed;
     ++pieces[part];
   }
-  Errors whole;
-  double count = 0;
+  struct OfNode {
+    Errors errors;
+    double texels = 0;
+    std::string name;
+  };
+  std::map<NodeId, OfNode> nodes;
   for (std::size_t p = 0; p < texels.size(); ++p) {
     if (pieces[p] == 0) continue;
-    whole.alone += texels[p] * sums[p].alone / pieces[p];
-    whole.mixed += texels[p] * sums[p].mixed / pieces[p];
-    count += texels[p];
+    OfNode& node = nodes[composition.parts[p].node];
+    node.errors.alone += texels[p] * sums[p].alone / pieces[p];
+    node.errors.mixed += texels[p] * sums[p].mixed / pieces[p];
+    node.texels += texels[p];
+    node.name = composition.parts[p].name;
   }
-  return count > 0 ? psnr_of(std::max(whole.alone, whole.mixed) / count) : 100;
+  Judgement worst;
+  for (const auto& [id, node] : nodes) {
+    const double psnr = psnr_of(std::max(node.errors.alone, node.errors.mixed) / node.texels);
+    if (psnr < worst.psnr_db) worst = {psnr, node.name};
+  }
+  return worst;
 }
 
 // The teacher of most texels, or of most of those that a node shows rigidly.
@@ -235,7 +253,7 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
 
   std::vector<FuseCandidate>& candidates = plan.candidates;
   const auto consider = [&](Student student, FuseWay way, Clock::time_point begun) {
-    FuseTrial trial{width_of(student), way, 0, 0, 0};
+    FuseTrial trial{width_of(student), way, 0, {}, 0, 0};
     const Clock::time_point trained = Clock::now();
     const auto fitted = std::count_if(sample.pieces.begin(), sample.pieces.end(), [&](const TexelSample::Piece& piece) {
       return !stays(student, composition.parts[piece.part]);
@@ -243,7 +261,9 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
     double texels = 0;
     for (const Composition::Block& block : composition.blocks)
       if (!stays(student, composition.parts[block.part])) texels += block.opaque;
-    trial.psnr_db = judged(student, composition, sample, options, progress);
+    const Judgement judgement = judged(student, composition, sample, options, progress);
+    trial.psnr_db = judgement.psnr_db;
+    trial.worst_node = judgement.node;
     if (fitted > 0) trial.fit_seconds = seconds_since(trained) / static_cast<double>(fitted) / network_lanes * texels;
     trial.seconds = seconds_since(begun);
     candidates.push_back({std::move(student), trial});
@@ -305,9 +325,15 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   }
   if (candidates.empty())
     throw FieldError("width", fmt::format("is {}, but the decoder to be trained has {}", *options.width, base_width));
+  // When nobody said what to reach, 50 dB are worth a wider decoder.
+  constexpr double as_good_as_exact = 50;
+  const auto excels = [&](const FuseCandidate& c) {
+    return !options.until_psnr && c.trial.psnr_db >= std::max(as_good_as_exact, options.psnr_db);
+  };
   // The narrowest that is good enough, or else the best.
   const auto better = [&](const FuseCandidate& a, const FuseCandidate& b) {
     if (!options.width) {
+      if (excels(a) != excels(b)) return excels(a);
       if (reaches(a) != reaches(b)) return reaches(a);
       if (reaches(a) && a.trial.width != b.trial.width) return a.trial.width < b.trial.width;
     }

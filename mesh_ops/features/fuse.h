@@ -31,14 +31,15 @@ struct FuseOptions {
   Layout layout = Layout::split;
 };
 
-/// What a way to fuse promises: PSNR over held-out directions of the sample, of texels alone or as pixels mix them,
-/// whichever is worse.
+/// Result of a way to fuse on a sample of the texels: PSNR of the node that suffers most, over held-out directions, of
+/// texels alone or as pixels mix them, whichever is worse.
 struct FuseTrial {
   int width = 0;  ///< of the wider hidden layer
   FuseWay way = FuseWay::keep;
   double psnr_db = 0;
-  double seconds = 0;      ///< of training and judging
-  double fit_seconds = 0;  ///< that fitting all texels takes, about
+  std::string worst_node{};  ///< whose PSNR it is; empty when every node is shown exactly
+  double seconds = 0;        ///< of training and judging
+  double fit_seconds = 0;    ///< that fitting all texels takes, about
 };
 
 /// Errors of texels over held-out directions, as PSNR of display colours.
@@ -53,6 +54,7 @@ struct FuseReport {
     std::string node;
     bool kept = false;  ///< bit for bit
     TexelErrors errors;
+    std::string shares{};  ///< node that counts the texels, when this one is a copy and has none of its own
   };
   std::vector<Part> parts;  ///< nodes in drawing order, those with kept and fitted texels twice
   TexelErrors whole;

@@ -164,8 +164,11 @@ TexelSample sampled(const Composition& composition, const Sightlines& sightlines
   for (std::uint32_t part = 0; part < composition.parts.size(); ++part) {
     if (texels_of_part[part] == 0) continue;
     const auto share = static_cast<double>(texels_of_part[part]) / static_cast<double>(composition.opaque_texels);
+    // A small part may fill the picture: each has at least a share of an eighth of the sample.
+    const std::size_t least = std::min<std::size_t>(wanted / (8 * composition.parts.size()),
+                                                    static_cast<std::size_t>(texels_of_part[part]) / network_lanes);
     const std::size_t groups =
-        std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(share * static_cast<double>(wanted))));
+        std::max({std::size_t{2}, least, static_cast<std::size_t>(std::lround(share * static_cast<double>(wanted)))});
     // Evenly along the part's texels, so that none of it is missed.
     std::uint64_t passed = 0;
     std::size_t at = 0;

@@ -17,7 +17,7 @@ struct TexelSample {
   };
   std::vector<Piece> pieces;
 };
-/// About `texels` of them, at least two groups of each part.
+/// About `texels` of them: as many from each part as it has, but at least two groups, and a share of an eighth.
 TexelSample sampled(const Composition& composition, const Sightlines& sightlines, std::size_t texels,
                     std::uint64_t seed, const Progress& progress);
 

@@ -163,6 +163,72 @@ TEST(Plain, SeveralTextureSets) {
   EXPECT_GE(plain_report(two(both, made_object({.seed = 2})), quick(), 300).whole.psnr_db, 40);
 }
 
+// A square of two triangles, 2 wide, whose top-left texels show one colour of features: (152, 164, 175) by a decoder
+// that passes them through. `side` texels of texture, `opaque` of them a side; `sign` of the output weights.
+std::shared_ptr<const BakedObject> square(int side, int opaque, double sign) {
+  Decoder decoder;
+  decoder.weights0 = Eigen::MatrixXd::Zero(Decoder::inputs, 16);
+  for (int k = 0; k < Decoder::inputs; ++k) decoder.weights0(k, k) = 1;
+  decoder.weights1 = Eigen::MatrixXd::Identity(16, 16);
+  decoder.weights2 = Eigen::MatrixXd::Zero(16, 3);
+  for (int k = 0; k < 3; ++k) decoder.weights2(k, k) = sign;
+  decoder.bias0 = decoder.bias1 = Eigen::VectorXd::Zero(16);
+  decoder.bias2 = Eigen::VectorXd::Zero(3);
+  auto object = std::make_shared<BakedObject>();
+  object->decoder = std::make_shared<const Decoder>(decoder);
+  const double low = 0.5 / side, high = (opaque - 0.5) / side;
+  const std::vector<Vec3> positions{{-1, 1, 0}, {-1, -1, 0}, {1, 1, 0}, {1, -1, 0}};
+  const std::vector<Vec2> uvs{{low, 1 - low}, {low, 1 - high}, {high, 1 - low}, {high, 1 - high}};
+  object->sets.push_back({Soup(positions, uvs, {Face{0, 1, 3}, Face{0, 3, 2}}),
+                          std::make_shared<const FeatureTexture>(
+                              FeatureTexture::from_rows(side, side, AlphaCode::halved, [&](int y, Texel* row) {
+                                for (int x = 0; x < side; ++x)
+                                  row[x] = x < opaque && y < opaque ? Texel{{100, 150, 200, 200}, {100, 150, 200, 200}}
+                                                                    : empty_texel(AlphaCode::halved);
+                              }))});
+  return object;
+}
+
+// An object of few texels may fill the picture: one decoder kept for the large one left the small one at 16.7 dB.
+TEST(Plain, ObjectsOfFewTexelsKeepTheirColours) {
+  for (const int large : is_deep ? std::vector{96, 272, 512} : std::vector{272}) {
+    const auto small = square(64, 17, 1), other = square(1024, large, -1);
+    Scene scene;
+    Node node;
+    for (const auto& [name, object, place] :
+         {std::tuple("A", small, Vec3(0, 0, 0)), std::tuple("B", other, Vec3(0, 0, -1)),
+          std::tuple("copy", small, Vec3(3, 0, 0))}) {
+      node.name = name;
+      node.object = object;
+      node.to_parent = Affine(Eigen::Translation3d(place));
+      scene = with_added(scene, node, NodeId::none, 99);
+    }
+    FuseOptions options;
+    options.training.steps = 50;
+    PlainReport report;
+    const Scene plain = best_plain_scene(
+        scene, {}, options, []() -> Renderer& { return renderer(); }, [](const DeviceError&) { FAIL(); }, report, {});
+    for (const FuseReport::Part& part : report.texels.parts)
+      EXPECT_GE(part.errors.psnr_db, 60) << part.node << " beside " << large;
+    // From all sides, edges of one object over the other are mixed before the decoder instead of after it.
+    for (const PlainReport::OfNode& of : report.nodes) EXPECT_GE(of.psnr_db, 40) << of.node << " beside " << large;
+    // From in front and from behind no such edge is seen.
+    for (const double side : {1.0, -1.0}) {
+      View view;
+      view.width = view.height = 300;
+      view.camera.eye = Vec3(1, 0, 8 * side);
+      view.camera.target = Vec3(1, 0, 0);
+      view.camera.near_plane = 1;
+      view.camera.far_plane = 20;
+      EXPECT_GE(compare(renderer().render(scene, view), renderer().render(plain, view), 2).psnr_db, 60)
+          << "from side " << side << " beside " << large;
+    }
+    const auto lines = lines_of(report);
+    EXPECT_TRUE(std::any_of(lines.begin(), lines.end(),
+                            [](const std::string& line) { return line == "copy: shares the texels of A"; }));
+  }
+}
+
 // By way of files, as people get it.
 class PlainExport : public DocumentTest {
  protected:

@@ -133,7 +133,7 @@ TEST(SphericalHarmonics, ShearedMatricesTurnByTheirPolarFactor) {
                   .cwiseAbs()
                   .maxCoeff(),
               1e-13);
-  EXPECT_THROW(sh::Rotation(Mat3::Zero()), std::invalid_argument);
+  EXPECT_THROW(sh::Rotation{Mat3(Mat3::Zero())}, std::invalid_argument);
   // A mirror image: value(c′, M d) = value(c, d) all the same.
   const Mat3 mirror = Vec3(-1, 1, 1).asDiagonal();
   sh::Coefficients c;
