@@ -19,6 +19,7 @@ void describe_export(CommandDescription& command) {
   struct Options {
     std::string folder, out, layout, report;
     bool plain = false;
+    int page_size = 0;
     std::string width = "auto", way, keep = ExportAction().keep;
     std::optional<double> psnr;
     double seconds = 0;
@@ -30,6 +31,10 @@ void describe_export(CommandDescription& command) {
   command.option("-o,--out", options->out, "folder to write; replaced whole or not at all", "FOLDER").required();
   command.option("--layout", options->layout, "convert the layout", "split|chunked|unsplit [as read]")
       .one_of(std::vector<std::string>{"split", "chunked", "unsplit"});
+  command
+      .option("--page-size", options->page_size, "texels a side of textures that are laid out again, at most",
+              "N [4096, or as the largest read]")
+      .between(1, 16384);
   command.option("--format", options->format, "what to write", "mobilenerf|rebake [mobilenerf]");
   command.flag("--plain", options->plain,
                "one ordinary folder for any scene: where one decoder cannot show it exactly, one is fitted");
@@ -56,6 +61,7 @@ void describe_export(CommandDescription& command) {
     action.out = options->out;
     action.format = options->format;
     if (!options->layout.empty()) action.layout = Codec<Layout>::read(nlohmann::json(options->layout), session.scene());
+    if (options->page_size > 0) action.page_size = options->page_size;
     action.plain = options->plain;
     if (options->width != "auto") {
       int neurons = 0;

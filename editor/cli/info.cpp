@@ -43,6 +43,7 @@ json object_info(const PlacedNode& placed) {
           {"axes", Codec<Axes>::write(object.axes)},
           {"decoder", {Decoder::inputs, object.decoder->hidden0(), object.decoder->hidden1(), 3}},
           {"turned", object.any_rotations()},
+          {"assumptions", object.origin ? object.origin->assumptions : std::vector<std::string>()},
           {"memory", object.memory()}};
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "editor/cli/terminal.h"
 #include "editor/commands/views.h"
 #include "editor/document/document.h"
 #include "editor/document/project.h"
@@ -72,6 +73,8 @@ Opened read_all(const std::vector<std::string>& folders, const std::string& axes
       opened.sources.add(scene_folder_of(folder));
     }
     add_sources(opened.sources, read);
+    for (const std::string& assumption : assumptions_of(read))
+      say_line(fmt::format("warning: {}: {}", folder, assumption));
     if (folders.size() == 1) {
       scene = std::move(read);
       return opened;

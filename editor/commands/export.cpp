@@ -19,6 +19,7 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/rgba_png.h"
 #include "render/compare.h"
 #include "render/picture.h"
 
@@ -135,7 +136,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
       },
       report, session.progress);
   const ExportReport written =
-      export_scene(plain, action.out, {options.layout, session.document.sources()}, session.progress);
+      export_scene(plain, action.out, {options.layout, session.document.sources(), action.page_size}, session.progress);
   session.exports.push_back(action.out);
   for (const std::string& note : written.notes) session.say("note: " + note);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -192,12 +193,14 @@ FuseOptions fuse_options(const Scene& scene, const ExportAction& action) {
 
 void run(Session& session, const ExportAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
+  if (action.page_size && (*action.page_size < 1 || *action.page_size > largest_png_side))
+    throw FieldError("page_size", fmt::format("must be 1 to {}", largest_png_side));
   const Scene scene = with_only(session.scene(), action.nodes);
   if (action.plain) return export_plain(session, scene, action);
   check_not_plain(action);
   const ExportReport report =
       format_named(action.format)
-          .write(scene, action.out, {action.layout, session.document.sources()}, session.progress);
+          .write(scene, action.out, {action.layout, session.document.sources(), action.page_size}, session.progress);
   session.exports.push_back(action.out);
   for (const std::string& note : report.notes) session.say("note: " + note);
   if (!report.keeps_everything) say_losses(session, scene, action, report);
@@ -212,6 +215,10 @@ REBAKE_DESCRIBE_ACTION(
       visit("out", action.out, Need::required, "folder to write");
       visit("format", action.format, Need::optional, "mobilenerf: what viewers read; rebake: keeps every node");
       visit("layout", action.layout, Need::optional, "convert to this layout; left out: as read");
+      visit("page_size", action.page_size, Need::optional,
+            "texels a side of textures that are laid out again, 1 to 16384; larger ones are laid out again too; left "
+            "out: "
+            "4096, or as the largest that was read");
       visit("nodes", action.nodes, Need::optional, "only these, with what is inside them; left out: all");
       visit("plain", action.plain, Need::optional,
             "one folder for any scene: where one decoder cannot show it exactly, or light changes colours, one is "

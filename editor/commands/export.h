@@ -13,8 +13,9 @@ struct ExportAction {
   std::string out;
   std::string format = "mobilenerf";
   std::optional<Layout> layout;
-  std::vector<NodeRef> nodes;  ///< only these and what is inside them; empty: all
-  bool plain = false;          ///< one folder whatever it takes: fits one decoder to all of it
+  std::optional<int> page_size;  ///< texels a side of textures that are laid out again, at most; nothing: as read
+  std::vector<NodeRef> nodes;    ///< only these and what is inside them; empty: all
+  bool plain = false;            ///< one folder whatever it takes: fits one decoder to all of it
   FuseWidth width;
   std::optional<FuseWay> way;  ///< nothing: whichever is best
   std::string keep = "auto";   ///< of a plain folder: a node that stays bit for bit, none, or auto

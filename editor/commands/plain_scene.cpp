@@ -26,6 +26,13 @@ Scene with_one_object(Scene scene, std::shared_ptr<const BakedObject> object) {
   return with_added(scene, node, NodeId::none, scene.roots.size());
 }
 
+int page_side_of(const Scene& scene, Layout layout) {
+  std::vector<const BakedObject*> objects;
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.visible && placed.node->object) objects.push_back(placed.node->object.get());
+  return largest_page_side(layout, objects);
+}
+
 }  // namespace
 
 Layout common_layout(const Scene& scene) {
@@ -39,10 +46,10 @@ Layout common_layout(const Scene& scene) {
 }
 
 PlainParts::PlainParts(const Scene& scene, const Lighting& lighting, Layout layout, const Progress& progress)
-    : composition(composed(scene, largest_texture_side(layout), progress, &lighting)) {
+    : composition(composed(scene, page_side_of(scene, layout), progress, &lighting)) {
   if (layout == Layout::unsplit && composition.pages.size() > 1)
     throw Error(
-        fmt::format("the texels do not fit into one texture of {}²: use --layout split", largest_texture_side(layout)));
+        fmt::format("the texels do not fit into one texture of {}²: use --layout split", page_side_of(scene, layout)));
   if (!composition.exact()) sightlines.emplace(scene);
 }
 
@@ -141,6 +148,7 @@ Scene best_plain_scene(const Scene& scene, const Lighting& lighting, const FuseO
       measure_pictures(renderer(), scene, lighting, made, tried, progress);
     } catch (const DeviceError& error) {
       no_device(error);
+      if (best) break;
       report = std::move(tried);
       return made;
     }

@@ -1,5 +1,9 @@
 #include "editor/edits/support.h"
 
+#include "mesh_ops/base/error.h"
+
+#include <nlohmann/json.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -170,6 +174,24 @@ void checked_turn(const Affine& transform) {
   } catch (const std::invalid_argument& error) {
     throw EditError(error.what());
   }
+}
+
+void check_boxes(const nlohmann::json& edit) {
+  if (edit.is_array())
+    for (const nlohmann::json& one : edit) check_boxes(one);
+  if (!edit.is_object()) return;
+  for (const char* field : {"box", "eyes"}) {
+    const auto box = edit.find(field);
+    if (box == edit.end() || !box->is_object() || !box->contains("min") || !box->contains("max")) continue;
+    const nlohmann::json &min = box->at("min"), &max = box->at("max");
+    for (std::size_t axis = 0; axis < 3 && min.is_array() && max.is_array(); ++axis)
+      if (axis < min.size() && axis < max.size() && min[axis].is_number() && max[axis].is_number() &&
+          min[axis].get<double>() > max[axis].get<double>())
+        throw FieldError(field,
+                         fmt::format("min {0} is above max {0}, so nothing lies inside; exchange them", "xyz"[axis]));
+  }
+  for (const char* list : {"moves", "fixed"})
+    if (edit.contains(list)) check_boxes(edit.at(list));
 }
 
 }  // namespace rebake

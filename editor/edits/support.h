@@ -1,5 +1,7 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <vector>
 
 #include "editor/edits/edit.h"
@@ -56,5 +58,9 @@ void check_subtree(const Scene& scene, NodeId id);
 
 /// Throws EditError when the transform flattens what it moves.
 void checked_turn(const Affine& transform);
+
+/// Throws FieldError for a box in a new edit's JSON whose min lies above its max: nothing would be inside. What
+/// journals and projects hold is not asked.
+void check_boxes(const nlohmann::json& edit);
 
 }  // namespace rebake

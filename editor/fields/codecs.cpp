@@ -166,12 +166,7 @@ json Codec<Scale>::write(const Scale& value) { return list(value.value); }
 
 FieldType Codec<BoxRegion>::type() { return {FieldKind::other, "{\"min\": [x, y, z], \"max\": [x, y, z]}", "Box", {}}; }
 BoxRegion Codec<BoxRegion>::read(const json& value, const Scene&) {
-  const BoxRegion box{vector(part(value, "min", {"min", "max"})), vector(part(value, "max", {"min", "max"}))};
-  for (int axis = 0; axis < 3; ++axis)
-    if (box.min[axis] > box.max[axis])
-      throw Error(fmt::format("min {0} is above max {0} ({1} > {2}), so nothing lies inside; exchange them",
-                              "xyz"[axis], box.min[axis], box.max[axis]));
-  return box;
+  return {vector(part(value, "min", {"min", "max"})), vector(part(value, "max", {"min", "max"}))};
 }
 json Codec<BoxRegion>::write(const BoxRegion& value) { return {{"min", list(value.min)}, {"max", list(value.max)}}; }
 

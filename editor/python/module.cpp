@@ -21,6 +21,7 @@
 #include "editor/edits/deform/cage.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/select/select_triangles.h"
+#include "editor/edits/support.h"
 #include "editor/python/json_python.h"
 #include "editor/python/stub.h"
 #include "editor/python/work.h"
@@ -71,16 +72,19 @@ class PyDocument {
   }
 
   Scene scene() {
+    const InsideModule inside;
     const py::gil_scoped_release others;
     const std::scoped_lock lock(mutex_);
     return session_.scene();
   }
   SourceGuard sources() {
+    const InsideModule inside;
     const py::gil_scoped_release others;
     const std::scoped_lock lock(mutex_);
     return session_.document.sources();
   }
   std::vector<Edit> edits() {
+    const InsideModule inside;
     const py::gil_scoped_release others;
     const std::scoped_lock lock(mutex_);
     return session_.document.history().edits();
@@ -125,6 +129,7 @@ Edit edit_once(PyDocument& document, const json& line) {
   std::optional<Edit> made;
   document.work([&](Session& session) {
     session.document.protect_files_of(line);
+    check_boxes(line);
     made = read_edit(line, session.scene());
     session.edit(*made);
   });
@@ -223,20 +228,44 @@ py::object select_mask(PyDocument& document, const py::object& node, const py::a
   return selections_of(document);
 }
 
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+// An n × 3 array of the kinds of numbers that dtype letters name; wrong types and shapes are named by the argument.
+py::array table_of(const py::object& given, const char* name, const char* kinds, const char* numbers) {
+  const py::array array = py::array::ensure(given);
+  if (!array) PyErr_Clear();
+  if (!array || std::string_view(kinds).find(array.dtype().kind()) == std::string_view::npos || array.ndim() != 2 ||
+      array.shape(1) != 3)
+    throw FieldError(name, fmt::format("must be an array of n × 3 {}, not {}", numbers,
+                                       array ? fmt::format("{} of shape {}", py::str(array.dtype()).cast<std::string>(),
+                                                           py::str(array.attr("shape")).cast<std::string>())
+                                             : py::str(py::type::of(given)).cast<std::string>()));
+  return array;
+}
 
-std::vector<Vec3> points_from(const Array& array, const char* name) {
-  if (array.ndim() != 2 || array.shape(1) != 3) throw FieldError(name, "must be an array of n × 3 numbers");
+std::vector<Vec3> points_from(const py::object& given, const char* name) {
+  const py::array_t<double, py::array::c_style | py::array::forcecast> array = table_of(given, name, "fiu", "numbers");
   std::vector<Vec3> points;
   const auto rows = array.unchecked<2>();
-  for (py::ssize_t k = 0; k < rows.shape(0); ++k) points.emplace_back(rows(k, 0), rows(k, 1), rows(k, 2));
+  for (py::ssize_t k = 0; k < rows.shape(0); ++k) {
+    points.emplace_back(rows(k, 0), rows(k, 1), rows(k, 2));
+    if (!points.back().allFinite()) throw FieldError(name, fmt::format("row {} is not finite", k));
+  }
   return points;
 }
-std::vector<Face> faces_from(const py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>& array) {
-  if (array.ndim() != 2 || array.shape(1) != 3) throw FieldError("faces", "must be an array of n × 3 whole numbers");
+std::vector<Face> faces_from(const py::object& given, std::size_t points) {
+  const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> array =
+      table_of(given, "faces", "iu", "whole numbers");
   std::vector<Face> faces;
   const auto rows = array.unchecked<2>();
-  for (py::ssize_t k = 0; k < rows.shape(0); ++k) faces.push_back({rows(k, 0), rows(k, 1), rows(k, 2)});
+  for (py::ssize_t k = 0; k < rows.shape(0); ++k) {
+    Face& face = faces.emplace_back();
+    for (py::ssize_t corner = 0; corner < 3; ++corner) {
+      const std::int64_t number = rows(k, corner);
+      if (number < 0 || static_cast<std::uint64_t>(number) >= points)
+        throw FieldError("faces",
+                         fmt::format("row {} names point {}; there are {}, counted from 0", k, number, points));
+      face[static_cast<std::size_t>(corner)] = static_cast<std::uint32_t>(number);
+    }
+  }
   return faces;
 }
 py::array_t<double> array_of(const std::vector<Vec3>& points) {
@@ -247,11 +276,11 @@ py::array_t<double> array_of(const std::vector<Vec3>& points) {
   return array;
 }
 
-py::array_t<double> move_by_cage(const Array& points, const Array& vertices,
-                                 const py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>& faces,
-                                 const Array& moved, const std::string& kind, int resolution) {
-  const std::vector<Vec3> places = points_from(points, "points"), targets = points_from(moved, "moved");
-  Cage cage = checked_cage({points_from(vertices, "vertices"), faces_from(faces)});
+py::array_t<double> move_by_cage(const py::object& points, const py::object& vertices, const py::object& faces,
+                                 const py::object& moved, const std::string& kind, int resolution) {
+  const std::vector<Vec3> places = points_from(points, "points"), targets = points_from(moved, "moved"),
+                          corners = points_from(vertices, "vertices");
+  const Cage cage = checked_cage({corners, faces_from(faces, corners.size())});
   if (targets.size() != cage.vertices.size()) throw FieldError("moved", "must hold as many points as vertices");
   const CageCoordinates coordinates = Codec<CageCoordinates>::read(json(kind), {});
   std::vector<Vec3> moved_places;
@@ -262,13 +291,9 @@ py::array_t<double> move_by_cage(const Array& points, const Array& vertices,
   return array_of(moved_places);
 }
 
-py::tuple wrap_triangles(const Array& points,
-                         const py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>& faces,
-                         double coarseness) {
-  const TriangleList triangles{points_from(points, "points"), faces_from(faces)};
-  for (const Face& face : triangles.faces)
-    if (std::max({face[0], face[1], face[2]}) >= triangles.points.size())
-      throw FieldError("faces", "must name points by number, from 0");
+py::tuple wrap_triangles(const py::object& points, const py::object& faces, double coarseness) {
+  const std::vector<Vec3> places = points_from(points, "points");
+  const TriangleList triangles{places, faces_from(faces, places.size())};
   Cage cage;
   do_work(py::none(), [&](const Progress& progress) { cage = wrap(triangles, coarseness, progress); });
   py::array_t<std::uint32_t> numbers({static_cast<py::ssize_t>(cage.faces.size()), py::ssize_t{3}});
@@ -462,6 +487,7 @@ PYBIND11_MODULE(rebake, module) {
              py::arg("progress") = py::none(),
              "The work that a journal kept; `sources` says where folders lie now that were moved. What cannot be got "
              "back is warned of.");
+  py::module_::import("atexit").attr("register")(py::cpp_function(&end_all_work));
   module.def("move_by_cage", &move_by_cage, py::arg("points"), py::arg("vertices"), py::arg("faces"), py::arg("moved"),
              py::arg("coordinates") = "mean_value", py::arg("resolution") = 32,
              "Where points go when a closed cage's vertices move.");

@@ -8,6 +8,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -30,7 +31,50 @@ void refuse_forked() {
         "multiprocessing's \"spawn\", or fork before rebake is first used");
 }
 
+// The threads that are inside the module, and the cancel flags of those that work.
+struct Running {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::multiset<std::atomic<bool>*> flags;
+  bool ending = false;
+};
+Running& running() {
+  static Running one;
+  return one;
+}
+
+// What Python raised while work went on that was done nevertheless.
+void keep_quiet(py::error_already_set& raised) {
+  if (raised.matches(PyExc_KeyboardInterrupt))
+    PyErr_SetInterrupt();
+  else
+    raised.discard_as_unraisable("the progress callback of rebake");
+}
+
 }  // namespace
+
+InsideModule::InsideModule(std::atomic<bool>* flag) : flag_(flag) {
+  const std::scoped_lock lock(running().mutex);
+  if (running().ending) throw Error("the interpreter is ending; rebake takes no more work");
+  running().flags.insert(flag_);
+}
+InsideModule::~InsideModule() {
+  const std::scoped_lock lock(running().mutex);
+  running().flags.erase(running().flags.find(flag_));
+  running().changed.notify_all();
+}
+
+void end_all_work() {
+  // Threads do not come along with a fork, and may have held the mutex.
+  if (worked_in != 0 && worked_in != ::getpid()) return;
+  const py::gil_scoped_release others;
+  std::unique_lock lock(running().mutex);
+  running().ending = true;
+  for (std::atomic<bool>* flag : running().flags)
+    if (flag != nullptr) *flag = true;
+  constexpr std::chrono::seconds patience(20);
+  if (!running().changed.wait_for(lock, patience, [] { return running().flags.empty(); })) ::_exit(1);
+}
 
 void do_work(const py::object& callback, const std::function<void(const Progress&)>& work) {
   refuse_forked();
@@ -40,6 +84,7 @@ void do_work(const py::object& callback, const std::function<void(const Progress
   std::exception_ptr failed;
   std::optional<std::pair<std::string, double>> latest;
   std::atomic<bool> cancel = false;
+  const InsideModule inside(&cancel);
   const Progress progress(
       [&](std::string_view what, double share) {
         const std::scoped_lock lock(mutex);
@@ -80,8 +125,9 @@ void do_work(const py::object& callback, const std::function<void(const Progress
     const py::gil_scoped_release others;
     worker.join();
   }
-  if (raised) throw std::move(*raised);
+  if (failed && raised) throw std::move(*raised);
   if (failed) std::rethrow_exception(failed);
+  if (raised) keep_quiet(*raised);
 }
 
 }  // namespace rebake

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "editor/commands/session.h"
+#include "editor/edits/support.h"
 #include "editor/fields/codec.h"
 #include "editor/fields/field_line.h"
 
@@ -99,6 +100,7 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
       const json object = read_line(std::string_view(line).substr(first));
       const json filled = with_variables(object, variables);
       session.document.protect_files_of(filled);
+      check_boxes(filled);
       const ScriptCommand command = read_command(filled, session.scene());
       if (const Edit* edit = std::get_if<Edit>(&command))
         session.edit(*edit);

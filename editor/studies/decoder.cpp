@@ -17,7 +17,6 @@ StudyTable study_decoder(const StudyInput& input) {
   };
   const Choice choices[] = {
       {"constants, float", {Weights::constants, Shading::deferred, Precision::full}},
-      {"constants, half", {Weights::constants, Shading::deferred, Precision::half}},
       {"buffer, float", {Weights::buffer, Shading::deferred, Precision::full}},
       {"buffer, half", {Weights::buffer, Shading::deferred, Precision::half}},
       {"forward, constants", {Weights::constants, Shading::forward, Precision::full}},

@@ -115,13 +115,16 @@ void make_folders(const fs::path& folder) {
   sync_folder(folder.parent_path());
 }
 
-// Opening a pipe that nobody reads would block for ever.
-void wait_for_reader(const fs::path& pipe) {
+// A pipe that somebody reads, opened for writing: opening one that nobody reads would block for ever.
+int open_pipe(const fs::path& pipe) {
   constexpr std::chrono::seconds patience(5);
   constexpr std::chrono::milliseconds pause(20);
   for (const auto end = std::chrono::steady_clock::now() + patience;;) {
-    const Descriptor reader{::open(pipe.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK)};
-    if (reader.value >= 0) return;
+    const int opened = ::open(pipe.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+    if (opened >= 0) {
+      ::fcntl(opened, F_SETFL, ::fcntl(opened, F_GETFL) & ~O_NONBLOCK);
+      return opened;
+    }
     if (errno != ENXIO && errno != EINTR) fail(pipe, "cannot be written");
     if (std::chrono::steady_clock::now() > end)
       throw FileError(pipe, "is a pipe that no program reads; start its reader first, or name a file");
@@ -198,11 +201,11 @@ void write_file_atomically(const fs::path& named, std::string_view bytes, const 
   if (fs::is_directory(path)) throw FileError(named, "is a folder; name a file to write to");
   if (fs::exists(path) && !fs::is_regular_file(path)) {
     // Devices and pipes are written to; a rename would put a file in their place.
-    if (fs::is_fifo(path)) wait_for_reader(named);
-    const OutputFile file(path, O_WRONLY);
+    const Descriptor file{fs::is_fifo(path) ? open_pipe(named) : ::open(path.c_str(), O_WRONLY | O_CLOEXEC)};
+    if (file.value < 0) fail(path, "cannot be written");
     std::size_t written = 0;
     while (written < bytes.size()) {
-      const ssize_t more = ::write(file.descriptor(), bytes.data() + written, bytes.size() - written);
+      const ssize_t more = ::write(file.value, bytes.data() + written, bytes.size() - written);
       if (more < 0 && errno == EINTR) continue;
       if (more <= 0) fail(path, "cannot be written");
       written += static_cast<std::size_t>(more);

@@ -55,14 +55,16 @@ void SourceGuard::add(const fs::path& source) {
   std::error_code error;
   const bool file = fs::is_regular_file(source, error) || source.filename() == "scene.json";
   const fs::path folder = plain_path(file ? fs::absolute(source).parent_path() : source);
-  add_source({folder, true, "a source of this scene", identity_of(folder)});
+  // Many nodes share a source: its links are looked for once.
+  if (!add_source({folder, true, "a source of this scene", identity_of(folder)})) return;
   for_each_entry(folder, [&](const fs::directory_entry& entry) {
     std::error_code ignored;
     if (!entry.is_symlink(ignored)) return;
     const fs::path target = plain_path(entry.path());
-    if (lies_in(target, folder)) return;
-    add_source({target, fs::is_directory(target, ignored), "what a link in a source of this scene leads to",
-                identity_of(target)});
+    const bool is_folder = fs::is_directory(target, ignored);
+    // A linked folder belongs to the scene when it is one of its objects.
+    if (lies_in(target, folder) || (is_folder && !fs::exists(target / "mlp.json", ignored))) return;
+    add_source({target, is_folder, "what a link in a source of this scene leads to", identity_of(target)});
   });
 }
 
@@ -71,14 +73,15 @@ void SourceGuard::add_file(const fs::path& source, const std::string& role) {
   add_source({path, false, role, identity_of(path)});
 }
 
-void SourceGuard::add_source(Source source) {
+bool SourceGuard::add_source(Source source) {
   for (Source& known : sources_)
     if (known.path == source.path && known.is_folder == source.is_folder) {
       // The folder may have been replaced since.
       known.seen = std::move(source.seen);
-      return;
+      return false;
     }
   sources_.push_back(std::move(source));
+  return true;
 }
 
 const SourceGuard::Source* SourceGuard::source_holding(const fs::path& wanted) const {
@@ -115,11 +118,14 @@ void SourceGuard::check_folder(const fs::path& path) const {
       if (const auto there = identity_of(at); !there.empty() && there == identity_of(wanted)) refuse(source);
   }
   // A hard link or a mount below it may lead to one.
+  std::vector<std::vector<Identity>> identities;
+  for (const Source& source : sources_) identities.push_back(identity_of(source.path));
   for_each_entry(wanted, [&](const fs::directory_entry& entry) {
     std::error_code ignored;
     if (entry.is_symlink(ignored)) return;
-    for (const Source& source : sources_)
-      if (is_same(source, entry.path())) refuse(source);
+    const std::vector<Identity> there = identity_of(entry.path());
+    for (std::size_t k = 0; k < sources_.size(); ++k)
+      if (!there.empty() && (there == identities[k] || there == sources_[k].seen)) refuse(sources_[k]);
   });
 }
 

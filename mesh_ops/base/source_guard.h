@@ -42,7 +42,8 @@ class SourceGuard {
   };
   static std::vector<Identity> identity_of(const std::filesystem::path& path);
   static bool is_same(const Source& source, const std::filesystem::path& path);
-  void add_source(Source source);
+  // False when it is known already.
+  bool add_source(Source source);
   // The source that a file at the canonical path would overwrite or be added to.
   const Source* source_holding(const std::filesystem::path& wanted) const;
 

@@ -32,20 +32,33 @@ struct SetParts {
   SourceFile feat1;
 };
 
+// How far behind a missing number files are looked for: a gap would silently drop them.
+constexpr std::size_t gap = 64;
+
+bool has_geometry(const fs::path& folder, std::size_t set) {
+  return fs::exists(folder / geometry_name(Layout::split, set, 0)) ||
+         fs::exists(folder / geometry_name(Layout::chunked, set, 0));
+}
+
+// The chunks of a set, in order; none for a set in one file.
+std::vector<std::string> chunk_files(const fs::path& folder, std::size_t set) {
+  std::vector<std::string> names;
+  while (fs::exists(folder / geometry_name(Layout::chunked, set, names.size())))
+    names.push_back(geometry_name(Layout::chunked, set, names.size()));
+  for (std::size_t j = names.size() + 1; !names.empty() && j < names.size() + gap; ++j)
+    if (fs::exists(folder / geometry_name(Layout::chunked, set, j)))
+      throw FileError(folder / geometry_name(Layout::chunked, set, names.size()),
+                      fmt::format("does not exist, but {} does", geometry_name(Layout::chunked, set, j)));
+  return names;
+}
+
+// The files of a set's geometry: the whole one first, where there is one, then its chunks.
 std::vector<std::string> geometry_files(const fs::path& folder, bool unsplit, std::size_t set, int set_count) {
   const std::string whole = geometry_name(unsplit ? Layout::unsplit : Layout::split, set, 0);
-  if (fs::exists(folder / whole)) return {whole};
   std::vector<std::string> names;
-  for (std::size_t j = 0; !unsplit && fs::exists(folder / geometry_name(Layout::chunked, set, j)); ++j)
-    names.push_back(geometry_name(Layout::chunked, set, j));
-  if (!names.empty()) {
-    // A gap would silently drop what lies behind it.
-    for (std::size_t j = names.size() + 1; j < names.size() + 64; ++j)
-      if (fs::exists(folder / geometry_name(Layout::chunked, set, j)))
-        throw FileError(folder / geometry_name(Layout::chunked, set, names.size()),
-                        fmt::format("does not exist, but {} does", geometry_name(Layout::chunked, set, j)));
-    return names;
-  }
+  if (!unsplit) names = chunk_files(folder, set);
+  if (fs::exists(folder / whole)) names.insert(names.begin(), whole);
+  if (!names.empty()) return names;
   if (unsplit) throw FileError(folder / whole, "does not exist");
   throw FileError(folder / whole, fmt::format("does not exist (nor {}), but mlp.json says obj_num = {}",
                                               geometry_name(Layout::chunked, set, 0), set_count));
@@ -54,6 +67,27 @@ std::vector<std::string> geometry_files(const fs::path& folder, bool unsplit, st
 // What exports put into a chunk that has no triangle (write_baked_folder): one triangle whose corners are one vertex.
 bool is_placeholder(const ObjMesh& chunk) {
   return chunk.positions.size() == 1 && chunk.faces.size() == 1 && chunk.faces[0] == Face{0, 0, 0};
+}
+
+// A whole file beside chunks: both hold one mesh if they have as many triangles.
+void settle_whole_and_chunks(SetParts& parts, std::vector<std::string>& assumptions) {
+  const std::string& whole = parts.geometry.front().name;
+  if (parts.geometry.size() < 2 || whole.find('_') != std::string::npos) return;
+  std::size_t in_chunks = 0;
+  for (std::size_t j = 1; j < parts.chunks.size(); ++j)
+    in_chunks += is_placeholder(parts.chunks[j]) ? 0 : parts.chunks[j].faces.size();
+  const std::string& first = parts.geometry[1].name;
+  if (in_chunks == parts.chunks.front().faces.size()) {
+    assumptions.push_back(fmt::format("{} and {} … have {} triangles each: they are taken for the same, and {} is read",
+                                      whole, first, in_chunks, whole));
+    parts.chunks.resize(1);
+    parts.geometry.resize(1);
+  } else {
+    assumptions.push_back(fmt::format("{} has {} triangles and {} … have {}: all are read", whole,
+                                      parts.chunks.front().faces.size(), first, in_chunks));
+    // No export copies such a mixture.
+    parts.geometry.clear();
+  }
 }
 
 TextureSet joined(SetParts& parts) {
@@ -80,6 +114,20 @@ TextureSet joined(SetParts& parts) {
 
 }  // namespace
 
+std::size_t found_texture_sets(const fs::path& folder, std::size_t obj_num) {
+  const auto has_textures = [&](std::size_t set) {
+    return fs::exists(folder / feature_name(Layout::split, set, 0)) &&
+           fs::exists(folder / feature_name(Layout::split, set, 1));
+  };
+  std::size_t count = 0;
+  while (count < most_texture_sets && has_geometry(folder, count) && (count < obj_num || has_textures(count))) ++count;
+  for (std::size_t set = count + 1; count < obj_num && set < count + gap; ++set)
+    if (has_geometry(folder, set))
+      throw FileError(folder / geometry_name(Layout::split, count, 0),
+                      fmt::format("does not exist, but files of shape{} do", set));
+  return count;
+}
+
 std::string geometry_name(Layout layout, std::size_t set, std::size_t chunk) {
   if (layout == Layout::unsplit) return "shape.obj";
   if (layout == Layout::split) return fmt::format("shape{}.obj", set);
@@ -100,7 +148,17 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
   const bool unsplit = !mlp.obj_num.has_value();
   if (unsplit && !fs::exists(folder / "shape.obj"))
     throw FileError(folder / "mlp.json", "\"obj_num\" is missing, and there is no shape.obj as in an unsplit folder");
-  const int set_count = mlp.obj_num.value_or(1);
+  const int said = mlp.obj_num.value_or(1);
+  std::vector<std::string> assumptions;
+  // None: reading says which file is missing.
+  const int found = unsplit ? 1 : static_cast<int>(found_texture_sets(folder, static_cast<std::size_t>(said)));
+  const int set_count = found > 0 ? found : said;
+  if (!unsplit && found > 0 && has_geometry(folder, static_cast<std::size_t>(found) + (found < said ? 0 : 1)))
+    assumptions.push_back(fmt::format("files of shape{} are not read: the sets before it are not whole", found + 1));
+  if (set_count != said)
+    assumptions.push_back(
+        fmt::format("mlp.json says obj_num = {}, but the folder holds {} texture sets: all {} are read", said,
+                    set_count, set_count));
   const AlphaCode code = unsplit ? AlphaCode::plain : AlphaCode::halved;
   const Layout naming = unsplit ? Layout::unsplit : Layout::split;
 
@@ -163,12 +221,16 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
   origin->decoder = object->decoder;
   for (std::size_t i = 0; i < sets.size(); ++i) {
     SetParts& parts = sets[i];
+    const std::string first = parts.geometry.front().name;
+    settle_whole_and_chunks(parts, assumptions);
     TextureSet set = joined(parts);
-    if (set.soup.triangle_count() == 0) throw FileError(folder / parts.geometry.front().name, "has no triangles");
+    if (set.soup.triangle_count() == 0) throw FileError(folder / first, "has no triangles");
     origin->sets.push_back({parts.geometry, parts.feat0, parts.feat1, set.soup.shared_positions(),
                             set.soup.shared_uvs(), set.soup.shared_faces(), set.texels});
     object->sets.push_back(std::move(set));
   }
+  origin->obj_num = mlp.obj_num.value_or(0);
+  origin->assumptions = std::move(assumptions);
   object->origin = origin;
   if (const fs::path turns = folder / "turns.bin"; fs::exists(turns))
     read_turns(read_file(turns), turns, object->sets);

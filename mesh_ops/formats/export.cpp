@@ -194,7 +194,7 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     if (object.axes == Axes::forward)
       report.notes.emplace_back(
           "the format does not say that this is a forward-facing scene: open it with --axes forward");
-    write_baked_folder(out, {}, object, object.layout, report.notes, progress);
+    write_baked_folder(out, {}, object, object.layout, report.notes, progress, false, options.page_side);
   } else {
     report.notes.push_back(
         fmt::format("one folder holds one decoder in one orientation: wrote scene.json with {} folders", nodes.size()));
@@ -206,7 +206,8 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     for (const Node& node : nodes) {
       taken.push_back(folder_name(node.name, taken));
       folder_of[node.object.get()] = taken.back();
-      write_baked_folder(out, taken.back(), *node.object, node.object->layout, report.notes, progress);
+      write_baked_folder(out, taken.back(), *node.object, node.object->layout, report.notes, progress, false,
+                         options.page_side);
       merged = with_added(merged, node, NodeId::none, merged.roots.size());
     }
     out.write("scene.json", write_scene_json(merged, folder_of));

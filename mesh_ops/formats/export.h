@@ -12,8 +12,9 @@
 namespace rebake {
 
 struct ExportOptions {
-  std::optional<Layout> layout;  ///< nothing: as the objects were read
-  SourceGuard sources;           ///< where nothing may be written
+  std::optional<Layout> layout;                 ///< nothing: as the objects were read
+  SourceGuard sources;                          ///< where nothing may be written
+  std::optional<int> page_side = std::nullopt;  ///< texels a side of new textures, 1 to 16384; nothing: as read
 };
 
 struct ExportReport {

@@ -1,5 +1,7 @@
 #include "mesh_ops/formats/formats.h"
 
+#include <algorithm>
+
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/baked_folder.h"
@@ -67,6 +69,16 @@ Scene read_any(const fs::path& path, Axes axes, const Progress& progress) {
   for (const Format& format : formats())
     if (format.recognises(folder)) return format.read(folder, axes, progress);
   throw FileError(folder, "holds neither mlp.json (a MobileNeRF folder) nor scene.json (a Rebake scene)");
+}
+
+std::vector<std::string> assumptions_of(const Scene& scene) {
+  std::vector<std::string> all;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object || !placed.node->object->origin) continue;
+    for (const std::string& one : placed.node->object->origin->assumptions)
+      if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+  }
+  return all;
 }
 
 }  // namespace rebake

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/formats/export.h"
@@ -31,5 +32,8 @@ std::string folder_title(const std::filesystem::path& path);
 /// Reads a folder of any known kind as a scene; a MobileNeRF folder becomes one node with the folder's name. `axes` is
 /// for folders that do not say. Throws FileError.
 Scene read_any(const std::filesystem::path& folder, Axes axes, const Progress& progress = {});
+
+/// What reading a scene's folders assumed (Origin::assumptions), each sentence once.
+std::vector<std::string> assumptions_of(const Scene& scene);
 
 }  // namespace rebake

@@ -51,7 +51,8 @@ std::size_t end_of_value(std::string_view text, std::size_t at) {
 
 std::map<std::string, std::string> json_members(std::string_view text) {
   std::map<std::string, std::string> members;
-  std::size_t at = skip_space(text, 0);
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  std::size_t at = skip_space(text, text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
   if (at == text.size() || text[at] != '{') return members;
   ++at;
   for (;;) {

@@ -106,6 +106,8 @@ json parsed(std::string_view text, const std::filesystem::path& name) {
     for (const char* other : {"NaN", "nan", "Infinity", "-Infinity", "inf", "-inf"})
       if (word == other) throw FileError(name, fmt::format("{} is {}, which is not a number", place, word));
     throw FileError(name, fmt::format("is not valid JSON{}: {}", place.empty() ? "" : " at " + place, error.what()));
+  } catch (const json::exception& error) {
+    throw FileError(name, fmt::format("cannot be read: {}", error.what()));
   }
 }
 

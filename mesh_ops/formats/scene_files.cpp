@@ -59,11 +59,16 @@ void add_baked_files(const fs::path& root, const fs::path& folder, std::vector<f
   if (!add("mlp.json")) return;
   for (const std::string_view name : side_names) add(std::string(name));
   const json mlp = json::parse(read_file(root / folder / "mlp.json"), nullptr, false);
-  const bool unsplit = !mlp.is_object() || !mlp.contains("obj_num") || !mlp.at("obj_num").is_number_unsigned();
-  const std::size_t sets = unsplit ? 1 : std::min<std::size_t>(mlp.at("obj_num").get<std::size_t>(), most_texture_sets);
+  const bool unsplit = !mlp.is_object() || !mlp.contains("obj_num");
+  // As they are read: all that are found, whatever mlp.json says.
+  const std::size_t said = !unsplit && mlp.at("obj_num").is_number() && mlp.at("obj_num") > 0
+                               ? static_cast<std::size_t>(std::min(mlp.at("obj_num").get<double>(), 1e6))
+                               : 1;
+  const std::size_t sets = unsplit ? 1 : found_texture_sets(root / folder, said);
   const Layout naming = unsplit ? Layout::unsplit : Layout::split;
   for (std::size_t set = 0; set < sets; ++set) {
-    if (!add(geometry_name(naming, set, 0)) && !unsplit)
+    add(geometry_name(naming, set, 0));
+    if (!unsplit)
       for (std::size_t chunk = 0; add(geometry_name(Layout::chunked, set, chunk));) ++chunk;
     for (const int image : {0, 1}) add(feature_name(naming, set, image));
   }

@@ -1,6 +1,7 @@
 #include "mesh_ops/formats/write_baked_folder.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -51,42 +52,53 @@ std::string counted(std::uint64_t count) {
   return count < 1'000'000 ? fmt::format("{}", count) : fmt::format("{:.2f} million", static_cast<double>(count) / 1e6);
 }
 
-std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, bool all_texels,
+std::string sizes_of(const std::vector<TextureSet>& sets) {
+  std::vector<std::string> sizes;
+  for (const TextureSet& set : sets) sizes.push_back(fmt::format("{}×{}", set.texels->width(), set.texels->height()));
+  return fmt::format("{}", fmt::join(sizes, ", "));
+}
+
+// The sets as they are written: untouched ones as they were read, edited ones laid out again when that saves texels.
+std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, bool all_texels, std::optional<int> page_side,
                                std::vector<std::string>& notes) {
   const AlphaCode code = layout == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved;
-  const int largest = largest_texture_side(layout);
-  const bool converts = std::any_of(object.sets.begin(), object.sets.end(),
-                                    [&](const TextureSet& s) { return s.texels->alpha_code() != code; });
-  const bool too_large = std::any_of(object.sets.begin(), object.sets.end(), [&](const TextureSet& s) {
-    return s.texels->width() > largest || s.texels->height() > largest;
-  });
-  if (converts && code == AlphaCode::halved)
+  const BakedObject* const objects[] = {&object};
+  const int largest = page_side.value_or(largest_page_side(layout, objects));
+  const auto is_too_large = [&](const TextureSet& set) {
+    return page_side && std::max(set.texels->width(), set.texels->height()) > largest;
+  };
+  if (code == AlphaCode::halved && std::any_of(object.sets.begin(), object.sets.end(),
+                                               [&](const TextureSet& s) { return s.texels->alpha_code() != code; }))
     notes.emplace_back("features 3 and 7 lose their lowest bit: split folders store them halved");
-  if (too_large || (layout == Layout::unsplit && object.sets.size() > 1)) {
+  if (layout == Layout::unsplit && object.sets.size() > 1) {
     PackedSets packed = pack(object.sets, largest, code);
-    if (layout == Layout::unsplit && packed.sets.size() > 1)
+    if (packed.sets.size() > 1)
       throw Error(fmt::format("the texels do not fit into one texture of {}²: use --layout split", largest));
     return std::move(packed.sets);
   }
   // Sets that lost triangles give up the texels that nobody uses; sets as they were read are left alone.
   std::vector<TextureSet> kept, edited;
   std::uint64_t edited_area = 0;
+  bool must_pack = false;
   for (const TextureSet& set : object.sets) {
     const TextureSet same_or_converted{set.soup, with_alpha_code(set.texels, code)};
     const Origin::Set* source = source_set(object, set, false);
     const bool same_faces = source != nullptr && source->faces.lock() == set.soup.shared_faces();
-    if (all_texels || same_faces || !can_pack(set)) {
+    if (!is_too_large(set) && (all_texels || same_faces || !can_pack(set))) {
       kept.push_back(same_or_converted);
     } else {
+      must_pack = must_pack || is_too_large(set);
       edited_area += static_cast<std::uint64_t>(set.texels->width()) * static_cast<std::uint64_t>(set.texels->height());
       edited.push_back(same_or_converted);
     }
   }
   if (edited.empty()) return kept;
   PackedSets packed = pack(edited, largest, code);
-  if (packed.texel_area < edited_area) {
-    notes.push_back(fmt::format("unused texels were dropped from the edited sets: {} texels instead of {}",
-                                counted(packed.texel_area), counted(edited_area)));
+  if (packed.texel_area < edited_area || must_pack) {
+    notes.push_back(fmt::format(
+        "edited texture sets were laid out again without unused texels: {} instead of {} texels "
+        "({} → {}); {} untouched sets are as they were",
+        counted(packed.texel_area), counted(edited_area), sizes_of(edited), sizes_of(packed.sets), kept.size()));
     edited = std::move(packed.sets);
   }
   kept.insert(kept.end(), edited.begin(), edited.end());
@@ -114,14 +126,20 @@ std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
 
 }  // namespace
 
-int largest_texture_side(Layout layout) { return layout == Layout::unsplit ? 16384 : 4096; }
+int largest_page_side(Layout layout, std::span<const BakedObject* const> objects) {
+  int side = layout == Layout::unsplit ? 16384 : 4096;
+  for (const BakedObject* object : objects)
+    for (const TextureSet& set : object->sets) side = std::max({side, set.texels->width(), set.texels->height()});
+  return side;
+}
 
 void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedObject& object, Layout layout,
-                        std::vector<std::string>& notes, const Progress& progress, bool baked_places) {
+                        std::vector<std::string>& notes, const Progress& progress, bool baked_places,
+                        std::optional<int> page_side) {
   if (object.triangle_count() == 0) throw Error("an object without triangles cannot be written");
   BakedObject filled = object;
   std::erase_if(filled.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
-  std::vector<TextureSet> sets = fitted(filled, layout, baked_places, notes);
+  std::vector<TextureSet> sets = fitted(filled, layout, baked_places, page_side, notes);
   const bool same_layout = object.origin && object.origin->layout == layout;
 
   for (std::size_t i = 0; i < sets.size(); ++i) {
@@ -133,8 +151,8 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
       std::vector<std::string> texts;
       for (const SourceFile& file : same_geometry->geometry)
         if (auto bytes = unchanged_bytes(*object.origin, file)) texts.push_back(std::move(*bytes));
-      copied = texts.size() == same_geometry->geometry.size();
-      const bool in_chunks = same_geometry->geometry.front().name.find('_') != std::string::npos;
+      copied = !texts.empty() && texts.size() == same_geometry->geometry.size();
+      const bool in_chunks = copied && same_geometry->geometry.front().name.find('_') != std::string::npos;
       if (copied)
         for (std::size_t j = 0; j < texts.size(); ++j)
           out.write(folder / geometry_name(in_chunks                   ? Layout::chunked
@@ -163,6 +181,7 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
 
   std::optional<std::string> mlp;
   if (object.origin && object.decoder == object.origin->decoder && object.origin->sets.size() == sets.size() &&
+      (layout == Layout::unsplit || object.origin->obj_num == static_cast<int>(sets.size())) &&
       (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit))
     mlp = unchanged_bytes(*object.origin, object.origin->mlp);
   if (!mlp) {

@@ -13,7 +13,8 @@ namespace rebake {
 /// How transfer is predicted from a pose. All but `linear` predict what transfer is in frames that turn with the
 /// surface, so that they need not learn to turn.
 enum class TransferWay {
-  linear,         ///< coefficients in the body's space are linear in the pose (as in moment-based precomputed transfer)
+  linear,         ///< coefficients in the body's space are linear in the pose (as in precomputed transfer for morphable
+                  ///< models, MoMoPRT)
   turned_linear,  ///< what turning leaves over is linear in the pose
   turned_kernel   ///< that, and a Gaussian kernel for what is not linear
 };

@@ -45,7 +45,10 @@ struct Origin {
   Layout layout = Layout::split;
   std::vector<Set> sets;
   SourceFile mlp;
+  int obj_num = 0;  ///< as mlp.json says it; 0: it does not
   std::shared_ptr<const Decoder> decoder;
+  /// Sentences on what the folder left open and reading assumed.
+  std::vector<std::string> assumptions = {};
 };
 
 /// A flag for each triangle of an object, numbered through its sets in order.

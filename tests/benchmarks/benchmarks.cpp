@@ -1,5 +1,5 @@
-// Milliseconds of the main jobs on the real mic geometry (features made up) where ../shared is at hand, else on a made
-// sphere. Not timed tests: run build/rebake_benchmarks by hand and compare within one run.
+// Milliseconds of the main jobs on the real mic geometry (features made up) where REBAKE_TEST_DATA holds it, else on a
+// made sphere. Not timed tests: run build/rebake_benchmarks by hand and compare within one run.
 #include <benchmark/benchmark.h>
 #include <tbb/parallel_for.h>
 

@@ -1,5 +1,5 @@
 // Selections and edits at the real mic's size (argument 1) and tiled to 741,789 triangles (argument 9). Without
-// ../shared a made sphere stands in for the mic.
+// REBAKE_TEST_DATA a made sphere stands in for the mic.
 #include <benchmark/benchmark.h>
 
 #include "editor/document/document.h"

@@ -1,6 +1,6 @@
 // One plain folder of two real decoders: a million texels as people export them, and ten million to see what each texel
 // takes. Memory is that of the whole program, so that only one of them should run at a time (--benchmark_filter).
-// Without ../shared made spheres stand in for the real ones.
+// Without REBAKE_TEST_DATA made spheres stand in for the real ones.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
@@ -18,6 +19,7 @@
 #include "mesh_ops/formats/scene_folder.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/picture_files.h"
+#include "tests/support/thorough.h"
 
 namespace rebake::test {
 namespace {
@@ -237,6 +239,87 @@ TEST(Folder, TexturesAreWholeWhereWorkAroundThemIsStopped) {
     }
 }
 
+// One patch over most of a texture of `side` texels, and one small patch.
+std::shared_ptr<const BakedObject> wide_object(int side) {
+  const auto uv = [&](double x, double y) { return Vec2((x + 0.5) / side, 1 - (y + 0.5) / side); };
+  const double far = side - 40;
+  const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {3, 0, 0}, {2, 1, 0}};
+  const std::vector<Vec2> uvs{
+      uv(0, 0), uv(far, 0), uv(0, far), uv(far + 5, far + 5), uv(far + 20, far + 5), uv(far + 5, far + 20)};
+  auto object = std::make_shared<BakedObject>();
+  object->decoder = std::make_shared<const Decoder>(made_decoder(1));
+  object->sets.push_back({Soup(positions, uvs, {Face{0, 1, 2}, Face{3, 4, 5}}),
+                          std::make_shared<const FeatureTexture>(
+                              FeatureTexture::from_rows(side, side, AlphaCode::halved, [&](int y, Texel* row) {
+                                for (int x = 0; x < side; ++x) {
+                                  const auto value = static_cast<std::uint8_t>(1 + (x * 7 + y * 3) % 250);
+                                  row[x] = {{value, 2, 3, 200}, {4, value, 5, 150}};
+                                }
+                              }))});
+  return object;
+}
+
+// Sizes around the usual largest, powers of two and odd ones.
+TEST(Folder, UneditedTexturesOfAnySizeAreWrittenByteForByteAndEditedOnesKeepTheirTexels) {
+  for (const int side :
+       is_deep ? std::vector{64, 1000, 4095, 4096, 4097, 4200, 5000, 8192} : std::vector{64, 999, 4200}) {
+    const TemporaryFolder temporary;
+    BakedObject made = *wide_object(side);
+    export_scene(scene_of(std::make_shared<const BakedObject>(made)), temporary.path() / "made", {});
+    // What the exporter itself wrote may have been laid out again: the source is what lies there now.
+    const Scene read = read_any(temporary.path() / "made", Axes::y_up);
+    export_scene(read, temporary.path() / "copy", {});
+    EXPECT_EQ(folder_bytes(temporary.path() / "copy"), folder_bytes(temporary.path() / "made")) << side;
+    // Without its small patch: what the large one shows is what it showed.
+    Scene edited = read;
+    edited = with_changed(edited, edited.roots[0]->id, [](Node& node) {
+      auto object = std::make_shared<BakedObject>(*node.object);
+      TriangleSet flags(object->sets[0].soup.triangle_count(), 0);
+      flags[0] = 1;
+      object->sets[0].soup = subset(object->sets[0].soup, flags, 0, true);
+      node.object = object;
+    });
+    export_scene(edited, temporary.path() / "edited", {});
+    const auto object = read_any(temporary.path() / "edited", Axes::y_up).roots[0]->object;
+    ASSERT_EQ(object->sets.size(), 1U) << side;
+    const FeatureTexture& texture = *object->sets[0].texels;
+    const TexelReader texels(texture);
+    EXPECT_LE(texture.width(), side);
+    const Vec2 corner = object->sets[0].soup.uvs()[0];
+    EXPECT_EQ(texels.at(static_cast<int>(corner.x() * texture.width()),
+                        static_cast<int>((1 - corner.y()) * texture.height())),
+              (Texel{{1, 2, 3, 200}, {4, 1, 5, 150}}));
+  }
+}
+
+TEST(Folder, PageSizeLaysLargerTexturesOutAgain) {
+  const TemporaryFolder temporary;
+  export_scene(scene_of(made_object()), temporary.path() / "made", {});
+  const Scene read = read_any(temporary.path() / "made", Axes::y_up);
+  const ExportReport report = export_scene(read, temporary.path() / "small", {.layout = {}, .sources = {}, .page_side = 128});
+  for (const TextureSet& set : read_any(temporary.path() / "small", Axes::y_up).roots[0]->object->sets) {
+    EXPECT_LE(set.texels->width(), 128);
+    EXPECT_LE(set.texels->height(), 128);
+  }
+  ASSERT_FALSE(report.notes.empty());
+  EXPECT_NE(report.notes.front().find("laid out again"), std::string::npos) << report.notes.front();
+}
+
+TEST(Folder, ChunksWithoutTrianglesHoldAPlaceholderThatReadingDrops) {
+  for (int columns = 1; columns <= 3; ++columns) {
+    const TemporaryFolder temporary;
+    const auto object = made_object({.columns = columns, .rows = 1, .layout = Layout::chunked});
+    export_scene(scene_of(object), temporary.path() / "a", {});
+    const auto back = read_any(temporary.path() / "a", Axes::y_up).roots[0]->object;
+    EXPECT_EQ(back->triangle_count(), object->triangle_count());
+    for (std::size_t j = 0; j < chunks_a_set; ++j)
+      EXPECT_NE(read_file(temporary.path() / "a" / geometry_name(Layout::chunked, 0, j)).find("\nf "),
+                std::string::npos);
+    export_scene(read_any(temporary.path() / "a", Axes::y_up), temporary.path() / "b", {});
+    EXPECT_EQ(folder_bytes(temporary.path() / "b"), folder_bytes(temporary.path() / "a"));
+  }
+}
+
 std::string png_of(int width, int height, int channels, const std::string& type) {
   const fs::path path = fs::temp_directory_path() / ("rebake-png-" + std::to_string(getpid()) + ".png");
   write_picture(path, {width, height, channels, type},
@@ -277,9 +360,45 @@ TEST_F(BadFolder, MissingFiles) {
   fs::remove_all(folder());
   expect_refused("does not exist");
 }
-TEST_F(BadFolder, TooLargeObjNum) {
-  replace_mlp("\"obj_num\":1", "\"obj_num\":3");
-  expect_refused("shape1.obj: does not exist");
+// Whatever obj_num says, all that lies there is read, and what was assumed is said.
+TEST_F(BadFolder, ObjNumAndFilesDisagree) {
+  for (const char* count : {"3", "7"}) {
+    replace_mlp("\"obj_num\":1", std::string("\"obj_num\":") + count);
+    const Scene scene = read_any(folder(), Axes::y_up);
+    EXPECT_EQ(scene.roots[0]->object->sets.size(), 1U);
+    ASSERT_EQ(assumptions_of(scene).size(), 1U);
+    EXPECT_NE(assumptions_of(scene)[0].find(std::string("obj_num = ") + count), std::string::npos);
+    replace_mlp(std::string("\"obj_num\":") + count, "\"obj_num\":1");
+  }
+  for (const char* name : {".obj", ".pngfeat0.png", ".pngfeat1.png"})
+    fs::copy(folder() / (std::string("shape0") + name), folder() / (std::string("shape1") + name));
+  const Scene two = read_any(folder(), Axes::y_up);
+  EXPECT_EQ(two.roots[0]->object->sets.size(), 2U) << "the second was once lost on export";
+  EXPECT_EQ(assumptions_of(two).size(), 1U);
+  const TemporaryFolder out;
+  export_scene(two, out.path() / "out", {});
+  EXPECT_EQ(read_mlp_json(read_file(out.path() / "out" / "mlp.json"), "mlp.json").obj_num, 2);
+  EXPECT_TRUE(assumptions_of(read_any(out.path() / "out", Axes::y_up)).empty());
+  fs::rename(folder() / "shape1.obj", folder() / "shape2.obj");
+  EXPECT_EQ(read_any(folder(), Axes::y_up).roots[0]->object->sets.size(), 1U) << "a leftover";
+  replace_mlp("\"obj_num\":1", "\"obj_num\":2");
+  expect_refused("shape1.obj: does not exist, but files of shape2 do");
+}
+TEST_F(BadFolder, WholeMeshBesideChunks) {
+  const std::string whole = read_file(folder() / "shape0.obj");
+  const std::size_t triangles = read_any(folder(), Axes::y_up).roots[0]->object->triangle_count();
+  write_text(folder() / "shape0_0.obj", whole);
+  const Scene same = read_any(folder(), Axes::y_up);
+  EXPECT_EQ(same.roots[0]->object->triangle_count(), triangles);
+  ASSERT_EQ(assumptions_of(same).size(), 1U);
+  EXPECT_NE(assumptions_of(same)[0].find("taken for the same"), std::string::npos);
+  write_text(folder() / "shape0_1.obj", whole);
+  const Scene more = read_any(folder(), Axes::y_up);
+  EXPECT_EQ(more.roots[0]->object->triangle_count(), 3 * triangles);
+  EXPECT_NE(assumptions_of(more)[0].find("all are read"), std::string::npos);
+  const TemporaryFolder out;
+  export_scene(more, out.path() / "out", {});
+  EXPECT_EQ(read_any(out.path() / "out", Axes::y_up).roots[0]->object->triangle_count(), 3 * triangles);
 }
 TEST_F(BadFolder, ObjNumOfTheWrongKind) {
   replace_mlp("\"obj_num\":1", "\"obj_num\":-1");
@@ -296,6 +415,57 @@ TEST_F(BadFolder, NanInTheDecoder) {
 TEST_F(BadFolder, WrongSizeOfALayer) {
   replace_mlp("\"1_weights\":[[", "\"1_weights\":[[0.5,");
   expect_refused("\"1_weights\" is 16 rows of unequal lengths (row 1 differs from row 0), expected 16×16");
+}
+TEST_F(BadFolder, TransposedAndFurtherLayers) {
+  const std::string good = read_file(folder() / "mlp.json");
+  const MlpFile file = read_mlp_json(good, "mlp.json");
+  nlohmann::json mlp = nlohmann::json::parse(good);
+  nlohmann::json rows = nlohmann::json::array();
+  for (Eigen::Index c = 0; c < file.decoder.weights0.cols(); ++c) {
+    rows.push_back(nlohmann::json::array());
+    for (Eigen::Index r = 0; r < file.decoder.weights0.rows(); ++r) rows.back().push_back(file.decoder.weights0(r, c));
+  }
+  mlp["0_weights"] = rows;
+  write_text(folder() / "mlp.json", mlp.dump());
+  expect_refused("\"0_weights\" is 16×11, expected 11×16 (inputs × outputs). Transpose it");
+  write_text(folder() / "mlp.json", good);
+  replace_mlp("\"2_weights\":[[", "\"3_bias\":[0],\"2_weights\":[[");
+  expect_refused("\"3_bias\" belongs to a further layer");
+}
+TEST_F(BadFolder, NumbersThatJsonDoesNotHave) {
+  for (const char* word : {"NaN", "Infinity", "-Infinity"}) {
+    const std::string text = read_file(folder() / "mlp.json");
+    replace_mlp("\"1_weights\":[[", std::string("\"1_weights\":[[") + word + ",");
+    expect_refused(std::string("\"1_weights\"[0][0] is ") + word);
+    write_text(folder() / "mlp.json", text);
+  }
+  replace_mlp("\"1_weights\":[[", "\"1_weights\":[[1e999,");
+  expect_refused("mlp.json: cannot be read");
+}
+TEST_F(BadFolder, ObjNumMayBeSpeltOtherwise) {
+  for (const char* count : {"1.0", "\"1\""}) {
+    replace_mlp("\"obj_num\":1", std::string("\"obj_num\":") + count);
+    EXPECT_NO_THROW(read_any(folder(), Axes::y_up)) << count;
+    replace_mlp(std::string("\"obj_num\":") + count, "\"obj_num\":1");
+  }
+}
+TEST_F(BadFolder, UnknownMembersOfMlpJsonKeepTheirSpelling) {
+  const std::string members = R"("trained": {"psnr": 31.50, "by": "a \"b\""},"scale": 1e-03,"obj_num")";
+  replace_mlp("\"obj_num\"", members);
+  Scene scene = read_any(folder(), Axes::y_up);
+  scene = with_changed(scene, scene.roots[0]->id, [](Node& node) {
+    auto object = std::make_shared<BakedObject>(*node.object);
+    Decoder decoder = *object->decoder;
+    decoder.bias2[0] += 1;
+    object->decoder = std::make_shared<const Decoder>(decoder);
+    node.object = object;
+  });
+  const TemporaryFolder out;
+  export_scene(scene, out.path() / "out", {});
+  const std::string written = read_file(out.path() / "out" / "mlp.json");
+  EXPECT_NE(written.find(R"({"psnr": 31.50, "by": "a \"b\""})"), std::string::npos) << written.substr(0, 300);
+  EXPECT_NE(written.find("\"scale\":1e-03"), std::string::npos);
+  EXPECT_NO_THROW(read_any(out.path() / "out", Axes::y_up));
 }
 TEST_F(BadFolder, NoTriangles) {
   write_text(folder() / "shape0.obj", "v 0 0 0\nvt 0 0\n");

@@ -178,6 +178,74 @@ class Module(unittest.TestCase):
             self.assertIsInstance(what, str)
             self.assertTrue(0 <= share <= 1)
 
+    def test_an_exception_of_progress_does_not_undo_what_is_done(self):
+        """Whenever it is raised: either the work stopped and nothing changed, or it is done and nothing is raised."""
+        unraisable = []
+        sys.unraisablehook, kept = unraisable.append, sys.unraisablehook
+        try:
+            for after in range(12):
+                told = 0
+
+                def stop(what, share):
+                    nonlocal told
+                    told += 1
+                    if told > after:
+                        raise ValueError(what)
+
+                self.document.progress = None
+                before = len(self.document.edits())
+                self.document.progress = stop
+                try:
+                    self.document.slim(node="ficus", psnr=30)
+                    done = True
+                except ValueError:
+                    done = False
+                self.assertEqual(len(self.document.edits()) - before, int(done))
+                out = self.at / f"out{after}"
+                told = 0
+                try:
+                    self.document.export(out)
+                    self.assertTrue((out / "mlp.json").exists())
+                except ValueError:
+                    self.assertFalse(out.exists())
+                if done:
+                    self.document.progress = None
+                    self.document.undo()
+        finally:
+            sys.unraisablehook = kept
+
+    def test_the_interpreter_ends_while_threads_are_at_work(self):
+        for daemon, end in ((True, "pass"), (True, "raise SystemExit(3)"), (False, "os.kill(os.getpid(), signal.SIGINT)")):
+            work = (
+                "import os, rebake, signal, sys, threading, time\n"
+                "d = rebake.open(sys.argv[1])\n"
+                "def go():\n"
+                "    try:\n"
+                "        d.cage(node='ficus', wrap=0.005, moves=[{'points': [[0, 9]], 'translate': [0, 1, 0]}])\n"
+                "    except rebake.Error:\n"
+                "        pass\n"
+                f"thread = threading.Thread(target=go, daemon={daemon})\n"
+                "thread.start()\n"
+                "time.sleep(0.3)\n"
+                "if not thread.is_alive():\n"
+                "    os._exit(77)\n"
+                f"{end}\n"
+                f"{'' if daemon else 'thread.join()'}\n"
+            )
+            process = subprocess.run([sys.executable, "-c", work, FICUS], stderr=subprocess.DEVNULL, timeout=100)
+            self.assertIn(process.returncode, (0, 1, 3, -signal.SIGINT), f"{end}: no abort")
+
+    def test_arrays_of_wrong_kinds_are_refused_by_name(self):
+        points, faces = np.eye(4, 3), np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+        good = {"points": np.full((1, 3), 0.2), "vertices": points, "faces": faces, "moved": points}
+        rebake.move_by_cage(**good)
+        for name, bad in (("faces", faces.astype(float)), ("faces", faces - 1), ("faces", faces + 2 ** 32),
+                          ("faces", faces.astype(complex)), ("points", np.full((1, 3), np.nan)),
+                          ("points", np.full((1, 3), 1j)), ("points", "text"), ("points", None), ("moved", points[:, :2]),
+                          ("vertices", points * np.inf)):
+            with self.assertRaisesRegex((rebake.Error, ValueError), name, msg=f"{name}: {bad}"):
+                rebake.move_by_cage(**{**good, name: bad})
+
     def test_interrupts_stop_long_work(self):
         work = (
             "import rebake, sys\n"

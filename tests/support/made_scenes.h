@@ -29,15 +29,15 @@ std::shared_ptr<const BakedObject> made_object(const MadeObject& options = {});
 /// A scene of one node.
 Scene scene_of(std::shared_ptr<const BakedObject> object, const std::string& name = "object");
 
-/// The real mic from shared/data with made-up features; nothing where shared/ is absent.
+/// The real mic (REBAKE_TEST_DATA) with made-up features; null when it is absent.
 std::shared_ptr<const BakedObject> mic_object();
 
-/// Real features and a real decoder (shared/data/morpheus, 1024² texels) on a bumpy sphere made on the fly; nothing
-/// where shared/ is absent. `quads` a side of the texture's 60 are used.
+/// Real features and a real decoder (morpheus of REBAKE_TEST_DATA, 1024² texels) on a bumpy sphere made on the
+/// fly; null when they are absent. `quads` a side of the texture's 60 are used.
 std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int quads = 60);
 
-/// A texture that is opaque where another one is, of real features (shared/data/morpheus, over and over from a column
-/// on); nothing where shared/ is absent.
+/// A texture that is opaque where another one is, of real features (morpheus of REBAKE_TEST_DATA, repeated from a
+/// column on); null when they are absent.
 std::shared_ptr<const FeatureTexture> with_real_features(const FeatureTexture& texture, const std::string& name,
                                                          int first_column);
 

@@ -1,6 +1,9 @@
 #include "editor/edits/nodes/import.h"
 
 #include "editor/edits/describe.h"
+
+#include <fmt/format.h>
+
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/formats.h"
@@ -8,7 +11,7 @@
 
 namespace rebake {
 
-Scene apply(const Scene& scene, const Import& edit, const Progress& progress) {
+Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) {
   if (edit.path.empty()) throw FieldError("path", "is empty");
   if (!edit.content.empty() && hash_text(folder_hash(edit.path)) != edit.content)
     throw EditError(edit.path + ": has changed since it was imported; put the files back as they were");
@@ -28,7 +31,10 @@ Scene apply(const Scene& scene, const Import& edit, const Progress& progress) {
   }
   Scene result = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
   for (const auto& [name, camera] : read.views) result.views.try_emplace(name, camera);
-  return result;
+  Report report;
+  for (const std::string& assumption : assumptions_of(read))
+    report.lines.push_back(fmt::format("warning: {}: {}", edit.path, assumption));
+  return {std::move(result), std::move(report)};
 }
 
 REBAKE_DESCRIBE_EDIT(

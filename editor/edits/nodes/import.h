@@ -15,6 +15,6 @@ struct Import {
 template <>
 const EditType& edit_type<Import>();
 
-Scene apply(const Scene& scene, const Import& edit, const Progress& progress = {});
+Outcome apply(const Scene& scene, const Import& edit, const Progress& progress = {});
 
 }  // namespace rebake
