@@ -340,10 +340,10 @@ TEST_F(Script, ErrorsNameLineAndField) {
   expect_error("{\"op\": \"import\", \"path\": \"/no/such/folder\"}", "/no/such/folder: does not exist");
   expect_error("{\"op\": ", "is not valid JSON");
   expect_error("[]", "must be a JSON object");
-  expect_error(import + R"({"op": "select", "box": {"min": [0, 2, 0], "max": [1, 1, 1]}})",
-               "line 2: field \"box\": min y is above max y");
   expect_error(import + R"({"op": "rename", "nod": "ball", "name": "b"})",
                "line 2: field \"nod\": is not known here; did you mean \"node\"?");
+  expect_error(R"({"op": "select", "box": {"min": [0, 2, 0], "max": [1, 1, 1]}})",
+               "line 1: field \"box\": min y is above max y");
   expect_error(R"({"op": "select", "nod": "ball", "all": true})", "did you mean \"node\"?");
   expect_error(R"({"op": "select", "node": "bal", "all": true})", "did you mean \"ball\"?");
   expect_error(R"({"op": "select", "node": "ball", "all": true, "framee": "node"})",
