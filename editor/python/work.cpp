@@ -72,7 +72,7 @@ void end_all_work() {
   running().ending = true;
   for (std::atomic<bool>* flag : running().flags)
     if (flag != nullptr) *flag = true;
-  constexpr std::chrono::seconds patience(20);
+  constexpr std::chrono::seconds patience(5);
   if (!running().changed.wait_for(lock, patience, [] { return running().flags.empty(); })) ::_exit(1);
 }
 

@@ -30,7 +30,7 @@ class InsideModule {
   std::atomic<bool>* flag_;
 };
 
-/// Asks all work to stop, waits until no thread is inside (20 seconds at most, then ends the process), and refuses
+/// Asks all work to stop, waits until no thread is inside (5 seconds at most, then ends the process), and refuses
 /// more. For atexit: a thread that wants
 /// the interpreter back when it has ended would abort the process.
 void end_all_work();

@@ -121,8 +121,8 @@ class FileTest(WindowCase):
         editor.key("Escape")
         self.assertTrue(editor.state()["asks"], "the export's own dialog stays")
         editor.click("dialog/Compare...")
-        until(lambda: "dialog/plain/wipe" in editor.state()["items"], "the comparison", 90)
-        until(lambda: editor.state()["settled"], "the preview", 90)
+        until(lambda: "dialog/plain/wipe" in editor.state()["items"], "the comparison", 180)
+        until(lambda: editor.state()["settled"], "the preview", 180)
         before = editor.picture()
         x, y = editor.where("dialog/plain/wipe")
         editor.drag([(x, y), (x - 200, y)])
@@ -132,7 +132,7 @@ class FileTest(WindowCase):
         out = self.folder / "plain"
         editor.click("dialog/path")
         editor.answer(str(out))
-        until(lambda: (out / "mlp.json").is_file(), "the export", 90)
+        until(lambda: (out / "mlp.json").is_file(), "the export", 180)
         editor.settle()
         self.assertFalse((out / "scene.json").exists())
 

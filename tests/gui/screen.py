@@ -16,7 +16,7 @@ import time
 import numpy
 
 WIDTH, HEIGHT = 1280, 800
-PATIENCE = 60  # seconds, of a machine that does much else
+PATIENCE = 180  # seconds, of a machine that does much else
 
 
 class Screen:
