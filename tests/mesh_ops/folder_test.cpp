@@ -296,7 +296,8 @@ TEST(Folder, PageSizeLaysLargerTexturesOutAgain) {
   const TemporaryFolder temporary;
   export_scene(scene_of(made_object()), temporary.path() / "made", {});
   const Scene read = read_any(temporary.path() / "made", Axes::y_up);
-  const ExportReport report = export_scene(read, temporary.path() / "small", {.layout = {}, .sources = {}, .page_side = 128});
+  const ExportReport report =
+      export_scene(read, temporary.path() / "small", {.layout = {}, .sources = {}, .page_side = 128});
   for (const TextureSet& set : read_any(temporary.path() / "small", Axes::y_up).roots[0]->object->sets) {
     EXPECT_LE(set.texels->width(), 128);
     EXPECT_LE(set.texels->height(), 128);
