@@ -298,7 +298,8 @@ TEST(Folder, PageSizeLaysLargerTexturesOutAgain) {
   const Scene read = read_any(temporary.path() / "made", Axes::y_up);
   const ExportReport report =
       export_scene(read, temporary.path() / "small", {.layout = {}, .sources = {}, .page_side = 128});
-  for (const TextureSet& set : read_any(temporary.path() / "small", Axes::y_up).roots[0]->object->sets) {
+  const Scene small = read_any(temporary.path() / "small", Axes::y_up);
+  for (const TextureSet& set : small.roots[0]->object->sets) {
     EXPECT_LE(set.texels->width(), 128);
     EXPECT_LE(set.texels->height(), 128);
   }
