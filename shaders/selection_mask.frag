@@ -1,8 +1,9 @@
-// Selected triangles into a mask: 1 where they are seen, less where something lies in front.
+// Selected triangles into a mask: `strength` where they are visible, less where they are occluded.
 #include "texel.glsl"
 uniform sampler2D scene_depth;
 uniform int side;       // samples along a pixel's side
 uniform float nearer;   // 1 where larger depths are nearer, else -1
+uniform float strength;  // 0 … 1; below 1 for selections that the next command leaves alone
 layout(location = 0) out float mask;
 
 void main() {
@@ -12,5 +13,5 @@ void main() {
   if ((texel.r & 255u) == 0u) discard;
   float depth = texelFetch(scene_depth, ivec2(gl_FragCoord.xy) * side + side / 2, 0).r;
   bool seen = (gl_FragCoord.z - depth) * nearer >= -slack - 1e-5 * depth;
-  mask = seen ? 1.0 : 0.35;
+  mask = strength * (seen ? 1.0 : 0.35);
 }

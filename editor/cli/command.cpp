@@ -54,7 +54,8 @@ int run_program(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(
       "Exit codes: 0 done, 1 it could not be done (the message says why), 2 wrong use of the command line, 3 compared "
-      "pictures differ more than allowed, 4 done, but below the quality that was asked for, 130 stopped by Ctrl+C.");
+      "pictures differ more than allowed, 4 done, but below the quality that was asked for, 130 stopped by a signal "
+      "(Ctrl+C).");
   for (const Subcommand& subcommand : subcommand_table) {
     CommandDescription command(*program.add_subcommand(subcommand.name, subcommand.help));
     subcommand.describe(command);

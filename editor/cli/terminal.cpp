@@ -1,29 +1,56 @@
 #include "editor/cli/terminal.h"
 
 #include <fmt/format.h>
+#include <semaphore.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
+#include <thread>
+
+#include "mesh_ops/base/partial_writes.h"
 
 namespace rebake {
 
 namespace {
 
 std::atomic<bool> interrupted = false;
+sem_t asked_to_end;
+
+// Work that asks its Progress ends by itself. What does not within this time is abandoned with the process, so that it
+// ends within a second of the signal.
+constexpr int stopped_by_signal = 130;  // exit code
+constexpr std::chrono::milliseconds work_ends_within{600}, moves_end_within{200};
+
+void end_when_asked() {
+  while (::sem_wait(&asked_to_end) != 0 && errno == EINTR) {
+  }
+  std::this_thread::sleep_for(work_ends_within);
+  abandon_writes(moves_end_within);
+  ::_exit(stopped_by_signal);
+}
 
 }  // namespace
 
 void stop_on_interrupt() {
-  for (const int signal : {SIGINT, SIGTERM})
+  ::sem_init(&asked_to_end, 0, 0);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     std::signal(signal, [](int number) {
       interrupted = true;
+      ::sem_post(&asked_to_end);
       std::signal(number, SIG_DFL);
     });
+  // The watcher takes no signals: they are for the other threads.
+  sigset_t all, before;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread(end_when_asked).detach();
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 bool is_interactive() {

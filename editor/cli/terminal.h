@@ -12,7 +12,9 @@ namespace rebake {
 bool is_interactive();
 std::string coloured(const std::string& text, const char* sgr);
 
-/// Ctrl+C asks long work to stop, which then leaves nothing half-written; a second one ends the program at once.
+/// SIGINT, SIGTERM and SIGHUP ask long work to stop. Work that has not stopped after 0.6 s is abandoned: nothing is
+/// moved into place any more, temporary files are removed, and the process ends with exit code 130. A second signal
+/// ends it at once.
 void stop_on_interrupt();
 
 /// A one-line bar that is redrawn at most ten times a second and removed when done.

@@ -134,7 +134,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
       [&](const DeviceError& error) {
         session.say(fmt::format("note: pictures cannot be compared here: {}", error.what()));
       },
-      report, session.progress);
+      report, session.progress, action.picture_size);
   const ExportReport written =
       export_scene(plain, action.out, {options.layout, session.document.sources(), action.page_size}, session.progress);
   session.exports.push_back(action.out);
@@ -165,6 +165,7 @@ void check_not_plain(const ExportAction& action) {
   refuse(action.way.has_value(), "way");
   refuse(action.keep != "auto", "keep");
   refuse(action.psnr.has_value(), "psnr");
+  refuse(action.picture_size != ExportAction().picture_size, "picture_size");
   refuse(action.seconds != 0, "seconds");
   refuse(!action.report.empty(), "report");
 }
@@ -174,6 +175,8 @@ FuseOptions fuse_options(const Scene& scene, const ExportAction& action) {
   options.width = action.width.neurons;
   options.way = action.way;
   options.layout = action.layout.value_or(common_layout(scene));
+  if (action.picture_size < 16 || action.picture_size > 4096)
+    throw FieldError("picture_size", "must lie between 16 and 4096");
   if (action.psnr) {
     options.psnr_db = *action.psnr;
     options.until_psnr = true;
@@ -231,6 +234,8 @@ REBAKE_DESCRIBE_ACTION(
       visit("psnr", action.psnr, Need::optional,
             "plain: dB to reach; fits no further. Left out: 40, and all is fitted");
       visit("seconds", action.seconds, Need::optional, "plain: for fitting; 0: as long as it takes");
+      visit("picture_size", action.picture_size, Need::optional,
+            "plain: pixels a side of the pictures that losses are measured in, 16 to 4096");
       visit("report", action.report, Need::optional, "plain: JSON file for what was measured");
     })
 

@@ -21,6 +21,7 @@ struct ExportAction {
   std::string keep = "auto";   ///< of a plain folder: a node that stays bit for bit, none, or auto
   std::optional<double> psnr;  ///< dB that a plain folder is to reach
   double seconds = 0;          ///< that fitting may take; 0: as long as it takes
+  int picture_size = 800;      ///< pixels a side of the pictures that a plain folder is judged by
   std::string report;          ///< file for what was measured, as JSON; empty: none
 };
 template <>

@@ -132,7 +132,7 @@ Scene plain_scene(const Scene& scene, const Lighting& lighting, const FuseOption
 Scene best_plain_scene(const Scene& scene, const Lighting& lighting, const FuseOptions& options,
                        const std::function<Renderer&()>& renderer,
                        const std::function<void(const DeviceError&)>& no_device, PlainReport& report,
-                       const Progress& progress) {
+                       const Progress& progress, int picture_size) {
   check(options);
   PlainParts parts(scene, lighting, options.layout, progress);
   if (parts.composition.exact()) return exact_scene(scene, options, report);
@@ -145,7 +145,7 @@ Scene best_plain_scene(const Scene& scene, const Lighting& lighting, const FuseO
     PlainReport tried;
     Scene made = fused_scene(parts, scene, candidate, options, tried, progress);
     try {
-      measure_pictures(renderer(), scene, lighting, made, tried, progress);
+      measure_pictures(renderer(), scene, lighting, made, tried, progress, picture_size);
     } catch (const DeviceError& error) {
       no_device(error);
       if (best) break;

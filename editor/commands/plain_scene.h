@@ -15,12 +15,12 @@ Scene plain_scene(const Scene& scene, const Lighting& lighting, const FuseOption
                   const Progress& progress);
 
 /// The same, judged by pictures: when the worst object of the plan's choice misses `options.psnr_db` in them, other
-/// candidates are made and the best is taken. Measures pictures into `report`, unless `renderer` throws DeviceError,
-/// which `no_device` then gets.
+/// candidates are made and the best is taken. Measures pictures of `picture_size` pixels a side into `report`, unless
+/// `renderer` throws DeviceError, which `no_device` then gets.
 Scene best_plain_scene(const Scene& scene, const Lighting& lighting, const FuseOptions& options,
                        const std::function<Renderer&()>& renderer,
                        const std::function<void(const DeviceError&)>& no_device, PlainReport& report,
-                       const Progress& progress);
+                       const Progress& progress, int picture_size = 800);
 
 /// What making it needs, to be kept while several ways are tried. Throws as composed() does, and Error where an unsplit
 /// folder is too small.

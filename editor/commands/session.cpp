@@ -19,6 +19,11 @@ void Session::adjust(const std::vector<Edit>& edits, const CarriedOut* made) {
     for (const std::string& line : done.lines) report(line);
 }
 
+void Session::revise(const std::vector<Edit>& edits, const CarriedOut* made) {
+  for (const Report& done : document.revise(edits, progress, made))
+    for (const std::string& line : done.lines) report(line);
+}
+
 Renderer& Session::renderer() {
   if (!renderer_) renderer_ = std::make_unique<Renderer>();
   return *renderer_;

@@ -25,6 +25,8 @@ class Session {
   void edits(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
   /// In place of the last step.
   void adjust(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
+  /// In place of the last step, as a step of its own: undo returns to the last one.
+  void revise(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
 
   std::vector<std::string> exports;  ///< folders that export wrote
   bool below_asked = false;          ///< an export was done, but missed the quality that was asked for

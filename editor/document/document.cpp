@@ -16,10 +16,13 @@ namespace fs = std::filesystem;
 namespace {
 
 // One line for what was made together: a torn journal holds all of it or nothing.
-json entry_of(const std::vector<Edit>& edits, bool list = false) {
-  if (edits.size() == 1 && !list) return {{"edit", to_json(edits.front())}};
-  json entry = {{"edits", json::array()}};
-  for (const Edit& edit : edits) entry["edits"].push_back(to_json(edit));
+json entry_of(const std::vector<Edit>& edits, std::size_t replaced = 0) {
+  json entry;
+  if (edits.size() == 1)
+    entry["edit"] = to_json(edits.front());
+  else
+    for (const Edit& edit : edits) entry["edits"].push_back(to_json(edit));
+  if (replaced > 0) entry["replaces"] = replaced;
   return entry;
 }
 
@@ -36,9 +39,9 @@ Document Document::open(const fs::path& project, const Relinked& links, const Pr
   Document document({}, memory_budget);
   read_project(
       project,
-      [&](const Edit& edit, const Scene& after, bool joined) {
-        add_sources(document.imported_, {edit});
-        document.history_.add(edit, after, joined);
+      [&](const History::Entry& entry, const Scene& after) {
+        add_sources(document.imported_, {entry.edit});
+        document.history_.add(entry.edit, after, entry.joined, entry.replaced);
       },
       links, progress);
   return document;
@@ -71,42 +74,38 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
   result.torn = contents.torn;
   // One line: all of it, or nothing.
   const auto replay = [&](const json& entry) {
-    const std::size_t adjusted = entry.contains("adjust") ? count_in(entry.at("adjust").at("undo")) : 0;
-    if (adjusted == 0 && !entry.contains("edit") && !entry.contains("edits")) {
+    const bool adjusts = entry.contains("adjust");
+    if (!adjusts && !entry.contains("edit") && !entry.contains("edits")) {
       if (!entry.contains("undo") && !entry.contains("redo")) throw Error("is neither an edit nor undo or redo");
       if (entry.contains("undo") ? !history.undo(count_in(entry.at("undo")), progress)
                                  : !history.redo(count_in(entry.at("redo")), progress))
         throw Error("there is nothing to undo or redo");
       return;
     }
-    const Scene present = result.document.scene();
-    if (adjusted > 0 && !history.undo(adjusted, progress)) throw Error("there is no step to adjust");
+    const json& step = adjusts ? entry.at("adjust") : entry;
+    const std::size_t adjusted = adjusts ? count_in(step.at("undo")) : 0;
+    const std::size_t replaced = step.value("replaces", std::size_t{0});
+    if (adjusted + replaced > history.undo_count()) throw Error("there is no step to adjust");
+    const Scene start = history.scene_at(history.undo_count() - adjusted - replaced, progress);
     std::vector<std::pair<Edit, Scene>> made;
-    const auto make = [&] {
-      for (json one : edits_in(entry)) {
-        const Scene& before = made.empty() ? result.document.scene() : made.back().second;
-        if (json* const source = source_field(one)) {
-          const fs::path imported = source->get<std::string>();
-          if (const std::string trouble = trouble_with(imported, one.value("content", ""), links); !trouble.empty()) {
-            result.gone.push_back({imported, trouble});
-            throw FileError(imported, trouble);
-          }
-          *source = relinked(imported, links).string();
+    for (json one : edits_in(entry)) {
+      const Scene& before = made.empty() ? start : made.back().second;
+      if (json* const source = source_field(one)) {
+        const fs::path imported = source->get<std::string>();
+        if (const std::string trouble = trouble_with(imported, one.value("content", ""), links); !trouble.empty()) {
+          result.gone.push_back({imported, trouble});
+          throw FileError(imported, trouble);
         }
-        Edit edit = read_edit(one, before);
-        Scene scene = rebake::apply(before, edit, progress).scene;
-        made.emplace_back(std::move(edit), std::move(scene));
+        *source = relinked(imported, links).string();
       }
-    };
-    try {
-      make();
-    } catch (...) {
-      if (adjusted > 0) history.return_to(adjusted, present);
-      throw;
+      Edit edit = read_edit(one, before);
+      Scene scene = rebake::apply(before, edit, progress).scene;
+      made.emplace_back(std::move(edit), std::move(scene));
     }
     for (const auto& [edit, scene] : made) add_sources(result.document.imported_, {edit});
+    history.forget_last(adjusted);
     for (std::size_t k = 0; k < made.size(); ++k)
-      history.add(std::move(made[k].first), std::move(made[k].second), k > 0);
+      history.add(std::move(made[k].first), std::move(made[k].second), k > 0, k > 0 ? 0 : replaced);
   };
   std::vector<fs::path> imports;
   for (const std::string& text : contents.entries)
@@ -165,14 +164,12 @@ void Document::protect_files_of(const json& edit) {
 void Document::keep_journal(const fs::path& path) {
   if (!starts_empty_) throw Error("a journal can be kept only from an empty scene on: import what is in it");
   std::vector<json> entries;
-  const std::vector<Edit> edits = history_.edits();
-  const std::vector<bool> joined = history_.joined();
-  for (std::size_t first = 0; first < edits.size();) {
-    std::size_t end = first + 1;
-    while (end < edits.size() && joined[end]) ++end;
-    entries.push_back(entry_of(
-        {edits.begin() + static_cast<std::ptrdiff_t>(first), edits.begin() + static_cast<std::ptrdiff_t>(end)}));
-    first = end;
+  const std::vector<History::Entry> all = history_.entries();
+  for (std::size_t first = 0; first < history_.undo_count();) {
+    std::vector<Edit> step = {all[first].edit};
+    const std::size_t replaced = all[first].replaced;
+    for (++first; first < history_.undo_count() && all[first].joined; ++first) step.push_back(all[first].edit);
+    entries.push_back(entry_of(step, replaced));
   }
   sources().check_file(path);
   journal_ = Journal::create(absolute_path(path), entries);
@@ -180,20 +177,24 @@ void Document::keep_journal(const fs::path& path) {
 
 void Document::edit(const Edit& edit, const Progress& progress) { edits({edit}, progress); }
 
-CarriedOut Document::done(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) const {
-  return made != nullptr && made->is_of(scene(), edits) ? *made : carried_out(scene(), edits, progress);
+namespace {
+
+CarriedOut done(const Scene& start, const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
+  return made != nullptr && made->is_of(start, edits) ? *made : carried_out(start, edits, progress);
 }
 
-std::vector<Report> Document::take_in(CarriedOut done) {
+}  // namespace
+
+std::vector<Report> Document::take_in(CarriedOut done, std::size_t replaced) {
   add_sources(imported_, done.edits);
   for (std::size_t k = 0; k < done.edits.size(); ++k)
-    history_.add(std::move(done.edits[k]), std::move(done.scenes[k]), k > 0);
+    history_.add(std::move(done.edits[k]), std::move(done.scenes[k]), k > 0, k > 0 ? 0 : replaced);
   return std::move(done.reports);
 }
 
 std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
   if (edits.empty()) return {};
-  CarriedOut taken = done(edits, progress, made);
+  CarriedOut taken = done(scene(), edits, progress, made);
   if (journal_) journal_->append(entry_of(taken.edits));
   return take_in(std::move(taken));
 }
@@ -201,18 +202,26 @@ std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progre
 std::vector<Report> Document::adjust(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
   const std::size_t last = history_.undo_step();
   if (last == 0 || edits.empty()) throw EditError("there is no step to adjust, or nothing to do in its place");
-  const Scene present = scene();
-  history_.undo(last, progress);
-  CarriedOut taken;
-  try {
-    taken = done(edits, progress, made);
-    // One line: however the program ends, the step is there as it was, or as it is now.
-    if (journal_) journal_->append({{"adjust", {{"undo", last}, {"edits", entry_of(taken.edits, true).at("edits")}}}});
-  } catch (...) {
-    history_.return_to(last, present);
-    throw;
+  const std::size_t replaced = history_.replaced_by_last_step();
+  CarriedOut taken = done(history_.scene_at(history_.undo_count() - last - replaced, progress), edits, progress, made);
+  // One line: however the program ends, the step is there as it was, or as it is now.
+  if (journal_) {
+    json entry = {{"undo", last}, {"edits", json::array()}};
+    for (const Edit& edit : taken.edits) entry["edits"].push_back(to_json(edit));
+    if (replaced > 0) entry["replaces"] = replaced;
+    journal_->append({{"adjust", entry}});
   }
-  return take_in(std::move(taken));
+  history_.forget_last(last);
+  return take_in(std::move(taken), replaced);
+}
+
+std::vector<Report> Document::revise(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
+  const std::size_t last = history_.undo_step();
+  if (last == 0 || edits.empty()) throw EditError("there is no step to revise, or nothing to do in its place");
+  const std::size_t replaced = last + history_.replaced_by_last_step();
+  CarriedOut taken = done(history_.scene_at(history_.undo_count() - replaced, progress), edits, progress, made);
+  if (journal_) journal_->append(entry_of(taken.edits, replaced));
+  return take_in(std::move(taken), replaced);
 }
 
 bool Document::undo(std::size_t edits, const Progress& progress) {
@@ -249,7 +258,9 @@ void Document::save(const fs::path& project, const Progress& progress) const {
   if (Journal::is_journal(project))
     throw FileError(project,
                     "is a journal that may hold work: get it back with \"rebake recover\", or name another file");
-  write_project(project, history_.edits(), history_.joined(), sources(), progress);
+  std::vector<History::Entry> entries = history_.entries();
+  entries.erase(entries.begin() + static_cast<std::ptrdiff_t>(history_.undo_count()), entries.end());
+  write_project(project, entries, sources(), progress);
 }
 
 void Document::discard_journal() {

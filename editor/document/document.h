@@ -42,6 +42,8 @@ class Document {
   /// from an empty scene: its start could not be got back.
   void keep_journal(const std::filesystem::path& path);
   bool keeps_journal() const { return journal_.has_value(); }
+  /// Empty without a journal.
+  std::filesystem::path journal_path() const { return journal_ ? journal_->path() : std::filesystem::path(); }
 
   void edit(const Edit& edit, const Progress& progress = {});
   /// All of them, to be undone together, or none where one throws. What each did. Where `made` is of the present scene
@@ -51,6 +53,10 @@ class Document {
   /// In place of the last step, or nothing where one throws: that step stays then; `made` is of the scene before it.
   /// Throws EditError without one.
   std::vector<Report> adjust(const std::vector<Edit>& edits, const Progress& progress = {},
+                             const CarriedOut* made = nullptr);
+  /// As adjust(), but as a new step: undo returns to the step that it replaces. For tools that refine one edit in many
+  /// steps, like the releases of a cage. edits() of the history then holds the refined edit only.
+  std::vector<Report> revise(const std::vector<Edit>& edits, const Progress& progress = {},
                              const CarriedOut* made = nullptr);
   /// So many edits back or forth, or none; false where there are fewer.
   bool undo(std::size_t edits = 1, const Progress& progress = {});
@@ -65,8 +71,7 @@ class Document {
   void discard_journal();
 
  private:
-  CarriedOut done(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) const;
-  std::vector<Report> take_in(CarriedOut done);
+  std::vector<Report> take_in(CarriedOut done, std::size_t replaced = 0);
 
   bool starts_empty_;
   History history_;

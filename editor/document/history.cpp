@@ -1,5 +1,6 @@
 #include "editor/document/history.h"
 
+#include <algorithm>
 #include <unordered_set>
 
 namespace rebake {
@@ -54,7 +55,15 @@ History::History(Scene start, std::uint64_t budget) : budget_(budget) {
 
 std::vector<Edit> History::edits() const {
   std::vector<Edit> result;
-  for (std::size_t k = 1; k <= position_; ++k) result.push_back(*steps_[k].edit);
+  for (std::size_t k = position_; k > 0; k = steps_[k].base) result.push_back(*steps_[k].edit);
+  std::reverse(result.begin(), result.end());
+  return result;
+}
+
+std::vector<History::Entry> History::entries() const {
+  std::vector<Entry> result;
+  for (std::size_t k = 1; k < steps_.size(); ++k)
+    result.push_back({*steps_[k].edit, steps_[k].joined, k - 1 - steps_[k].base});
   return result;
 }
 
@@ -70,18 +79,17 @@ std::size_t History::kept() const {
   return result;
 }
 
-std::vector<bool> History::joined() const {
-  std::vector<bool> result;
-  for (std::size_t k = 1; k < steps_.size(); ++k) result.push_back(steps_[k].joined);
-  return result;
-}
-
-void History::add(Edit edit, Scene scene, bool joined) {
+void History::forget_last(std::size_t edits) {
+  position_ -= edits;
   while (steps_.size() > position_ + 1) {
     drop(steps_.size() - 1);
     steps_.pop_back();
   }
-  steps_.push_back({std::move(edit), std::nullopt, joined && position_ > 0});
+}
+
+void History::add(Edit edit, Scene scene, bool joined, std::size_t replaced) {
+  forget_last(0);
+  steps_.push_back({std::move(edit), std::nullopt, joined && position_ > 0, position_ - replaced});
   keep(++position_, std::move(scene));
   fit_budget();
 }
@@ -95,7 +103,13 @@ std::size_t History::undo_step() const {
 
 std::optional<Scene> History::before_last_step() const {
   if (position_ == 0) return std::nullopt;
-  return steps_[position_ - undo_step()].scene;
+  return steps_[steps_[position_ + 1 - undo_step()].base].scene;
+}
+
+std::size_t History::replaced_by_last_step() const {
+  if (position_ == 0) return 0;
+  const std::size_t first = position_ + 1 - undo_step();
+  return first - 1 - steps_[first].base;
 }
 
 std::size_t History::redo_step() const {
@@ -117,25 +131,33 @@ bool History::redo(std::size_t edits, const Progress& progress) {
   return true;
 }
 
-void History::return_to(std::size_t edits, Scene scene) {
-  position_ += edits;
-  if (!steps_[position_].scene) keep(position_, std::move(scene));
-  fit_budget();
+// The steps to compute for a step's scene, each from the one before, the first from its cached base.
+std::vector<std::size_t> History::uncached_chain(std::size_t step) const {
+  std::vector<std::size_t> chain;
+  for (; !steps_[step].scene; step = steps_[step].base) chain.push_back(step);
+  std::reverse(chain.begin(), chain.end());
+  return chain;
+}
+
+Scene History::scene_at(std::size_t edits, const Progress& progress) const {
+  const std::vector<std::size_t> chain = uncached_chain(edits);
+  Scene scene = *steps_[chain.empty() ? edits : steps_[chain.front()].base].scene;
+  for (const std::size_t k : chain) scene = rebake::apply(scene, *steps_[k].edit, progress).scene;
+  return scene;
 }
 
 void History::go_to(std::size_t step, const Progress& progress) {
-  std::size_t from = step;
-  while (!steps_[from].scene) --from;
+  const std::vector<std::size_t> chain = uncached_chain(step);
   // The last values on the way are kept too, as far as the budget goes: whoever undoes once usually undoes again. What
   // is kept for later steps stays until this has succeeded, and goes first then: until there as much as half the budget
   // may lie beside it.
   const std::uint64_t there = memory_;
-  Scene scene = *steps_[from].scene;
-  std::size_t oldest = from + 1;
-  for (std::size_t k = from + 1; k <= step; ++k) {
-    scene = rebake::apply(scene, *steps_[k].edit, progress).scene;
-    keep(k, scene);
-    while (oldest < k && (memory_ - there > budget_ / 2 || k - oldest >= checkpoint_distance)) drop(oldest++);
+  Scene scene = *steps_[chain.empty() ? step : steps_[chain.front()].base].scene;
+  std::size_t oldest = 0;
+  for (std::size_t k = 0; k < chain.size(); ++k) {
+    scene = rebake::apply(scene, *steps_[chain[k]].edit, progress).scene;
+    keep(chain[k], scene);
+    while (oldest < k && (memory_ - there > budget_ / 2 || k - oldest >= checkpoint_distance)) drop(chain[oldest++]);
   }
   position_ = step;
   fit_budget();

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int journal_version = 2;
+constexpr int journal_version = 3;
 constexpr std::size_t checksum_digits = 16;
 
 std::string line_of(const json& entry) {
@@ -58,7 +59,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
   Parsed parsed;
   Journal::Contents& contents = parsed.contents;
   // A piece of a first line: the journal was being begun.
-  for (const int of : {1, journal_version})
+  for (int of = 1; of <= journal_version; ++of)
     if (bytes.size() < first_line(of).size() && first_line(of).starts_with(bytes)) {
       contents.torn = true;
       return parsed;
@@ -242,5 +243,27 @@ bool Journal::in_use(const fs::path& path) {
 }
 
 Journal::Contents Journal::read(const fs::path& path) { return parse(path, read_file(path)).contents; }
+
+std::size_t step_count(const Journal::Contents& contents) {
+  std::vector<std::size_t> ends;  // number of edits at the end of each step
+  std::size_t done = 0;
+  const auto count_in = [](const json& value) { return value.is_number_unsigned() ? value.get<std::size_t>() : 1; };
+  for (const std::string& text : contents.entries) {
+    const json entry = json::parse(text);
+    if (entry.contains("undo")) {
+      done -= std::min(done, count_in(entry.at("undo")));
+    } else if (entry.contains("redo")) {
+      done = std::min(ends.empty() ? 0 : ends.back(), done + count_in(entry.at("redo")));
+    } else {
+      const json& step = entry.contains("adjust") ? entry.at("adjust") : entry;
+      if (entry.contains("adjust")) done -= std::min(done, count_in(step.at("undo")));
+      while (!ends.empty() && ends.back() > done) ends.pop_back();
+      done += step.contains("edits") ? step.at("edits").size() : 1;
+      ends.push_back(done);
+    }
+  }
+  return static_cast<std::size_t>(
+      std::count_if(ends.begin(), ends.end(), [&](std::size_t end) { return end <= done; }));
+}
 
 }  // namespace rebake

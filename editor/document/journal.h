@@ -11,12 +11,13 @@ namespace rebake {
 /// A file of what was done, a checksummed line each, for getting work back after a crash. A line is on the disk before
 /// append() returns.
 ///
-///     <16 hexadecimal digits: XXH64 of the rest of the line> {"rebake_journal": 2}
+///     <16 hexadecimal digits: XXH64 of the rest of the line> {"rebake_journal": 3}
 ///     <digits> {"n": 1, "edit": {"op": "import", …}}
 ///     <digits> {"n": 2, "edits": [{"op": "hide", …}, {"op": "hide", …}]}     made together
 ///     <digits> {"n": 3, "undo": 2}     so many edits; true: one
+///     <digits> {"n": 4, "edit": {"op": "cage", …}, "replaces": 1}     made of the scene before the last edit
 ///
-/// Version 1 had no lines of several edits; it is still read.
+/// Version 1 had no lines of several edits, version 2 no "replaces"; both are still read.
 class Journal {
  public:
   /// Begins a journal with these lines, all on the disk before this returns. Throws FileError when there is a file
@@ -62,5 +63,9 @@ class Journal {
   explicit Journal(std::unique_ptr<File> file);
   std::unique_ptr<File> file_;
 };
+
+/// Number of steps of history that a journal's whole lines leave done: edits of one line are one step, undone ones do
+/// not count.
+std::size_t step_count(const Journal::Contents& contents);
 
 }  // namespace rebake

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int project_version = 2;
+constexpr int project_version = 3;
 
 std::string checksum(json root) {
   root.erase("checksum");
@@ -36,7 +37,8 @@ void check_form(const fs::path& path, const json& root) {
   if (!of.is_number_unsigned() || of.get<std::uint64_t>() > project_version)
     throw FileError(path, "was written by a newer version of Rebake; open it with that one");
   for (const auto& [key, value] : root.items())
-    if (key != "rebake_project" && key != "sources" && key != "edits" && key != "joined" && key != "checksum")
+    if (key != "rebake_project" && key != "sources" && key != "edits" && key != "joined" && key != "replaces" &&
+        key != "checksum")
       throw FileError(path, fmt::format("is damaged: \"{}\" is no part of a project", key));
   if (root.contains("checksum") && root.at("checksum") != checksum(root))
     throw FileError(
@@ -52,14 +54,19 @@ bool is_project_file(const fs::path& path) {
   return path.extension() == ".rebake" && fs::is_regular_file(path, error);
 }
 
-void write_project(const fs::path& path, const std::vector<Edit>& edits, const std::vector<bool>& joined,
-                   const SourceGuard& guard, const Progress& progress) {
+void write_project(const fs::path& path, const std::vector<History::Entry>& entries, const SourceGuard& guard,
+                   const Progress& progress) {
   const fs::path folder = real_folder_of(path);
-  json root = {{"rebake_project", project_version}, {"sources", json::array()}, {"edits", json::array()}};
-  for (std::size_t k = 0; k < edits.size(); ++k) {
-    progress.at("saving", static_cast<double>(k) / static_cast<double>(edits.size()));
-    root["edits"].push_back(to_json(edits[k]));
-    const auto read = source_of(edits[k]);
+  json root = {{"rebake_project", project_version - 1}, {"sources", json::array()}, {"edits", json::array()}};
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    progress.at("saving", static_cast<double>(k) / static_cast<double>(entries.size()));
+    root["edits"].push_back(to_json(entries[k].edit));
+    if (entries[k].joined) root["joined"].push_back(k + 1);
+    if (entries[k].replaced > 0) {
+      root["rebake_project"] = project_version;
+      root["replaces"].push_back({k + 1, entries[k].replaced});
+    }
+    const auto read = source_of(entries[k].edit);
     if (!read) continue;
     const fs::path source = fs::weakly_canonical(read->path);
     const std::string relative = source.lexically_proximate(folder).generic_string();
@@ -68,8 +75,6 @@ void write_project(const fs::path& path, const std::vector<Edit>& edits, const s
     if (std::find(root["sources"].begin(), root["sources"].end(), entry) == root["sources"].end())
       root["sources"].push_back(entry);
   }
-  for (std::size_t k = 0; k < edits.size(); ++k)
-    if (joined[k]) root["joined"].push_back(k + 1);
   try {
     root["checksum"] = checksum(root);
     write_file_atomically(path, root.dump(1) + '\n', guard);
@@ -104,9 +109,21 @@ void read_project(const fs::path& path, const EachEdit& each, const Relinked& li
         throw FileError(path, fmt::format("joined: there is no edit {} that could be", k));
       joined[k - 1] = true;
     }
+    // Scenes that a later edit starts from, by the number of edits before.
+    std::map<std::size_t, Scene> bases;
+    std::vector<std::size_t> replaced(joined.size(), 0);
+    for (const json& one : root.value("replaces", json::array())) {
+      const auto k = one.at(0).get<std::size_t>(), count = one.at(1).get<std::size_t>();
+      if (k < 2 || k > replaced.size() || count >= k)
+        throw FileError(path, fmt::format("replaces: edit {} cannot replace {} edits", k, count));
+      replaced[k - 1] = count;
+      bases[k - 1 - count] = {};
+    }
     Scene scene;
     std::size_t number = 0;
     for (json line : root.at("edits")) {
+      if (const auto base = bases.find(number); base != bases.end()) base->second = scene;
+      if (replaced[number] > 0) scene = bases.at(number - replaced[number]);
       progress.at("opening", static_cast<double>(number++) / static_cast<double>(root.at("edits").size()));
       try {
         if (json* const source = source_field(line)) *source = source_path(folder, *source, links).string();
@@ -114,7 +131,7 @@ void read_project(const fs::path& path, const EachEdit& each, const Relinked& li
         if (const auto source = source_of(edit); source && source->content.empty())
           throw FieldError("content", "is missing: without it a changed source would not be noticed");
         scene = rebake::apply(scene, edit, progress).scene;
-        each(edit, scene, joined[number - 1]);
+        each({edit, joined[number - 1], replaced[number - 1]}, scene);
       } catch (const Cancelled&) {
         throw;
       } catch (const Error& error) {

@@ -22,6 +22,7 @@
   X(RenameView) \
   X(RemoveView) \
   X(Background) \
+  X(GroundEdit) \
   X(LightEdit) \
   X(Transform) \
   X(Place) \

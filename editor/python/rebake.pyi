@@ -111,12 +111,13 @@ class Document:
         """The texels, 256 × 256 × 8 a tile (feat0 RGBA, feat1 RGBA), by row and column; read-only, unpacked by each call."""
     def texture(self, node: Node, texture_set: int = 0) -> NDArray[np.uint8]:
         """The same in one piece, height × width × 8; a copy."""
-    def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", content: str = "") -> None:
+    def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", ground: bool = False, content: str = "") -> None:
         """Reads a MobileNeRF folder or a Rebake scene into the scene.
 
         path: folder to read
         as_: name of the new node; empty: the folder's name
         axes: which way a MobileNeRF folder is oriented; scenes say so themselves
+        ground: whether the scene's ground moves to its lowest point
         content: hash of the folder's files as projects and journals record it: anything else there is refused
         """
     def remove(self, *, node: Node) -> None:
@@ -193,6 +194,14 @@ class Document:
 
         color: display red, green and blue (share)
         """
+    def ground(self, *, height: float | None = None, foot: bool = False, selection: bool = False, points: Sequence[Sequence[float]] = []) -> None:
+        """Sets the scene's ground plane, which drop, snapping and the grid use; its normal is up for sky light. Without it the ground is y = 0.
+
+        height: level ground at this y (scene units)
+        foot: level ground at the lowest point of everything visible
+        selection: the plane that fits the selected triangles best
+        points: ground through three points
+        """
     def light(self, *, effects: Sequence[str] = ["auto"], source: str = "", zenith: Vector = [0.75,0.88,1.1], ground: Vector = [0.34,0.3,0.27], sun: Vector = [0.5,0.8,0.45], sun_color: Vector = [1.15,1.05,0.9], sun_degrees: float = 5.0, picture: str = "", picture_degrees: float = 0.0, content: str = "", bounce: Vector = [0.0,0.0,0.0], budget: float = 1.0, rays: int = 256) -> None:
         """Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone; highlights.
 
@@ -229,11 +238,11 @@ class Document:
         rotation: from its parent's axes; left out: as it is
         scale: factor along its own axes; negative mirrors, 0 is refused; left out: as it is
         """
-    def drop(self, *, node: Node, ground: float = 0.0) -> None:
-        """Lets a node fall along the world's -y until it stands on what is visible below it, or on the ground.
+    def drop(self, *, node: Node, ground: float | None = None) -> None:
+        """Lets a node fall onto what is visible below it, or onto the scene's ground plane. A node that intersects something is lifted out of it first.
 
         node: node that falls, with those inside it
-        ground: height of the ground (scene units)
+        ground: height of a level ground to use in place of the scene's (scene units)
         """
     def align(self, *, nodes: Sequence[Node], axis: Literal["x", "y", "z"] = "x", to: Literal["least", "middle", "greatest", "spread"] = "middle") -> None:
         """Moves nodes along an axis so that their boxes' ends or middles are at the first one's, or with the same gap between neighbours.

@@ -17,6 +17,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/file_calls.h"
 #include "mesh_ops/base/hash.h"
+#include "mesh_ops/base/partial_writes.h"
 
 namespace rebake {
 
@@ -214,8 +215,10 @@ void write_file_atomically(const fs::path& named, std::string_view bytes, const 
   }
   remove_leftovers(path.parent_path(), path.filename().string());
   const fs::path partial = path.parent_path() / partial_name(path.filename().string());
+  const PartialWrite known(partial);
   try {
     write_synced(partial, bytes, O_EXCL);
+    const auto committing = PartialWrite::committing();
     if (file_calls().rename(partial.c_str(), path.c_str(), 0) != 0) fail(path, "cannot be written");
   } catch (...) {
     std::error_code ignored;
@@ -250,6 +253,7 @@ AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
     staging_.clear();
     fail(target_, "cannot be written");
   }
+  partial_ = std::make_unique<PartialWrite>(staging_);
   lock_ = ::open(staging_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ >= 0) ::flock(lock_, LOCK_SH | LOCK_NB);
 }
@@ -267,6 +271,7 @@ void AtomicFolder::write(const fs::path& relative, std::string_view bytes) {
 }
 
 void AtomicFolder::commit() {
+  const auto committing = PartialWrite::committing();
   // First what it holds, then the folders that name it, then its own name.
   std::set<fs::path> folders{staging_};
   for (const auto& entry : fs::recursive_directory_iterator(staging_))

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
+#include "mesh_ops/base/partial_writes.h"
 #include "mesh_ops/base/source_guard.h"
 
 namespace rebake {
@@ -73,6 +75,7 @@ class AtomicFolder {
  private:
   std::filesystem::path target_;
   std::filesystem::path staging_;
+  std::unique_ptr<PartialWrite> partial_;
   int lock_ = -1;  ///< held on the staging folder, so that nobody takes it for a leftover
 };
 

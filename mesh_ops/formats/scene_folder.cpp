@@ -92,6 +92,7 @@ json light_json(const SceneLight& light) {
            {"ground", color_json(light.ground)},
            {"bounce", color_json(light.bounce)},
            {"sun", sun_json(light.sun)}};
+  if (light.up != Vec3::UnitY()) out["up"] = color_json(light.up);
   if (light.picture) out["picture"] = picture_json(*light.picture, light.picture_turn);
   return out;
 }
@@ -102,6 +103,21 @@ Vec3 read_color(const json& list) {
   for (std::size_t c = 0; c < 3; ++c)
     result[static_cast<Eigen::Index>(c)] = std::clamp(list.at(c).get<double>(), 0.0, 1e6);
   return result;
+}
+
+Vec3 read_normal(const json& list) {
+  Vec3 normal;
+  for (std::size_t c = 0; c < 3; ++c) normal[static_cast<Eigen::Index>(c)] = list.at(c).get<double>();
+  // A unit vector keeps its bits.
+  if (std::abs(normal.squaredNorm() - 1) > 1e-12) normal.stableNormalize();
+  if (!(normal.squaredNorm() > 0.5)) throw FieldError("normal", "must be a vector with a direction");
+  return normal;
+}
+
+Ground read_ground(const json& value) {
+  const Ground ground{read_normal(value.at("normal")), value.at("height").get<double>()};
+  if (!std::isfinite(ground.height)) throw FieldError("ground", "has a height that is not finite");
+  return ground;
 }
 
 Sun read_sun(const json& value) {
@@ -157,6 +173,7 @@ SceneLight read_light(const json& value) {
   light.zenith = read_color(value.at("zenith"));
   light.ground = read_color(value.at("ground"));
   light.bounce = read_color(value.at("bounce"));
+  if (value.contains("up")) light.up = read_normal(value.at("up"));
   light.sun = read_sun(value.at("sun"));
   if (value.contains("picture")) {
     light.picture = std::make_shared<const LightPicture>(read_picture(value.at("picture")));
@@ -189,6 +206,7 @@ class SceneReader {
         for (std::size_t c = 0; c < 3; ++c)
           scene.background[static_cast<Eigen::Index>(c)] =
               std::clamp(root.at("background").at(c).get<double>(), 0.0, 1.0);
+      if (root.contains("ground")) scene.ground = read_ground(root.at("ground"));
       if (root.contains("views"))
         for (const auto& [view, camera] : root.at("views").items()) scene.views[view] = read_camera_json(camera);
       if (root.contains("light")) scene.light = std::make_shared<const SceneLight>(read_light(root.at("light")));
@@ -323,6 +341,8 @@ std::string write_scene_json(const Scene& scene, const std::map<const BakedObjec
                {"background", {scene.background.x(), scene.background.y(), scene.background.z()}},
                {"views", json::object()},
                {"nodes", json::array()}};
+  if (scene.ground != Ground{})
+    root["ground"] = {{"normal", color_json(scene.ground.normal)}, {"height", scene.ground.height}};
   if (scene.light) root["light"] = light_json(*scene.light);
   for (const auto& [name, camera] : scene.views) root["views"][name] = camera_json(camera);
   for (const NodePtr& node : scene.roots) root["nodes"].push_back(node_json(*node, folder_of, with_bodies));

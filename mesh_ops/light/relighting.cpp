@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/network/texel_colors.h"
@@ -147,6 +148,47 @@ std::vector<Radiance> site_colors(const BakedObject& object,
   return colors;
 }
 
+namespace {
+
+// The largest albedo that well-lit sites of an object show, per part and channel: the 99th percentile of colour over
+// irradiance. Parts with few such sites take the object's; infinite if the object has few.
+std::vector<Radiance> largest_albedos(const LightSites& sites, const std::vector<Radiance>& colors,
+                                      const std::vector<Radiance>& before, const Radiance& lambda, std::size_t parts) {
+  constexpr std::size_t least_sites = 16;
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  std::vector<Radiance> result(parts, Radiance::Constant(infinite));
+  for (int c = 0; c < 3; ++c) {
+    std::vector<double> all;
+    std::vector<std::vector<double>> of_part(parts);
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      const double e = before[i][c];
+      if (!(e > 0 && e * e >= lambda[c])) continue;
+      all.push_back(colors[i][c] / e);
+      of_part[sites.part[i]].push_back(all.back());
+    }
+    const auto high = [](std::vector<double>& values) {
+      if (values.size() < least_sites) return infinite;
+      const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
+      std::nth_element(values.begin(), at, values.end());
+      return *at;
+    };
+    const double of_object = high(all);
+    for (std::size_t p = 0; p < parts; ++p)
+      result[p][c] = of_part[p].size() < least_sites ? of_object : high(of_part[p]);
+  }
+  return result;
+}
+
+// The brightest that a site of colour `color` may become: what `albedo` makes of the new light, and what the colour had
+// beyond it in the old light, which fades as light grows: a surface that was never lit was never fitted, and its colour
+// says nothing. At unchanged light it is at least the colour itself.
+double brightest(double color, double e, double after, double albedo, double root_lambda) {
+  const double beyond = std::max(0.0, color - albedo * e), dark = 0.1 * root_lambda;
+  return albedo * after + beyond * std::min(1.0, (e + dark) / (after + dark));
+}
+
+}  // namespace
+
 std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::shared_ptr<const LightChart>>& charts,
                                                         const LightSites& sites, const std::vector<Radiance>& colors,
                                                         const std::vector<Radiance>& before,
@@ -167,6 +209,7 @@ std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::s
     ce[sites.part[i]] += colors[i].cwiseProduct(before[i]);
     ee[sites.part[i]] += before[i].cwiseProduct(before[i]);
   }
+  const std::vector<Radiance> most = largest_albedos(sites, colors, before, lambda, parts);
   std::vector<std::shared_ptr<const LightMap>> maps;
   for (std::size_t s = 0; s < charts.size(); ++s) {
     LightMap map;
@@ -182,10 +225,19 @@ std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::s
         // Without an area it had no light that could be changed.
         if (change == 0 || !(e * e + lambda[c] > 0) || sites.baked[i].normal.isZero(0)) continue;
         any = true;
-        map.gain[texel][c] = static_cast<float>(std::min(largest, 1 + e * change / (e * e + lambda[c])));
         const double albedo = part > 0 ? ce[sites.part[i]][c] / part : 0;
-        map.offset[texel][c] =
-            static_cast<float>(std::clamp(lambda[c] * albedo * change / (e * e + lambda[c]), -largest, largest));
+        double gain = std::min(largest, 1 + e * change / (e * e + lambda[c]));
+        double offset = std::clamp(lambda[c] * albedo * change / (e * e + lambda[c]), -largest, largest);
+        if (change > 0 && e * e < lambda[c] && std::isfinite(most[sites.part[i]][c])) {
+          const double wanted = gain * colors[i][c] + offset;
+          const double bound = brightest(colors[i][c], e, after[i][c], most[sites.part[i]][c], std::sqrt(lambda[c]));
+          if (wanted > bound) {
+            gain *= bound / wanted;
+            offset *= bound / wanted;
+          }
+        }
+        map.gain[texel][c] = static_cast<float>(gain);
+        map.offset[texel][c] = static_cast<float>(offset);
         any_offset = any_offset || map.offset[texel][c] != 0;
       }
     }

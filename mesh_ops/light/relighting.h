@@ -55,8 +55,10 @@ struct Mirrors {
 };
 
 /// c' = max(0, c + ρ (E₁ − E₀)) with ρ = (c E₀ + λ ρ_part) / (E₀² + λ): linear in c, exactly the identity where E₁ =
-/// E₀. `before` and `after` are irradiances over π, λ is (0.3 · the object's common irradiance)². A map a texture set;
-/// null where nothing changes. `now` are the sites as they are, of which `mirrors` (null for matte ones) says more.
+/// E₀. Where light grows at a site that had less than √λ, c' is bounded by the largest albedo of well-lit sites of its
+/// part (else of the object): surfaces that no photograph saw do not glow. `before` and `after` are irradiances over π,
+/// λ is (0.3 · the object's common irradiance)². A map a texture set; null where nothing changes. `now` are the sites
+/// as they are, of which `mirrors` (null for matte ones) says more.
 std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::shared_ptr<const LightChart>>& charts,
                                                         const LightSites& sites, const std::vector<Radiance>& colors,
                                                         const std::vector<Radiance>& before,

@@ -92,10 +92,11 @@ Light Light::scaled(const Radiance& factors) const {
   return result;
 }
 
-Light sky_and_sun(const Radiance& ground, const Radiance& zenith, const Sun& sun, const Radiance& bounce) {
+Light sky_and_sun(const Radiance& ground, const Radiance& zenith, const Sun& sun, const Radiance& bounce,
+                  const Vec3& up) {
   Light light;
   light.sky = SkyMap(64, [&](const Vec3& d) -> Radiance {
-    const double t = d.y() * 0.5 + 0.5;
+    const double t = d.dot(up) * 0.5 + 0.5;
     return ground * (1 - t) + zenith * t;
   });
   if (!sun.irradiance.isZero(0)) light.suns.push_back(sun);
@@ -106,7 +107,7 @@ Light sky_and_sun(const Radiance& ground, const Radiance& zenith, const Sun& sun
 bool SceneLight::operator==(const SceneLight& other) const {
   const auto plain = [](const SceneLight& one) {
     return std::tie(one.self, one.cast, one.removed, one.highlights, one.match, one.budget, one.rays, one.source,
-                    one.picture_turn, one.zenith, one.ground, one.sun, one.bounce);
+                    one.picture_turn, one.zenith, one.ground, one.sun, one.bounce, one.up);
   };
   if (plain(*this) != plain(other) || (picture == nullptr) != (other.picture == nullptr)) return false;
   return picture == other.picture || *picture == *other.picture;
@@ -117,7 +118,8 @@ std::shared_ptr<const Light> given_light(const SceneLight& settings) {
   if (settings.source == SceneLight::Source::sky) {
     Sun sun = settings.sun;
     sun.direction.stableNormalize();
-    return std::make_shared<const Light>(sky_and_sun(settings.ground, settings.zenith, sun, settings.bounce));
+    return std::make_shared<const Light>(
+        sky_and_sun(settings.ground, settings.zenith, sun, settings.bounce, settings.up));
   }
   auto light = std::make_shared<Light>();
   if (settings.source == SceneLight::Source::picture) {

@@ -92,14 +92,17 @@ struct SceneLight {
   Radiance ground{0.34, 0.3, 0.27};                    ///< sky: from below
   Sun sun{{0.5, 0.8, 0.45}, 0.09, {1.15, 1.05, 0.9}};  ///< sky; of any length
   Radiance bounce{0, 0, 0};                            ///< of what hides the sky
+  Vec3 up{0, 1, 0};                                    ///< sky: towards the zenith, the normal of the scene's ground
   /// Of pictures by what they hold.
   bool operator==(const SceneLight& other) const;
 };
 /// The given light; null where it is estimated, and of a picture that is not there.
 std::shared_ptr<const Light> given_light(const SceneLight& settings);
 
-/// Sky colours below, at the horizon's level and above (a linear blend over height), and a sun.
-Light sky_and_sun(const Radiance& ground, const Radiance& zenith, const Sun& sun, const Radiance& bounce);
+/// Sky colours below, at the horizon's level and above (a linear blend over height along the unit vector `up`), and a
+/// sun.
+Light sky_and_sun(const Radiance& ground, const Radiance& zenith, const Sun& sun, const Radiance& bounce,
+                  const Vec3& up = Vec3::UnitY());
 
 /// Linear light of a display colour and back (IEC 61966-2-1), a channel.
 double to_linear(double display);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh_ops/scene/camera.h"
+#include "mesh_ops/scene/ground.h"
 #include "mesh_ops/scene/light.h"
 #include "mesh_ops/scene/object.h"
 
@@ -37,6 +38,7 @@ struct Node {
 struct Scene {
   std::vector<NodePtr> roots;
   Color background{1, 1, 1};
+  Ground ground;
   std::map<std::string, Camera> views;
   std::uint64_t next_id = 1;
   std::shared_ptr<const SceneLight> light;  ///< null: colours stay as they were baked

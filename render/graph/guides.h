@@ -27,6 +27,7 @@ struct Guides {
   Triangles triangles;  ///< null for none
   Color triangle_color{1, 0.3, 0.1};
   bool selection = true;         ///< tints and outlines selected triangles
+  std::vector<NodeId> dimmed;    ///< nodes whose selected triangles are drawn faintly
   std::vector<NodeId> outlined;  ///< nodes with a line around them
 
   /// Another look at the triangles, in place of their colours; at 1 sample a pixel.

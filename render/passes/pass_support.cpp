@@ -458,12 +458,13 @@ void begin_mask(const PassInput& input) {
   glBlendEquation(GL_MAX);
 }
 
-const gl::Program& use_mask(const PassInput& input, const Draw& draw) {
+const gl::Program& use_mask(const PassInput& input, const Draw& draw, float strength) {
   const gl::Program& mask =
       program(input.state, "geometry.vert", "selection_mask.frag",
               "#define TURNED_MESH 0\n#define LIT_MESH 0\n#define GLOSSY_MESH 0\n" + texel_preamble(input, draw));
   glUseProgram(mask.name());
   bind_scene_depth(input, mask);
+  set_uniform(mask, "strength", strength);
   return mask;
 }
 

@@ -83,7 +83,7 @@ void bind_scene_depth(const PassInput& input, const gl::Program& program);
 /// Clears Target::mask, as far as what is drawn depends on it, and makes ready to draw geometry into it, nearest marks
 /// staying; end_mask() after that.
 void begin_mask(const PassInput& input);
-const gl::Program& use_mask(const PassInput& input, const Draw& draw);
+const gl::Program& use_mask(const PassInput& input, const Draw& draw, float strength = 1);
 void end_mask();
 /// Draws a fragment shader that reads the mask over the picture.
 void draw_by_mask(const PassInput& input, const std::string& fragment);

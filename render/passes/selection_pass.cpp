@@ -25,6 +25,14 @@ SelectedFaces upload(const Draw& draw, const GpuMesh& mesh, const GpuSurface& su
   return selected;
 }
 
+// Share of the full tint with which selections are drawn that the next command leaves alone.
+constexpr float dimmed_strength = 0.3F;
+
+float strength_of(const FramePlan& plan, const Draw& draw) {
+  const std::vector<NodeId>& dimmed = plan.guides.dimmed;
+  return std::find(dimmed.begin(), dimmed.end(), draw.node) == dimmed.end() ? 1 : dimmed_strength;
+}
+
 void execute(const PassInput& input) {
   begin_mask(input);
   std::map<SelectionKey, SelectedFaces> kept;
@@ -38,7 +46,7 @@ void execute(const PassInput& input) {
                               : upload(draw, input.gpu.mesh(draw.set), input.gpu.surface(draw.set)))
             .first->second;
     if (faces.count == 0) continue;
-    set_mesh_uniforms(input, draw, use_mask(input, draw));
+    set_mesh_uniforms(input, draw, use_mask(input, draw, strength_of(input.plan, draw)));
     glBindVertexArray(faces.array.name());
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(faces.count), GL_UNSIGNED_INT, nullptr);
   }

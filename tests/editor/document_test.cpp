@@ -122,7 +122,7 @@ TEST_F(DocumentTest, ScenesOnTheWayAreLetGoOf) {
     return static_cast<std::size_t>(
         std::count_if(passed.begin(), passed.end(), [](const auto& one) { return !one.expired(); }));
   };
-  read_project(path("long.rebake"), [&](const Edit&, const Scene& after, bool) {
+  read_project(path("long.rebake"), [&](const History::Entry&, const Scene& after) {
     passed.push_back(after.roots[0]->object);
     most = std::max(most, alive());
   });
@@ -352,7 +352,7 @@ TEST_F(DocumentTest, BadJournalsAreRefusedWithWhatIsWrong) {
     EXPECT_NE(error_of([&] { Document::recover(path("j")); }).find("written by another Rebake"), std::string::npos);
   }
   const auto line = [](const std::string& text) { return hash_text(content_hash(text)) + " " + text + "\n"; };
-  says(line(R"({"rebake_journal":3})"), "newer version");
+  says(line(R"({"rebake_journal":4})"), "newer version");
 }
 
 TEST_F(DocumentTest, WhatIsNoJournalIsLeftAlone) {

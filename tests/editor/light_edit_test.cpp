@@ -79,7 +79,7 @@ TEST_F(DocumentTest, LightIsUndoneAndSavedWithTheScene) {
 Scene last_scene(const fs::path& project, const Relinked& links = {}) {
   Scene last;
   read_project(
-      project, [&](const Edit&, const Scene& after, bool) { last = after; }, links);
+      project, [&](const History::Entry&, const Scene& after) { last = after; }, links);
   return last;
 }
 

@@ -2,11 +2,12 @@
 #include "editor/script/script.h"
 #include "editor/commands/session.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
 
 #include "editor/edits/nodes/place.h"
 #include "editor/edits/stored_view.h"
@@ -15,6 +16,7 @@
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/formats.h"
 #include "tests/support/made_scenes.h"
+#include "tests/support/thorough.h"
 
 namespace rebake::test {
 namespace {
@@ -180,8 +182,56 @@ TEST_F(Script, ANodeFallsOntoWhatIsBelowAndOntoTheGround) {
 {"op": "drop", "node": "upper", "ground": -2})");
   EXPECT_NEAR(low("upper"), -2, 1e-12);
   run(R"({"op": "drop", "node": "upper", "ground": -1})");
-  EXPECT_NEAR(low("upper"), -2, 1e-12) << "it crosses that ground, and sinks no deeper";
-  expect_error(R"({"op": "drop", "node": "upper", "ground": 7})", "below the ground");
+  EXPECT_NEAR(low("upper"), -1, 1e-12) << "it crossed that ground, and is lifted out";
+  run(R"({"op": "drop", "node": "upper", "ground": 7})");
+  EXPECT_NEAR(low("upper"), 7, 1e-12) << "it lay below that ground";
+}
+
+TEST_F(Script, ANodeThatIntersectsOthersIsLiftedOutBeforeItFalls) {
+  // At random offsets into a ball of radius 1 whose top is at 2: afterwards it rests on it or beside it, never inside.
+  run(import + R"({"op": "duplicate", "node": "ball", "as": "upper"}
+{"op": "place", "node": "ball", "position": [0, 1, 0]})");
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> any(-0.9, 0.9);
+  for (int k = 0; k < cases(6, 60); ++k) {
+    const Vec3 at(any(random), 1 + any(random), any(random));
+    run(fmt::format(R"({{"op": "place", "node": "upper", "position": [{}, {}, {}]}})", at.x(), at.y(), at.z()) + "\n" +
+        R"({"op": "drop", "node": "upper"})");
+    const Vec3 now = find_placed(session.scene(), node("upper")->id)->to_world.translation();
+    EXPECT_GE((now - Vec3(0, 1, 0)).norm(), 1.9) << "from " << at.transpose() << " to " << now.transpose();
+    EXPECT_NEAR(now.x(), at.x(), 1e-12);
+    EXPECT_NEAR(now.z(), at.z(), 1e-12);
+    const Scene once = session.scene();
+    run(R"({"op": "drop", "node": "upper"})");
+    EXPECT_EQ(session.scene().roots, once.roots) << "it stands already: nothing moves";
+  }
+}
+
+TEST_F(Script, TheGroundIsSetByHeightFootPointsOrSelection) {
+  run(import + R"({"op": "ground", "height": -4}
+{"op": "drop", "node": "ball"})");
+  const auto low = [&] { return subtree_bounds(session.scene(), node("ball")->id).min().y(); };
+  EXPECT_NEAR(low(), -4, 1e-12);
+  run(R"({"op": "transform", "node": "ball", "translate": [0, 9, 0]}
+{"op": "ground", "foot": true})");
+  EXPECT_NEAR(session.scene().ground.height, 5, 1e-12);
+  EXPECT_EQ(session.scene().ground.normal, Vec3(0, 1, 0));
+  // A ball on a slope of 45° touches it at a distance of its radius.
+  run(R"({"op": "ground", "points": [[0, 0, 0], [0, 0, 1], [1, 1, 0]]}
+{"op": "drop", "node": "ball"})");
+  const Ground slope = session.scene().ground;
+  EXPECT_NEAR(slope.normal.dot(Vec3(-1, 1, 0).normalized()), 1, 1e-14);
+  EXPECT_NEAR(slope.above(find_placed(session.scene(), node("ball")->id)->to_world.translation()), 1, 0.05);
+  run(R"({"op": "light", "effects": ["self"], "source": "sky"})");
+  EXPECT_EQ(session.scene().light->up, slope.normal) << "sky light comes from above the ground";
+  run(R"({"op": "select", "node": "ball", "box": {"min": [0, 0.9, 0], "max": [1, 1, 1]}, "frame": "bounds"}
+{"op": "ground", "selection": true})");
+  EXPECT_GT(session.scene().ground.normal.y(), 0.9) << "the cap of a ball is level";
+  EXPECT_EQ(session.scene().light->up, session.scene().ground.normal);
+  expect_error(R"({"op": "ground"})", "exactly one of");
+  expect_error(R"({"op": "ground", "height": 1, "foot": true})", "exactly one of");
+  expect_error(R"({"op": "ground", "points": [[0, 0, 0], [1, 1, 1], [2, 2, 2]]})", "one line");
+  expect_error(R"({"op": "ground", "points": [[0, 0, 0], [1, 1, 1]]})", "three points");
 }
 
 TEST_F(Script, ACopyStandsWhereItIsPut) {

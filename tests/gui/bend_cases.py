@@ -22,18 +22,23 @@ class BendTest(WindowCase):
         self.assertEqual(len(edit["moves"]), 1)
         first = editor.items("cage")
         drag_top(-50, -40)
-        self.assertEqual(editor.ops(), ["import", "cage", "adjust", "cage"], "the same step, done again")
-        self.assertEqual(editor.state()["steps"], 2)
+        self.assertEqual(editor.ops(), ["import", "cage", "revise", "cage"], "a step of its own")
+        self.assertEqual(editor.state()["steps"], 3)
+        self.assertEqual(editor.state()["status"], "Moved 1 cage point of ficus")
         second = editor.items("cage")
         self.assertNotEqual(first, second)
-        # Undo takes the releases back one by one, redo brings the cage back with its points.
+        # Undo and redo of the document go through the releases.
         editor.key("ctrl+z")
         self.assertEqual(editor.items("cage"), first)
         self.assertEqual(editor.state()["steps"], 2)
         editor.key("ctrl+z")
         self.assertEqual(editor.items("cage"), points)
         self.assertEqual(editor.state()["steps"], 1)
-        editor.key("ctrl+y", "ctrl+y")
+        # One undo too many loses nothing: redo brings every release back, and the cage.
+        editor.key("ctrl+z")
+        self.assertEqual(editor.state()["steps"], 0)
+        editor.key("ctrl+y", "ctrl+y", "ctrl+y")
+        self.assertEqual(editor.state()["steps"], 3)
         self.assertEqual(editor.items("cage"), second)
         # Its border stays adjustable, and the cage with it.
         editor.click("adjust/Soft border/value")
@@ -46,8 +51,10 @@ class BendTest(WindowCase):
         editor.drag([(round(x), round(y)), (round(x) + 60, round(y))], meanwhile=lambda: editor.key("Escape"))
         self.assertEqual(editor.items("cage"), second)
         editor.key("v")
-        self.assertEqual(editor.state()["steps"], 2)
+        self.assertEqual(editor.state()["steps"], 3, "leaving the tool folds no steps")
         self.assertEqual(editor.last_edit()["op"], "cage")
+        editor.key("ctrl+z")
+        self.assertEqual(editor.state()["steps"], 2, "the first release, outside of the tool too")
 
     def test_cage_points_turn_together_and_on_both_sides(self):
         editor = self.open_ficus()
@@ -108,7 +115,7 @@ class BendTest(WindowCase):
         # Again: the same step.
         x, y = editor.where("handle/1")
         editor.drag([(x, y), (x, y - 20)])
-        self.assertEqual(editor.state()["steps"], 2)
+        self.assertEqual(editor.state()["steps"], 3)
         self.assertGreater(editor.last_edit()["moves"][0]["translate"][1], edit["moves"][0]["translate"][1])
         # Escape takes back the present drag only.
         x, y = editor.where("handle/1")
@@ -123,15 +130,13 @@ class BendTest(WindowCase):
         self.assertEqual(len(editor.last_edit()["moves"]) + len(editor.last_edit()["fixed"]), 3)
         # Undo takes the releases back one by one; redo brings the points back.
         third = editor.items("handle")
-        editor.key("ctrl+z", "ctrl+z")
-        self.assertEqual(editor.state()["steps"], 2)
-        editor.key("ctrl+z")
+        editor.key("ctrl+z", "ctrl+z", "ctrl+z")
         self.assertEqual(editor.state()["steps"], 1)
         self.assertAlmostEqual(self.leaves(), before, delta=0.02 * before)
         editor.key("ctrl+y", "ctrl+y", "ctrl+y")
         self.assertEqual(editor.items("handle"), third)
         editor.key("v")
-        self.assertEqual(editor.state()["steps"], 2, "what was done stays")
+        self.assertEqual(editor.state()["steps"], 4, "what was done stays")
 
     def test_a_kettle_is_put_onto_the_pot(self):
         editor = self.open(FICUS, KETTLE)
@@ -141,9 +146,52 @@ class BendTest(WindowCase):
         editor.drag([(x, y), editor.in_viewport(0.8, 0.8)])
         moved = editor.last_edit()
         self.assertEqual(moved["op"], "transform")
+        x, y = editor.where("gizmo/y")
+        editor.drag([(x, y), (x, y - 60)])
         editor.key("End")
         self.assertEqual(editor.last_edit()["op"], "drop")
         self.assertEqual(editor.state()["status"], "Dropped kettle")
+        # It stands: nothing moves, nothing is recorded, and the status says why.
+        steps, ops = editor.state()["steps"], editor.ops()
+        editor.key("End")
+        self.assertEqual((editor.state()["steps"], editor.ops()), (steps, ops))
+        self.assertIn("stands on a surface or on the ground already", editor.state()["status"])
+
+    def test_the_ground_is_where_the_grid_is(self):
+        """The first object stands on the ground; what is dropped beside it stands as low."""
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        self.assertTrue(editor.journal()[0]["edit"]["ground"])
+        foot = editor.state()["ground"]
+        self.assertLess(foot, -0.5)
+        editor.click("outline/kettle/name")
+        editor.key("1")
+        editor.key("m")
+        x, y = editor.where("gizmo/middle")
+        editor.drag([(x, y), editor.in_viewport(0.85, 0.75)])
+        editor.settle()
+        self.assertAlmostEqual(editor.state()["picked_foot"], foot, places=5, msg="snapped onto the ground")
+        x, y = editor.where("gizmo/y")
+        editor.drag([(x, y), (x, y - 60)])
+        editor.settle()
+        self.assertGreater(editor.state()["picked_foot"], foot + 0.05)
+        editor.key("End")
+        editor.settle()
+        self.assertAlmostEqual(editor.state()["picked_foot"], foot, places=5)
+        # The ground can be set: by a height, and by three points.
+        editor.click("tool/Ground")
+        editor.click("options/Height")
+        editor.type("0-2.5")
+        editor.key("Return")
+        self.assertAlmostEqual(editor.state()["ground"], -2.5, places=6)
+        editor.key("End")
+        editor.settle()
+        self.assertAlmostEqual(editor.state()["picked_foot"], -2.5, places=5)
+        for share in ((0.43, 0.70), (0.47, 0.70), (0.45, 0.74)):
+            editor.click(*editor.in_viewport(*share))
+        self.assertEqual(len(editor.last_edit().get("points", [])), 3)
+        editor.click("options/Scene's foot")
+        self.assertTrue(editor.last_edit()["foot"])
 
     def test_bend_a_branch_from_its_stem(self):
         editor = self.open_ficus()

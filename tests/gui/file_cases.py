@@ -2,9 +2,10 @@
 
 import shutil
 import subprocess
+import time
 
 from screen import read_picture, until
-from window_case import WindowCase, FICUS, KETTLE, PROGRAM, green
+from window_case import WindowCase, FICUS, KETTLE, PROGRAM, green, write_square
 
 
 class FileTest(WindowCase):
@@ -112,8 +113,11 @@ class FileTest(WindowCase):
         until(out.is_dir, "the export")
 
     def test_one_plain_folder(self):
-        editor = self.open(FICUS, KETTLE)
+        editor = self.open(write_square(self.folder / "one", 1), write_square(self.folder / "other", -1))
         editor.until_ops("import", "import")
+        editor.key("1")
+        x, y = editor.where("gizmo/x")
+        editor.drag([(x, y), (x + 150, y)])
         editor.key("ctrl+e")
         editor.click("dialog/One plain folder")
         editor.click("dialog/Compare...")
@@ -242,6 +246,36 @@ class FileTest(WindowCase):
         self.assertGreater(self.leaves(), 1000, "the scene is back")
         editor.key("ctrl+i")
         until(lambda: editor.ops() == ["import", "select", "select"], "the recovered work, going on")
+
+    def test_discarded_work_is_asked_about_and_stays_in_the_trash(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+a", "ctrl+i", "ctrl+a")
+        editor.until_ops("import", "select", "select", "select")
+        editor.key("ctrl+z")
+        editor.until_ops("import", "select", "select", "select", "undo")
+        editor.kill()
+        editor = self.open()
+        said = [item for item in editor.state()["items"] if item.startswith("dialog/")]
+        self.assertIn("dialog/sources: ficus", said)
+        self.assertTrue(any("words: 3 steps, " in item and str(time.localtime().tm_year) in item for item in said), said)
+        self.assertIn("dialog/thumbnail", said)
+        # One click asks; Cancel and Escape leave it.
+        editor.click("dialog/Discard...")
+        editor.click("dialog/Cancel")
+        editor.click("dialog/Discard...")
+        editor.key("Escape")
+        editor.click("dialog/Discard...")
+        editor.click("dialog/Discard")
+        editor.settle()
+        self.assertFalse(editor.state()["asks"], "nothing else is left to recover")
+        editor.command("discarded work")
+        editor.click("dialog/Recover")
+        until(lambda: self.leaves() > 1000, "the work is back from the trash")
+        editor.key("ctrl+i")
+        until(lambda: editor.ops()[-1] == "select", "and goes on")
+        editor.command("discarded work")
+        editor.settle()
+        self.assertFalse(editor.state()["asks"], "the trash is empty")
 
     def test_what_cannot_be_read_is_said_and_the_rest_is_there(self):
         bad = self.folder / "bad"

@@ -256,6 +256,8 @@ class Editor:
             if "adjust" in line:
                 names.append("adjust")
                 line = line["adjust"]
+            if "replaces" in line:
+                names.append("revise")
             edits = line.get("edits", [line["edit"]] if "edit" in line else [])
             names += [edit["op"] for edit in edits] or ["undo" if "undo" in line else "redo"]
         return names

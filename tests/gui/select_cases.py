@@ -1,5 +1,6 @@
 """Selecting and deleting."""
 
+from screen import until
 from window_case import WindowCase, FICUS, KETTLE, green
 
 
@@ -80,6 +81,60 @@ class SelectTest(WindowCase):
         editor.key("Delete")
         self.assertEqual(editor.last_edit()["op"], "delete")
         self.assertNotEqual(editor.last_edit()["node"], kettle)
+
+    def test_counts_are_of_what_the_command_changes(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        editor.key("Escape", "Escape", "ctrl+a")
+        both = editor.state()["selected"]
+        bright = self.orange()
+        editor.click("outline/kettle/name")
+        kettle = editor.state()["selected"]
+        self.assertLess(kettle, both)
+        self.assertEqual(editor.state()["selected_words"], f"{kettle} selected in kettle, {both - kettle} elsewhere")
+        # What is not meant is drawn faintly.
+        self.assertLess(self.orange(), 0.7 * bright)
+        editor.key("Delete")
+        self.assertEqual(editor.state()["status"], f"Deleted {kettle} triangles of kettle")
+        self.assertEqual(editor.state()["selected_words"], f"{both - kettle} selected")
+
+    def orange(self):
+        """How many pixels have the full tint of a selection."""
+        self.editor.settle()
+        picture = self.editor.viewport()
+        return int(((picture[..., 0] > picture[..., 2] + 90) & (picture[..., 0] > picture[..., 1] + 20)).sum())
+
+    def test_forms_of_selections_show_what_they_take(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        before = editor.viewport()
+        editor.command("select floaters")
+        count = lambda: next((item for item in editor.state()["items"] if item.startswith("form/count: ")), "")
+        until(lambda: "triangles selected" in count(), "a count")
+        first = count()
+        editor.click("form/at_most")
+        editor.type("100000")
+        until(lambda: "triangles selected" in count() and count() != first, "the count follows")
+        editor.settle()
+        self.assertGreater(int((editor.viewport()[:, :300] != before[:, :300]).sum()) + self.orange(), 1000)
+        self.assertEqual(editor.ops(), ["import", "import"], "nothing is done yet")
+        # The node follows what is picked: the kettle's count differs from the plant's.
+        of_kettle = count()
+        editor.click("outline/ficus/name")
+        until(lambda: "triangles selected" in count() and count() != of_kettle, "the scope's count")
+        shown = int(count().split()[1])
+        editor.click("form/Apply")
+        editor.settle()
+        self.assertEqual(editor.last_edit()["op"], "select_floaters")
+        self.assertEqual(editor.state()["selected"], shown)
+
+    def test_an_emptied_scene_offers_to_open_another(self):
+        editor = self.open_ficus()
+        editor.key("ctrl+a", "Delete")
+        until(lambda: "start/Open..." in editor.state()["items"], "the start card")
+        editor.key("ctrl+z")
+        until(lambda: "start/Open..." not in editor.state()["items"], "the scene is back")
+        self.assertGreater(self.orange(), 1000, "with its selection")
 
     def test_visible_only_is_remembered_for_each_tool(self):
         editor = self.open_ficus()

@@ -1,10 +1,13 @@
 """What all tests of the window share: an editor that is open, and ways to say what is seen of it."""
 
+import json
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 from screen import Editor, Screen
 
@@ -19,6 +22,33 @@ BRANCH = [(0.57, 0.22), (0.78, 0.22), (0.78, 0.46), (0.62, 0.46), (0.57, 0.38)]
 def green(picture):
     """Which pixels are leaves: green, and not the green of an axis."""
     return (picture[..., 1] > picture[..., 0] + 20) & (picture[..., 1] > picture[..., 2] + 20) & (picture[..., 1] < 190)
+
+
+def write_png(path, rows):
+    """An RGBA PNG of rows of (red, green, blue, alpha)."""
+    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    raw = b"".join(b"\0" + bytes(value for pixel in row for value in pixel) for row in rows)
+    header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 6, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
+
+
+def write_square(folder, sign):
+    """A MobileNeRF folder of two triangles with 17 x 17 opaque texels: decoders of either sign have nothing in common,
+    and are fitted in no time."""
+    folder.mkdir()
+    unit = lambda rows, columns, value=1: [[value if j == k else 0 for k in range(columns)] for j in range(rows)]
+    (folder / "mlp.json").write_text(json.dumps({
+        "0_weights": unit(11, 16), "1_weights": unit(16, 16), "2_weights": unit(16, 3, sign),
+        "0_bias": [0] * 16, "1_bias": [0] * 16, "2_bias": [0] * 3, "obj_num": 1}))
+    texels = [[(100, 150, 200, 200) if x < 17 and y < 17 else (0, 0, 0, 128) for x in range(64)] for y in range(64)]
+    for k in range(2):
+        write_png(folder / f"shape0.pngfeat{k}.png", texels)
+    low, high = 0.0078125, 0.2578125
+    (folder / "shape0.obj").write_text(
+        "v -1 1 0\nv -1 -1 0\nv 1 1 0\nv 1 -1 0\n"
+        f"vt {low} {1 - low}\nvt {low} {1 - high}\nvt {high} {1 - low}\nvt {high} {1 - high}\n"
+        "f 1/1 2/2 4/4\nf 1/1 4/4 3/3\n")
+    return folder
 
 
 class WindowCase(unittest.TestCase):

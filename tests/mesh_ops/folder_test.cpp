@@ -1,11 +1,6 @@
-// Folders of every layout: what is read is what is written, unedited folders byte for byte, and bad ones are refused by
-// name.
+// Folders of every layout: what is read is what was written, unedited folders byte for byte.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
-
-#include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
@@ -15,10 +10,8 @@
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/feature_png.h"
 #include "mesh_ops/formats/formats.h"
-#include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "tests/support/made_scenes.h"
-#include "tests/support/picture_files.h"
 #include "tests/support/thorough.h"
 
 namespace rebake::test {
@@ -322,229 +315,6 @@ TEST(Folder, ChunksWithoutTrianglesHoldAPlaceholderThatReadingDrops) {
   }
 }
 
-std::string png_of(int width, int height, int channels, const std::string& type) {
-  const fs::path path = fs::temp_directory_path() / ("rebake-png-" + std::to_string(getpid()) + ".png");
-  write_picture(path, {width, height, channels, type},
-                std::vector<float>(static_cast<std::size_t>(width * height * channels)));
-  const std::string bytes = read_file(path);
-  fs::remove(path);
-  return bytes;
-}
-
-class BadFolder : public ::testing::Test {
- protected:
-  BadFolder() { export_scene(scene_of(made_object()), folder(), {}); }
-  fs::path folder() const { return temporary_.path() / "bad"; }
-  void expect_refused(const std::string& says) const {
-    try {
-      read_any(folder(), Axes::y_up);
-      FAIL() << "was accepted";
-    } catch (const FileError& error) {
-      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
-    }
-  }
-  void replace_mlp(const std::string& from, const std::string& to) const {
-    std::string text = read_file(folder() / "mlp.json");
-    const std::size_t at = text.find(from);
-    ASSERT_NE(at, std::string::npos);
-    write_text(folder() / "mlp.json", text.replace(at, from.size(), to));
-  }
-
- private:
-  TemporaryFolder temporary_;
-};
-
-TEST_F(BadFolder, MissingFiles) {
-  fs::remove(folder() / "shape0.pngfeat1.png");
-  expect_refused("shape0.pngfeat1.png: does not exist");
-  fs::remove(folder() / "mlp.json");
-  expect_refused("holds neither mlp.json");
-  fs::remove_all(folder());
-  expect_refused("does not exist");
-}
-// Whatever obj_num says, all that lies there is read, and what was assumed is said.
-TEST_F(BadFolder, ObjNumAndFilesDisagree) {
-  for (const char* count : {"3", "7"}) {
-    replace_mlp("\"obj_num\":1", std::string("\"obj_num\":") + count);
-    const Scene scene = read_any(folder(), Axes::y_up);
-    EXPECT_EQ(scene.roots[0]->object->sets.size(), 1U);
-    ASSERT_EQ(assumptions_of(scene).size(), 1U);
-    EXPECT_NE(assumptions_of(scene)[0].find(std::string("obj_num = ") + count), std::string::npos);
-    replace_mlp(std::string("\"obj_num\":") + count, "\"obj_num\":1");
-  }
-  for (const char* name : {".obj", ".pngfeat0.png", ".pngfeat1.png"})
-    fs::copy(folder() / (std::string("shape0") + name), folder() / (std::string("shape1") + name));
-  const Scene two = read_any(folder(), Axes::y_up);
-  EXPECT_EQ(two.roots[0]->object->sets.size(), 2U) << "the second was once lost on export";
-  EXPECT_EQ(assumptions_of(two).size(), 1U);
-  const TemporaryFolder out;
-  export_scene(two, out.path() / "out", {});
-  EXPECT_EQ(read_mlp_json(read_file(out.path() / "out" / "mlp.json"), "mlp.json").obj_num, 2);
-  EXPECT_TRUE(assumptions_of(read_any(out.path() / "out", Axes::y_up)).empty());
-  fs::rename(folder() / "shape1.obj", folder() / "shape2.obj");
-  EXPECT_EQ(read_any(folder(), Axes::y_up).roots[0]->object->sets.size(), 1U) << "a leftover";
-  replace_mlp("\"obj_num\":1", "\"obj_num\":2");
-  expect_refused("shape1.obj: does not exist, but files of shape2 do");
-}
-TEST_F(BadFolder, WholeMeshBesideChunks) {
-  const std::string whole = read_file(folder() / "shape0.obj");
-  const std::size_t triangles = read_any(folder(), Axes::y_up).roots[0]->object->triangle_count();
-  write_text(folder() / "shape0_0.obj", whole);
-  const Scene same = read_any(folder(), Axes::y_up);
-  EXPECT_EQ(same.roots[0]->object->triangle_count(), triangles);
-  ASSERT_EQ(assumptions_of(same).size(), 1U);
-  EXPECT_NE(assumptions_of(same)[0].find("taken for the same"), std::string::npos);
-  write_text(folder() / "shape0_1.obj", whole);
-  const Scene more = read_any(folder(), Axes::y_up);
-  EXPECT_EQ(more.roots[0]->object->triangle_count(), 3 * triangles);
-  EXPECT_NE(assumptions_of(more)[0].find("all are read"), std::string::npos);
-  const TemporaryFolder out;
-  export_scene(more, out.path() / "out", {});
-  EXPECT_EQ(read_any(out.path() / "out", Axes::y_up).roots[0]->object->triangle_count(), 3 * triangles);
-}
-TEST_F(BadFolder, ObjNumOfTheWrongKind) {
-  replace_mlp("\"obj_num\":1", "\"obj_num\":-1");
-  expect_refused("\"obj_num\" must be a whole number");
-}
-TEST_F(BadFolder, MissingKey) {
-  replace_mlp("1_bias", "1_bais");
-  expect_refused("mlp.json: \"1_bias\" is missing");
-}
-TEST_F(BadFolder, NanInTheDecoder) {
-  replace_mlp("\"2_bias\":[", "\"2_bias\":[NaN,");
-  expect_refused("mlp.json: \"2_bias\"[0] is NaN, which is not a number");
-}
-TEST_F(BadFolder, WrongSizeOfALayer) {
-  replace_mlp("\"1_weights\":[[", "\"1_weights\":[[0.5,");
-  expect_refused("\"1_weights\" is 16 rows of unequal lengths (row 1 differs from row 0), expected 16×16");
-}
-TEST_F(BadFolder, TransposedAndFurtherLayers) {
-  const std::string good = read_file(folder() / "mlp.json");
-  const MlpFile file = read_mlp_json(good, "mlp.json");
-  nlohmann::json mlp = nlohmann::json::parse(good);
-  nlohmann::json rows = nlohmann::json::array();
-  for (Eigen::Index c = 0; c < file.decoder.weights0.cols(); ++c) {
-    rows.push_back(nlohmann::json::array());
-    for (Eigen::Index r = 0; r < file.decoder.weights0.rows(); ++r) rows.back().push_back(file.decoder.weights0(r, c));
-  }
-  mlp["0_weights"] = rows;
-  write_text(folder() / "mlp.json", mlp.dump());
-  expect_refused("\"0_weights\" is 16×11, expected 11×16 (inputs × outputs). Transpose it");
-  write_text(folder() / "mlp.json", good);
-  replace_mlp("\"2_weights\":[[", "\"3_bias\":[0],\"2_weights\":[[");
-  expect_refused("\"3_bias\" belongs to a further layer");
-}
-TEST_F(BadFolder, NumbersThatJsonDoesNotHave) {
-  for (const char* word : {"NaN", "Infinity", "-Infinity"}) {
-    const std::string text = read_file(folder() / "mlp.json");
-    replace_mlp("\"1_weights\":[[", std::string("\"1_weights\":[[") + word + ",");
-    expect_refused(std::string("\"1_weights\"[0][0] is ") + word);
-    write_text(folder() / "mlp.json", text);
-  }
-  replace_mlp("\"1_weights\":[[", "\"1_weights\":[[1e999,");
-  expect_refused("mlp.json: cannot be read");
-}
-TEST_F(BadFolder, ObjNumMayBeSpeltOtherwise) {
-  for (const char* count : {"1.0", "\"1\""}) {
-    replace_mlp("\"obj_num\":1", std::string("\"obj_num\":") + count);
-    EXPECT_NO_THROW(read_any(folder(), Axes::y_up)) << count;
-    replace_mlp(std::string("\"obj_num\":") + count, "\"obj_num\":1");
-  }
-}
-TEST_F(BadFolder, UnknownMembersOfMlpJsonKeepTheirSpelling) {
-  const std::string members = R"("trained": {"psnr": 31.50, "by": "a \"b\""},"scale": 1e-03,"obj_num")";
-  replace_mlp("\"obj_num\"", members);
-  Scene scene = read_any(folder(), Axes::y_up);
-  scene = with_changed(scene, scene.roots[0]->id, [](Node& node) {
-    auto object = std::make_shared<BakedObject>(*node.object);
-    Decoder decoder = *object->decoder;
-    decoder.bias2[0] += 1;
-    object->decoder = std::make_shared<const Decoder>(decoder);
-    node.object = object;
-  });
-  const TemporaryFolder out;
-  export_scene(scene, out.path() / "out", {});
-  const std::string written = read_file(out.path() / "out" / "mlp.json");
-  EXPECT_NE(written.find(R"({"psnr": 31.50, "by": "a \"b\""})"), std::string::npos) << written.substr(0, 300);
-  EXPECT_NE(written.find("\"scale\":1e-03"), std::string::npos);
-  EXPECT_NO_THROW(read_any(out.path() / "out", Axes::y_up));
-}
-TEST_F(BadFolder, NoTriangles) {
-  write_text(folder() / "shape0.obj", "v 0 0 0\nvt 0 0\n");
-  expect_refused("has no triangles");
-}
-TEST_F(BadFolder, GapInTheChunks) {
-  const std::string text = read_file(folder() / "shape0.obj");
-  fs::remove(folder() / "shape0.obj");
-  for (const char* name : {"shape0_0.obj", "shape0_2.obj"}) write_text(folder() / name, text);
-  expect_refused("shape0_1.obj: does not exist, but shape0_2.obj does");
-}
-TEST_F(BadFolder, Images) {
-  const fs::path png = folder() / "shape0.pngfeat1.png";
-  const std::string good = read_file(png);
-  write_text(png, "");
-  expect_refused("is empty (0 bytes)");
-  write_text(png, "GIF89a");
-  expect_refused("is not a PNG");
-  write_text(png, good.substr(0, good.size() / 2));
-  expect_refused("shape0.pngfeat1.png: is truncated");
-  write_text(png, png_of(16, 16, 4, "uint8"));
-  expect_refused("both images of a set must be of one size");
-  write_text(png, png_of(16, 16, 3, "uint8"));
-  expect_refused("has 3 channels");
-  write_text(png, png_of(16, 16, 4, "uint16"));
-  expect_refused("is not 8 bits");
-  std::string huge = good;
-  huge[16] = huge[17] = 0x7f;  // the width in the header
-  write_text(png, huge);
-  expect_refused("shape0.pngfeat1.png: ");
-}
-
-TEST(Export, RefusesFoldersWithOtherFilesAndLeavesThemAlone) {
-  const TemporaryFolder temporary;
-  write_text(temporary.path() / "thesis.tex", "precious");
-  EXPECT_THROW(export_scene(scene_of(made_object()), temporary.path(), {}), FileError);
-  EXPECT_EQ(folder_bytes(temporary.path()), (std::map<std::string, std::string>{{"thesis.tex", "precious"}}));
-}
-
-TEST(Export, RefusesAFolderOfOtherScenes) {
-  const TemporaryFolder temporary;
-  for (const char* name : {"a", "b"}) export_scene(scene_of(made_object()), temporary.path() / "library" / name, {});
-  const auto before = folder_bytes(temporary.path());
-  EXPECT_THROW(export_scene(scene_of(made_object()), temporary.path() / "library", {}), FileError);
-  EXPECT_EQ(folder_bytes(temporary.path()), before);
-}
-
-TEST(Export, FollowsLinksAndReplacesItsOwnScene) {
-  const TemporaryFolder temporary;
-  Scene two = scene_of(made_object({.seed = 1}));
-  Node other;
-  other.object = made_object({.seed = 2});
-  two = with_added(two, other, NodeId::none, 9);
-  EXPECT_FALSE(export_scene(two, temporary.path() / "real", {}).one_folder);
-  fs::create_directory_symlink(temporary.path() / "real", temporary.path() / "link");
-  EXPECT_TRUE(export_scene(scene_of(made_object()), temporary.path() / "link", {}).one_folder);
-  EXPECT_TRUE(fs::is_symlink(temporary.path() / "link"));
-  EXPECT_FALSE(fs::exists(temporary.path() / "real/scene.json"));
-}
-
-TEST(Export, HiddenNodesAreLeftOutAndEqualTurnsShareAFolder) {
-  const TemporaryFolder temporary;
-  Scene scene = scene_of(made_object());
-  Node other;
-  other.object = scene.roots[0]->object;
-  scene = with_added(scene, other, NodeId::none, 9);
-  const Eigen::AngleAxisd turn(0.5, Vec3(1, 2, 3).normalized());
-  scene = with_changed(scene, scene.roots[0]->id, [&](Node& n) { n.to_parent = turn; });
-  scene = with_changed(scene, scene.roots[1]->id, [&](Node& n) { n.to_parent = Affine(turn * Eigen::Scaling(2.0)); });
-  EXPECT_TRUE(export_scene(scene, temporary.path() / "both", {}).one_folder);
-  scene = with_changed(scene, scene.roots[1]->id, [&](Node& n) { n.visible = false; });
-  const ExportReport report = export_scene(scene, temporary.path() / "one", {});
-  EXPECT_TRUE(report.one_folder);
-  EXPECT_NE(report.notes.front().find("hidden"), std::string::npos);
-  EXPECT_EQ(read_any(temporary.path() / "one", Axes::y_up).roots[0]->object->triangle_count(), 256U);
-}
-
 TEST(Folder, TurnsOfAFewChunkedTrianglesSurvive) {
   const TemporaryFolder temporary;
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 3, .rows = 1, .layout = Layout::chunked}));
@@ -556,44 +326,6 @@ TEST(Folder, TurnsOfAFewChunkedTrianglesSurvive) {
   ASSERT_NE(b.rotations(), nullptr);
   for (std::size_t f = 0; f < b.faces().size(); ++f)
     EXPECT_EQ((*b.rotations())[b.faces()[f][0]], (*a.rotations())[a.faces()[f % 6][0]]) << f;
-}
-
-TEST(Export, ChangedDrawingOrderIsSaid) {
-  const auto notes_of = [](std::initializer_list<unsigned> seeds) {
-    Scene scene;
-    for (const unsigned seed : seeds) {
-      Node node;
-      node.object = made_object({.columns = 4, .rows = 2, .seed = seed});
-      scene = with_added(scene, node, NodeId::none, 99);
-    }
-    const TemporaryFolder out;
-    std::string all;
-    for (const std::string& note : export_scene(scene, out.path() / "out", {}).notes) all += note;
-    return all;
-  };
-  EXPECT_NE(notes_of({1, 2, 1}).find("drawn together"), std::string::npos);
-  EXPECT_EQ(notes_of({1, 1, 2}).find("drawn together"), std::string::npos);
-}
-
-TEST(Export, OntoItsOwnSourceIsSafe) {
-  const TemporaryFolder temporary;
-  export_scene(scene_of(made_object()), temporary.path() / "a", {});
-  const auto before = folder_bytes(temporary.path() / "a");
-  export_scene(read_any(temporary.path() / "a", Axes::y_up), temporary.path() / "a", {});
-  EXPECT_EQ(folder_bytes(temporary.path() / "a"), before);
-}
-
-TEST(Export, FailingLeavesWhatWasThere) {
-  const TemporaryFolder temporary;
-  export_scene(scene_of(made_object()), temporary.path() / "a", {});
-  const auto before = folder_bytes(temporary.path() / "a");
-  Scene broken = scene_of(made_object({.seed = 2}));
-  auto object = std::make_shared<BakedObject>(*broken.roots[0]->object);
-  object->sets[0].soup = Soup();  // nothing to write
-  broken = with_changed(broken, broken.roots[0]->id, [&](Node& n) { n.object = object; });
-  EXPECT_THROW(export_scene(broken, temporary.path() / "a", {}), Error);
-  EXPECT_EQ(folder_bytes(temporary.path() / "a"), before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(temporary.path()), {}), 1);
 }
 
 TEST(Pack, TwoTexturesBecomeOne) {

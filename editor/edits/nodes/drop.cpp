@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <limits>
 #include <set>
+#include <stdexcept>
 
 #include "editor/edits/describe.h"
 #include "editor/edits/nodes/transform.h"
@@ -15,7 +17,9 @@ namespace rebake {
 
 namespace {
 
-// The node and all below it.
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+// The node and all below it in the outline.
 std::set<NodeId> subtree(const Scene& scene, NodeId id) {
   std::set<NodeId> ids = {id};
   for (const PlacedNode& placed : placed_nodes(scene))
@@ -24,70 +28,163 @@ std::set<NodeId> subtree(const Scene& scene, NodeId id) {
   return ids;
 }
 
-// World corners of triangles that show something.
-std::vector<Vec3> shown_corners(const PlacedNode& placed) {
-  std::vector<Vec3> corners;
-  for (const TextureSet& set : placed.node->object->sets) {
-    const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
-    std::vector<std::uint8_t> taken(set.soup.positions().size(), 0);
-    for (std::size_t f = 0; f < shows.size(); ++f) {
-      if (shows[f] == 0) continue;
-      for (const std::uint32_t vertex : set.soup.faces()[f]) {
-        if (std::exchange(taken[vertex], std::uint8_t{1}) != 0) continue;
-        const Vec3 corner = placed.to_world * set.soup.positions()[vertex];
-        if (corner.allFinite()) corners.push_back(corner);
+// Placed objects in world space: their triangles with an opaque texel, and rays through them.
+struct Body {
+  std::vector<PlacedNode> nodes;
+  SceneRays rays;
+  std::vector<std::array<Vec3, 3>> triangles;
+  Box box;  ///< of the triangles, in the ground's frame
+
+  Body(std::vector<PlacedNode> of, const Mat3& to_ground) : nodes(std::move(of)), rays(rays_through(nodes)) {
+    for (const PlacedNode& placed : nodes)
+      for (const TextureSet& set : placed.node->object->sets) {
+        const std::vector<std::uint8_t> visible = faces_with_opaque_texels(set);
+        for (std::size_t f = 0; f < visible.size(); ++f) {
+          if (visible[f] == 0) continue;
+          std::array<Vec3, 3> corners;
+          for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = placed.to_world * set.soup.positions()[set.soup.faces()[f][k]];
+          if (!corners[0].allFinite() || !corners[1].allFinite() || !corners[2].allFinite()) continue;
+          triangles.push_back(corners);
+          for (const Vec3& corner : corners) box.extend(Vec3(to_ground * corner));
+        }
+      }
+  }
+};
+
+class Fall {
+ public:
+  Fall(Body body, Body others, const Ground& ground, const Progress& progress)
+      : body_(std::move(body)),
+        others_(std::move(others)),
+        ground_(ground),
+        to_ground_(ground_frame(ground).transpose()),
+        // Bodies that touch do so within the rounding of the rays' floats.
+        slack_(1e-5 * body_.box.diagonal().norm()),
+        progress_(progress) {}
+
+  // The motion along the normal that makes the body stand, negative where it falls; infinite if nothing is below.
+  double run() {
+    lift_ = std::max(0.0, ground_.height - body_.box.min().y());
+    bool out = false;
+    for (int round = 0; round < most_rounds && !out; ++round) {
+      progress_.at("lifting out", static_cast<double>(round) / most_rounds);
+      const double more = std::max(penetration(body_, others_, 1), penetration(others_, body_, -1));
+      out = more == 0;
+      lift_ += more;
+    }
+    // Above everything, in any case.
+    if (!out) lift_ = others_.box.max().y() - body_.box.min().y();
+    progress_.at("falling", 0);
+    return lift_ - free_fall();
+  }
+
+ private:
+  static constexpr int most_rounds = 64;
+
+  // Height by which the moving body must rise so that no edge of `edges` that crosses `faces` now still does; 0 if none
+  // does. `sign`: 1 if the edges are the moving body's, -1 if the faces are.
+  double penetration(const Body& edges, const Body& faces, double sign) const {
+    const Vec3 offset = sign * (lift_ + slack_) * ground_.normal;
+    double rise = 0;
+    for (const std::array<Vec3, 3>& triangle : edges.triangles) {
+      Box box;
+      for (const Vec3& corner : triangle) box.extend(Vec3(to_ground_ * (corner + offset)));
+      if (!faces.box.intersects(box)) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 from = triangle[k] + offset, way = triangle[(k + 1) % 3] - triangle[k];
+        const auto hit = faces.rays.nearest(from, way, 0, 1);
+        if (!hit) continue;
+        const auto corners = corners_of(faces.nodes[hit->instance], hit->triangle);
+        double low = infinite, high = -infinite;
+        for (const Vec3& corner : corners) {
+          low = std::min(low, ground_.above(corner));
+          high = std::max(high, ground_.above(corner));
+        }
+        const double here = ground_.above(from), there = ground_.above(from + way);
+        const double needed = sign > 0 ? high - std::min(here, there) : std::max(here, there) - low;
+        rise = std::max(rise, std::max(needed, slack_));
       }
     }
+    return rise;
   }
-  return corners;
-}
+
+  static std::array<Vec3, 3> corners_of(const PlacedNode& placed, std::uint32_t triangle) {
+    std::array<Vec3, 3> corners;
+    for (const TextureSet& set : placed.node->object->sets) {
+      const std::size_t count = set.soup.triangle_count();
+      if (triangle < count) {
+        for (std::size_t k = 0; k < 3; ++k)
+          corners[k] = placed.to_world * set.soup.positions()[set.soup.faces()[triangle][k]];
+        return corners;
+      }
+      triangle -= static_cast<std::uint32_t>(count);
+    }
+    throw std::logic_error("a ray hit a triangle that the object does not have");
+  }
+
+  // How far the lifted body falls.
+  double free_fall() const {
+    const Vec3 up = ground_.normal, offset = lift_ * up;
+    double way = body_.box.min().y() + lift_ - ground_.height;
+    const auto stop = [&](double distance) { way = std::min(way, std::max(0.0, distance)); };
+    // The body's corners meet surfaces below them; corners below meet the body's surfaces.
+    for (const std::array<Vec3, 3>& triangle : body_.triangles)
+      for (const Vec3& corner : triangle)
+        if (const auto hit = others_.rays.nearest(corner + offset, -up, -slack_, infinite)) stop(hit->t);
+    for (const std::array<Vec3, 3>& triangle : others_.triangles)
+      for (const Vec3& corner : triangle) {
+        const Vec3 p = to_ground_ * corner;
+        if (p.x() < body_.box.min().x() || p.x() > body_.box.max().x() || p.z() < body_.box.min().z() ||
+            p.z() > body_.box.max().z() || p.y() > body_.box.max().y() + lift_)
+          continue;
+        if (const auto hit = body_.rays.nearest(corner - offset, up, -slack_, infinite)) stop(hit->t);
+      }
+    return way;
+  }
+
+  Body body_, others_;
+  Ground ground_;
+  Mat3 to_ground_;
+  double slack_;
+  const Progress& progress_;
+  double lift_ = 0;
+};
 
 }  // namespace
 
-Outcome apply(const Scene& scene, const Drop& edit) {
+Outcome apply(const Scene& scene, const Drop& edit, const Progress& progress) {
   editable_with_children(scene, edit.node.id);
+  const Ground ground = edit.ground ? Ground{Vec3::UnitY(), *edit.ground} : scene.ground;
   const std::set<NodeId> own = subtree(scene, edit.node.id);
   std::vector<PlacedNode> falling, others;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.visible && placed.node->object) (own.contains(placed.node->id) ? falling : others).push_back(placed);
-  if (falling.empty()) throw EditError("the node holds nothing that is visible, so nothing can fall");
-  const double far = std::numeric_limits<double>::infinity();
-  double way = far;
-  const auto stop = [&](double distance) { way = std::min(way, std::max(0.0, distance)); };
-  // What stands on something already touches it within rounding, of the rays' floats too.
-  Box whole;
-  for (const PlacedNode& placed : falling) whole.extend(transformed(placed.node->object->bounds(), placed.to_world));
-  const double slack = 1e-5 * whole.diagonal().norm();
-  // Corners of what falls meet surfaces below them; corners below meet surfaces that fall.
-  const SceneRays below = rays_through(others);
-  Box box;
-  for (const PlacedNode& placed : falling)
-    for (const Vec3& corner : shown_corners(placed)) {
-      box.extend(corner);
-      if (const auto hit = below.nearest(corner, Vec3(0, -1, 0), -slack, far)) stop(hit->t);
-    }
-  // What is in the ground already stays there; what is below it falls on.
-  if (!box.isEmpty() && box.max().y() >= edit.ground) stop(box.min().y() - edit.ground);
-  if (box.isEmpty()) throw EditError("the node shows nothing, so nothing can fall");
-  const SceneRays body = rays_through(falling);
-  for (const PlacedNode& placed : others)
-    for (const Vec3& corner : shown_corners(placed))
-      if (corner.x() >= box.min().x() && corner.x() <= box.max().x() && corner.z() >= box.min().z() &&
-          corner.z() <= box.max().z() && corner.y() <= box.max().y())
-        if (const auto hit = body.nearest(corner, Vec3(0, 1, 0), -slack, far)) stop(hit->t);
-  if (way == far) throw EditError("it lies below the ground, and nothing is below it");
+  const Mat3 to_ground = ground_frame(ground).transpose();
+  Body body(falling, to_ground);
+  if (body.triangles.empty()) throw EditError("the node holds nothing that is visible, so nothing can fall");
+  const double size = body.box.diagonal().norm();
+  const double rise = Fall(std::move(body), Body(others, to_ground), ground, progress).run();
+  const std::string name = find(scene, edit.node.id)->name;
+  // Rays are as exact as floats: what moves by less stands already.
+  if (std::abs(rise) <= 1e-6 * size)
+    return {scene, {{fmt::format("\"{}\" stands on a surface or on the ground already; nothing moved", name)}}};
   Transform move;
   move.node = edit.node;
-  move.translate = Vec3(0, -way, 0);
-  const std::string name = find(scene, edit.node.id)->name;
-  return {way == 0 ? scene : apply(scene, move), {{fmt::format("\"{}\" fell by {:.6g}", name, way)}}};
+  move.translate = rise * ground.normal;
+  return {apply(scene, move),
+          {{fmt::format("\"{}\" {} by {:.6g}", name, rise < 0 ? "fell" : "was lifted out", std::abs(rise))}}};
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Drop, "Lets a node fall along the world's -y until it stands on what is visible below it, or on the ground.",
+    Drop,
+    "Lets a node fall onto what is visible below it, or onto the scene's ground plane. A node that intersects "
+    "something "
+    "is lifted out of it first.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::required, "node that falls, with those inside it");
-      visit("ground", edit.ground, Need::optional, "height of the ground", Unit::length);
+      visit("ground", edit.ground, Need::optional, "height of a level ground to use in place of the scene's",
+            Unit::length);
     })
 
 }  // namespace rebake

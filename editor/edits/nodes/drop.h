@@ -4,15 +4,16 @@
 
 namespace rebake {
 
-/// Lets a node fall along the world's −y until it stands on what is visible below, or on the ground.
+/// Moves a node against the ground's normal until it stands on a visible surface or on the ground plane. A node that
+/// intersects a surface or the ground is lifted out first.
 struct Drop {
   static constexpr const char* op = "drop";
   NodeRef node;
-  double ground = 0;
+  std::optional<double> ground;
 };
 template <>
 const EditType& edit_type<Drop>();
 
-Outcome apply(const Scene& scene, const Drop& edit);
+Outcome apply(const Scene& scene, const Drop& edit, const Progress& progress = {});
 
 }  // namespace rebake

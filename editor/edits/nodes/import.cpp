@@ -31,6 +31,10 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
   }
   Scene result = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
   for (const auto& [name, camera] : read.views) result.views.try_emplace(name, camera);
+  if (scene.roots.empty() && read.ground != Ground{})
+    result.ground = read.ground;
+  else if (const Box box = world_bounds(result); edit.ground && !box.isEmpty())
+    result.ground = {Vec3::UnitY(), box.min().y()};
   Report report;
   for (const std::string& assumption : assumptions_of(read))
     report.lines.push_back(fmt::format("warning: {}: {}", edit.path, assumption));
@@ -42,6 +46,7 @@ REBAKE_DESCRIBE_EDIT(
       visit("path", edit.path, Need::required, "folder to read");
       visit("as", edit.as, Need::optional, "name of the new node; empty: the folder's name");
       visit("axes", edit.axes, Need::optional, "which way a MobileNeRF folder is oriented; scenes say so themselves");
+      visit("ground", edit.ground, Need::optional, "whether the scene's ground moves to its lowest point");
       visit("content", edit.content, Need::optional,
             "hash of the folder's files as projects and journals record it: anything else there is refused");
     })

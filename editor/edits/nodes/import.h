@@ -11,6 +11,7 @@ struct Import {
   std::string as;
   Axes axes = Axes::y_up;
   std::string content;
+  bool ground = false;  ///< sets the scene's ground to the foot of what is imported
 };
 template <>
 const EditType& edit_type<Import>();

@@ -94,6 +94,7 @@ Scene apply(const Scene& scene, const LightEdit& edit) {
   light->source = static_cast<SceneLight::Source>(word - source_words.begin());
   light->picture = picture_of(edit, scene);
   light->picture_turn = edit.picture_degrees * std::numbers::pi / 180;
+  light->up = scene.ground.normal;
   result.light = std::move(light);
   return result;
 }

@@ -56,36 +56,79 @@ void say(const std::string& text) {
 
 }  // namespace
 
-void Dialogs::draw_recovery(Project& project) {
-  if (!begin_question("Work was not saved")) return;
-  const announce::Part part("dialog");
-  say("The editor ended without saving. This work can be got back:");
-  bool done = false, first = true;
-  for (const Project::LostWork& lost : project.recoverable) {
-    ImGui::PushID(lost.journal.c_str());
-    const bool pressed = first ? ui::primary_button("Recover") : ui::button("Recover");
-    first = false;
-    if (pressed) {
-      project.recover(lost.journal);
-      done = true;
-    }
-    ImGui::SameLine();
-    ImGui::TextUnformatted(lost.what.c_str());
-    ImGui::PopID();
+// One line per journal: thumbnail, sources, steps and time, and what can be done with it.
+void Dialogs::draw_lost(Project& project, Thumbnails& thumbnails, const LostWork& work, bool first) {
+  ImGui::PushID(work.journal.c_str());
+  const ImVec2 size{px(96), px(60)};
+  const unsigned picture = thumbnails.of_picture(thumbnail_file(work.journal));
+  if (picture != 0) {
+    ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture)), size);
+    announce::item("thumbnail");
+  } else {
+    ImGui::Dummy(size);
   }
-  ImGui::Dummy({0, px(6)});
-  if (ui::button("Later")) done = true;
-  ui::tip("Later", "", "It is asked again when the editor starts.");
   ImGui::SameLine();
-  if (ui::button("Delete all of it")) {
-    for (const Project::LostWork& lost : project.recoverable) {
-      std::error_code ignored;
-      fs::remove(lost.journal, ignored);
+  ImGui::BeginGroup();
+  ImGui::TextUnformatted(ui::shortened(work.sources, px(400)).c_str());
+  announce::item("sources: " + work.sources);
+  ImGui::TextDisabled("%s", work.words().c_str());
+  announce::item("words: " + work.words());
+  if (first ? ui::primary_button("Recover") : ui::button("Recover")) chosen_ = work;
+  if (!work.discarded) {
+    ImGui::SameLine();
+    if (ui::button("Discard...")) discarding_ = work;
+    ui::tip("Discard", "", "Moves it to the trash, after a question.");
+  }
+  ImGui::EndGroup();
+  ImGui::PopID();
+  if (!chosen_ || chosen_->journal != work.journal) return;
+  try {
+    project.recover(work.discarded ? restore(work) : work.journal);
+  } catch (const fs::filesystem_error& error) {
+    project.say_failed(error.path1().string() + ": " + error.code().message());
+  }
+}
+
+void Dialogs::draw_recovery(Project& project, Thumbnails& thumbnails) {
+  const bool discarded = project.recoverable.front().discarded;
+  if (!begin_question(discarded ? "Discarded work" : "Work was not saved")) return;
+  const announce::Part part("dialog");
+  say(discarded ? fmt::format("Discarded work stays here for {} days.", trash_days)
+                : std::string("An editor ended without saving. Choose what to recover:"));
+  ImGui::BeginChild("list", {px(540), std::min(px(420), px(100) * static_cast<float>(project.recoverable.size()))});
+  for (std::size_t k = 0; k < project.recoverable.size() && !chosen_; ++k)
+    draw_lost(project, thumbnails, project.recoverable[k], k == 0);
+  ImGui::EndChild();
+  ImGui::Dummy({0, px(6)});
+  const bool later = ui::button(discarded ? "Close" : "Later");
+  if (!discarded) ui::tip("Later", "", "The editor asks again when it starts.");
+  if (std::exchange(chosen_, std::nullopt) || later) {
+    project.recoverable.clear();
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void Dialogs::draw_discarding(Project& project) {
+  if (!begin_question("Discard this work?")) return;
+  const announce::Part part("dialog");
+  say(fmt::format("{}: {}. It stays in the trash for {} days (File, Discarded work).", discarding_->sources,
+                  discarding_->words(), trash_days));
+  bool done = false;
+  answers_right(2);
+  if (ui::button("Discard", answer_size())) {
+    try {
+      discard(*discarding_);
+      std::erase_if(project.recoverable, [&](const LostWork& one) { return one.journal == discarding_->journal; });
+    } catch (const fs::filesystem_error& error) {
+      project.say_failed("The work was not discarded. " + error.path1().string() + ": " + error.code().message());
     }
     done = true;
   }
+  ImGui::SameLine();
+  if (ui::primary_button("Cancel", answer_size())) done = true;
   if (done) {
-    project.recoverable.clear();
+    discarding_.reset();
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
@@ -195,6 +238,8 @@ bool Dialogs::escape(Desk& desk) {
     desk.project.to_open.clear();
   else if (desk.project.relinking)
     desk.project.relinking.reset();
+  else if (discarding_)
+    discarding_.reset();
   else if (!desk.project.recoverable.empty())
     desk.project.recoverable.clear();
   else if (files_.leaves_comparing(desk))
@@ -217,8 +262,10 @@ void Dialogs::draw(Desk& desk, Thumbnails& thumbnails) {
     draw_replacing(desk);
   else if (desk.project.relinking)
     draw_relinking(desk.project);
+  else if (discarding_)
+    draw_discarding(desk.project);
   else if (!desk.project.recoverable.empty())
-    draw_recovery(desk.project);
+    draw_recovery(desk.project, thumbnails);
   else
     files_.draw(desk, thumbnails);
 }

@@ -18,11 +18,15 @@ class Dialogs {
   bool may_quit() const { return may_quit_; }
 
  private:
-  void draw_recovery(Project& project);
+  void draw_recovery(Project& project, Thumbnails& thumbnails);
+  void draw_lost(Project& project, Thumbnails& thumbnails, const LostWork& work, bool first);
+  void draw_discarding(Project& project);
   void draw_quitting(Desk& desk);
   void draw_replacing(Desk& desk);
   void draw_relinking(Project& project);
   FileDialog files_;
+  std::optional<LostWork> chosen_;      ///< to be recovered
+  std::optional<LostWork> discarding_;  ///< the work that a question asks about
   bool may_quit_ = false, closes_ = false;
 };
 

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -7,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/edits/nodes/import.h"
+#include "editor/edits/shape/separate.h"
+#include "editor/edits/support.h"
 #include "editor/fields/field_line.h"
 #include "editor/gui/panels/panels.h"
 #include "editor/gui/tools/expression.h"
@@ -25,6 +28,24 @@ const EditType* type_named(const std::string& op) {
   return nullptr;
 }
 
+bool needs_selection(const std::string& op) {
+  for (const char* one : {Grow::op, Shrink::op, SelectConnected::op, DeleteSelected::op, Separate::op})
+    if (op == one) return true;
+  return false;
+}
+
+const FieldLine* field_named(const std::vector<FieldLine>& fields, const char* name) {
+  const auto found = std::find_if(fields.begin(), fields.end(), [&](const FieldLine& one) { return one.name == name; });
+  return found == fields.end() ? nullptr : &*found;
+}
+
+std::size_t selected_in(const Scene& scene) {
+  std::size_t triangles = 0;
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->selection) triangles += count(*placed.node->selection);
+  return triangles;
+}
+
 }  // namespace
 
 void EditForm::begin(const Desk& desk) {
@@ -34,13 +55,6 @@ void EditForm::begin(const Desk& desk) {
   values_ = json::object();
   texts_.clear();
   for (const FieldLine& field : type_named(op_)->fields()) {
-    // What people have picked is what they mean; with nothing picked or selected, the first object.
-    if (field.name == "node" && desk.selected_triangles() == 0)
-      for (const PlacedNode& placed : placed_nodes(desk.scene()))
-        if (placed.visible && placed.node->object && (desk.active.empty() || desk.active.contains(placed.node->id))) {
-          values_["node"] = static_cast<std::uint64_t>(placed.node->id);
-          break;
-        }
     if (field.type.kind == FieldKind::nodes && field.required) {
       json list = json::array();
       for (const NodeId id : desk.active_tops()) list.push_back(static_cast<std::uint64_t>(id));
@@ -52,26 +66,70 @@ void EditForm::begin(const Desk& desk) {
   }
 }
 
-// Has the worker make what the fields say, to be seen before it is applied; half-typed fields wait.
-void EditForm::show(Desk& desk) {
+// The edits that the fields describe as JSON: one, or one per node of the scope if the form has a node field in which
+// nothing was chosen. Throws EditError if the scope holds nothing for the edit.
+std::vector<json> EditForm::lines(const Desk& desk) const {
   json line = values_;
   line["op"] = op_;
-  const bool same = line.dump() == previewed_ && previewed_on_ == desk.scene().roots;
-  if (same || desk.jobs.worker.busy()) return;
-  previewed_ = line.dump();
-  previewed_on_ = desk.scene().roots;
+  const std::vector<FieldLine> fields = type_named(op_)->fields();
+  const FieldLine* const node = field_named(fields, "node");
+  if (node == nullptr || node->type.kind != FieldKind::node || values_.contains("node")) return {line};
+  const bool deforms = field_named(fields, "selection") != nullptr;
+  const bool selection = needs_selection(op_) || (deforms && values_.value("selection", false));
+  const auto with_node = [&](NodeId id) {
+    json one = line;
+    one["node"] = static_cast<std::uint64_t>(id);
+    return one;
+  };
+  if (desk.active.empty()) {
+    if (!node->required && (!deforms || selection)) return {line};
+    // Nothing is picked, and the edit is for one node: the first visible object.
+    for (const PlacedNode& placed : placed_nodes(desk.scene()))
+      if (placed.visible && placed.node->object) return {with_node(placed.node->id)};
+    throw EditError("the scene has no visible object");
+  }
+  std::vector<json> result;
+  if (node->required && !selection)
+    for (const NodeId id : desk.active_tops()) result.push_back(with_node(id));
+  else
+    for (const std::optional<NodeRef>& one : desk.scope(selection)) result.push_back(with_node(one->id));
+  if (result.empty())
+    throw EditError((selection ? "nothing is selected " : "nothing can be edited ") + desk.scope_words());
+  return result;
+}
+
+// Has the worker make what the fields say, to be seen before it is applied; half-typed fields wait.
+void EditForm::show(Desk& desk) {
+  if (desk.jobs.worker.busy()) return;
   try {
-    const Edit edit = read_edit(line, desk.scene());
+    const std::vector<json> wanted = lines(desk);
+    const std::string text = json(wanted).dump();
+    if (text == previewed_ && previewed_on_ == desk.scene().roots) return;
+    previewed_ = text;
+    previewed_on_ = desk.scene().roots;
+    std::vector<Edit> edits;
+    for (const json& line : wanted) edits.push_back(read_edit(line, desk.scene()));
     // Only what changes the picture: an import would be read twice.
-    if (edit.is<Import>()) return;
-    desk.show_preview({edit});
+    if (edits.front().is<Import>()) return;
+    desk.show_preview(std::move(edits));
     problem_.clear();
   } catch (const Error& error) {
     problem_ = error.what();
   }
 }
 
-void EditForm::draw(Desk& desk) {
+// The number of triangles that a way to select takes, as soon as its preview is there.
+void EditForm::draw_count(const Desk& desk) const {
+  if (!type_named(op_)->selects || !previews_ || !problem_.empty()) return;
+  const bool there = desk.preview && desk.preview->of == desk.scene().roots;
+  std::string text = "Counting...";
+  if (there)
+    text = fmt::format("{} triangles selected (now {})", selected_in(desk.preview->scene), selected_in(desk.scene()));
+  ImGui::TextUnformatted(text.c_str());
+  announce::item("count: " + text);
+}
+
+void EditForm::draw(Desk& desk, float right) {
   if (desk.asking.form.empty()) {
     // What was applied is shown until it is done.
     if (!op_.empty() && desk.at_rest()) desk.drop_preview();
@@ -81,8 +139,8 @@ void EditForm::draw(Desk& desk) {
   if (op_ != desk.asking.form) begin(desk);
   bool open = true;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  // Beside the picture, so that what the edit does can be seen.
-  ImGui::SetNextWindowPos({screen.x - px(10), px(40)}, ImGuiCond_Appearing, {1, 0});
+  // Over the picture's corner: the outline, which chooses the scope, stays free.
+  ImGui::SetNextWindowPos({right - px(10), px(40)}, ImGuiCond_Appearing, {1, 0});
   // As high as what it says, so that no button is cut off.
   ImGui::SetNextWindowSizeConstraints({px(440), 0}, {px(440), screen.y - px(60)});
   std::string title = op_;
@@ -105,8 +163,10 @@ void EditForm::draw(Desk& desk) {
     } else if (field.type.kind == FieldKind::node) {
       const std::uint64_t chosen = values_.value(name, std::uint64_t{0});
       const NodePtr node = find(desk.scene(), static_cast<NodeId>(chosen));
-      if (ImGui::BeginCombo("##value", node ? node->name.c_str() : "")) {
-        if (!field.required && ImGui::Selectable("(none)", chosen == 0)) values_.erase(name);
+      const std::string scope = field.name == "node" ? "Scope: " + desk.scope_words() : "(none)";
+      if (ImGui::BeginCombo("##value", node ? node->name.c_str() : scope.c_str())) {
+        if ((!field.required || field.name == "node") && ImGui::Selectable(scope.c_str(), chosen == 0))
+          values_.erase(name);
         for (const PlacedNode& placed : placed_nodes(desk.scene()))
           if (ImGui::Selectable(placed.node->name.c_str(), placed.node->id == static_cast<NodeId>(chosen)))
             values_[name] = static_cast<std::uint64_t>(placed.node->id);
@@ -150,11 +210,12 @@ void EditForm::draw(Desk& desk) {
   });
   if (!problem_.empty() && !said) ui::wrapped(problem_, theme().danger);
   if (previews_) show(desk);
+  draw_count(desk);
   if (ui::primary_button("Apply")) {
     try {
-      json line = values_;
-      line["op"] = op_;
-      desk.edit(read_edit(line, desk.scene()));
+      std::vector<Edit> edits;
+      for (const json& line : lines(desk)) edits.push_back(read_edit(line, desk.scene()));
+      desk.edits(edits);
       problem_.clear();
       open = false;
     } catch (const Error& error) {

@@ -221,7 +221,8 @@ void OutlinePanel::draw(Desk& desk) {
     desk.edit(reorder);
   }
   ImGui::EndTable();
-  ImGui::TextDisabled("%s", fmt::format("{} triangles, {} selected", triangles, desk.selected_triangles()).c_str());
+  const std::string selected = desk.selected_words();
+  ImGui::TextDisabled("%s", fmt::format("{} triangles{}{}", triangles, selected.empty() ? "" : ", ", selected).c_str());
 }
 
 }  // namespace rebake

@@ -146,13 +146,16 @@ class PalettePanel {
 /// The fields of one edit, made from the table of edits.
 class EditForm {
  public:
-  void draw(Desk& desk);
+  /// `right`: where the panels at the right begin, in pixels.
+  void draw(Desk& desk, float right);
 
  private:
   void begin(const Desk& desk);
+  std::vector<nlohmann::json> lines(const Desk& desk) const;
   void show(Desk& desk);
+  void draw_count(const Desk& desk) const;
   bool previews_ = true;
-  std::string previewed_;              ///< the line whose result is shown, or being made
+  std::string previewed_;              ///< the lines whose result is shown, or being made
   std::vector<NodePtr> previewed_on_;  ///< the scene that it was made of
   std::string op_, problem_;
   nlohmann::json values_;

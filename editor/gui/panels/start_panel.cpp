@@ -51,7 +51,7 @@ void entry(Desk& desk, const char* icon, const std::string& path) {
 }  // namespace
 
 void draw_start(Desk& desk, Thumbnails& thumbnails, const ImVec2& middle) {
-  if (!desk.scene().roots.empty() || desk.jobs.worker.busy() || !desk.now->done.empty()) return;
+  if (!desk.scene().roots.empty() || desk.jobs.worker.busy()) return;
   const float width = px(420);
   ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5F, 0.5F});
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, px(520)});
@@ -67,6 +67,7 @@ void draw_start(Desk& desk, Thumbnails& thumbnails, const ImVec2& middle) {
   ImGui::PushFont(fonts().heading);
   ImGui::TextUnformatted("Open a baked scene");
   ImGui::PopFont();
+  if (!desk.now->done.empty()) ui::muted("The scene is empty. Undo brings back what was removed.");
   ui::muted("Drop a folder here, or choose one. Several can be composed.");
   ImGui::Dummy({0, px(6)});
   if (ui::primary_button("Open...", {px(140), px(34)})) desk.asking.path = PathQuestion::open;

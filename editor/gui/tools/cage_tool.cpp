@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -72,7 +73,7 @@ void CageTool::make(Desk& desk) {
     edit.cage.wrap = static_cast<double>(coarseness_);
   else
     edit.cage.lattice = {cells_[0], cells_[1], cells_[2]};
-  unbind(desk);
+  unbind();
   auto made = std::make_shared<std::shared_ptr<const Bound>>();
   desk.jobs.worker.start(
       "making a cage",
@@ -107,7 +108,6 @@ void CageTool::make(Desk& desk) {
         steps_ = {moved_};
         at_ = 0;
         picked_.assign(moved_.size(), 0);
-        desk.tools.own_step = [this, &desk](int direction) { return step(desk, direction); };
       });
 }
 
@@ -134,39 +134,32 @@ CageDeform CageTool::edit_for(const Points& points) const {
   return edit;
 }
 
-// Makes the document hold the cage with these points, which are the tool's step of that number.
-void CageTool::commit(Desk& desk, const Points& points, std::size_t step) {
-  const CageDeform edit = edit_for(points);
-  const auto done = [this, step] { at_ = step; };
+// Records the cage's points as a step of the document's history: the first release as an edit, each later one as a
+// revision of the edit before.
+void CageTool::commit(Desk& desk) {
+  steps_.resize(at_ + 1);
+  steps_.push_back(moved_);
+  const CageDeform edit = edit_for(moved_);
+  const auto done = [this] { ++at_; };
   const auto failed = [this] {
     // What was not done is not there to be undone.
     steps_.resize(at_ + 1);
     moved_ = steps_[at_];
   };
   if (edit.moves.empty()) {
-    if (at_ > 0) desk.undo();
-    at_ = step;
+    if (at_ > 0) desk.undo(static_cast<int>(std::exchange(at_, 0)));  // dragged back to rest
   } else if (at_ == 0) {
     desk.edits({edit}, done, failed);
   } else {
-    desk.adjust({edit}, done, failed);
+    desk.revise({edit}, done, failed);
   }
 }
 
-bool CageTool::step(Desk& desk, int direction) {
-  if (!bound_ || busy() || !desk.at_rest()) return bound_ != nullptr;
-  if (direction < 0 && at_ == 0) return false;
-  if (direction > 0 && at_ + 1 >= steps_.size()) return false;
-  const std::size_t next = direction < 0 ? at_ - 1 : at_ + 1;
-  moved_ = steps_[next];
-  preview(desk);
-  commit(desk, moved_, next);
-  return true;
-}
-
-// What others did to the document: the cage is there as long as the document holds its scene, or its edit last.
+// Follows undo, redo and edits by others: the cage is shown while the document's last edit is one of its releases, or
+// the document holds the scene that it was made in.
 void CageTool::follow(Desk& desk) {
   if (!bound_ || !desk.at_rest()) return;
+  asleep_ = false;
   if (desk.scene().roots == bound_->scene.roots) {
     if (at_ > 0) moved_ = steps_[at_ = 0];
     return;
@@ -175,19 +168,25 @@ void CageTool::follow(Desk& desk) {
   if (last != nullptr)
     // Its border may have been adjusted since.
     edit_.target.falloff = last->target.falloff;
-  if (last != nullptr)
-    for (std::size_t k = 1; k < steps_.size(); ++k)
+  if (last != nullptr) {
+    // Several releases can leave the points alike: the nearest one is meant.
+    std::vector<std::size_t> nearest;
+    for (std::size_t k = 1; k < steps_.size(); ++k) nearest.push_back(k);
+    const auto away = [this](std::size_t k) { return k > at_ ? k - at_ : at_ - k; };
+    std::stable_sort(nearest.begin(), nearest.end(), [&](std::size_t a, std::size_t b) { return away(a) < away(b); });
+    for (const std::size_t k : nearest)
       if (to_json(edit_for(steps_[k])) == to_json(*last)) {
         if (at_ != k) moved_ = steps_[at_ = k];
         return;
       }
-  unbind(desk);
+  }
+  asleep_ = true;
+  dragging_ = boxing_ = false;
 }
 
-void CageTool::unbind(Desk& desk) {
+void CageTool::unbind() {
   bound_.reset();
-  dragging_ = boxing_ = false;
-  desk.tools.own_step = nullptr;
+  dragging_ = boxing_ = asleep_ = false;
 }
 
 void CageTool::preview(Desk& desk) {
@@ -258,7 +257,7 @@ void CageTool::pick_inside(const Desk& desk, const Lens& lens) {
 
 void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   if (!dragging_) follow(desk);
-  if (!bound_) return;
+  if (!shown()) return;
   if (pointer.pressed && pointer.inside) {
     held_ = point_at(desk, lens, pointer.at);
     from_ = to_ = pointer.at;
@@ -354,15 +353,12 @@ void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
   }
   if (!pointer.released) return;
   dragging_ = false;
-  if (moved_ == before_) return;
-  steps_.resize(at_ + 1);
-  steps_.push_back(moved_);
-  commit(desk, moved_, at_ + 1);
+  if (moved_ != before_) commit(desk);
 }
 
 void CageTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
                     const ImVec2& origin) const {
-  if (!bound_) return;
+  if (!shown()) return;
   constexpr ImU32 orange = IM_COL32(255, 140, 20, 255);
   if (boxing_ && lassoes_) {
     std::vector<ImVec2> line;
@@ -390,7 +386,7 @@ void CageTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, 
 }
 
 void CageTool::add_guides(const Desk& /*desk*/, Guides& guides) const {
-  if (!bound_) return;
+  if (!shown()) return;
   for (const auto& [a, b] : bound_->edges)
     guides.lines.push_back({moved_[a], moved_[b], Color(0.35, 0.65, 1), 0.9, 0.3});
 }
@@ -416,7 +412,7 @@ void CageTool::options(Desk& desk) {
           "Mean value: follows the points. Green: keeps shapes, bulges beyond the cage. Harmonic: stays inside the "
           "cage, slower.");
   ui::flow(px(90));
-  if (!bound_) {
+  if (!shown()) {
     if (ui::primary_button("Make cage")) make(desk);
     ui::hint(fmt::format("Around the selected triangles, else a picked node ({}).", desk.scope_words()));
     return;
@@ -439,7 +435,7 @@ void CageTool::options(Desk& desk) {
   ui::flow(px(120));
   ui::toggle("Visible only", desk.tools.visible_only());
   ui::tip("Visible only", command_key("Visible only", desk), "Takes points at the front only.");
-  ui::hint("Drag points; a box picks several, with Ctrl a lasso. Undo takes releases back one by one.");
+  ui::hint("Drag points; a box picks several, with Ctrl a lasso. Each release is a step of the history.");
 }
 
 void CageTool::cancel(Desk& desk) {
@@ -449,12 +445,12 @@ void CageTool::cancel(Desk& desk) {
     desk.drop_preview();
     return;
   }
-  unbind(desk);
+  unbind();
 }
 
 void CageTool::leave(Desk& desk) {
   cancel(desk);
-  unbind(desk);
+  unbind();
 }
 
 }  // namespace rebake

@@ -8,9 +8,8 @@
 
 namespace rebake {
 
-/// Makes a cage around the selected triangles (or a node) and drags its points. Every release changes the one edit that
-/// is the document's last step, so that nothing is lost however the tool is left; undo and redo go through the releases
-/// one by one.
+/// Makes a cage around the selected triangles (or a node) and drags its points. Every release is a step of the
+/// document's history: the first an edit, each later one a revision of it (Document::revise).
 class CageTool final : public ViewTool {
  public:
   CageTool();
@@ -29,8 +28,7 @@ class CageTool final : public ViewTool {
   using Points = std::vector<Vec3>;
   void make(Desk& desk);
   CageDeform edit_for(const Points& points) const;
-  void commit(Desk& desk, const Points& points, std::size_t step);
-  bool step(Desk& desk, int direction);
+  void commit(Desk& desk);
   void follow(Desk& desk);
   void preview(Desk& desk);
   void drag(Desk& desk, const Lens& lens, const Pointer& pointer);
@@ -39,7 +37,8 @@ class CageTool final : public ViewTool {
   void pick_inside(const Desk& desk, const Lens& lens);
   /// Whether a cage point looks towards the eye.
   std::vector<std::uint8_t> in_front(const Lens& lens) const;
-  void unbind(Desk& desk);
+  void unbind();
+  bool shown() const { return bound_ && !asleep_; }
   int point_at(const Desk& desk, const Lens& lens, const Vec2& at) const;
 
   CageDeform edit_;  ///< what the options say
@@ -50,6 +49,7 @@ class CageTool final : public ViewTool {
   int cells_[3] = {2, 2, 2};
   float coarseness_ = 0.1F, softness_ = 0;
   std::shared_ptr<const Bound> bound_;  ///< null before a cage was made
+  bool asleep_ = false;                 ///< the document holds none of the cage's steps now; redo may return to them
   std::vector<Points> steps_;           ///< the cage's points at rest, and after each release
   std::size_t at_ = 0;                  ///< which of them the document holds
   Points moved_, before_;               ///< cage points now, and when the drag began

@@ -97,8 +97,10 @@ std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) c
   }
   if (target.nodes.empty()) return std::nullopt;
   const auto first = find_placed(desk.scene(), target.nodes.front());
-  target.foot =
-      box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center().x(), box.min().y(), box.center().z());
+  const Ground& ground = desk.scene().ground;
+  target.foot = box.isEmpty()
+                    ? Vec3(first->to_world.translation())
+                    : Vec3(box.center() + (lowest_above(ground, box) - ground.above(box.center())) * ground.normal);
   target.pivot = box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center());
   target.local = orthogonal_factor(first->to_world.linear());
   if (desk.tools.local_axes) target.axes = target.local;
@@ -243,7 +245,8 @@ std::optional<Vec3> Gizmo::surface(const Desk& desk, const Lens& lens, const Vec
   if (const std::optional<Picked> picked = pick(others, lens, at, false)) return picked->world;
   // Else the ground.
   const ViewRay ray = lens.ray(at);
-  const double t = -ray.origin.y() / ray.direction.y();
+  const Ground& ground = desk.scene().ground;
+  const double t = -ground.above(ray.origin) / ground.normal.dot(ray.direction);
   if (!std::isfinite(t) || t <= 0) return std::nullopt;
   return Vec3(ray.origin + t * ray.direction);
 }

@@ -35,10 +35,10 @@ std::array<Vec3, 3> corners_of(const PlacedNode& placed, std::size_t triangle) {
 // The point of triangle `b` that lies as `point` does in triangle `a`.
 Vec3 same_point(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Vec3& point) {
   if (a == b) return point;
-  Eigen::Matrix<double, 3, 2> edges;
-  edges << a[1] - a[0], a[2] - a[0];
-  const Vec2 shares = edges.colPivHouseholderQr().solve(point - a[0]);
-  return b[0] + shares.x() * (b[1] - b[0]) + shares.y() * (b[2] - b[0]);
+  const Vec3 u = a[1] - a[0], v = a[2] - a[0], normal = u.cross(v), to = point - a[0];
+  const double area = normal.squaredNorm();
+  if (!(area > 0)) return b[0];
+  return b[0] + to.cross(v).dot(normal) / area * (b[1] - b[0]) + u.cross(to).dot(normal) / area * (b[2] - b[0]);
 }
 
 }  // namespace
@@ -61,26 +61,25 @@ std::optional<HandlesDeform> HandlesTool::edit_for(const Pins& pins) const {
 
 // Pins begin on the scene as it is.
 void HandlesTool::begin(Desk& desk) {
-  end(desk);
+  end();
   const std::vector<DeformTarget> targets = desk.deform_targets();
   if (targets.empty()) return;
   target_ = targets.front();
   from_ = desk.scene();
   reach_ = reach_of_coarseness * static_cast<double>(coarseness_) * desk.deform_bounds({target_}).diagonal().norm();
   steps_ = {{}};
-  desk.tools.own_step = [this, &desk](int direction) { return step(desk, direction); };
 }
 
-void HandlesTool::end(Desk& desk) {
-  if (from_) desk.tools.own_step = nullptr;
+void HandlesTool::end() {
   from_.reset();
+  asleep_ = false;
   pins_.clear();
   steps_.clear();
   at_ = 0;
 }
 
 void HandlesTool::add(Desk& desk, const Lens& lens, const Vec2& at, bool holds) {
-  if (!from_) begin(desk);
+  if (!shown()) begin(desk);
   if (!from_) return;
   auto picked = std::make_shared<std::optional<Picked>>();
   auto scene = std::make_shared<Scene>();
@@ -108,9 +107,11 @@ void HandlesTool::add(Desk& desk, const Lens& lens, const Vec2& at, bool holds) 
       });
 }
 
-// What others did to the document: pins are there as long as it holds their scene, or their edit last.
+// Follows undo, redo and edits by others: pins are shown while the document's last edit is one of their releases, or
+// the document holds the scene that they were set in.
 void HandlesTool::follow(Desk& desk) {
   if (!from_ || !desk.at_rest() || busy()) return;
+  asleep_ = false;
   if (desk.scene().roots == from_->roots) {
     if (at_ > 0) {
       at_ = 0;
@@ -125,7 +126,7 @@ void HandlesTool::follow(Desk& desk) {
         if (at_ != k) pins_ = steps_[at_ = k];
         return;
       }
-  end(desk);
+  asleep_ = true;
 }
 
 void HandlesTool::show(Desk& desk) {
@@ -134,10 +135,12 @@ void HandlesTool::show(Desk& desk) {
   desk.show_preview(std::move(list), from_);
 }
 
-// Makes the document hold the pins as they are, which are the tool's step of that number.
-void HandlesTool::commit(Desk& desk, std::size_t step) {
+// Records the pins as a step of the document's history: the first release as an edit, each later one as a revision.
+void HandlesTool::commit(Desk& desk) {
+  steps_.resize(at_ + 1);
+  steps_.push_back(pins_);
   const std::optional<HandlesDeform> wanted = edit_for(pins_);
-  const auto done = [this, step] { at_ = step; };
+  const auto done = [this] { ++at_; };
   const auto failed = [this] {
     steps_.resize(at_ + 1);
     if (at_ > 0)
@@ -146,37 +149,16 @@ void HandlesTool::commit(Desk& desk, std::size_t step) {
       for (Pin& pin : pins_) pin.moved = pin.at;
   };
   if (!wanted) {
-    if (at_ > 0) desk.undo();
-    at_ = step;
+    if (at_ > 0) desk.undo(static_cast<int>(std::exchange(at_, 0)));  // no pin pulls any more
   } else if (at_ == 0) {
     desk.edits({*wanted}, done, failed);
   } else {
-    desk.adjust({*wanted}, done, failed);
+    desk.revise({*wanted}, done, failed);
   }
 }
 
-// What was just changed is a step.
-void HandlesTool::release(Desk& desk) {
-  steps_.resize(at_ + 1);
-  steps_.push_back(pins_);
-  commit(desk, at_ + 1);
-}
-
-bool HandlesTool::step(Desk& desk, int direction) {
-  if (!from_ || busy() || !desk.at_rest()) return from_.has_value();
-  if (direction < 0 && at_ == 0) return false;
-  if (direction > 0 && at_ + 1 >= steps_.size()) return false;
-  const std::size_t next = direction < 0 ? at_ - 1 : at_ + 1;
-  if (next > 0)
-    pins_ = steps_[next];
-  else
-    for (Pin& pin : pins_) pin.moved = pin.at;
-  show(desk);
-  commit(desk, next);
-  return true;
-}
-
 int HandlesTool::pin_at(const Lens& lens, const Vec2& at) const {
+  if (!shown()) return -1;
   int found = -1;
   double least = static_cast<double>(px(pin_grab_pixels));
   for (std::size_t k = 0; k < pins_.size(); ++k)
@@ -214,18 +196,19 @@ void HandlesTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) 
   }
   if (!pointer.released) return;
   held_ = -1;
-  if (pins_[k].moved != before_[k].moved) release(desk);
+  if (pins_[k].moved != before_[k].moved) commit(desk);
 }
 
 void HandlesTool::take_away(Desk& desk, std::size_t pin) {
   pins_.erase(pins_.begin() + static_cast<std::ptrdiff_t>(pin));
   if (at_ == 0) return;  // it did nothing yet
   show(desk);
-  release(desk);
+  commit(desk);
 }
 
 void HandlesTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& pointer, ImDrawList& list,
                        const ImVec2& origin) const {
+  if (!shown()) return;
   const announce::Part part("handle");
   const int hot = held_ >= 0 ? held_ : pointer.inside ? pin_at(lens, pointer.at) : -1;
   for (std::size_t k = 0; k < pins_.size(); ++k) {
@@ -248,7 +231,7 @@ void HandlesTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& po
 }
 
 bool HandlesTool::key(Desk& desk, const KeyPress& press) {
-  if (press.key != GLFW_KEY_BACKSPACE || pins_.empty() || busy()) return false;
+  if (press.key != GLFW_KEY_BACKSPACE || pins_.empty() || !shown() || busy()) return false;
   if (desk.at_rest()) take_away(desk, pins_.size() - 1);
   return true;
 }
@@ -259,16 +242,16 @@ void HandlesTool::options(Desk& desk) {
   ui::tip("What a click sets", "", "Held points stay; pulled ones are dragged. Shift sets the other kind.");
   ui::flow(px(150));
   ImGui::SetNextItemWidth(px(140));
-  ImGui::BeginDisabled(from_.has_value());
+  ImGui::BeginDisabled(shown());
   ImGui::SliderFloat("##coarseness", &coarseness_, 0.03F, 0.2F, "fineness %.2f");
   ImGui::EndDisabled();
   ui::tip("Fineness", "", "Of the cage that is bent along, as a share of the size; before the first point is set.");
-  if (!pins_.empty()) {
+  if (shown() && !pins_.empty()) {
     ui::flow(px(60));
-    if (ui::button("Clear")) end(desk);
+    if (ui::button("Clear")) end();
     ui::tip("Clear", "", "Takes the points away; what they did stays.");
   }
-  ui::hint(pins_.empty()
+  ui::hint(pins_.empty() || !shown()
                ? fmt::format("Click points to hold, then points to pull, and drag those ({}).", desk.scope_words())
                : "Drag a point; Ctrl+click takes it away.");
 }
@@ -280,7 +263,7 @@ void HandlesTool::cancel(Desk& desk) {
     desk.drop_preview();
     return;
   }
-  end(desk);
+  end();
 }
 
 void HandlesTool::leave(Desk& desk) {

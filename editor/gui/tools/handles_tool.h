@@ -5,8 +5,8 @@
 
 namespace rebake {
 
-/// Points on the surface that are held or pulled, with what lies between as rigid as possible. Every release changes
-/// the one edit that is the document's last step; undo and redo go through the releases one by one.
+/// Points on the surface that are held or pulled, with what lies between as rigid as possible. Every release is a
+/// step of the document's history: the first an edit, each later one a revision of it (Document::revise).
 class HandlesTool final : public ViewTool {
  public:
   void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
@@ -31,11 +31,10 @@ class HandlesTool final : public ViewTool {
   void add(Desk& desk, const Lens& lens, const Vec2& at, bool holds);
   void follow(Desk& desk);
   void show(Desk& desk);
-  void commit(Desk& desk, std::size_t step);
-  void release(Desk& desk);
+  void commit(Desk& desk);
   void take_away(Desk& desk, std::size_t pin);
-  bool step(Desk& desk, int direction);
-  void end(Desk& desk);
+  void end();
+  bool shown() const { return from_ && !asleep_; }
   int pin_at(const Lens& lens, const Vec2& at) const;
 
   bool holds_ = true;  ///< what a click makes
@@ -45,7 +44,8 @@ class HandlesTool final : public ViewTool {
   std::size_t at_ = 0;         ///< which of them the document holds
   std::optional<Scene> from_;  ///< that the pins were set in; the edit is made of it
   DeformTarget target_;
-  double reach_ = 0;  ///< radius around a pin within which the cage goes with it
+  bool asleep_ = false;  ///< the document holds none of the pins' steps now; redo may return to them
+  double reach_ = 0;     ///< radius around a pin within which the cage goes with it
   int held_ = -1;
   Vec2 pressed_at_{0, 0};
 };

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 
@@ -20,7 +19,8 @@ enum class ToolKind {
   scale,
   cage,
   bend,
-  handles
+  handles,
+  ground
 };
 
 /// Which tool is in hand, and how tools behave.
@@ -33,10 +33,6 @@ struct ToolState {
   bool visible_only() const { return takes_seen.contains(kind) ? takes_seen.at(kind) : at_first(); }
   bool at_first() const { return kind != ToolKind::cage; }  ///< a cage is held all around
   std::map<ToolKind, bool> takes_seen;                      ///< of tools where it was changed
-  /// Takes back (-1) or does again (1) a step that is the tool's own; false when there is none. Null without such
-  /// steps.
-  std::function<bool(int)> own_step;
-  int steps_waiting = 0;  ///< that were asked for while another was being taken; back where below 0
   bool local_axes = false;
   bool snaps = false;  ///< what is moved freely is put onto the surface under the pointer
 };

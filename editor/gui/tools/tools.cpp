@@ -1,6 +1,7 @@
 #include "editor/gui/tools/bend_tool.h"
 #include "editor/gui/tools/cage_tool.h"
 #include "editor/gui/tools/gizmo.h"
+#include "editor/gui/tools/ground_tool.h"
 #include "editor/gui/tools/handles_tool.h"
 #include "editor/gui/tools/pick_tool.h"
 #include "editor/gui/tools/region_tool.h"
@@ -22,6 +23,7 @@ Tools make_tools() {
   tools[ToolKind::bend] = std::make_unique<BendTool>();
   tools[ToolKind::handles] = std::make_unique<HandlesTool>();
   tools[ToolKind::cage] = std::make_unique<CageTool>();
+  tools[ToolKind::ground] = std::make_unique<GroundTool>();
   return tools;
 }
 
@@ -41,6 +43,7 @@ std::span<const ToolButton> tool_buttons() {
       {icons::cube_unfolded, "Cage", ToolKind::cage, true},
       {icons::vector_curve, "Bend, twist, taper", ToolKind::bend},
       {icons::pin, "Handles", ToolKind::handles},
+      {icons::grid, "Ground", ToolKind::ground, true},
   };
   return buttons;
 }

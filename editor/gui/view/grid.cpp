@@ -5,19 +5,23 @@
 namespace rebake {
 
 void add_grid(const Desk& desk, std::vector<Guides::Line>& lines) {
-  // On the ground; squares of the power of ten that fits the scene.
   const Box box = world_bounds(desk.scene());
   const double size = box.isEmpty() || !(box.diagonal().norm() > 0) ? 1 : box.diagonal().norm();
   const double step = std::pow(10, std::floor(std::log10(size)));
-  const double floor = box.isEmpty() ? 0 : box.min().y();
+  const Ground& ground = desk.shown().ground;
+  const Mat3 frame = ground_frame(ground);
+  // Square corners lie on multiples of the step, as near to the scene as they can.
+  const Vec3 middle = box.isEmpty() ? Vec3::Zero() : Vec3(frame.transpose() * box.center() / step);
+  const auto at = [&](double x, double z) -> Vec3 {
+    return frame * Vec3(std::round(middle.x()) * step + x, ground.height, std::round(middle.z()) * step + z);
+  };
   constexpr int half = 10;
   for (int k = -half; k <= half; ++k) {
-    const double at = k * step, end = half * step;
+    const double along = k * step, end = half * step;
     const Color grey(0.55, 0.56, 0.58);
-    lines.push_back(
-        {{at, floor, -end}, {at, floor, end}, k == 0 ? Color(0.3, 0.5, 0.95) : grey, k == 0 ? 0.7 : 0.28, 0});
-    lines.push_back(
-        {{-end, floor, at}, {end, floor, at}, k == 0 ? Color(0.9, 0.35, 0.35) : grey, k == 0 ? 0.7 : 0.28, 0});
+    const bool axis_z = k + std::lround(middle.x()) == 0, axis_x = k + std::lround(middle.z()) == 0;
+    lines.push_back({at(along, -end), at(along, end), axis_z ? Color(0.3, 0.5, 0.95) : grey, axis_z ? 0.7 : 0.28, 0});
+    lines.push_back({at(-end, along), at(end, along), axis_x ? Color(0.9, 0.35, 0.35) : grey, axis_x ? 0.7 : 0.28, 0});
   }
 }
 

@@ -7,7 +7,7 @@
 
 namespace rebake {
 
-/// Lines on the ground below the scene, in squares of the power of ten that fits it.
+/// Lines on the scene's ground plane, in squares of the power of ten that fits the scene.
 void add_grid(const Desk& desk, std::vector<Guides::Line>& lines);
 
 }  // namespace rebake

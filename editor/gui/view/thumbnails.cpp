@@ -52,12 +52,14 @@ void Thumbnails::forget_views() {
   wanted_.reset();
 }
 
-unsigned Thumbnails::of_file(const std::string& path) {
-  auto found = files_.find(path);
+unsigned Thumbnails::of_file(const std::string& path) { return of_picture(picture_file(path)); }
+
+unsigned Thumbnails::of_picture(const fs::path& file) {
+  auto found = files_.find(file);
   if (found == files_.end()) {
-    found = files_.emplace(path, std::nullopt).first;
+    found = files_.emplace(file, std::nullopt).first;
     std::error_code unknown;
-    if (const fs::path file = picture_file(path); fs::is_regular_file(file, unknown)) try {
+    if (fs::is_regular_file(file, unknown)) try {
         found->second.emplace(read_image(file));
       } catch (const Error&) {
         fs::remove(file, unknown);  // damaged: made anew when the scene is opened again
@@ -74,7 +76,7 @@ void Thumbnails::keep(const std::string& path, const std::vector<std::string>& r
   for (const fs::directory_entry& entry : fs::directory_iterator(file.parent_path()))
     if (!wanted.contains(entry.path())) fs::remove(entry.path());
   write_png(thumbnail_of(seen, width, height), file, {});
-  files_.erase(path);
+  files_.erase(file);
 }
 
 }  // namespace rebake

@@ -24,6 +24,9 @@ class Thumbnails {
   /// A texture of what was seen of a file or folder last; 0 where nothing is kept of it.
   unsigned of_file(const std::string& path);
 
+  /// A texture of a PNG; 0 if it is not there or damaged.
+  unsigned of_picture(const std::filesystem::path& png);
+
   /// Whether draw_one() has something to do.
   bool wants() const { return wanted_.has_value(); }
   /// Draws what was asked for last. The renderer's picture is another one then. A view that cannot be drawn has no
@@ -40,8 +43,8 @@ class Thumbnails {
     std::optional<PictureTexture> picture;  ///< none where it could not be drawn
   };
   std::map<std::string, OfView> views_;
-  std::map<std::string, std::optional<PictureTexture>> files_;
-  std::optional<std::string> wanted_;  ///< a view's name
+  std::map<std::filesystem::path, std::optional<PictureTexture>> files_;  ///< by their PNG
+  std::optional<std::string> wanted_;                                     ///< a view's name
 };
 
 }  // namespace rebake

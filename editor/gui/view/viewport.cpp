@@ -16,7 +16,9 @@
 #include "editor/gui/view/grid.h"
 #include "editor/gui/view/legend.h"
 #include "editor/gui/view/navigation.h"
+#include "editor/gui/window/lost_work.h"
 #include "render/image.h"
+#include "render/thumbnail.h"
 
 namespace rebake {
 
@@ -177,6 +179,7 @@ Box Viewport::drawn_bounds(const Desk& desk) const {
 Guides Viewport::guides(const Desk& desk) const {
   Guides result;
   result.selection = desk.view.show_selection;
+  result.dimmed = desk.selected_out_of_scope();
   result.inspect = desk.view.inspect;
   result.channel = desk.view.channel;
   if (desk.settings.grid) add_grid(desk, result.lines);
@@ -286,10 +289,29 @@ void Viewport::picture(Desk& desk) {
   if (!quick) keep_picture(desk);
 }
 
+// For the dialog that offers lost work: after a step, but not more often than every few seconds.
+void Viewport::keep_journal_picture(const Desk& desk) {
+  constexpr std::chrono::seconds least_time{2};
+  if (desk.now->journal.empty() || desk.scene().roots.empty()) return;
+  const bool other = journal_of_ != desk.now->journal;
+  if (!other && (journal_step_ == desk.now->steps_done || Clock::now() - journal_at_ < least_time)) return;
+  journal_of_ = desk.now->journal;
+  journal_step_ = desk.now->steps_done;
+  journal_at_ = Clock::now();
+  try {
+    const std::filesystem::path file = thumbnail_file(desk.now->journal);
+    std::filesystem::create_directories(file.parent_path());
+    write_png(thumbnail_of(renderer_.shown_image(), Thumbnails::width, Thumbnails::height), file, {});
+  } catch (const std::exception&) {
+    // The dialog then shows an icon instead.
+  }
+}
+
 // Of what was just opened or saved, for the list of recent files: the first picture of it in full, whether the scene
 // rests yet or not. A quick driver has drawn it before it rests, and does not draw it again then.
 void Viewport::keep_picture(const Desk& desk) {
   if (desk.view.flying || desk.preview || arrival_ || texture_ == 0) return;
+  keep_journal_picture(desk);
   const std::vector<Edit>& done = desk.now->done;
   const bool imported = done.size() == 1 && done.front().is<Import>() && !desk.settings.recent.empty();
   const std::string of = !desk.project.path.empty() ? (desk.project.unsaved() ? "" : desk.project.path.string())

@@ -70,6 +70,7 @@ class Viewport {
   bool draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer);
   void write_pictures(Desk& desk);
   void keep_picture(const Desk& desk);
+  void keep_journal_picture(const Desk& desk);
   bool moving() const;
 
   Vec2 right_pressed_at_{0, 0};
@@ -90,8 +91,11 @@ class Viewport {
   ToolKind last_tool_ = ToolKind::pick;
   unsigned texture_ = 0;
   Thumbnails thumbnails_;
-  std::string kept_of_;        ///< what a picture is kept of,
-  std::size_t kept_step_ = 0;  ///< and after how many steps it looked so
+  std::string kept_of_;               ///< what a picture is kept of,
+  std::size_t kept_step_ = 0;         ///< and after how many steps it looked so
+  std::filesystem::path journal_of_;  ///< the journal that a thumbnail was written for last,
+  std::size_t journal_step_ = 0;      ///< after how many steps,
+  Clock::time_point journal_at_;      ///< and when
   bool each_pass_ = false;
   bool drew_ = false;  ///< a picture in this frame
   bool orbiting_ = false, panning_ = false, wiping_ = false;

@@ -13,6 +13,7 @@
 #include "editor/edits/nodes/align.h"
 #include "editor/edits/nodes/drop.h"
 #include "editor/edits/nodes/duplicate.h"
+#include "editor/edits/nodes/ground.h"
 #include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/hide.h"
 #include "editor/edits/nodes/remove.h"
@@ -73,6 +74,29 @@ void each_active(Desk& desk) {
     list.emplace_back(edit);
   }
   desk.edits(list);
+}
+
+void drop(Desk& desk) {
+  std::vector<Edit> list;
+  for (const NodeId id : desk.active_tops()) {
+    Drop edit;
+    edit.node = NodeRef{id};
+    list.emplace_back(edit);
+  }
+  desk.edits_that_change(list);
+}
+
+// Sets the ground at the scene's foot, or fits it to the selection.
+template <bool GroundEdit::*from>
+void set_ground(Desk& desk) {
+  GroundEdit edit;
+  edit.*from = true;
+  desk.edit(edit);
+}
+
+void show_discarded(Desk& desk) {
+  desk.project.recoverable = discarded_work();
+  if (desk.project.recoverable.empty()) desk.messages.say("The trash is empty.");
 }
 
 // In Blender's keymap the copies, which are picked then, are moved at once.
@@ -169,8 +193,8 @@ bool looks_at(const Desk& desk) {
   return desk.view.inspect == inspect;
 }
 
-void undo(Desk& desk) { desk.step(-1); }
-void redo(Desk& desk) { desk.step(1); }
+void undo(Desk& desk) { desk.undo(); }
+void redo(Desk& desk) { desk.redo(); }
 
 template <BottomTab tab>
 void toggle_tab(Desk& desk) {
@@ -231,12 +255,14 @@ const std::vector<Command>& command_table() {
       {"File", "Save as script...", "", "", "Writes the steps as lines that other scenes can replay.", has_scene,
        ask<PathQuestion::save_script>},
       {"File", "Run script...", "", "", "Carries out the lines of a script.", always, ask<PathQuestion::run_script>},
+      {"File", "Discarded work...", "", "", "Lists unsaved work that was discarded in the last 30 days.", always,
+       show_discarded},
       {"File", "Quit", "Ctrl+Q", "Ctrl+Q", "Closes the window; unsaved work is asked about.", always,
        [](Desk& desk) { desk.asking.quitting = true; }},
       {"Edit", "Undo", "Ctrl+Z", "Ctrl+Z", "Takes the last step back.",
        [](const Desk& desk) { return !desk.now->done.empty(); }, undo, nullptr, true},
       {"Edit", "Redo", "Ctrl+Shift+Z Ctrl+Y", "Ctrl+Shift+Z", "Does the last undone step again.",
-       [](const Desk& desk) { return !desk.now->undone.empty() || desk.tools.own_step; }, redo, nullptr, true},
+       [](const Desk& desk) { return !desk.now->undone.empty(); }, redo, nullptr, true},
       {"Edit", "All commands...", "Ctrl+P", "F3 Ctrl+P", "Finds any command or edit by its name.", always,
        [](Desk& desk) { desk.asking.palette = true; }},
       {"Edit", "Delete", "Delete", "X Delete", "Deletes the selected triangles, else removes the picked nodes.",
@@ -248,8 +274,12 @@ const std::vector<Command>& command_table() {
       {"Edit", "Group", "Ctrl+G", "Ctrl+G", "Puts the picked nodes into a group.", has_active, group},
       {"Edit", "Separate", "Ctrl+J", "P", "Makes a node of its own of the selected triangles.", has_selection,
        separate},
-      {"Edit", "Drop to what is below", "End", "End", "Lets the picked nodes fall until they stand on something.",
-       has_active, each_active<Drop>},
+      {"Edit", "Drop to surface", "End", "End", "Lets the picked nodes fall onto a surface or the ground plane.",
+       has_active, drop},
+      {"Edit", "Ground at scene's foot", "", "", "Levels the ground plane at the lowest visible point.", has_scene,
+       set_ground<&GroundEdit::foot>},
+      {"Edit", "Ground from selection", "", "", "Fits the ground plane to the selected triangles.", has_selection,
+       set_ground<&GroundEdit::selection>},
       {"Edit", "Align and spread...", "", "", "Puts the picked nodes beside each other along an axis.", has_several,
        align},
       {"Edit", "Hide", "H", "H", "Hides the picked nodes; nothing is exported of them.", has_active, each_active<Hide>},
@@ -296,6 +326,8 @@ const std::vector<Command>& command_table() {
        take<ToolKind::bend>},
       {"Tool", "Handles", "K", "K", "Holds and pulls points; what lies between stays as rigid as it can.", always,
        take<ToolKind::handles>},
+      {"Tool", "Ground", "", "", "Sets the plane that things stand on: three clicked points, or a height.", always,
+       take<ToolKind::ground>},
       {"Tool", "Bend by numbers...", "", "", "All fields of a bend, with a preview.", has_scene,
        [](Desk& desk) { desk.asking.form = Bend::op; }},
       {"Tool", "Twist by numbers...", "", "", "All fields of a twist, with a preview.", has_scene,
@@ -322,7 +354,7 @@ const std::vector<Command>& command_table() {
        [](const Desk& desk) { return desk.view.camera.orthographic(); }},
       {"View", "Fly (W A S D Q E)", "Shift+F", "Shift+F", "Keys move, the pointer looks around; Esc ends it.", always,
        [](Desk& desk) { desk.view.flying = !desk.view.flying; }, [](const Desk& desk) { return desk.view.flying; }},
-      {"View", "Grid", "G", "Shift+G", "Lines on the ground.", always,
+      {"View", "Grid", "G", "Shift+G", "Lines on the ground plane.", always,
        [](Desk& desk) { desk.settings.grid = !desk.settings.grid; },
        [](const Desk& desk) { return desk.settings.grid; }},
       {"View", "Scene's background", "", "", "The colour that is exported; off, a quiet dark one.", always,

@@ -84,9 +84,11 @@ void Desk::update() {
     if (made_more) pick_new(placed_nodes(*now->before_last));
     if (std::all_of(now->done.begin(), now->done.end(), [](const Edit& one) { return one.is<Import>(); }))
       project.imported = scene();
-    selected_ = 0;
+    selected_.clear();
     for (const PlacedNode& placed : placed_nodes(scene()))
-      if (placed.node->selection) selected_ += count(*placed.node->selection);
+      if (placed.node->selection)
+        if (const std::size_t triangles = count(*placed.node->selection); triangles > 0)
+          selected_[placed.node->id] = triangles;
     if (fresh_ && !world_bounds(scene()).isEmpty()) {
       fresh_ = false;
       view.camera = framing_of(scene(), view.aspect());
@@ -98,12 +100,6 @@ void Desk::update() {
     } catch (const std::exception& problem) {
       messages.fail(problem.what());
     }
-  }
-  if (!tools.own_step) tools.steps_waiting = 0;
-  if (at_rest_ && tools.steps_waiting != 0) {
-    const int direction = tools.steps_waiting < 0 ? -1 : 1;
-    tools.steps_waiting -= direction;
-    step(direction);
   }
   if (std::optional<Preview> made = previews.take(); made && made->of == scene().roots) preview = std::move(made);
 }
@@ -182,26 +178,46 @@ void Desk::edits(const std::vector<Edit>& list, std::function<void()> then, std:
   change(list.front().type().op, job, std::move(then), std::move(otherwise));
 }
 
+void Desk::edits_that_change(const std::vector<Edit>& list) {
+  if (list.empty()) return;
+  previews.drop_stale();
+  const auto unchanged = std::make_shared<std::string>();
+  const auto job = [list, unchanged](Session& session) {
+    const CarriedOut made = carried_out(session.scene(), list, session.progress);
+    if (made.scenes.back().roots != session.scene().roots) {
+      session.edits(list, &made);
+      return;
+    }
+    for (const Report& report : made.reports)
+      for (const std::string& line : report.lines) *unchanged += (unchanged->empty() ? "" : "; ") + line;
+  };
+  change(list.front().type().op, job,
+         [this, unchanged] {
+           if (!unchanged->empty()) status = *unchanged;
+         },
+         {});
+}
+
 void Desk::adjust(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
+  replace_last(&Session::adjust, list, std::move(then), std::move(otherwise));
+}
+
+void Desk::revise(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
+  replace_last(&Session::revise, list, std::move(then), std::move(otherwise));
+}
+
+void Desk::replace_last(Replace how, const std::vector<Edit>& list, std::function<void()> then,
+                        std::function<void()> otherwise) {
   if (now->done.empty()) return;
   previews.drop_stale();
-  const auto job = [list, last = now->done.back(), asked = asked_for(list)](Session& session) {
+  const auto job = [how, list, last = now->done.back(), asked = asked_for(list)](Session& session) {
     const std::vector<Edit> done = session.document.history().edits();
     if (done.empty() || done.back().value() != last.value())
       throw EditError("another step was done meanwhile; nothing was changed");
     const auto made = asked ? waited_for(asked->made, session.progress) : nullptr;
-    session.adjust(list, made.get());
+    (session.*how)(list, made.get());
   };
-  change("adjust", job, std::move(then), std::move(otherwise));
-}
-
-void Desk::step(int direction) {
-  if (tools.own_step && !at_rest_) {
-    tools.steps_waiting += direction;
-    return;
-  }
-  if (tools.own_step && tools.own_step(direction)) return;
-  direction < 0 ? undo() : redo();
+  change(list.front().type().op, job, std::move(then), std::move(otherwise));
 }
 
 void Desk::undo(int steps) {
@@ -260,14 +276,47 @@ std::vector<std::optional<NodeRef>> Desk::scope(bool selected) const {
   if (active.empty()) return {std::nullopt};
   std::vector<std::optional<NodeRef>> nodes;
   for (const PlacedNode& placed : placed_nodes(scene())) {
-    if (!placed.visible || placed.locked || !placed.node->object) continue;
-    if (selected && (!placed.node->selection || count(*placed.node->selection) == 0)) continue;
-    bool inside = active.contains(placed.node->id);
-    for (NodeId up = parent_of(scene(), placed.node->id); up != NodeId::none && !inside; up = parent_of(scene(), up))
-      inside = active.contains(up);
-    if (inside) nodes.emplace_back(NodeRef{placed.node->id});
+    if (!placed.node->object) continue;
+    if (selected && !selected_.contains(placed.node->id)) continue;
+    if (in_scope(placed)) nodes.emplace_back(NodeRef{placed.node->id});
   }
   return nodes;
+}
+
+bool Desk::in_scope(const PlacedNode& placed) const {
+  if (!placed.visible || placed.locked) return false;
+  bool inside = active.empty() || active.contains(placed.node->id);
+  for (NodeId up = parent_of(scene(), placed.node->id); up != NodeId::none && !inside; up = parent_of(scene(), up))
+    inside = active.contains(up);
+  return inside;
+}
+
+std::size_t Desk::selected_triangles() const {
+  std::size_t triangles = 0;
+  if (selected_.empty()) return triangles;
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (const auto found = selected_.find(placed.node->id); found != selected_.end() && in_scope(placed))
+      triangles += found->second;
+  return triangles;
+}
+
+std::vector<NodeId> Desk::selected_out_of_scope() const {
+  std::vector<NodeId> nodes;
+  if (selected_.empty()) return nodes;
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (selected_.contains(placed.node->id) && !in_scope(placed)) nodes.push_back(placed.node->id);
+  return nodes;
+}
+
+std::string Desk::selected_words() const {
+  std::size_t all = 0;
+  for (const auto& [node, triangles] : selected_) all += triangles;
+  if (all == 0) return "";
+  const std::size_t here = selected_triangles();
+  std::string words = fmt::format("{} selected", here);
+  if (!active.empty()) words += " " + scope_words();
+  if (all > here) words += fmt::format(", {} elsewhere", all - here);
+  return words;
 }
 
 std::string Desk::scope_words() const {

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -82,11 +83,12 @@ struct Desk {
   /// All of them as one step of history, or none where one fails; `then` once they are done, `otherwise` when they
   /// failed or were stopped.
   void edits(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
+  /// The same, but records nothing if they leave every node as it is; the status line then says what they reported.
+  void edits_that_change(const std::vector<Edit>& list);
   /// In place of the last step, which is taken back; where they fail it stays.
   void adjust(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
-  /// One back (-1) or on (1): of the tool in hand, which takes its own first, else of the document. What is asked for
-  /// while one is being taken waits for it.
-  void step(int direction);
+  /// In place of the last step, as a step of its own: undo returns to the last one.
+  void revise(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
   void undo(int steps = 1);
   void redo(int steps = 1);
   const Scene& scene() const { return now->scene; }
@@ -101,7 +103,12 @@ struct Desk {
   std::set<NodeId> deform_nodes() const;
   /// World box of those.
   Box deform_bounds(const std::vector<DeformTarget>& targets) const;
-  std::size_t selected_triangles() const { return selected_; }
+  /// Number of selected triangles in the scope: those that Delete and other commands change.
+  std::size_t selected_triangles() const;
+  /// Nodes with selected triangles that commands leave alone: not picked, hidden or locked.
+  std::vector<NodeId> selected_out_of_scope() const;
+  /// "313 selected in kettle, 9312 elsewhere"; empty if nothing is selected.
+  std::string selected_words() const;
   /// The last selecting, where it took in a picture what was seen only; else null.
   const SelectPicture* seen_last() const;
   void frame_view();
@@ -112,6 +119,9 @@ struct Desk {
   static constexpr bool needs_selection = false;
   /// A job that changes the document, for which the present preview stands until it has ended.
   void change(std::string title, Worker::Job job, std::function<void()> then, std::function<void()> otherwise);
+  using Replace = void (Session::*)(const std::vector<Edit>&, const CarriedOut*);
+  void replace_last(Replace how, const std::vector<Edit>& list, std::function<void()> then,
+                    std::function<void()> otherwise);
   void end_preview(std::size_t shown);
   /// Edits that a preview was asked for of, and what it makes of them; null where it made nothing.
   struct Asked {
@@ -124,7 +134,8 @@ struct Desk {
   /// Titles of the steps that undoing (negative) or redoing so many passes.
   std::string title_of_steps(int steps) const;
   std::optional<Asked> asked_;
-  std::size_t selected_ = 0;
+  bool in_scope(const PlacedNode& placed) const;
+  std::map<NodeId, std::size_t> selected_;  ///< number of selected triangles, of nodes that have some
   bool at_rest_ = false;
   bool fresh_ = true;  ///< nothing was shown yet: the first scene is framed
 };

@@ -41,7 +41,7 @@ class EditorWindow {
         kept_settings_(read_settings(settings_file_, settings_problem_)),
         tools_(make_tools()),
         graphics_(std::make_unique<Graphics>(system_, kept_settings_, tools_)),
-        lost_(Project::lost_work()),
+        lost_(lost_work()),
         desk_(kept_settings_, WindowSystem::wake) {
     begin_graphics();
     if (!settings_problem_.empty()) desk_.messages.fail(settings_problem_);
@@ -267,8 +267,8 @@ class EditorWindow {
   void tell() {
     if (!announce::on()) return;
     nlohmann::json state;
-    const bool working = !desk_.at_rest() || desk_.tools.steps_waiting != 0 || desk_.jobs.worker.busy() ||
-                         desk_.previews.busy() || desk_.relighter.busy();
+    const bool working =
+        !desk_.at_rest() || desk_.jobs.worker.busy() || desk_.previews.busy() || desk_.relighter.busy();
     state["settled"] = !working && !window().input_waits() && viewport().next_frame_in(desk_) < 0 && frames_ == 0;
     state["input"] = {{"keys", window().seen().keys},
                       {"buttons", window().seen().buttons},
@@ -277,6 +277,9 @@ class EditorWindow {
                       {"pointer", {window().seen().x, window().seen().y}}};
     state["tool"] = command_of_tool(desk_.tools.kind);
     state["selected"] = desk_.selected_triangles();
+    state["selected_words"] = desk_.selected_words();
+    state["ground"] = desk_.scene().ground.height;
+    if (!desk_.active.empty()) state["picked_foot"] = lowest_above({}, desk_.focus());
     state["steps"] = desk_.now->steps_done;
     state["status"] = desk_.status;
     state["preview"] = desk_.preview.has_value();
@@ -314,7 +317,7 @@ class EditorWindow {
   WindowSystem system_;
   Tools tools_;
   std::unique_ptr<Graphics> graphics_;
-  std::vector<Project::LostWork> lost_;  ///< looked for before this editor's own journal is begun
+  std::vector<LostWork> lost_;  ///< looked for before this editor's own journal is begun
   Desk desk_;
   WindowLayout layout_{desk_};
   Dialogs dialogs_;

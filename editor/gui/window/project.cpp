@@ -35,36 +35,6 @@ void keep_journal(Document& document) {
 
 }  // namespace
 
-std::vector<Project::LostWork> Project::lost_work() {
-  std::vector<LostWork> found;
-  std::error_code error;
-  for (fs::directory_iterator at(journal_folder(), error), end; !error && at != end; at.increment(error)) {
-    const fs::path& path = at->path();
-    if (path.extension() != ".journal" || Journal::in_use(path)) continue;
-    try {
-      const Journal::Contents contents = Journal::read(path);
-      std::string first;
-      for (const std::string& text : contents.entries) {
-        const nlohmann::json entry = nlohmann::json::parse(text);
-        if (first.empty() && entry.contains("edit") && entry.at("edit").contains("path"))
-          first = entry.at("edit").at("path").get<std::string>();
-      }
-      if (!contents.entries.empty()) {
-        found.push_back({path, fmt::format("{} edits, {}", contents.entries.size(), first)});
-        continue;
-      }
-      // Nothing was done there; a fresh one may be another editor's that is just starting.
-      std::error_code unknown;
-      const auto age = fs::file_time_type::clock::now() - fs::last_write_time(path, unknown);
-      if (!unknown && age > std::chrono::minutes(1)) fs::remove(path, unknown);
-    } catch (const std::exception& problem) {
-      found.push_back({path, problem.what()});
-    }
-  }
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.journal > b.journal; });
-  return found;
-}
-
 void Project::begin_journal() {
   worker_.start("journal", [](Session& session) { keep_journal(session.document); });
 }
@@ -82,7 +52,13 @@ void Project::open(const std::vector<std::string>& paths, bool wanted) {
     Import import;
     import.path = source;
     worker_.start(
-        "import", [import](Session& session) { session.edit(import); },
+        "import",
+        [import](Session& session) {
+          // The first object stands on the ground.
+          Import one = import;
+          one.ground = session.scene().roots.empty();
+          session.edit(one);
+        },
         [this, source] { settings_.remember(absolute_path(source).string()); });
   }
 }
@@ -230,7 +206,7 @@ void Project::run_script(const fs::path& file) {
 bool Project::unsaved() const {
   const Scene& kept = saved_ ? *saved_ : imported;
   return now_->scene.roots != kept.roots || now_->scene.views != kept.views ||
-         now_->scene.background != kept.background;
+         now_->scene.background != kept.background || now_->scene.ground != kept.ground;
 }
 
 }  // namespace rebake

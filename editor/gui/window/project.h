@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "editor/fields/values.h"
+#include "editor/gui/window/lost_work.h"
 #include "editor/gui/window/messages.h"
 #include "editor/gui/window/settings.h"
 #include "editor/gui/window/worker.h"
@@ -27,13 +28,9 @@ class Project {
   std::vector<std::string> to_open;  ///< a project that waits for people's word
   std::function<void()> saved_then;  ///< once the project is saved
   Scene imported;                    ///< as it was before anything but imports was done, or as a project was opened
-  struct LostWork {
-    std::filesystem::path journal;
-    std::string what;  ///< how much, and of what
-  };
-  std::vector<LostWork> recoverable;
-  /// What other editors left behind when they ended without saving, the latest first.
-  static std::vector<LostWork> lost_work();
+  /// Shows a failure as messages do.
+  void say_failed(const std::string& problem) { messages_.fail(problem); }
+  std::vector<LostWork> recoverable;  ///< what the recovery dialog lists; empty when it is closed
   /// Sources that a project or journal wants, and that are not where they were.
   struct Relinking {
     struct Source {

@@ -15,6 +15,7 @@
 #include "editor/edits/deform/taper.h"
 #include "editor/edits/deform/twist.h"
 #include "editor/edits/nodes/duplicate.h"
+#include "editor/edits/nodes/ground.h"
 #include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/nodes/light.h"
@@ -50,32 +51,52 @@ std::string together(const std::vector<std::string>& names) {
   return fmt::format("{} objects", names.size());
 }
 
-// What differs between two scenes.
+// What differs between two scenes. Counts are those of the nodes that changed.
 struct Change {
-  std::vector<std::string> names;  ///< of nodes whose triangles or selection changed
+  std::vector<std::string> names;  ///< of nodes whose triangles or selection changed, and of removed nodes
   std::size_t selected_before = 0, selected_after = 0;
   std::size_t triangles_before = 0, triangles_after = 0;
   std::vector<std::string> added;
 };
 Change change_between(const Scene& before, const Scene& after) {
   Change change;
-  std::map<NodeId, NodePtr> old;
+  std::map<NodeId, NodePtr> now;
+  for (const PlacedNode& placed : placed_nodes(after)) now[placed.node->id] = placed.node;
   for (const PlacedNode& placed : placed_nodes(before)) {
-    old[placed.node->id] = placed.node;
-    change.selected_before += selected_of(*placed.node);
-    if (placed.node->object) change.triangles_before += placed.node->object->triangle_count();
+    const Node& old = *placed.node;
+    const auto found = now.find(old.id);
+    const NodePtr node = found == now.end() ? nullptr : found->second;
+    if (found != now.end()) now.erase(found);
+    if (node && node->object == old.object && node->selection == old.selection) continue;
+    change.names.push_back(old.name);
+    change.selected_before += selected_of(old);
+    if (old.object) change.triangles_before += old.object->triangle_count();
+    if (!node) continue;
+    change.selected_after += selected_of(*node);
+    if (node->object) change.triangles_after += node->object->triangle_count();
   }
-  for (const PlacedNode& placed : placed_nodes(after)) {
-    const Node& node = *placed.node;
-    change.selected_after += selected_of(node);
-    if (node.object) change.triangles_after += node.object->triangle_count();
-    const auto found = old.find(node.id);
-    if (found == old.end())
-      change.added.push_back(node.name);
-    else if (found->second->object != node.object || found->second->selection != node.selection)
-      change.names.push_back(node.name);
-  }
+  for (const PlacedNode& placed : placed_nodes(after))
+    if (now.contains(placed.node->id)) change.added.push_back(placed.node->name);
   return change;
+}
+
+// Number of cage points that an edit moves elsewhere than `replaced` does; 0 if the edit names points otherwise than by
+// their numbers.
+std::size_t moved_points(const CageDeform& edit, const CageDeform* replaced) {
+  std::map<std::uint64_t, Vec3> motions, known;
+  const auto collect = [](const CageDeform& from, std::map<std::uint64_t, Vec3>& into) {
+    for (const CageMove& move : from.moves) {
+      if (move.points.ranges.empty()) return false;
+      for (const auto& [first, last] : move.points.ranges)
+        for (std::uint64_t k = first; k <= last; ++k) into[k] = move.translate;
+    }
+    return true;
+  };
+  if (!collect(edit, motions) || (replaced != nullptr && !collect(*replaced, known))) return 0;
+  std::size_t moved = 0;
+  for (const auto& [k, motion] : motions) moved += !known.contains(k) || known.at(k) != motion ? 1 : 0;
+  for (const auto& [k, motion] : known) moved += motions.contains(k) ? 0 : 1;
+  return moved;
 }
 
 std::vector<std::string> named(const std::vector<Edit>& group, const Scene& before, const Scene& after) {
@@ -127,6 +148,7 @@ std::string special(const Edit& edit) {
   if (const auto* import = edit.as<Import>()) return "Imported " + folder_title(import->path);
   if (const auto* light = edit.as<LightEdit>(); light != nullptr && light->light_source() == "picture")
     return "Light from " + std::filesystem::path(light->picture).filename().string();
+  if (edit.is<GroundEdit>()) return "Set the ground plane";
   if (const auto* view = edit.as<StoreView>()) return "Stored the view \"" + view->name + "\"";
   if (const auto* view = edit.as<RenameView>())
     return "Renamed the view \"" + view->name + "\" to \"" + view->to + "\"";
@@ -144,7 +166,7 @@ bool deforms(const Edit& edit) {
 
 }  // namespace
 
-std::string title_of(const std::vector<Edit>& group, const Scene& before, const Scene& after) {
+std::string title_of(const std::vector<Edit>& group, const Scene& before, const Scene& after, const Edit* replaced) {
   if (group.empty()) return "";
   const Edit& first = group.front();
   if (std::string said = special(first); !said.empty()) {
@@ -153,9 +175,10 @@ std::string title_of(const std::vector<Edit>& group, const Scene& before, const 
   }
   const Change change = change_between(before, after);
   if (first.type().selects) {
-    if (change.selected_after == 0) return "Selected nothing";
-    const std::string where = change.names.empty() ? "" : " in " + together(change.names);
-    if (change.selected_before == 0 || change.names.empty()) return "Selected " + amount(change.selected_after) + where;
+    if (change.names.empty()) return "Selection unchanged";
+    const std::string where = " in " + together(change.names);
+    if (change.selected_after == 0) return "Deselected " + amount(change.selected_before) + where;
+    if (change.selected_before == 0) return "Selected " + amount(change.selected_after) + where;
     return fmt::format("Selected {}{} ({}{})", amount(change.selected_after), where,
                        change.selected_after >= change.selected_before ? "+" : "−",
                        change.selected_after >= change.selected_before
@@ -168,6 +191,11 @@ std::string title_of(const std::vector<Edit>& group, const Scene& before, const 
   if (first.is<Erase>()) return "Erased in " + together(change.names);
   if (first.is<Slim>())
     return "Slimmed " + together(change.names) + " by " + amount(change.triangles_before - change.triangles_after);
+  if (const auto* cage = first.as<CageDeform>()) {
+    const std::size_t moved = moved_points(*cage, replaced == nullptr ? nullptr : replaced->as<CageDeform>());
+    if (moved > 0)
+      return fmt::format("Moved {} cage point{} of {}", moved, moved == 1 ? "" : "s", together(change.names));
+  }
   const auto* transform = first.as<Transform>();
   if (deforms(first) || (transform != nullptr && transform->selection)) {
     const std::string of = together(change.names);

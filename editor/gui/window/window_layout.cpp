@@ -80,17 +80,21 @@ void WindowLayout::draw(Viewport& viewport, const std::vector<std::array<double,
   // What is not shown keeps no scene alive.
   if (!std::exchange(views_shown_, false)) viewport.thumbnails().forget_views();
   palette_.draw(desk_);
-  form_.draw(desk_);
+  form_.draw(desk_, desk_.view.alone ? screen.x : screen.x - side_width(screen));
   draw_keys_sheet(desk_);
+}
+
+// In a small window the picture comes first.
+float WindowLayout::side_width(const ImVec2& screen) const {
+  return std::min(static_cast<float>(desk_.settings.side_width) * px(1), 0.4F * screen.x);
 }
 
 void WindowLayout::lay_out(const ImVec2& screen) {
   menu();
   const float top = menu_height_, status_line = ImGui::GetFrameHeight() + px(6);
   const float height = screen.y - top - status_line;
-  // In a small window the picture comes first.
   const auto s = px(1);
-  const float side = std::min(static_cast<float>(desk_.settings.side_width) * s, 0.4F * screen.x), tools = px(50);
+  const float side = side_width(screen), tools = px(50);
   const float bottom =
       !desk_.settings.bottom_open ? 0 : std::min(static_cast<float>(desk_.settings.bottom_height) * s, 0.45F * height);
   const float line = ImGui::GetFrameHeight() + px(14), options = std::max(line, options_height_);
@@ -298,10 +302,8 @@ void WindowLayout::status() {
     ImGui::TextDisabled("Middle button turns, wheel zooms. F1 shows all keys, Ctrl+P finds any command.");
   }
   // What is selected, and how; and what can be opened below.
-  std::string selected;
-  if (desk_.selected_triangles() > 0)
-    selected = fmt::format("{} selected{}", desk_.selected_triangles(),
-                           desk_.seen_last() != nullptr ? ", back sides not" : "");
+  std::string selected = desk_.selected_words();
+  if (!selected.empty() && desk_.seen_last() != nullptr) selected += ", visible sides only";
   const float buttons = px(6 * 30);
   ImGui::SameLine(ImGui::GetWindowWidth() - buttons - px(20) - ImGui::CalcTextSize(selected.c_str()).x);
   ImGui::TextDisabled("%s", selected.c_str());

@@ -17,6 +17,7 @@ class WindowLayout {
   void draw(Viewport& viewport, const std::vector<std::array<double, 2>>& moves);
 
  private:
+  float side_width(const ImVec2& screen) const;
   void lay_out(const ImVec2& screen);
   void picture(const ImVec2& at, const ImVec2& size);
   void sides(const ImVec2& at, const ImVec2& size);

@@ -104,29 +104,34 @@ std::vector<std::function<void()>> Worker::take_finished() {
 }
 
 void Worker::name_steps(Snapshot& next, const Scene& before) {
-  const std::vector<bool> joined = session_.document.history().joined();
-  std::vector<std::vector<Edit>> groups;
-  std::map<const void*, std::string> titles;
-  std::size_t number = 0;
-  for (const std::vector<Edit>* list : {&next.done, &next.undone}) {
-    std::size_t first = groups.size();
-    for (const Edit& edit : *list) {
-      // What was made together can have been undone in parts, by a script.
-      if (groups.size() == first || !joined[number]) groups.emplace_back();
-      groups.back().push_back(edit);
-      ++number;
+  struct StepEdits {
+    std::vector<Edit> edits;
+    std::optional<Edit> replaced;
+  };
+  const History& history = session_.document.history();
+  const std::vector<History::Entry> entries = history.entries();
+  std::vector<StepEdits> groups;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    // A script may have undone a part of a step: the rest is a step of its own.
+    if (k == 0 || k == history.undo_count() || !entries[k].joined) {
+      groups.emplace_back();
+      if (entries[k].replaced > 0) groups.back().replaced = entries[k - 1].edit;
     }
-    if (list == &next.done) next.steps_done = groups.size();
+    groups.back().edits.push_back(entries[k].edit);
+    if (k < history.undo_count()) next.steps_done = groups.size();
   }
+  std::map<const void*, std::string> titles;
   for (std::size_t k = 0; k < groups.size(); ++k) {
-    const void* key = groups[k].front().value();
+    const StepEdits& group = groups[k];
+    const void* key = group.edits.front().value();
     const auto known = titles_.find(key);
     const bool newest = k + 1 == next.steps_done;
-    const std::string title = known != titles_.end() ? known->second
-                              : newest               ? title_of(groups[k], before, next.scene)
-                                                     : title_of(groups[k], next.scene);
+    const std::string title =
+        known != titles_.end() ? known->second
+        : newest               ? title_of(group.edits, before, next.scene, group.replaced ? &*group.replaced : nullptr)
+                               : title_of(group.edits, next.scene);
     titles[key] = title;
-    next.steps.push_back({title, groups[k].size()});
+    next.steps.push_back({title, group.edits.size()});
   }
   titles_ = std::move(titles);
 }
@@ -139,6 +144,7 @@ void Worker::publish(const Scene& before) {
   next->undone = history.undone();
   next->sources = session_.document.sources();
   next->history_bytes = history.memory();
+  next->journal = session_.document.journal_path();
   name_steps(*next, before);
   {
     const std::lock_guard lock(prepare_mutex_);

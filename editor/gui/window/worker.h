@@ -29,6 +29,7 @@ struct Snapshot {
   std::optional<Scene> before_last;  ///< the scene before the last step; nothing where it is not kept
   SourceGuard sources;               ///< where nothing may be written
   std::uint64_t history_bytes = 0;   ///< that the kept scenes hold
+  std::filesystem::path journal;     ///< that keeps the work safe; empty for none
 };
 
 /// Carries jobs out on the document, one after the other, off the window's thread.

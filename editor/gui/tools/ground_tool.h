@@ -1,0 +1,26 @@
+#pragma once
+
+#include "editor/gui/tools/tool.h"
+
+namespace rebake {
+
+/// Sets the scene's ground plane: through three clicked surface points, at a height, at the foot of the scene, or
+/// fitted to the selected triangles.
+class GroundTool final : public ViewTool {
+ public:
+  void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
+  void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
+            const ImVec2& origin) const override;
+  void options(Desk& desk) override;
+  void cancel(Desk& desk) override;
+
+ private:
+  void add(Desk& desk, const Vec3& point);
+
+  std::vector<Vec3> points_;  ///< clicked so far, at most two
+  Vec2 pressed_at_{-1, -1};
+  double height_ = 0;      ///< in the height field
+  bool dragging_ = false;  ///< the height field is being dragged
+};
+
+}  // namespace rebake
