@@ -209,8 +209,7 @@ TEST(Plain, ObjectsOfFewTexelsKeepTheirColours) {
     options.training.steps = 50;
     PlainReport report;
     const Scene plain = best_plain_scene(
-        scene, {}, options, []() -> Renderer& { return renderer(); }, [](const DeviceError&) { FAIL(); }, report, {},
-        300);
+        scene, {}, options, []() -> Renderer& { return renderer(); }, [](const DeviceError&) { FAIL(); }, report, {});
     for (const FuseReport::Part& part : report.texels.parts)
       EXPECT_GE(part.errors.psnr_db, 60) << part.node << " beside " << large;
     // From all sides, edges of one object over the other are mixed before the decoder instead of after it.

@@ -221,7 +221,7 @@ class Module(unittest.TestCase):
                 "d = rebake.open(sys.argv[1])\n"
                 "def go():\n"
                 "    try:\n"
-                "        d.cage(node='ficus', wrap=0.005, moves=[{'points': [[0, 9]], 'translate': [0, 1, 0]}])\n"
+                "        d.cage(node='ficus', wrap=0.012, moves=[{'points': [[0, 9]], 'translate': [0, 1, 0]}])\n"
                 "    except rebake.Error:\n"
                 "        pass\n"
                 f"thread = threading.Thread(target=go, daemon={daemon})\n"
@@ -252,7 +252,7 @@ class Module(unittest.TestCase):
             "d = rebake.open(sys.argv[1])\n"
             "print('ready', flush=True)\n"
             "try:\n"
-            "    d.cage(node='ficus', wrap=0.005, moves=[{'points': [[0, 9]], 'translate': [0, 1, 0]}])\n"
+            "    d.cage(node='ficus', wrap=0.012, moves=[{'points': [[0, 9]], 'translate': [0, 1, 0]}])\n"
             "except KeyboardInterrupt:\n"
             "    print(len(d.edits()), flush=True)\n"
         )

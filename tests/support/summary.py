@@ -31,7 +31,10 @@ def main(report, preset, data):
         inner = set(re.findall(r"^\[  SKIPPED \] ([\w/.]+)(?: \(|$)", output, re.M))
         skipped |= inner
         if case.get("status") not in ("notrun", "disabled"):
-            times.append((float(case.get("time", 0)), case.get("name")))
+            inner_times = re.findall(r"^\[ +(?:OK|FAILED) +\] ([\w/.]+).*\((\d+) ms\)", output, re.M)
+            times += [(int(ms) / 1000, name) for name, ms in inner_times]
+            if not inner_times:
+                times.append((float(case.get("time", 0)), case.get("name")))
         elif not inner:
             skipped.add(case.get("name"))
     print("\nslowest:")
