@@ -50,6 +50,7 @@ struct Mark {
     std::string path, content;
   };
   std::string key;
+  bool below_asked = false;  // an export missed the quality that the script asked for
   std::vector<File> read, wrote;
 };
 
@@ -63,6 +64,7 @@ Mark mark_from(const std::string& text) {
     begin = end + 1;
     if (!line.is_object()) continue;
     mark.key = line.value("key", mark.key);
+    mark.below_asked = line.value("below_asked", mark.below_asked);
     if (line.contains("read")) mark.read.push_back({line.value("read", ""), line.value("content", "")});
     if (line.contains("wrote")) mark.wrote.push_back({line.value("wrote", ""), line.value("content", "")});
   }
@@ -84,6 +86,11 @@ bool is_as_it_was(const Mark::File& file) {
 bool still_done(const Mark& mark, const std::string& key) {
   return mark.key == key && std::all_of(mark.read.begin(), mark.read.end(), is_as_it_was) &&
          std::all_of(mark.wrote.begin(), mark.wrote.end(), is_as_it_was);
+}
+
+void say_quality(BatchResult& result, bool below_asked) {
+  result.below_asked = below_asked;
+  if (below_asked) result.message = "an export missed the psnr that was asked for; the log says which object suffers";
 }
 
 // Says of every exported folder whose it is, to all shards.
@@ -298,6 +305,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
         const Mark before = read_mark(mark);
         if (options.resume && still_done(before, key)) {
           result.status = BatchResult::Status::skipped;
+          say_quality(result, before.below_asked);
         } else {
           for (const Mark::File& folder : before.wrote) claims.release(folder.path, result.name);
           fs::remove(mark);
@@ -325,8 +333,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
     // 4: done, but below the quality that the script asked for.
     const bool below = WIFEXITED(status) && WEXITSTATUS(status) == 4;
     if (below || (WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
-      result.below_asked = below;
-      if (below) result.message = "an export missed the psnr that was asked for; the log says which object suffers";
+      say_quality(result, below);
       const std::string files = read_file(state_folder(options) / (result.name + ".files"));
       result.status = BatchResult::Status::done;
       for (const Mark::File& folder : mark_from(files).wrote)
@@ -337,7 +344,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
         }
       if (result.status == BatchResult::Status::done)
         write_file_atomically(state_folder(options) / (result.name + ".done"),
-                              json{{"key", job.key}}.dump() + '\n' + files, {});
+                              json{{"key", job.key}, {"below_asked", below}}.dump() + '\n' + files, {});
     } else {
       result.message = last_error(state_folder(options) / (result.name + ".log"), status);
     }

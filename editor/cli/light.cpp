@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "editor/cli/terminal.h"
 #include "editor/edits/edit.h"
 #include "editor/edits/results.h"
+#include "editor/fields/field_line.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/light/lighting.h"
@@ -112,6 +114,15 @@ std::shared_ptr<const TurnedLight> turning_of(Scene scene, NodeId node) {
   return found->second;
 }
 
+bool has_node_field(const json& edit) {
+  for (const EditType* type : edit_types()) {
+    if (!edit.contains("op") || edit.at("op") != type->op) continue;
+    const std::vector<FieldLine> fields = type->fields();
+    return std::any_of(fields.begin(), fields.end(), [](const FieldLine& field) { return field.name == "node"; });
+  }
+  return false;
+}
+
 NodePtr chosen_node(const Scene& scene, const std::string& name) {
   NodePtr chosen;
   for (const PlacedNode& placed : placed_nodes(scene)) {
@@ -138,9 +149,7 @@ void train(const Options& options) {
   if (!(options.coarseness >= 0.005 && options.coarseness <= 0.5))
     throw FieldError("coarseness", "must lie between 0.005 and 0.5");
   if (options.edits.empty())
-    throw FieldError(
-        "edit",
-        "say what moves it, such as '{\"op\": \"bend\", \"node\": \"NAME\", \"degrees\": 60, \"axis\": [0, 1, 0]}'");
+    throw FieldError("edit", "say what moves it, such as '{\"op\": \"bend\", \"degrees\": 60, \"axis\": [0, 1, 0]}'");
   auto [scene, sources] = read_all(options.paths, options.axes, progress_bar());
   if (!options.out.empty()) {
     sources.check_file(options.out);
@@ -152,8 +161,9 @@ void train(const Options& options) {
   const NodePtr node = chosen_node(scene, options.node);
   std::vector<json> edits;
   for (const std::string& text : options.edits) {
-    const json edit = json::parse(text, nullptr, false);
+    json edit = json::parse(text, nullptr, false);
     if (!edit.is_object()) throw FieldError("edit", "is no JSON object: " + text);
+    if (!edit.contains("node") && has_node_field(edit)) edit["node"] = node->name;
     // What is wrong with it is said before anything is traced.
     NodePtr after;
     try {
@@ -226,9 +236,11 @@ void describe_light(CommandDescription& command) {
       .option("paths", options->paths, "train: a scene; keep: a model and the scene it is for; info: a model",
               "PATH...")
       .required();
-  command.option("--edit", options->edits,
-                 "train, needed: what moves the object, a line as in scripts; poses take it as far as -1 to 1 times",
-                 "JSON...");
+  command.option(
+      "--edit", options->edits,
+      "train, needed: what moves the object, a line as in scripts (its node is the object unless it names one); poses "
+      "take it as far as -1 to 1 times",
+      "JSON...");
   command.option("--node", options->node, "train: the object; left out: the only one", "NAME");
   command.option("--poses", options->poses, "train: so many, 8 to 2000", "N [200]").between(8, 2000);
   command.option("--rays", options->rays, "train: from each point, 16 to 16384", "N [128]").between(16, 16384);

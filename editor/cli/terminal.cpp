@@ -39,12 +39,14 @@ void end_when_asked() {
 
 void stop_on_interrupt() {
   ::sem_init(&asked_to_end, 0, 0);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-    std::signal(signal, [](int number) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const auto before = std::signal(signal, [](int number) {
       interrupted = true;
       ::sem_post(&asked_to_end);
       std::signal(number, SIG_DFL);
     });
+    if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // as under nohup
+  }
   // The watcher takes no signals: they are for the other threads.
   sigset_t all, before;
   ::sigfillset(&all);

@@ -12,7 +12,7 @@ namespace {
 // All that edits look at, by what scenes share.
 bool same_scene(const Scene& a, const Scene& b) {
   return a.roots == b.roots && a.background == b.background && a.views == b.views && a.next_id == b.next_id &&
-         a.light == b.light;
+         a.light == b.light && a.ground == b.ground;
 }
 
 }  // namespace

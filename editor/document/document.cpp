@@ -135,7 +135,7 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
   for (const Journal::Contents::Line& after : contents.after)
     result.lost.push_back(named(after.number, json::parse(after.entry)) + " (behind the damage)");
   result.edits = history.undo_count();
-  if (result.lost.empty() && links.empty() && contents.damaged_line == 0)
+  if (result.lost.empty() && links.empty() && contents.damaged_line == 0 && contents.current)
     result.document.journal_ = std::move(journal);
   else
     result.journal = std::move(journal);

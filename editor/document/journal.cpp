@@ -75,6 +75,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
       const json& of = entry->at("rebake_journal");
       if (!of.is_number_unsigned() || of.get<std::uint64_t>() > journal_version)
         throw FileError(path, "was written by a newer version of Rebake; open it with that one");
+      contents.current = of.get<std::uint64_t>() == journal_version;
       parsed.begun = true;
       parsed.good_bytes = begin;
       continue;

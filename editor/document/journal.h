@@ -42,6 +42,7 @@ class Journal {
 
   /// What a journal holds, in order.
   struct Contents {
+    bool current = true;               ///< written in this version's format: older programs refuse lines added to it
     std::vector<std::string> entries;  ///< as JSON: all that are whole, before the first that is not
     bool torn = false;                 ///< something followed that was being written when the program ended
     std::size_t damaged_line = 0;      ///< the first that is not what was written, from 1; 0 for none

@@ -194,4 +194,12 @@ void check_boxes(const nlohmann::json& edit) {
     if (edit.contains(list)) check_boxes(edit.at(list));
 }
 
+void set_ground(Scene& scene, const Ground& ground) {
+  scene.ground = ground;
+  if (!scene.light || scene.light->up == ground.normal) return;
+  auto light = std::make_shared<SceneLight>(*scene.light);
+  light->up = ground.normal;
+  scene.light = light;
+}
+
 }  // namespace rebake

@@ -56,6 +56,9 @@ Box selection_bounds(const PlacedNode& placed);
 /// groups nest too deep.
 void check_subtree(const Scene& scene, NodeId id);
 
+/// Sets the scene's ground, and up for its sky light.
+void set_ground(Scene& scene, const Ground& ground);
+
 /// Throws EditError when the transform flattens what it moves.
 void checked_turn(const Affine& transform);
 

@@ -265,19 +265,21 @@ AtomicFolder::~AtomicFolder() {
 }
 
 void AtomicFolder::write(const fs::path& relative, std::string_view bytes) {
+  PartialWrite::committing().unlock();  // nothing is added to a folder that is being removed
   const fs::path path = staging_ / relative;
   make_folders(path.parent_path());
   write_synced(path, bytes, O_TRUNC);
 }
 
 void AtomicFolder::commit() {
-  const auto committing = PartialWrite::committing();
+  PartialWrite::committing().unlock();  // nor is one that was removed looked through
   // First what it holds, then the folders that name it, then its own name.
   std::set<fs::path> folders{staging_};
   for (const auto& entry : fs::recursive_directory_iterator(staging_))
     if (entry.is_directory()) folders.insert(entry.path());
   for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) sync_folder(*folder);
   fs::path old;
+  const auto committing = PartialWrite::committing();
   if (fs::exists(target_)) {
     // One system call swaps old and new; the old one, now at the staging path, is removed by the destructor.
     if (file_calls().rename(staging_.c_str(), target_.c_str(), RENAME_EXCHANGE) == 0) {

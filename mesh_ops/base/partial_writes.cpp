@@ -45,10 +45,13 @@ void abandon_writes(std::chrono::milliseconds patience) {
   const std::unique_lock lock(writes().mutex, patience);
   if (!lock) return;
   writes().abandoned = true;
-  for (const fs::path& path : writes().partial) {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
+  // Another thread may still be adding the file that it has begun.
+  constexpr int tries = 3;
+  for (int k = 0; k < tries; ++k)
+    for (const fs::path& path : writes().partial) {
+      std::error_code ignored;
+      fs::remove_all(path, ignored);
+    }
 }
 
 }  // namespace rebake

@@ -59,6 +59,26 @@ TEST_F(Batch, EveryResultIsThatOfTheScriptAlone) {
   EXPECT_EQ(folder_bytes(options.out), once) << "a second run gives the same bytes";
 }
 
+TEST_F(Batch, ResumeRemembersAMissedQuality) {
+  export_scene(scene_of(made_object({.columns = 4, .rows = 2, .seed = 99})), folder_.path() / "other", {});
+  write_text(options.script,
+             R"({"op": "import", "path": ")" + (folder_.path() / "other").string() + R"("}
+{"op": "transform", "node": "other", "translate": [3, 0, 0]}
+{"op": "export", "out": ")" +
+                 options.out.string() +
+                 R"(/{name}", "plain": true, "width": 4, "way": "new", "psnr": 99, "seconds": 1, "picture_size": 32}
+)");
+  options.scenes = {(folder_.path() / "scenes/a").string()};
+  for (const Status status : {Status::done, Status::skipped}) {
+    const std::vector<BatchResult> results = run_batch(options, {}, [](const BatchResult&) {});
+    ASSERT_EQ(results.size(), 1U);
+    EXPECT_EQ(results[0].status, status) << results[0].message;
+    EXPECT_TRUE(results[0].below_asked);
+    EXPECT_NE(results[0].message.find("missed the psnr"), std::string::npos);
+    options.resume = true;
+  }
+}
+
 TEST_F(Batch, FailuresStandAlone) {
   fs::remove(folder_.path() / "scenes/b/mlp.json");
   EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::failed}, {"c", Status::done}}));

@@ -52,6 +52,16 @@ TEST_F(DocumentTest, UndoAndRedoWalkTheSameScenes) {
   EXPECT_FALSE(document.redo()) << "a new edit forgets what was undone";
 }
 
+TEST_F(DocumentTest, WhatWasCarriedOutOnAnotherGroundIsDoneAgain) {
+  Document document;
+  import(document);
+  const Edit move = read_edit({{"op", "transform"}, {"node", "ball"}, {"translate", {0, 1, 0}}}, document.scene());
+  const CarriedOut made = carried_out(document.scene(), {move});
+  act(document, R"({"op": "ground", "height": -3})");
+  document.edits({move}, {}, &made);
+  EXPECT_EQ(document.scene().ground.height, -3);
+}
+
 // What a preview carried out is committed as it is; of another scene or other edits it is done anew.
 TEST_F(DocumentTest, WhatIsCarriedOutAlreadyIsNotDoneAgain) {
   Document document;

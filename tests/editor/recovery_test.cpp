@@ -70,6 +70,16 @@ TEST_F(Recovery, AFlippedByteAnywhereLeavesEverythingBeforeIt) {
   }
 }
 
+TEST_F(Recovery, JournalsOfEarlierVersionsTakeNoLinesThatOlderProgramsMisread) {
+  const auto line = [](const std::string& text) { return hash_text(content_hash(text)) + " " + text + "\n"; };
+  write(path("old"),
+        line(R"({"rebake_journal":2})") + line(R"({"edit":{"color":[0.0,0.0,0.5],"op":"background"},"n":1})"));
+  Document::Recovered recovered = Document::recover(path("old"));
+  EXPECT_EQ(recovered.edits, 1U);
+  EXPECT_FALSE(recovered.document.keeps_journal()) << "a new journal is begun";
+  EXPECT_TRUE(recovered.journal);
+}
+
 TEST_F(Recovery, AnAdjustedStepIsThereAsItWasOrAsItIsWhereverTheProgramEnds) {
   const auto background = [](double blue) {
     Background edit;

@@ -207,6 +207,49 @@ TEST_F(Script, ANodeThatIntersectsOthersIsLiftedOutBeforeItFalls) {
   }
 }
 
+// A box of that size about the origin.
+std::shared_ptr<const BakedObject> box_object(const Vec3& size) {
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 2, .rows = 2}));
+  const Soup quad = object->sets[0].soup;
+  std::vector<Vec3> positions;
+  std::vector<Vec2> uvs;
+  std::vector<Face> faces;
+  const auto add = [&](const std::array<Vec3, 3>& corners) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      positions.emplace_back(corners[k].cwiseProduct(size) / 2);
+      uvs.push_back(quad.uvs()[quad.faces()[0][k]]);
+    }
+    const auto last = static_cast<std::uint32_t>(positions.size());
+    faces.push_back({last - 3, last - 2, last - 1});
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      std::array<Vec3, 4> p;
+      for (std::size_t k = 0; k < 4; ++k) {
+        p[k][axis] = side;
+        p[k][(axis + 1) % 3] = k == 1 || k == 2 ? 1 : -1;
+        p[k][(axis + 2) % 3] = k >= 2 ? 1 : -1;
+      }
+      add({p[0], p[1], p[2]});
+      add({p[0], p[2], p[3]});
+    }
+  object->sets[0].soup = Soup(positions, uvs, faces);
+  return object;
+}
+
+TEST_F(Script, CrossedBoxesMeetWhereNoCornerIsAboveAFace) {
+  export_scene(scene_of(box_object({10, 1, 1})), folder_.path() / "beam", {});
+  export_scene(scene_of(box_object({1, 1, 10})), folder_.path() / "sleeper", {});
+  run(R"({"op": "import", "path": "{here}/sleeper"}
+{"op": "ground", "foot": true}
+{"op": "import", "path": "{here}/beam"})");
+  for (const double y : {7.0, 0.2}) {  // from above, and crossing it
+    run(fmt::format(R"({{"op": "place", "node": "beam", "position": [0.1, {}, 0.2]}})", y) + "\n" +
+        R"({"op": "drop", "node": "beam"})");
+    EXPECT_NEAR(find_placed(session.scene(), node("beam")->id)->to_world.translation().y(), 1, 1e-5) << y;
+  }
+}
+
 TEST_F(Script, TheGroundIsSetByHeightFootPointsOrSelection) {
   run(import + R"({"op": "ground", "height": -4}
 {"op": "drop", "node": "ball"})");
@@ -228,6 +271,9 @@ TEST_F(Script, TheGroundIsSetByHeightFootPointsOrSelection) {
 {"op": "ground", "selection": true})");
   EXPECT_GT(session.scene().ground.normal.y(), 0.9) << "the cap of a ball is level";
   EXPECT_EQ(session.scene().light->up, session.scene().ground.normal);
+  run(R"({"op": "import", "path": "{here}/other", "ground": true})");
+  EXPECT_EQ(session.scene().ground.normal, Vec3(0, 1, 0));
+  EXPECT_EQ(session.scene().light->up, Vec3(0, 1, 0));
   expect_error(R"({"op": "ground"})", "exactly one of");
   expect_error(R"({"op": "ground", "height": 1, "foot": true})", "exactly one of");
   expect_error(R"({"op": "ground", "points": [[0, 0, 0], [1, 1, 1], [2, 2, 2]]})", "one line");

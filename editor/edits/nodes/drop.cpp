@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <set>
 #include <stdexcept>
+#include <unordered_map>
+#include <vector>
 
 #include "editor/edits/describe.h"
 #include "editor/edits/nodes/transform.h"
@@ -52,6 +57,57 @@ struct Body {
   }
 };
 
+// Edges in the ground's frame, by the cells of a grid over x and z that they pass.
+class EdgeGrid {
+ public:
+  EdgeGrid(const std::vector<std::array<Vec3, 3>>& triangles, const Mat3& to_ground, const Box& room) : room_(room) {
+    const double widest = std::max(room.sizes().x(), room.sizes().z());
+    const double cells = std::clamp(std::sqrt(static_cast<double>(triangles.size())), 1.0, 512.0);
+    cell_ = widest > 0 ? widest / cells : 1;
+    for (const std::array<Vec3, 3>& triangle : triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Edge edge{to_ground * triangle[k], to_ground * triangle[(k + 1) % 3]};
+        each_cell(edge.from, edge.to, [&](std::int64_t cell) { cells_[cell].push_back(edge); });
+      }
+  }
+
+  // Calls visit(height of the given edge, height of the other) where they cross, seen along y.
+  template <class Visit>
+  void each_crossing(const Vec3& from, const Vec3& to, Visit visit) const {
+    each_cell(from, to, [&](std::int64_t cell) {
+      const auto found = cells_.find(cell);
+      if (found == cells_.end()) return;
+      for (const Edge& other : found->second) {
+        const Vec3 a = to - from, b = other.to - other.from, between = other.from - from;
+        const double area = a.x() * b.z() - a.z() * b.x();
+        const double s = (between.x() * b.z() - between.z() * b.x()) / area;
+        const double t = (between.x() * a.z() - between.z() * a.x()) / area;
+        // Parallel edges meet at their corners only.
+        if (s >= 0 && s <= 1 && t >= 0 && t <= 1) visit(from.y() + s * a.y(), other.from.y() + t * b.y());
+      }
+    });
+  }
+
+ private:
+  struct Edge {
+    Vec3 from, to;
+  };
+
+  // Cells of the edge's box; those outside of the room are left out.
+  template <class Visit>
+  void each_cell(const Vec3& from, const Vec3& to, Visit visit) const {
+    const Vec3 low = from.cwiseMin(to).cwiseMax(room_.min()), high = from.cwiseMax(to).cwiseMin(room_.max());
+    if (low.x() > high.x() || low.z() > high.z()) return;
+    const auto at = [&](double value, double first) { return static_cast<std::int64_t>((value - first) / cell_); };
+    for (std::int64_t x = at(low.x(), room_.min().x()); x <= at(high.x(), room_.min().x()); ++x)
+      for (std::int64_t z = at(low.z(), room_.min().z()); z <= at(high.z(), room_.min().z()); ++z) visit(x * 4096 + z);
+  }
+
+  Box room_;
+  double cell_;
+  std::unordered_map<std::int64_t, std::vector<Edge>> cells_;
+};
+
 class Fall {
  public:
   Fall(Body body, Body others, const Ground& ground, const Progress& progress)
@@ -66,13 +122,16 @@ class Fall {
   // The motion along the normal that makes the body stand, negative where it falls; infinite if nothing is below.
   double run() {
     lift_ = std::max(0.0, ground_.height - body_.box.min().y());
-    bool out = false;
+    bool out = false, lifted = false;
     for (int round = 0; round < most_rounds && !out; ++round) {
       progress_.at("lifting out", static_cast<double>(round) / most_rounds);
       const double more = std::max(penetration(body_, others_, 1), penetration(others_, body_, -1));
       out = more == 0;
       lift_ += more;
+      lifted = lifted || more > 0;
     }
+    // Bodies count as out once they touch within the slack: the fall then ends where they touch.
+    if (lifted) lift_ += slack_;
     // Above everything, in any case.
     if (!out) lift_ = others_.box.max().y() - body_.box.min().y();
     progress_.at("falling", 0);
@@ -140,6 +199,13 @@ class Fall {
           continue;
         if (const auto hit = body_.rays.nearest(corner - offset, up, -slack_, infinite)) stop(hit->t);
       }
+    // Edges meet edges that they cross, seen from above.
+    const EdgeGrid below(others_.triangles, to_ground_, body_.box);
+    for (const std::array<Vec3, 3>& triangle : body_.triangles)
+      for (std::size_t k = 0; k < 3; ++k)
+        below.each_crossing(to_ground_ * triangle[k], to_ground_ * triangle[(k + 1) % 3], [&](double mine, double its) {
+          if (const double gap = mine + lift_ - its; gap >= -slack_) stop(gap);
+        });
     return way;
   }
 

@@ -75,12 +75,7 @@ Outcome apply(const Scene& scene, const GroundEdit& edit) {
       (edit.height ? 1 : 0) + (edit.foot ? 1 : 0) + (edit.selection ? 1 : 0) + (edit.points.points.empty() ? 0 : 1);
   if (given != 1) throw EditError("exactly one of height, foot, selection and points must be given");
   Scene result = scene;
-  result.ground = wanted_ground(scene, edit);
-  if (result.light && result.light->up != result.ground.normal) {
-    auto light = std::make_shared<SceneLight>(*result.light);
-    light->up = result.ground.normal;
-    result.light = light;
-  }
+  set_ground(result, wanted_ground(scene, edit));
   const Vec3 up = result.ground.normal;
   std::string said =
       fmt::format("ground: height {:.6g} along ({:.4g}, {:.4g}, {:.4g})", result.ground.height, up.x(), up.y(), up.z());

@@ -32,9 +32,9 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
   Scene result = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
   for (const auto& [name, camera] : read.views) result.views.try_emplace(name, camera);
   if (scene.roots.empty() && read.ground != Ground{})
-    result.ground = read.ground;
+    set_ground(result, read.ground);
   else if (const Box box = world_bounds(result); edit.ground && !box.isEmpty())
-    result.ground = {Vec3::UnitY(), box.min().y()};
+    set_ground(result, {Vec3::UnitY(), box.min().y()});
   Report report;
   for (const std::string& assumption : assumptions_of(read))
     report.lines.push_back(fmt::format("warning: {}: {}", edit.path, assumption));

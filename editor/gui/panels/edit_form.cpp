@@ -103,7 +103,9 @@ void EditForm::show(Desk& desk) {
   if (desk.jobs.worker.busy()) return;
   try {
     const std::vector<json> wanted = lines(desk);
-    const std::string text = json(wanted).dump();
+    const Ground& ground = desk.scene().ground;
+    const std::string text =
+        json(wanted).dump() + fmt::format(" {} {} {}", ground.normal.x(), ground.normal.z(), ground.height);
     if (text == previewed_ && previewed_on_ == desk.scene().roots) return;
     previewed_ = text;
     previewed_on_ = desk.scene().roots;
@@ -114,6 +116,7 @@ void EditForm::show(Desk& desk) {
     desk.show_preview(std::move(edits));
     problem_.clear();
   } catch (const Error& error) {
+    previewed_.clear();
     problem_ = error.what();
   }
 }

@@ -147,7 +147,7 @@ void CageTool::commit(Desk& desk) {
     moved_ = steps_[at_];
   };
   if (edit.moves.empty()) {
-    if (at_ > 0) desk.undo(static_cast<int>(std::exchange(at_, 0)));  // dragged back to rest
+    if (std::exchange(at_, 0) > 0) desk.undo(desk.now->revised_steps);  // dragged back to rest
   } else if (at_ == 0) {
     desk.edits({edit}, done, failed);
   } else {

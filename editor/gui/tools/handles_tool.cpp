@@ -149,7 +149,7 @@ void HandlesTool::commit(Desk& desk) {
       for (Pin& pin : pins_) pin.moved = pin.at;
   };
   if (!wanted) {
-    if (at_ > 0) desk.undo(static_cast<int>(std::exchange(at_, 0)));  // no pin pulls any more
+    if (std::exchange(at_, 0) > 0) desk.undo(desk.now->revised_steps);  // no pin pulls any more
   } else if (at_ == 0) {
     desk.edits({*wanted}, done, failed);
   } else {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "editor/document/journal.h"
 #include "editor/gui/window/settings.h"
@@ -55,7 +56,7 @@ std::vector<LostWork> work_in(const fs::path& folder, bool discarded) {
           std::chrono::time_point_cast<std::chrono::system_clock::duration>(std::chrono::file_clock::to_sys(written));
     try {
       const Journal::Contents contents = Journal::read(path);
-      if (contents.entries.empty()) {
+      if (contents.entries.empty() && contents.damaged_line == 0) {
         // Nothing was done there; a fresh one may be another editor's that is just starting.
         if (!unknown && fs::file_time_type::clock::now() - written > std::chrono::minutes(1)) fs::remove(path, unknown);
         continue;
@@ -88,7 +89,8 @@ void empty_trash() {
   sweep(trash_folder(), [now = fs::file_time_type::clock::now()](const fs::path& path) {
     std::error_code unknown;
     const fs::file_time_type discarded = fs::last_write_time(path, unknown);
-    return !unknown && path.extension() == ".journal" && now - discarded > std::chrono::days(trash_days);
+    return !unknown && path.extension() == ".journal" && now - discarded > std::chrono::days(trash_days) &&
+           !Journal::in_use(path);
   });
 }
 
@@ -120,6 +122,8 @@ std::vector<LostWork> lost_work() {
 std::vector<LostWork> discarded_work() { return work_in(trash_folder(), true); }
 
 void discard(const LostWork& work) {
+  if (Journal::in_use(work.journal))
+    throw fs::filesystem_error("discard", work.journal, std::make_error_code(std::errc::device_or_resource_busy));
   fs::create_directories(trash_folder());
   // The trash counts from here.
   fs::last_write_time(work.journal, fs::file_time_type::clock::now());

@@ -26,7 +26,7 @@ inline constexpr int trash_days = 30;
 std::vector<LostWork> lost_work();
 /// Work in the trash, the latest first.
 std::vector<LostWork> discarded_work();
-/// Moves work to the trash. Throws std::filesystem::filesystem_error.
+/// Moves work to the trash. Throws std::filesystem::filesystem_error, also when another editor has recovered it.
 void discard(const LostWork& work);
 /// Moves discarded work back, and returns where its journal lies then. Throws std::filesystem::filesystem_error.
 std::filesystem::path restore(const LostWork& work);

@@ -95,14 +95,21 @@ void Project::recover(const fs::path& journal, const Relinked& links, bool go_on
   auto problem = std::make_shared<std::string>();
   worker_.start(
       "recover",
-      [journal, links, gone, problem, go_on_without](Session& session) {
+      [journal, links, gone, problem, go_on_without, keeps_present = unsaved()](Session& session) {
         Document::Recovered recovered = Document::recover(journal, links, session.progress);
         *gone = recovered.gone;
         if (!gone->empty() && !go_on_without) return;  // asked for
         if (!recovered.document.keeps_journal()) keep_journal(recovered.document);
-        session.document.discard_journal();
+        const fs::path present = session.document.journal_path();
+        if (!keeps_present) session.document.discard_journal();
         session.document = std::move(recovered.document);
         std::string said = fmt::format("{} edits recovered", recovered.edits);
+        if (keeps_present && !present.empty()) {
+          LostWork open;
+          open.journal = present;
+          discard(open);
+          said += "; the work that was open is in the trash (File, Discarded work)";
+        }
         if (recovered.torn) said += "; one more was being made when the editor ended: it is lost";
         session.say(said);
         if (recovered.lost.empty()) {
@@ -205,8 +212,10 @@ void Project::run_script(const fs::path& file) {
 
 bool Project::unsaved() const {
   const Scene& kept = saved_ ? *saved_ : imported;
+  const std::shared_ptr<const SceneLight>&now = now_->scene.light, &before = kept.light;
+  const bool same_light = now == before || (now && before && *now == *before);
   return now_->scene.roots != kept.roots || now_->scene.views != kept.views ||
-         now_->scene.background != kept.background || now_->scene.ground != kept.ground;
+         now_->scene.background != kept.background || now_->scene.ground != kept.ground || !same_light;
 }
 
 }  // namespace rebake

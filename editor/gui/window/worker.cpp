@@ -120,6 +120,8 @@ void Worker::name_steps(Snapshot& next, const Scene& before) {
     groups.back().edits.push_back(entries[k].edit);
     if (k < history.undo_count()) next.steps_done = groups.size();
   }
+  next.revised_steps = next.steps_done > 0 ? 1 : 0;
+  for (std::size_t k = next.steps_done; k > 0 && groups[k - 1].replaced; --k) ++next.revised_steps;
   std::map<const void*, std::string> titles;
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const StepEdits& group = groups[k];

@@ -26,6 +26,7 @@ struct Snapshot {
   };
   std::vector<Step> steps;
   std::size_t steps_done = 0;
+  int revised_steps = 0;  ///< steps back to the scene that the last step was applied to: 1, more after revisions
   std::optional<Scene> before_last;  ///< the scene before the last step; nothing where it is not kept
   SourceGuard sources;               ///< where nothing may be written
   std::uint64_t history_bytes = 0;   ///< that the kept scenes hold
