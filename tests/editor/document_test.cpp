@@ -20,6 +20,7 @@
 #include "tests/support/document_fixture.h"
 #include "tests/support/edits.h"
 #include "tests/support/made_scenes.h"
+#include "tests/support/thorough.h"
 
 namespace rebake::test {
 namespace {
@@ -298,7 +299,7 @@ TEST_F(DocumentTest, KilledAtAnyMomentAndTwiceTheReportedEditsAreThere) {
   // The child reports each edit that is done by a byte; both the first run and the one that goes on are killed.
   std::mt19937 random(11);
   int in_flight = 0;
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < cases(80, 400); ++round) {
     const fs::path journal = path(fmt::format("k{}", round));
     std::size_t reported = 0;
     for (int life = 0; life < 2; ++life) {

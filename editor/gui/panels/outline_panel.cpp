@@ -222,7 +222,8 @@ void OutlinePanel::draw(Desk& desk) {
   }
   ImGui::EndTable();
   const std::string selected = desk.selected_words();
-  ImGui::TextDisabled("%s", fmt::format("{} triangles{}{}", triangles, selected.empty() ? "" : ", ", selected).c_str());
+  const std::string all = fmt::format("{} triangles{}{}", triangles, selected.empty() ? "" : ", ", selected);
+  ImGui::TextDisabled("%s", ui::shortened(all, ImGui::GetContentRegionAvail().x).c_str());
 }
 
 }  // namespace rebake
