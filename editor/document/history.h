@@ -40,7 +40,8 @@ class History {
   std::optional<Scene> before_last_step() const;
   /// Number of edits before the last step that the step replaces.
   std::size_t replaced_by_last_step() const;
-  /// The scene after so many edits, at most undo_count(); computed again if it is not cached. Throws as undo() does.
+  /// The scene after the first `edits` edits (at most undo_count()); computed again if it is not cached. Throws as
+  /// undo() does.
   Scene scene_at(std::size_t edits, const Progress& progress = {}) const;
 
   /// Adds an edit and the scene that it made of scene_at(undo_count() - replaced); forgets undone edits. `joined`: it

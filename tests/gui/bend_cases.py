@@ -136,7 +136,7 @@ class BendTest(WindowCase):
         editor.key("ctrl+y", "ctrl+y", "ctrl+y")
         self.assertEqual(editor.items("handle"), third)
         editor.key("v")
-        self.assertEqual(editor.state()["steps"], 4, "what was done stays")
+        self.assertEqual(editor.state()["steps"], 4, "leaving the tool keeps every step")
 
     def test_a_kettle_is_put_onto_the_pot(self):
         editor = self.open(FICUS, KETTLE)

@@ -11,7 +11,7 @@ struct Import {
   std::string as;
   Axes axes = Axes::y_up;
   std::string content;
-  bool ground = false;  ///< sets the scene's ground to the foot of what is imported
+  bool ground = false;  ///< moves the scene's ground to the lowest point of the imported objects
 };
 template <>
 const EditType& edit_type<Import>();

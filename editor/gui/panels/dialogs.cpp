@@ -56,7 +56,7 @@ void say(const std::string& text) {
 
 }  // namespace
 
-// One line per journal: thumbnail, sources, steps and time, and what can be done with it.
+// Draws one journal: thumbnail, sources, number of steps, time, and its Recover and Discard buttons.
 void Dialogs::draw_lost(Project& project, Thumbnails& thumbnails, const LostWork& work, bool first) {
   ImGui::PushID(work.journal.c_str());
   const ImVec2 size{px(96), px(60)};

@@ -40,10 +40,7 @@ void GroundTool::add(Desk& desk, const Vec3& point) {
 }
 
 void GroundTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
-  constexpr double click_reach = 4;  // pixels; farther is a drag
-  if (pointer.pressed && pointer.inside) pressed_at_ = pointer.at;
-  if (!pointer.released || (pressed_at_ - pointer.at).norm() > click_reach) return;
-  pressed_at_ = Vec2(-1e9, -1e9);
+  if (!click_.ends(pointer)) return;
   auto picked = std::make_shared<std::optional<Picked>>();
   desk.jobs.worker.start(
       "pick", [picked, lens, at = pointer.at](Session& session) { *picked = pick(session.scene(), lens, at); },

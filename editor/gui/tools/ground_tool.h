@@ -18,7 +18,7 @@ class GroundTool final : public ViewTool {
   void add(Desk& desk, const Vec3& point);
 
   std::vector<Vec3> points_;  ///< clicked so far, at most two
-  Vec2 pressed_at_{-1, -1};
+  Click click_;
   double height_ = 0;      ///< in the height field
   bool dragging_ = false;  ///< the height field is being dragged
 };

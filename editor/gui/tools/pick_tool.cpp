@@ -41,10 +41,7 @@ void take(Desk& desk, const std::optional<Picked>& picked, const Pointer& pointe
 }  // namespace
 
 void PickTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
-  constexpr double click_reach = 4;  // pixels; farther is a drag
-  if (pointer.pressed && pointer.inside) pressed_at_ = pointer.at;
-  if (!pointer.released || (pressed_at_ - pointer.at).norm() > click_reach) return;
-  pressed_at_ = Vec2(-1e9, -1e9);
+  if (!click_.ends(pointer)) return;
   // On the worker: what was not looked through yet takes its time.
   auto picked = std::make_shared<std::optional<Picked>>();
   desk.jobs.worker.start(

@@ -16,7 +16,7 @@ class PickTool final : public ViewTool {
 
  private:
   bool floods_;
-  Vec2 pressed_at_{-1, -1};
+  Click click_;
 };
 
 }  // namespace rebake

@@ -4,8 +4,10 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "editor/gui/ui/style.h"
 #include "editor/gui/view/lens.h"
@@ -23,6 +25,21 @@ struct Pointer {
   bool double_clicked = false;
   bool let_go = false;  ///< right button, just now
   bool shift = false, control = false, alt = false;
+};
+
+/// Tells clicks from drags.
+class Click {
+ public:
+  /// Whether a click inside the viewport ends in this frame: the pointer moved by at most 4 pixels since the press.
+  bool ends(const Pointer& pointer) {
+    constexpr double reach = 4;
+    if (pointer.pressed && pointer.inside) pressed_at_ = pointer.at;
+    if (!pointer.released || !pressed_at_) return false;
+    return (*std::exchange(pressed_at_, std::nullopt) - pointer.at).norm() <= reach;
+  }
+
+ private:
+  std::optional<Vec2> pressed_at_;
 };
 
 /// What the left button does in the viewport. A drag is a preview; release makes one edit.

@@ -65,26 +65,24 @@ void select(Desk& desk, bool all, bool none, bool invert) {
   desk.edit_scope(edit);
 }
 
+// One edit per picked node.
 template <class T>
-void each_active(Desk& desk) {
+std::vector<Edit> for_each_active(const Desk& desk) {
   std::vector<Edit> list;
   for (const NodeId id : desk.active_tops()) {
     T edit;
     edit.node = NodeRef{id};
     list.emplace_back(edit);
   }
-  desk.edits(list);
+  return list;
 }
 
-void drop(Desk& desk) {
-  std::vector<Edit> list;
-  for (const NodeId id : desk.active_tops()) {
-    Drop edit;
-    edit.node = NodeRef{id};
-    list.emplace_back(edit);
-  }
-  desk.edits_that_change(list);
+template <class T>
+void each_active(Desk& desk) {
+  desk.edits(for_each_active<T>(desk));
 }
+
+void drop(Desk& desk) { desk.edits_that_change(for_each_active<Drop>(desk)); }
 
 // Sets the ground at the scene's foot, or fits it to the selection.
 template <bool GroundEdit::*from>
@@ -101,13 +99,7 @@ void show_discarded(Desk& desk) {
 
 // In Blender's keymap the copies, which are picked then, are moved at once.
 void duplicate(Desk& desk) {
-  std::vector<Edit> list;
-  for (const NodeId id : desk.active_tops()) {
-    Duplicate edit;
-    edit.node = NodeRef{id};
-    list.emplace_back(edit);
-  }
-  desk.edits(list, [&desk] {
+  desk.edits(for_each_active<Duplicate>(desk), [&desk] {
     if (desk.settings.blender_keys) grab<ToolKind::move>(desk);
   });
 }

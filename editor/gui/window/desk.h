@@ -83,7 +83,7 @@ struct Desk {
   /// All of them as one step of history, or none where one fails; `then` once they are done, `otherwise` when they
   /// failed or were stopped.
   void edits(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
-  /// The same, but records nothing if they leave every node as it is; the status line then says what they reported.
+  /// Like edits(), but records nothing if no node changes; the status line then shows the reports.
   void edits_that_change(const std::vector<Edit>& list);
   /// In place of the last step, which is taken back; where they fail it stays.
   void adjust(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});

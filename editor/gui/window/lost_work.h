@@ -10,8 +10,8 @@ namespace rebake {
 /// Unsaved work that an editor left behind in a journal.
 struct LostWork {
   std::filesystem::path journal;
-  std::string sources;                            ///< names of what was imported; or why the journal cannot be read
-  std::size_t steps = 0;                          ///< steps of history, undone ones not counted
+  std::string sources;    ///< names of what was imported; else the reason why the journal cannot be read
+  std::size_t steps = 0;  ///< steps of history, undone ones not counted
   std::chrono::system_clock::time_point changed;  ///< when the last step was made
   bool discarded = false;                         ///< it lies in the trash
   /// "27 steps, 26 November 2026, 14:05", in local time.
@@ -21,8 +21,8 @@ struct LostWork {
 /// Days that discarded work stays in the trash.
 inline constexpr int trash_days = 30;
 
-/// Work of editors that ended without saving, the latest first. Also empties the trash of what is older than
-/// trash_days, and removes thumbnails whose journal is gone.
+/// Work of editors that ended without saving, the latest first. Also deletes work that was discarded more than
+/// trash_days ago and removes thumbnails whose journal is gone.
 std::vector<LostWork> lost_work();
 /// Work in the trash, the latest first.
 std::vector<LostWork> discarded_work();
