@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,9 +11,11 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 #include <random>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/file_calls.h"
@@ -26,10 +29,13 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Descriptor {
-  int value = -1;
+  explicit Descriptor(int opened) : value(opened) {}
+  Descriptor(Descriptor&& other) noexcept : value(std::exchange(other.value, -1)) {}
+  Descriptor& operator=(Descriptor&&) = delete;
   ~Descriptor() {
     if (value >= 0) ::close(value);
   }
+  int value;
 };
 
 std::string reason() { return std::strerror(errno); }
@@ -56,28 +62,49 @@ std::string read_all(const fs::path& path, int file, std::uint64_t expected, std
   return bytes;
 }
 
-std::string read_some(const fs::path& path, std::uint64_t most, bool pipes) {
+// A file opened for reading, and its size where it is a regular one.
+struct Input {
+  Descriptor file;
+  std::optional<std::uint64_t> size;
+};
+
+Input open_input(const fs::path& path, bool pipes) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw FileError(path, "does not exist");
   if (fs::is_directory(status)) throw FileError(path, "is a folder, not a file");
   const bool regular = fs::is_regular_file(status), pipe = fs::is_fifo(status) || fs::is_character_file(status);
-  if (!regular && !(pipes && pipe)) throw FileError(path, "is no regular file (a pipe, a device or a socket)");
+  if (!regular && !(pipes && pipe)) throw FileError(path, "is not a regular file (it is a pipe, a device or a socket)");
   // A pipe that takes the file's place now would make opening wait for ever.
-  Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular ? O_NONBLOCK : 0))};
+  Input input{Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular ? O_NONBLOCK : 0))), std::nullopt};
   struct stat about {};
-  if (file.value < 0 || ::fstat(file.value, &about) != 0) fail(path, "cannot be read");
-  if (regular && !S_ISREG(about.st_mode)) throw FileError(path, "is no regular file any more");
-  const auto size = regular ? static_cast<std::uint64_t>(about.st_size) : std::uint64_t{65536};
-  if (regular && size > most) throw FileError(path, "is larger than " + megabytes(most) + ", the most that is read");
-  return read_all(path, file.value, size, most);
+  if (input.file.value < 0 || ::fstat(input.file.value, &about) != 0) fail(path, "cannot be read");
+  if (regular && !S_ISREG(about.st_mode)) throw FileError(path, "is no longer a regular file");
+  if (regular) input.size = static_cast<std::uint64_t>(about.st_size);
+  return input;
 }
 
-void write_synced(const fs::path& path, std::string_view bytes, int flags) {
+std::string read_some(const fs::path& path, std::uint64_t most, bool pipes) {
+  const Input input = open_input(path, pipes);
+  if (input.size.value_or(0) > most)
+    throw FileError(path, "is larger than " + megabytes(most) + ", the most that is read");
+  return read_all(path, input.file.value, input.size.value_or(65536), most);
+}
+
+void write_synced(const fs::path& path, int flags, const std::function<void(const AtomicFolder::Append&)>& make) {
   const OutputFile file(path, O_WRONLY | O_CREAT | flags);
   // So that nobody takes it for a leftover.
   ::flock(file.descriptor(), LOCK_SH | LOCK_NB);
-  if (!file.write_at(0, bytes) || !file.sync()) fail(path, "cannot be written");
+  std::uint64_t size = 0;
+  make([&](std::string_view bytes) {
+    if (!file.write_at(size, bytes)) fail(path, "cannot be written");
+    size += bytes.size();
+  });
+  if (!file.sync()) fail(path, "cannot be written");
+}
+
+void write_synced(const fs::path& path, std::string_view bytes, int flags) {
+  write_synced(path, flags, [&](const AtomicFolder::Append& append) { append(bytes); });
 }
 
 // "NAME.<8 digits>.partial", hidden for folders: what is being written for NAME.
@@ -144,6 +171,29 @@ fs::path followed(const fs::path& path) {
 }  // namespace
 
 std::string read_file(const fs::path& path, std::uint64_t most) { return read_some(path, most, false); }
+
+void FileBytes::release(std::size_t count) {
+  const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+  const auto begin = reinterpret_cast<std::uintptr_t>(bytes_.data());
+  const std::uintptr_t first = (begin + released_ + page - 1) / page * page;
+  const std::uintptr_t last = (begin + std::min(count, bytes_.size())) / page * page;
+  if (first >= last) return;
+  ::madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);  // a hint: nothing is lost where it fails
+  released_ = last - begin;
+}
+
+void read_in_pieces(const fs::path& path, const std::function<void(std::string_view)>& use) {
+  const Input input = open_input(path, false);
+  std::string piece(std::size_t{1} << 20, '\0');
+  for (;;) {
+    const ssize_t got = ::read(input.file.value, piece.data(), piece.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(path, "cannot be read");
+    if (got == 0) return;
+    use(std::string_view(piece).substr(0, static_cast<std::size_t>(got)));
+  }
+}
+
 fs::path absolute_path(const fs::path& path) {
   fs::path result = fs::absolute(path);
   if (std::find(result.begin(), result.end(), "..") != result.end()) {
@@ -265,10 +315,14 @@ AtomicFolder::~AtomicFolder() {
 }
 
 void AtomicFolder::write(const fs::path& relative, std::string_view bytes) {
+  write_in_pieces(relative, [&](const Append& append) { append(bytes); });
+}
+
+void AtomicFolder::write_in_pieces(const fs::path& relative, const std::function<void(const Append&)>& make) {
   PartialWrite::committing().unlock();  // nothing is added to a folder that is being removed
   const fs::path path = staging_ / relative;
   make_folders(path.parent_path());
-  write_synced(path, bytes, O_TRUNC);
+  write_synced(path, O_TRUNC, make);
 }
 
 void AtomicFolder::commit() {

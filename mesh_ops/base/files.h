@@ -16,6 +16,23 @@ namespace rebake {
 /// end.
 std::string read_file(const std::filesystem::path& path, std::uint64_t most = std::uint64_t{8} << 30);
 
+/// All bytes of a regular file, as read_file() reads them. The memory of those that are not needed any more can be
+/// freed while the rest is still in use.
+class FileBytes {
+ public:
+  explicit FileBytes(const std::filesystem::path& path) : bytes_(read_file(path)) {}
+  std::string_view view() const { return bytes_; }
+  /// The first `count` bytes, which are not read again: their pages go back to the system.
+  void release(std::size_t count);
+
+ private:
+  std::string bytes_;
+  std::size_t released_ = 0;
+};
+
+/// Calls `use` with all bytes of a regular file, a megabyte at a time. Throws FileError.
+void read_in_pieces(const std::filesystem::path& path, const std::function<void(std::string_view piece)>& use);
+
 /// The absolute path without dots and a slash at the end. Links stay, but in a path with "..": there they are followed,
 /// since ".." leads up from what a link points to.
 std::filesystem::path absolute_path(const std::filesystem::path& path);
@@ -70,6 +87,9 @@ class AtomicFolder {
   /// Writes and syncs one file at a relative path; folders are made as needed. Throws FileError (disk full, no
   /// permission).
   void write(const std::filesystem::path& relative, std::string_view bytes);
+  /// The same for bytes that are made one after the other: `make` calls `append` with them.
+  using Append = std::function<void(std::string_view bytes)>;
+  void write_in_pieces(const std::filesystem::path& relative, const std::function<void(const Append& append)>& make);
   void commit();
 
  private:

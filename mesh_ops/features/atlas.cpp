@@ -16,19 +16,6 @@ namespace rebake {
 
 namespace {
 
-Texel converted(Texel texel, AlphaCode from, AlphaCode to) {
-  if (from == to) return texel;
-  for (std::uint8_t* alpha : {&texel.feat0[3], &texel.feat1[3]}) {
-    if (to == AlphaCode::halved)
-      *alpha = static_cast<std::uint8_t>(*alpha / 2 + 128);
-    else if (!texel.opaque())
-      *alpha = 0;
-    else
-      *alpha = static_cast<std::uint8_t>(std::max(0, 2 * *alpha - 255));  // exactly the decoded value
-  }
-  return texel;
-}
-
 struct Place {
   std::size_t set, patch;
   std::size_t page = 0;
@@ -38,6 +25,67 @@ struct Place {
 struct Page {
   int width = 0, height = 0;
 };
+
+// Texels that move together from one texture to another.
+struct Move {
+  std::shared_ptr<const FeatureTexture> from;
+  TexelRect rect;    // in `from`
+  int x = 0, y = 0;  // where its corner comes to lie
+};
+
+// A part of a move that lies in one tile of its source.
+struct TilePart {
+  const Move* move;
+  std::size_t tile;
+  TexelRect rect;
+};
+
+// The parts of moves whose texels come to lie in rows `first` … `first + count - 1`, one source tile after the other.
+std::vector<TilePart> parts_in_rows(const std::vector<Move>& moves, int first, int count) {
+  std::vector<TilePart> parts;
+  for (const Move& move : moves) {
+    const int top = std::max(move.rect.top, move.rect.top + first - move.y);
+    const int bottom = std::min(move.rect.bottom, move.rect.top + first + count - 1 - move.y);
+    for (int y = top; y <= bottom; y = (y / TexelTile::size + 1) * TexelTile::size)
+      for (int x = move.rect.left; x <= move.rect.right; x = (x / TexelTile::size + 1) * TexelTile::size)
+        parts.push_back({&move,
+                         move.from->tile_number(x, y),
+                         {x, y, std::min(move.rect.right, x / TexelTile::size * TexelTile::size + TexelTile::size - 1),
+                          std::min(bottom, y / TexelTile::size * TexelTile::size + TexelTile::size - 1)}});
+  }
+  std::stable_sort(parts.begin(), parts.end(), [](const TilePart& a, const TilePart& b) {
+    return std::pair(a.move->from.get(), a.tile) < std::pair(b.move->from.get(), b.tile);
+  });
+  return parts;
+}
+
+TexelRows moved_texels(const Page& page, AlphaCode code, std::vector<Move> moves) {
+  const auto shared = std::make_shared<const std::vector<Move>>(std::move(moves));
+  return {
+      page.width, page.height, [shared, code, width = page.width](int first, int count, Texel* rows) {
+        std::fill_n(rows, static_cast<std::ptrdiff_t>(width) * count, empty_texel(code));
+        // Every source tile is unpacked once.
+        std::shared_ptr<const TexelTile::Texels> texels;
+        const TilePart* unpacked = nullptr;
+        const std::vector<TilePart> parts = parts_in_rows(*shared, first, count);
+        for (const TilePart& part : parts) {
+          const Move& move = *part.move;
+          if (unpacked == nullptr || unpacked->move->from != move.from || unpacked->tile != part.tile) {
+            const int columns = move.from->tile_columns();
+            texels =
+                move.from->tile(static_cast<int>(part.tile) % columns, static_cast<int>(part.tile) / columns)->texels();
+            unpacked = &part;
+          }
+          for (int y = part.rect.top; y <= part.rect.bottom; ++y) {
+            const auto from = texels->begin() + y % TexelTile::size * TexelTile::size;
+            Texel* const to = rows + static_cast<std::ptrdiff_t>(move.y + y - move.rect.top - first) * width + move.x +
+                              part.rect.left - move.rect.left;
+            std::transform(from + part.rect.left % TexelTile::size, from + part.rect.right % TexelTile::size + 1, to,
+                           [&](const Texel& texel) { return converted_texel(texel, move.from->alpha_code(), code); });
+          }
+        }
+      }};
+}
 
 }  // namespace
 
@@ -53,14 +101,23 @@ bool can_pack(const TextureSet& set) {
 std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture,
                                                       AlphaCode code) {
   if (texture->alpha_code() == code) return texture;
-  const TexelReader texels(*texture);
   return std::make_shared<const FeatureTexture>(
-      FeatureTexture::from_rows(texture->width(), texture->height(), code, [&](int y, Texel* row) {
-        for (int x = 0; x < texture->width(); ++x) row[x] = converted(texels.at(x, y), texture->alpha_code(), code);
-      }));
+      FeatureTexture::from_tile_rows(texture->width(), texture->height(), code, rows_of(texture, code).read));
 }
 
 PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code, const ShownBy& shown_by) {
+  PackedSets result;
+  for (PackedPage& page : packed_pages(sets, largest_side, code, shown_by)) {
+    const auto& [width, height, read] = page.texels;
+    result.sets.push_back({std::move(page.soup), std::make_shared<const FeatureTexture>(
+                                                     FeatureTexture::from_tile_rows(width, height, code, read))});
+    result.texel_area += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  }
+  return result;
+}
+
+std::vector<PackedPage> packed_pages(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code,
+                                     const ShownBy& shown_by) {
   std::vector<TexelPatches> patches;
   std::vector<Place> places;
   std::uint64_t area = 0;
@@ -110,23 +167,11 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
 
   std::vector<std::vector<Place>> place_of(sets.size());
   for (std::size_t s = 0; s < sets.size(); ++s) place_of[s].resize(patches[s].rects.size());
-  std::vector<std::vector<Texel>> pixels;
-  for (const Page& page : pages)
-    pixels.emplace_back(static_cast<std::size_t>(page.width) * static_cast<std::size_t>(page.height),
-                        empty_texel(code));
-  std::vector<std::unique_ptr<const TexelReader>> sources;
-  for (const TextureSet& set : sets) sources.push_back(std::make_unique<const TexelReader>(*set.texels));
+  std::vector<std::vector<Move>> moves(pages.size());
   for (const Place& place : places) {
     place_of[place.set][place.patch] = place;
-    const AlphaCode was = sets[place.set].texels->alpha_code();
-    const TexelRect& rect = rect_at(place);
-    for (int row = 0; row < rect.height(); ++row)
-      for (int column = 0; column < rect.width(); ++column)
-        pixels[place.page][static_cast<std::size_t>(place.y + row) * static_cast<std::size_t>(pages[place.page].width) +
-                           static_cast<std::size_t>(place.x + column)] =
-            converted(sources[place.set]->at(rect.left + column, rect.top + row), was, code);
+    moves[place.page].push_back({sets[place.set].texels, rect_at(place), place.x, place.y});
   }
-  sources.clear();
 
   for (std::size_t s = 0; s < shown_by.size(); ++s)
     for (std::size_t p = 0; p < shown_by[s].size(); ++p) {
@@ -183,19 +228,14 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
                                                             soup.face_attributes().picked(kept[page].faces), faces);
     }
   }
-  PackedSets result;
+  std::vector<PackedPage> result;
   for (std::size_t k = 0; k < pages.size(); ++k) {
     Building& b = building[k];
-    auto texels = std::make_shared<const FeatureTexture>(
-        FeatureTexture::from_rows(pages[k].width, pages[k].height, code, [&](int row, Texel* out) {
-          std::copy_n(pixels[k].begin() + static_cast<std::ptrdiff_t>(row) * pages[k].width, pages[k].width, out);
-        }));
-    result.sets.push_back({Soup(std::make_shared<const std::vector<Vec3>>(std::move(b.positions)),
-                                std::make_shared<const std::vector<Vec2>>(std::move(b.uvs)),
-                                std::make_shared<const std::vector<Face>>(std::move(b.faces)),
-                                std::move(b.vertex_attributes), std::move(b.face_attributes)),
-                           std::move(texels)});
-    result.texel_area += static_cast<std::uint64_t>(pages[k].width) * static_cast<std::uint64_t>(pages[k].height);
+    result.push_back({Soup(std::make_shared<const std::vector<Vec3>>(std::move(b.positions)),
+                           std::make_shared<const std::vector<Vec2>>(std::move(b.uvs)),
+                           std::make_shared<const std::vector<Face>>(std::move(b.faces)),
+                           std::move(b.vertex_attributes), std::move(b.face_attributes)),
+                      moved_texels(pages[k], code, std::move(moves[k]))});
   }
   return result;
 }

@@ -6,6 +6,7 @@
 
 #include "mesh_ops/index/texel_patches.h"
 #include "mesh_ops/scene/object.h"
+#include "mesh_ops/texture/texel_rows.h"
 
 namespace rebake {
 
@@ -13,6 +14,12 @@ namespace rebake {
 struct PackedSets {
   std::vector<TextureSet> sets;
   std::uint64_t texel_area = 0;  ///< width × height over all new textures
+};
+
+/// A texture of moved texels that is not made yet, and the triangles that use it.
+struct PackedPage {
+  Soup soup;
+  TexelRows texels;  ///< reads the sets' textures, which it keeps
 };
 
 /// A patch of a set.
@@ -29,6 +36,10 @@ using ShownBy = std::vector<std::vector<PatchNumber>>;
 /// as the published exporter does). With `shown_by` patches show others' texels, and their own are dropped. Throws
 /// Error for a patch larger than `largest_side`, and for UVs outside [0, 1].
 PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code, const ShownBy& shown_by = {});
+
+/// As pack(), without making the textures.
+std::vector<PackedPage> packed_pages(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code,
+                                     const ShownBy& shown_by = {});
 
 /// The texture with its alpha stored the other way; the same pointer when it already is.
 std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture,

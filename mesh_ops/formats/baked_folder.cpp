@@ -193,11 +193,13 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
           SetParts& parts = sets[job.set];
           if (job.texels) {
             const std::string name0 = feature_name(naming, job.set, 0), name1 = feature_name(naming, job.set, 1);
-            const std::string bytes0 = read_file(folder / name0), bytes1 = read_file(folder / name1);
+            FileBytes feat0(folder / name0), feat1(folder / name1);
+            parts.feat0 = source_of(name0, feat0.view());
+            parts.feat1 = source_of(name1, feat1.view());
+            // As texels fill memory, the files leave it.
             parts.texels = std::make_shared<const FeatureTexture>(
-                read_feature_pngs(bytes0, folder / name0, bytes1, folder / name1, code));
-            parts.feat0 = source_of(name0, bytes0);
-            parts.feat1 = source_of(name1, bytes1);
+                read_feature_pngs(feat0.view(), folder / name0, feat1.view(), folder / name1, code,
+                                  [&](int image, std::size_t count) { (image == 0 ? feat0 : feat1).release(count); }));
           } else {
             const std::string bytes = read_file(folder / job.name);
             parts.chunks[job.chunk] = read_obj(bytes, folder / job.name);

@@ -1,6 +1,7 @@
 #include "mesh_ops/formats/feature_png.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -68,7 +69,8 @@ std::unique_ptr<RgbaRows> open_png(std::string_view bytes, const std::filesystem
 }  // namespace
 
 FeatureTexture read_feature_pngs(std::string_view feat0, const std::filesystem::path& name0, std::string_view feat1,
-                                 const std::filesystem::path& name1, AlphaCode code) {
+                                 const std::filesystem::path& name1, AlphaCode code,
+                                 const std::function<void(int, std::size_t)>& passed) {
   const std::unique_ptr<RgbaRows> first = open_png(feat0, name0), second = open_png(feat1, name1);
   const int width = first->width(), height = first->height();
   if (width != second->width() || height != second->height())
@@ -85,23 +87,48 @@ FeatureTexture read_feature_pngs(std::string_view feat0, const std::filesystem::
         std::copy_n(b, 4, texels->feat1.begin());
       }
     }
+    if (!passed) return;
+    passed(0, first->bytes_passed());
+    passed(1, second->bytes_passed());
   });
 }
 
-std::string write_feature_png(const FeatureTexture& texture, int image) {
-  std::vector<std::uint8_t> rgba(static_cast<std::size_t>(texture.width()) *
-                                 static_cast<std::size_t>(texture.height()) * 4);
-  // Unpacked a row of tiles at a time.
-  std::optional<TexelReader> texels;
-  std::size_t at = 0;
-  for (int y = 0; y < texture.height(); ++y) {
-    if (y % TexelTile::size == 0) texels.emplace(texture);
-    for (int x = 0; x < texture.width(); ++x, at += 4)
-      std::copy_n((image == 0 ? texels->at(x, y).feat0 : texels->at(x, y).feat1).begin(), 4,
-                  rgba.begin() + static_cast<std::ptrdiff_t>(at));
+void write_feature_pngs(const TexelRows& texels, const PngEncoder::Sink& feat0, const PngEncoder::Sink& feat1) {
+  const PngEncoder::Sink* sinks[] = {&feat0, &feat1};
+  std::optional<PngEncoder> encoders[2];
+  for (const std::size_t image : {0U, 1U})
+    if (*sinks[image]) encoders[image].emplace(texels.width, texels.height, 4, compression_level, *sinks[image]);
+  const auto width = static_cast<std::size_t>(texels.width);
+  std::vector<Texel> rows(width * static_cast<std::size_t>(std::min(TexelTile::size, texels.height)));
+  for (int first = 0; first < texels.height; first += TexelTile::size) {
+    const int count = std::min(TexelTile::size, texels.height - first);
+    texels.read(first, count, rows.data());
+    tbb::task_group_context whole(tbb::task_group_context::isolated);
+    tbb::parallel_for(
+        std::size_t{0}, std::size_t{2},
+        [&](std::size_t image) {
+          if (!encoders[image]) return;
+          std::vector<std::uint8_t> row(width * 4);
+          for (std::size_t y = 0; y < static_cast<std::size_t>(count); ++y) {
+            for (std::size_t x = 0; x < width; ++x)
+              std::copy_n((image == 0 ? rows[y * width + x].feat0 : rows[y * width + x].feat1).begin(), 4, &row[4 * x]);
+            encoders[image]->write_rows(row);
+          }
+        },
+        whole);
   }
-  texels.reset();
-  return encode_png(texture.width(), texture.height(), 4, rgba, compression_level);
+  for (auto& encoder : encoders)
+    if (encoder) encoder->finish();
+}
+
+std::string write_feature_png(const FeatureTexture& texture, int image) {
+  std::string bytes;
+  const PngEncoder::Sink sink = [&](std::string_view piece) { bytes.append(piece); };
+  // Not owned: it outlives this call.
+  const std::shared_ptr<const FeatureTexture> borrowed(std::shared_ptr<const void>(), &texture);
+  write_feature_pngs(rows_of(borrowed, texture.alpha_code()), image == 0 ? sink : PngEncoder::Sink(),
+                     image == 1 ? sink : PngEncoder::Sink());
+  return bytes;
 }
 
 }  // namespace rebake

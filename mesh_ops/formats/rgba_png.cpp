@@ -58,9 +58,11 @@ class Chunks {
 
 class RgbaPng : public RgbaRows {
  public:
-  RgbaPng(int width, int height, Chunks chunks, std::string_view data, const std::filesystem::path& name)
+  RgbaPng(int width, int height, std::string_view bytes, Chunks chunks, std::string_view data,
+          const std::filesystem::path& name)
       : RgbaRows(width, height),
         name_(name),
+        bytes_(bytes),
         chunks_(chunks),
         stride_(1 + 4 * static_cast<std::size_t>(width)),
         above_(stride_ - 1) {
@@ -82,6 +84,9 @@ class RgbaPng : public RgbaRows {
     first_ += count_;
   }
   const std::uint8_t* row(int k) const override { return &rows_[static_cast<std::size_t>(k) * stride_ + 1]; }
+  std::size_t bytes_passed() const override {
+    return static_cast<std::size_t>(inflate_.next_in - reinterpret_cast<const std::uint8_t*>(bytes_.data()));
+  }
 
  private:
   void feed(std::string_view data) {
@@ -117,6 +122,7 @@ class RgbaPng : public RgbaRows {
   }
 
   const std::filesystem::path& name_;
+  std::string_view bytes_;
   Chunks chunks_;
   std::size_t stride_;
   std::vector<std::uint8_t> above_, rows_;
@@ -159,7 +165,7 @@ std::unique_ptr<RgbaRows> open_rgba_png(std::string_view bytes, const std::files
     if (chunk->kind == "IDAT") break;
     if (critical(chunk->kind) && chunk->kind != "PLTE") return nullptr;
   }
-  return std::make_unique<RgbaPng>(static_cast<int>(width), static_cast<int>(height), chunks, chunk->data, name);
+  return std::make_unique<RgbaPng>(static_cast<int>(width), static_cast<int>(height), bytes, chunks, chunk->data, name);
 }
 
 }  // namespace rebake

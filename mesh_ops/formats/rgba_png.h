@@ -25,6 +25,8 @@ class RgbaRows {
   virtual void read(int count) = 0;
   /// The 4·width() bytes of one of the rows just read.
   virtual const std::uint8_t* row(int k) const = 0;
+  /// How many of the file's first bytes are not read again.
+  virtual std::size_t bytes_passed() const { return 0; }
 
  protected:
   RgbaRows(int width, int height) : width_(width), height_(height) {}

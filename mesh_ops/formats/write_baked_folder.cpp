@@ -5,7 +5,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
+#include <utility>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
@@ -36,6 +38,26 @@ const Origin::Set* source_set(const BakedObject& object, const TextureSet& set, 
   return nullptr;
 }
 
+// Copies a file that was read before when its bytes are still the same. False, with nothing of use written, when not.
+bool copy_unchanged(AtomicFolder& out, const fs::path& to, const Origin& origin, const SourceFile& file) {
+  try {
+    ContentHash hash;
+    std::uint64_t size = 0;
+    out.write_in_pieces(to, [&](const AtomicFolder::Append& append) {
+      read_in_pieces(origin.folder / file.name, [&](std::string_view piece) {
+        hash.add(piece);
+        size += piece.size();
+        // No more than it had: it may be a file that grows.
+        if (size <= file.size) append(piece);
+      });
+    });
+    return size == file.size && hash.value() == file.hash;
+  } catch (const FileError&) {
+    // Moved or removed since: what is in memory is written instead. A full disk is reported by that.
+    return false;
+  }
+}
+
 // The bytes of a file that was read before, when they are still the same.
 std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFile& file) {
   try {
@@ -52,15 +74,27 @@ std::string counted(std::uint64_t count) {
   return count < 1'000'000 ? fmt::format("{}", count) : fmt::format("{:.2f} million", static_cast<double>(count) / 1e6);
 }
 
-std::string sizes_of(const std::vector<TextureSet>& sets) {
+std::string sizes_of(const std::vector<PackedPage>& sets) {
   std::vector<std::string> sizes;
-  for (const TextureSet& set : sets) sizes.push_back(fmt::format("{}×{}", set.texels->width(), set.texels->height()));
+  for (const PackedPage& set : sets) sizes.push_back(fmt::format("{}×{}", set.texels.width, set.texels.height));
   return fmt::format("{}", fmt::join(sizes, ", "));
 }
 
-// The sets as they are written: untouched ones as they were read, edited ones laid out again when that saves texels.
-std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, bool all_texels, std::optional<int> page_side,
-                               std::vector<std::string>& notes) {
+std::uint64_t area_of(const std::vector<PackedPage>& sets) {
+  std::uint64_t area = 0;
+  for (const PackedPage& set : sets)
+    area += static_cast<std::uint64_t>(set.texels.width) * static_cast<std::uint64_t>(set.texels.height);
+  return area;
+}
+
+// What is written: untouched sets as they were read, edited ones laid out again when that saves texels.
+struct Fitted {
+  std::vector<PackedPage> pages;
+  // The object's sets that the first pages are.
+  std::vector<TextureSet> kept;
+};
+Fitted fitted(const BakedObject& object, Layout layout, bool all_texels, std::optional<int> page_side,
+              std::vector<std::string>& notes) {
   const AlphaCode code = layout == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved;
   const BakedObject* const objects[] = {&object};
   const int largest = page_side.value_or(largest_page_side(layout, objects));
@@ -71,38 +105,47 @@ std::vector<TextureSet> fitted(const BakedObject& object, Layout layout, bool al
                                                [&](const TextureSet& s) { return s.texels->alpha_code() != code; }))
     notes.emplace_back("features 3 and 7 lose their lowest bit: split folders store them halved");
   if (layout == Layout::unsplit && object.sets.size() > 1) {
-    PackedSets packed = pack(object.sets, largest, code);
-    if (packed.sets.size() > 1)
+    std::vector<PackedPage> pages = packed_pages(object.sets, largest, code);
+    if (pages.size() > 1)
       throw Error(fmt::format("the texels do not fit into one texture of {}²: use --layout split", largest));
-    return std::move(packed.sets);
+    return {std::move(pages), {}};
   }
   // Sets that lost triangles give up the texels that nobody uses; sets as they were read are left alone.
-  std::vector<TextureSet> kept, edited;
-  std::uint64_t edited_area = 0;
+  Fitted result;
+  std::vector<TextureSet> edited;
   bool must_pack = false;
   for (const TextureSet& set : object.sets) {
-    const TextureSet same_or_converted{set.soup, with_alpha_code(set.texels, code)};
     const Origin::Set* source = source_set(object, set, false);
     const bool same_faces = source != nullptr && source->faces.lock() == set.soup.shared_faces();
     if (!is_too_large(set) && (all_texels || same_faces || !can_pack(set))) {
-      kept.push_back(same_or_converted);
+      result.kept.push_back(set);
     } else {
       must_pack = must_pack || is_too_large(set);
-      edited_area += static_cast<std::uint64_t>(set.texels->width()) * static_cast<std::uint64_t>(set.texels->height());
-      edited.push_back(same_or_converted);
+      edited.push_back(set);
     }
   }
-  if (edited.empty()) return kept;
-  PackedSets packed = pack(edited, largest, code);
-  if (packed.texel_area < edited_area || must_pack) {
-    notes.push_back(fmt::format(
-        "edited texture sets were laid out again without unused texels: {} instead of {} texels "
-        "({} → {}); {} untouched sets are as they were",
-        counted(packed.texel_area), counted(edited_area), sizes_of(edited), sizes_of(packed.sets), kept.size()));
-    edited = std::move(packed.sets);
+  const auto as_pages = [&](const std::vector<TextureSet>& sets) {
+    std::vector<PackedPage> pages;
+    for (const TextureSet& set : sets) pages.push_back({set.soup, rows_of(set.texels, code)});
+    return pages;
+  };
+  std::vector<PackedPage> packed;
+  if (!edited.empty()) {
+    packed = packed_pages(edited, largest, code);
+    const std::vector<PackedPage> before = as_pages(edited);
+    if (area_of(packed) < area_of(before) || must_pack) {
+      notes.push_back(fmt::format(
+          "edited texture sets were laid out again without unused texels: {} instead of {} texels "
+          "({} → {}); {} untouched sets are as they were",
+          counted(area_of(packed)), counted(area_of(before)), sizes_of(before), sizes_of(packed), result.kept.size()));
+    } else {
+      packed.clear();
+      result.kept.insert(result.kept.end(), edited.begin(), edited.end());
+    }
   }
-  kept.insert(kept.end(), edited.begin(), edited.end());
-  return kept;
+  result.pages = as_pages(result.kept);
+  std::move(packed.begin(), packed.end(), std::back_inserter(result.pages));
+  return result;
 }
 
 // Chunk viewers and the Unity importer fail on an empty chunk: it gets one triangle whose corners are one vertex, which
@@ -124,6 +167,46 @@ std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
   return texts;
 }
 
+// Writes a set's triangles: as the files of `source` hold them, where it is not null and they are still the same.
+void write_geometry(AtomicFolder& out, const fs::path& folder, Layout layout, std::size_t set, const Soup& soup,
+                    const Origin* origin, const Origin::Set* source) {
+  if (source != nullptr) {
+    std::vector<std::string> texts;
+    for (const SourceFile& file : source->geometry)
+      if (auto bytes = unchanged_bytes(*origin, file)) texts.push_back(std::move(*bytes));
+    if (!texts.empty() && texts.size() == source->geometry.size()) {
+      Layout named = layout;
+      if (layout == Layout::chunked && source->geometry.front().name.find('_') == std::string::npos)
+        named = Layout::split;
+      for (std::size_t j = 0; j < texts.size(); ++j) out.write(folder / geometry_name(named, set, j), texts[j]);
+      return;
+    }
+  }
+  const std::vector<std::string> texts = geometry_texts(soup, layout);
+  for (std::size_t j = 0; j < texts.size(); ++j) out.write(folder / geometry_name(layout, set, j), texts[j]);
+}
+
+// Writes a set's feature images, likewise.
+void write_texels(AtomicFolder& out, const fs::path& folder, Layout layout, std::size_t set, const TexelRows& texels,
+                  const Origin* origin, const Origin::Set* source) {
+  const fs::path names[] = {folder / feature_name(layout, set, 0), folder / feature_name(layout, set, 1)};
+  bool copied[] = {false, false};
+  for (const int image : {0, 1})
+    copied[image] =
+        source != nullptr && copy_unchanged(out, names[image], *origin, image == 0 ? source->feat0 : source->feat1);
+  if (copied[0] && copied[1]) return;
+  if (copied[0] || copied[1]) {
+    const int image = copied[0] ? 1 : 0;
+    out.write_in_pieces(names[image], [&](const AtomicFolder::Append& append) {
+      write_feature_pngs(texels, image == 0 ? append : nullptr, image == 1 ? append : nullptr);
+    });
+    return;
+  }
+  out.write_in_pieces(names[0], [&](const AtomicFolder::Append& feat0) {
+    out.write_in_pieces(names[1], [&](const AtomicFolder::Append& feat1) { write_feature_pngs(texels, feat0, feat1); });
+  });
+}
+
 }  // namespace
 
 int largest_page_side(Layout layout, std::span<const BakedObject* const> objects) {
@@ -139,57 +222,33 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
   if (object.triangle_count() == 0) throw Error("an object without triangles cannot be written");
   BakedObject filled = object;
   std::erase_if(filled.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
-  std::vector<TextureSet> sets = fitted(filled, layout, baked_places, page_side, notes);
+  const Fitted fit = fitted(filled, layout, baked_places, page_side, notes);
   const bool same_layout = object.origin && object.origin->layout == layout;
+  const bool same_names = object.origin && (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit);
 
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    const TextureSet& set = sets[i];
-    progress.at("writing", static_cast<double>(i) / static_cast<double>(sets.size()));
-    const Origin::Set* same_geometry = same_layout ? source_set(object, set, true) : nullptr;
-    bool copied = false;
-    if (same_geometry != nullptr) {
-      std::vector<std::string> texts;
-      for (const SourceFile& file : same_geometry->geometry)
-        if (auto bytes = unchanged_bytes(*object.origin, file)) texts.push_back(std::move(*bytes));
-      copied = !texts.empty() && texts.size() == same_geometry->geometry.size();
-      const bool in_chunks = copied && same_geometry->geometry.front().name.find('_') != std::string::npos;
-      if (copied)
-        for (std::size_t j = 0; j < texts.size(); ++j)
-          out.write(folder / geometry_name(in_chunks                   ? Layout::chunked
-                                           : layout == Layout::chunked ? Layout::split
-                                                                       : layout,
-                                           i, j),
-                    texts[j]);
-    }
-    if (!copied) {
-      const std::vector<std::string> texts = geometry_texts(set.soup, layout);
-      for (std::size_t j = 0; j < texts.size(); ++j) out.write(folder / geometry_name(layout, i, j), texts[j]);
-    }
-    const bool same_names = object.origin && (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit);
-    const Origin::Set* same_texels = same_names ? source_set(object, set, false) : nullptr;
-    std::string encoded[2];
-    tbb::parallel_for(0, 2, [&](int image) {
-      if (same_texels != nullptr)
-        if (auto bytes = unchanged_bytes(*object.origin, image == 0 ? same_texels->feat0 : same_texels->feat1)) {
-          encoded[image] = std::move(*bytes);
-          return;
-        }
-      encoded[image] = write_feature_png(*set.texels, image);
-    });
-    for (const int image : {0, 1}) out.write(folder / feature_name(layout, i, image), encoded[image]);
+  for (std::size_t i = 0; i < fit.pages.size(); ++i) {
+    const PackedPage& page = fit.pages[i];
+    progress.at("writing", static_cast<double>(i) / static_cast<double>(fit.pages.size()));
+    const TextureSet* kept = i < fit.kept.size() ? &fit.kept[i] : nullptr;
+    write_geometry(out, folder, layout, i, page.soup, object.origin.get(),
+                   same_layout && kept != nullptr ? source_set(object, *kept, true) : nullptr);
+    write_texels(out, folder, layout, i, page.texels, object.origin.get(),
+                 same_names && kept != nullptr ? source_set(object, *kept, false) : nullptr);
   }
 
   std::optional<std::string> mlp;
-  if (object.origin && object.decoder == object.origin->decoder && object.origin->sets.size() == sets.size() &&
-      (layout == Layout::unsplit || object.origin->obj_num == static_cast<int>(sets.size())) &&
+  if (object.origin && object.decoder == object.origin->decoder && object.origin->sets.size() == fit.pages.size() &&
+      (layout == Layout::unsplit || object.origin->obj_num == static_cast<int>(fit.pages.size())) &&
       (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit))
     mlp = unchanged_bytes(*object.origin, object.origin->mlp);
   if (!mlp) {
     MlpFile file{*object.decoder, std::nullopt, object.other_members};
-    if (layout != Layout::unsplit) file.obj_num = static_cast<int>(sets.size());
+    if (layout != Layout::unsplit) file.obj_num = static_cast<int>(fit.pages.size());
     mlp = write_mlp_json(file);
   }
   out.write(folder / "mlp.json", *mlp);
+  std::vector<TextureSet> sets;  // of triangles alone
+  for (const PackedPage& page : fit.pages) sets.push_back({page.soup, nullptr});
   if (object.any_rotations()) out.write(folder / "turns.bin", write_turns(sets));
   if (baked_places && any_baked_places(object.sets)) out.write(folder / "baked.bin", write_baked_places(sets));
   progress.at("writing", 1);

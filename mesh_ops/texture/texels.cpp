@@ -98,6 +98,13 @@ void FeatureTexture::set_tile(int tile_row, int column, int count, const Texel* 
 
 FeatureTexture FeatureTexture::from_rows(int width, int height, AlphaCode code,
                                          const std::function<void(int, Texel*)>& fill_row) {
+  return from_tile_rows(width, height, code, [&](int first, int count, Texel* rows) {
+    for (int y = 0; y < count; ++y) fill_row(first + y, rows + static_cast<std::ptrdiff_t>(y) * width);
+  });
+}
+
+FeatureTexture FeatureTexture::from_tile_rows(int width, int height, AlphaCode code,
+                                              const std::function<void(int, int, Texel*)>& fill_rows) {
   FeatureTexture texture(width, height, code);
   tbb::task_group_context whole(tbb::task_group_context::isolated);
   tbb::parallel_for(
@@ -105,8 +112,7 @@ FeatureTexture FeatureTexture::from_rows(int width, int height, AlphaCode code,
       [&](int tile_row) {
         const int first = tile_row * TexelTile::size, count = std::min(TexelTile::size, height - first);
         std::vector<Texel> rows(static_cast<std::size_t>(width) * static_cast<std::size_t>(count));
-        for (int y = 0; y < count; ++y)
-          fill_row(first + y, &rows[static_cast<std::size_t>(y) * static_cast<std::size_t>(width)]);
+        fill_rows(first, count, rows.data());
         for (int column = 0; column < texture.tile_columns(); ++column)
           texture.set_tile(tile_row, column, count, rows.data(), false);
       },

@@ -67,6 +67,9 @@ class FeatureTexture {
   /// called for one part of the texture after the other, so that what they come from need not be there whole.
   static FeatureTexture from_parts(int width, int height, AlphaCode code,
                                    const std::function<void(int y, int count, Texel* rows)>& fill_rows);
+  /// Not packed. `fill_rows` as above, but it is called from several threads at once.
+  static FeatureTexture from_tile_rows(int width, int height, AlphaCode code,
+                                       const std::function<void(int y, int count, Texel* rows)>& fill_rows);
   /// Not packed. `fill_row(y, row)` writes `width` texels of row y; it is called from several threads at once.
   static FeatureTexture from_rows(int width, int height, AlphaCode code,
                                   const std::function<void(int y, Texel* row)>& fill_row);
