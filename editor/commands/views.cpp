@@ -149,12 +149,12 @@ std::optional<std::string> why_blank(const Scene& scene, const View& view, const
   // Planes are to blame only for what would be in the picture.
   if (seen.isEmpty())
     return nothing + "the scene may lie beside what the camera sees; aim it at its target, or widen it";
+  const double pixel = 2 * half_height(view.camera, seen.min().z()) / view.height;
+  if (box.sizes().head<2>().maxCoeff() < pixel) return nothing + "the scene is smaller than a pixel";
   if (seen.min().z() >= far)
     return nothing + fmt::format("the scene begins {:.3g} away, beyond the far plane at {:.3g}", seen.min().z(), far);
   if (seen.max().z() <= near)
     return nothing + fmt::format("the scene ends {:.3g} away, before the near plane at {:.3g}", seen.max().z(), near);
-  const double pixel = 2 * half_height(view.camera, seen.min().z()) / view.height;
-  if (box.sizes().head<2>().maxCoeff() < pixel) return nothing + "the scene is smaller than a pixel";
   return nothing + "what lies in view is transparent, or has the background's colour";
 }
 

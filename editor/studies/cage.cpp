@@ -4,6 +4,7 @@
 #include <array>
 
 #include "editor/studies/deforming.h"
+#include "editor/studies/hard_points.h"
 #include "editor/studies/study.h"
 #include "mesh_ops/deform/cage_deformation.h"
 
@@ -21,12 +22,8 @@ std::vector<Vec3> judged(const std::vector<Vec3>& places) {
   return points;
 }
 
-struct Errors {
-  double reproduction = 0, difference = 0;
-};
-
 struct Setting {
-  const StudySoup& soup;
+  double diagonal;
   const Cage& cage;
   std::vector<Vec3> moved;
   std::vector<Vec3> points;  ///< judged
@@ -69,7 +66,7 @@ double reproduction(const Setting& setting, const Coordinates& coordinates) {
   const DeformedPoints result = deform_points(coordinates, setting.cage, nowhere, setting.points, false);
   double worst = 0;
   for (std::size_t k = 0; k < setting.points.size(); ++k)
-    if (result.outside[k] == 0) worst = std::max(worst, result.points[k].norm() / setting.soup.diagonal);
+    if (result.outside[k] == 0) worst = std::max(worst, result.points[k].norm() / setting.diagonal);
   return worst;
 }
 
@@ -78,8 +75,37 @@ double single_reproduction(const Setting& setting, const Coordinates& coordinate
   Setting shrunk = setting;
   shrunk.moved.assign(setting.cage.vertices.size(), Vec3(0, 0, 0));
   double worst = 0;
-  for (const Vec3& p : moved_by<T>(shrunk, coordinates, green))
-    worst = std::max(worst, p.norm() / setting.soup.diagonal);
+  for (const Vec3& p : moved_by<T>(shrunk, coordinates, green)) worst = std::max(worst, p.norm() / setting.diagonal);
+  return worst;
+}
+
+// The same at points that are hard to weigh, in double; and computed in float where `single`.
+double hard_error(CageCoordinates kind, int resolution, bool single) {
+  double worst = 0;
+  for (const HardPoints& hard : hard_points()) {
+    const auto coordinates = coordinates_of(hard.cage, kind, resolution);
+    if (single) {
+      const Setting setting{1, hard.cage, hard.moved, hard.points};
+      const auto moved = moved_by<float>(setting, *coordinates, kind == CageCoordinates::green);
+      worst = std::max(worst, largest_error(hard, moved, nullptr));
+    } else {
+      const DeformedPoints moved = deform_points(*coordinates, hard.cage, hard.moved, hard.points, false);
+      worst = std::max(worst, largest_error(hard, moved.points, &moved.outside));
+    }
+  }
+  return worst;
+}
+
+// As dragging keeps weights, as float.
+double kept_hard_error(CageCoordinates kind, int resolution) {
+  double worst = 0;
+  for (const HardPoints& hard : hard_points()) {
+    const auto coordinates = coordinates_of(hard.cage, kind, resolution);
+    std::vector<Vec3> moved;
+    CageBinding(*coordinates, hard.cage, hard.points).positions(hard.moved, moved);
+    const auto outside = deform_points(*coordinates, hard.cage, hard.moved, hard.points, false).outside;
+    worst = std::max(worst, largest_error(hard, moved, &outside));
+  }
   return worst;
 }
 
@@ -88,8 +114,13 @@ double single_reproduction(const Setting& setting, const Coordinates& coordinate
 StudyTable study_cage(const StudyInput& input) {
   const StudySoup soup = study_soup(input.scene);
   const Cage cage = wrap(soup.opaque, 0.1);
-  const Setting setting{soup, cage, twisted(cage), judged(soup.places)};
-  StudyTable table{{"bind ms", "drag ms", "MB", "reproduction error", "error of the drag"}, {}, 0, 4, true, true};
+  const Setting setting{soup.diagonal, cage, twisted(cage), judged(soup.places)};
+  StudyTable table{{"bind ms", "drag ms", "MB", "reproduction error", "error of the drag", "error at hard points"},
+                   {},
+                   0,
+                   4,
+                   true,
+                   true};
   const auto add = [&](const std::string& name, CageCoordinates kind, int resolution,
                        const std::vector<Vec3>& reference) {
     input.progress.at(name, static_cast<double>(table.rows.size()) / 9);
@@ -102,9 +133,10 @@ StudyTable study_cage(const StudyInput& input) {
     std::vector<Vec3> out;
     const double drag = median_milliseconds(input.frames, [&] { binding->positions(setting.moved, out); });
     const DeformedPoints exact = deform_points(*coordinates, cage, setting.moved, setting.points, false);
-    table.rows.push_back({name + ", double",
-                          {bind, drag, static_cast<double>(binding->memory()) / 1e6,
-                           reproduction(setting, *coordinates), largest(exact.points, reference, soup.diagonal)}});
+    table.rows.push_back(
+        {name + ", double",
+         {bind, drag, static_cast<double>(binding->memory()) / 1e6, reproduction(setting, *coordinates),
+          largest(exact.points, reference, soup.diagonal), hard_error(kind, resolution, false)}});
     if (kind == CageCoordinates::harmonic) return;
     // The same, as dragging keeps it.
     const CageBinding kept(*coordinates, cage, setting.points);
@@ -113,9 +145,9 @@ StudyTable study_cage(const StudyInput& input) {
     kept.positions(std::vector<Vec3>(cage.vertices.size(), Vec3(0, 0, 0)), nowhere);
     double lost = 0;
     for (const Vec3& p : nowhere) lost = std::max(lost, p.norm() / soup.diagonal);
-    table.rows.push_back(
-        {name + ", kept as float",
-         {bind, drag, static_cast<double>(binding->memory()) / 1e6, lost, largest(out, reference, soup.diagonal)}});
+    table.rows.push_back({name + ", kept as float",
+                          {bind, drag, static_cast<double>(binding->memory()) / 1e6, lost,
+                           largest(out, reference, soup.diagonal), kept_hard_error(kind, resolution)}});
     // And computed in float, point by point.
     const bool green = kind == CageCoordinates::green;
     const double single = median_milliseconds(1, [&] { moved_by<float>(setting, *coordinates, green); }) *
@@ -123,7 +155,8 @@ StudyTable study_cage(const StudyInput& input) {
     table.rows.push_back({name + ", computed in float",
                           {single, drag, static_cast<double>(binding->memory()) / 1e6,
                            single_reproduction<float>(setting, *coordinates, green),
-                           largest(moved_by<float>(setting, *coordinates, green), reference, soup.diagonal)}});
+                           largest(moved_by<float>(setting, *coordinates, green), reference, soup.diagonal),
+                           hard_error(kind, resolution, true)}});
   };
   add("mean value", CageCoordinates::mean_value, 0,
       moved_by<long double>(setting, *mean_value_coordinates(cage), false));

@@ -2,10 +2,12 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "editor/studies/deforming.h"
 #include "editor/studies/gradient_binding.h"
+#include "editor/studies/hard_points.h"
 #include "editor/studies/study.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/deform/cage_deformation.h"
@@ -45,6 +47,42 @@ std::vector<Mat3> jacobians_by(const std::vector<Vec3>& points, const Cage& cage
   return result;
 }
 
+// Central differences of where points go.
+std::vector<Mat3> differences(const Coordinates& coordinates, const Cage& cage, const std::vector<Vec3>& moved,
+                              const std::vector<Vec3>& points, double step) {
+  std::vector<Mat3> jacobians(points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<Vec3> low = points, high = points;
+    for (Vec3& p : low) p[axis] -= step;
+    for (Vec3& p : high) p[axis] += step;
+    const auto below = deform_points(coordinates, cage, moved, low, false).points,
+               above = deform_points(coordinates, cage, moved, high, false).points;
+    for (std::size_t k = 0; k < jacobians.size(); ++k) jacobians[k].col(axis) = (above[k] - below[k]) / (2 * step);
+  }
+  return jacobians;
+}
+
+// What turns a cage's motion into rotations of points.
+using Method = std::function<std::vector<Mat3>(const Coordinates&, const Cage&, const std::vector<Vec3>& moved,
+                                               const std::vector<Vec3>& points)>;
+
+std::vector<Mat3> factors(const std::vector<Mat3>& jacobians, LocalRotation (*factor)(const Mat3&)) {
+  std::vector<Mat3> result;
+  for (const Mat3& jacobian : jacobians) result.push_back(factor(jacobian).rotation);
+  return result;
+}
+
+// The largest angle, in degrees, by which a method misses a rigid turn at points that are hard to weigh.
+double hard_angle(const Method& method) {
+  double worst = 0;
+  for (const HardPoints& hard : hard_points()) {
+    const auto coordinates = mean_value_coordinates(hard.cage);
+    const std::vector<Mat3> got = method(*coordinates, hard.cage, hard.moved, hard.points);
+    worst = std::max(worst, angles(got, std::vector<Mat3>(got.size(), hard.turn)).first);
+  }
+  return worst;
+}
+
 }  // namespace
 
 StudyTable study_rotation(const StudyInput& input) {
@@ -52,52 +90,48 @@ StudyTable study_rotation(const StudyInput& input) {
   const Cage cage = wrap(soup.opaque, 0.1);
   const std::vector<Vec3> moved = twisted(cage);
   const auto coordinates = mean_value_coordinates(cage);
-  StudyTable table{{"milliseconds", "worst, degrees", "mean, degrees"}, {}, 0, 1, true, true};
+  StudyTable table{
+      {"milliseconds", "worst, degrees", "mean, degrees", "worst at hard points, degrees"}, {}, 0, 1, true, true};
 
   // What all are compared with: dual numbers in long double, and their singular value decomposition.
   std::vector<Mat3> reference = jacobians_by<LongDual>(soup.places, cage, moved);
   for (Mat3& jacobian : reference) jacobian = svd_rotation(jacobian).rotation;
   const DeformedPoints exact = deform_points(*coordinates, cage, moved, soup.places, true);
-  const auto add = [&](const std::string& name, double time, const std::vector<Mat3>& rotations) {
+  const auto add = [&](const std::string& name, double time, const std::vector<Mat3>& rotations, const Method& method) {
     const auto [worst, mean] = angles(rotations, reference);
-    table.rows.push_back({name, {time, worst, mean}});
+    table.rows.push_back({name, {time, worst, mean, method ? hard_angle(method) : std::nan("")}});
     input.progress.at(name, static_cast<double>(table.rows.size()) / 14);
   };
 
   std::vector<Mat3> rotations(soup.places.size());
-  double time = median_milliseconds(1, [&] {
-    const std::vector<Mat3> jacobians = jacobians_by<Dual>(soup.places, cage, moved);
-    for (std::size_t k = 0; k < rotations.size(); ++k) rotations[k] = local_rotation(jacobians[k]).rotation;
-  });
-  add("dual numbers, point by point", time, rotations);
-  const double weigh = median_milliseconds(1, [&] { deform_points(*coordinates, cage, moved, soup.places, true); });
-  const auto polar = [&](LocalRotation (*factor)(const Mat3&)) {
-    return median_milliseconds(input.frames, [&] {
-      for (std::size_t k = 0; k < rotations.size(); ++k) rotations[k] = factor(exact.jacobians[k]).rotation;
-    });
+  const Method dual = [](const Coordinates&, const Cage& rest, const std::vector<Vec3>& to,
+                         const std::vector<Vec3>& points) {
+    return factors(jacobians_by<Dual>(points, rest, to), local_rotation);
   };
-  time = polar([](const Mat3& j) { return LocalRotation{newton_polar_factor(j), true}; });
-  add("gradients, Newton", weigh + time, rotations);
-  time = polar(svd_rotation);
-  add("gradients, SVD", weigh + time, rotations);
-  time = polar(local_rotation);
-  add("gradients, Newton or SVD", weigh + time, rotations);
+  double time = median_milliseconds(1, [&] { rotations = dual(*coordinates, cage, moved, soup.places); });
+  add("dual numbers, point by point", time, rotations, dual);
+  const double weigh = median_milliseconds(1, [&] { deform_points(*coordinates, cage, moved, soup.places, true); });
+  const auto add_polar = [&](const std::string& name, LocalRotation (*factor)(const Mat3&)) {
+    const double polar = median_milliseconds(input.frames, [&] { rotations = factors(exact.jacobians, factor); });
+    add(name, weigh + polar, rotations,
+        [&](const Coordinates& of, const Cage& rest, const std::vector<Vec3>& to, const std::vector<Vec3>& points) {
+          return factors(deform_points(of, rest, to, points, true).jacobians, factor);
+        });
+  };
+  add_polar("gradients, Newton", [](const Mat3& j) { return LocalRotation{newton_polar_factor(j), true}; });
+  add_polar("gradients, SVD", svd_rotation);
+  add_polar("gradients, Newton or SVD", local_rotation);
 
   for (const double share : {1e-3, 1e-5, 1e-7}) {
-    const double step = share * soup.diagonal;
-    std::vector<Mat3> jacobians(soup.places.size());
-    time = median_milliseconds(1, [&] {
-      for (int axis = 0; axis < 3; ++axis) {
-        std::vector<Vec3> low = soup.places, high = soup.places;
-        for (Vec3& p : low) p[axis] -= step;
-        for (Vec3& p : high) p[axis] += step;
-        const auto below = deform_points(*coordinates, cage, moved, low, false).points,
-                   above = deform_points(*coordinates, cage, moved, high, false).points;
-        for (std::size_t k = 0; k < jacobians.size(); ++k) jacobians[k].col(axis) = (above[k] - below[k]) / (2 * step);
-      }
-      for (std::size_t k = 0; k < rotations.size(); ++k) rotations[k] = local_rotation(jacobians[k]).rotation;
-    });
-    add(fmt::format("finite differences, step {:g}", share), time, rotations);
+    const auto by_step = [](double step) -> Method {
+      return [step](const Coordinates& of, const Cage& rest, const std::vector<Vec3>& to,
+                    const std::vector<Vec3>& points) {
+        return factors(differences(of, rest, to, points, step), local_rotation);
+      };
+    };
+    const Method method = by_step(share * soup.diagonal);
+    time = median_milliseconds(1, [&] { rotations = method(*coordinates, cage, moved, soup.places); });
+    add(fmt::format("finite differences, step {:g}", share), time, rotations, by_step(share));
   }
 
   const GradientBinding binding(*coordinates, cage, soup.places);
@@ -105,9 +139,15 @@ StudyTable study_rotation(const StudyInput& input) {
     for (const bool interpolated : {false, true}) {
       if (stride == 1 && interpolated) continue;
       time = median_milliseconds(input.frames, [&] { binding.rotations(moved, rotations, stride, interpolated); });
-      add(stride == 1 ? std::string("kept gradients")
-                      : fmt::format("1 in {}, {}", stride, interpolated ? "interpolated" : "the nearest"),
-          time, rotations);
+      if (stride == 1)
+        add("kept gradients", time, rotations,
+            [](const Coordinates& of, const Cage& rest, const std::vector<Vec3>& to, const std::vector<Vec3>& points) {
+              std::vector<Mat3> result(points.size());
+              GradientBinding(of, rest, points).rotations(to, result);
+              return result;
+            });
+      else  // a rigid turn is the same everywhere: it would not show what leaving out points costs
+        add(fmt::format("1 in {}, {}", stride, interpolated ? "interpolated" : "the nearest"), time, rotations, {});
     }
   return table;
 }

@@ -84,6 +84,7 @@ CageFrame frame_of(const Cage& cage) {
   std::frexp(box.sizes().maxCoeff(), &exponent);
   const double diagonal = (box.sizes() * std::ldexp(1.0, -exponent)).norm();
   frame.scale = std::ldexp(1.0, -exponent - std::ilogb(diagonal));
+  frame.diagonal = std::ldexp(diagonal, -std::ilogb(diagonal));
   if (!std::isfinite(frame.scale)) throw Error("the cage is too small");
   std::vector<Wide3> points;
   frame.given = cage.vertices;

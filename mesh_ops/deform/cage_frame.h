@@ -34,7 +34,8 @@ struct EdgeFrame {
 /// diagonal between 1 and 2. Frames are computed with 50 digits and then rounded, so that needles have right normals.
 struct CageFrame {
   Vec3 center;
-  double scale;  ///< local = (x − center) · scale; exact as a factor
+  double scale;     ///< local = (x − center) · scale; exact as a factor
+  double diagonal;  ///< of the cage's box, in local units
   std::vector<Vec3> vertices;
   std::vector<Vec3> given;       ///< the same, as they came
   std::vector<FaceFrame> faces;  ///< without those that have no area
@@ -42,6 +43,9 @@ struct CageFrame {
   std::vector<EdgeFrame> edges;  ///< of those faces
 
   Vec3 to_local(const Vec3& point) const { return (point - center) * scale; }
+  /// Whether a local point lies so far out that faces must be weighed by mean_value_terms' `far_out`: the closed forms
+  /// are then off by more than 5e-14. False for what is no number.
+  bool is_far_out(const Vec3& local) const { return local.stableNorm() > 2 * diagonal; }
 };
 
 /// Throws Error when the cage has no extent: fewer than two different points.

@@ -8,9 +8,6 @@ namespace {
 
 namespace pl = plane_local;
 
-// Farther out than this from the cage's centre (its diagonal is 1 to 2), all faces are small beside their distance.
-constexpr double far_distance = 4;
-
 class MeanValue final : public Coordinates {
  public:
   MeanValue(const Cage& cage, MeanValueBatch batch)
@@ -112,7 +109,7 @@ class MeanValue final : public Coordinates {
     thread_local std::vector<T> exact;
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
       const Vec3 p = point_of(local, lane);
-      if (!(p.cwiseAbs().maxCoeff() < far_distance)) {
+      if (frame_.is_far_out(p)) {
         mean_value_weights(frame_, p, exact);
       } else if (again[lane] != 0 || !near[lane].empty()) {
         exact.resize(rows());

@@ -18,6 +18,7 @@ void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>
   weights.assign(cage.vertices.size(), plane_local::constant<T>(0));
   const plane_local::Point<T> x = plane_local::local_point(local, T());
   std::vector<const FaceFrame*> near;
+  const bool far_out = cage.is_far_out(local);
   for (const FaceFrame& face : cage.faces) {
     const plane_local::Seen<T> s = plane_local::seen(cage, face, x);
     if (plane_local::distance_of(s) < near_distance) {
@@ -27,7 +28,7 @@ void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>
     const bool in_plane = plane_local::place(s) == plane_local::Place::in_plane;
     // Of a face's value rounding must not decide where it is 0; its gradient is not.
     if (in_plane && !plane_local::has_gradient<T>) continue;
-    auto terms = plane_local::mean_value_terms(face, s);
+    auto terms = plane_local::mean_value_terms(face, s, far_out);
     for (std::size_t k = 0; k < 3; ++k) {
       if (in_plane) terms[k] = terms[k] - plane_local::constant<T>(value_of(terms[k]));
       weights[face.vertices[k]] += terms[k];

@@ -51,11 +51,18 @@ void check(const Camera& camera) {
 
 Camera with_planes(const Camera& camera, const Box& visible, double aspect) {
   constexpr double depth_range = 1e4;  // of planes where the eye is among what it sees
+  // The plane that was given is the one to name.
+  if (camera.far_plane == 0 && !std::isfinite(depth_range * camera.near_plane))
+    throw FieldError("near", "is too far away: no far plane fits behind it");
+  if (camera.near_plane == 0 && camera.far_plane != 0 && !(camera.far_plane / depth_range > 0))
+    throw FieldError("far", "is too close to the eye: no near plane fits before it");
   Camera result = camera;
   const bool extends = !visible.isEmpty() && visible.min().allFinite() && visible.max().allFinite() &&
                        (visible.center() != camera.eye || visible.min() != visible.max());
   if (!extends) {
-    if (result.near_plane == 0) result.near_plane = Camera{}.near_plane;
+    if (result.near_plane == 0)
+      result.near_plane =
+          camera.far_plane == 0 ? Camera{}.near_plane : std::min(Camera{}.near_plane, camera.far_plane / depth_range);
     if (result.far_plane == 0) result.far_plane = std::max(Camera{}.far_plane, depth_range * result.near_plane);
     return result;
   }

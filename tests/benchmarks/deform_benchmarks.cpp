@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "editor/studies/gradient_binding.h"
@@ -78,6 +79,19 @@ void weigh(benchmark::State& state, bool gradients) {
     const auto coordinates = mean_value_coordinates(mic.cage);
     benchmark::DoNotOptimize(deform_points(*coordinates, mic.cage, moved, mic.points, gradients));
   }
+}
+
+// 3000 points on a sphere so many half diagonals from a cube's centre: beyond four halves all faces are summed by
+// quadrature, with many nodes up to eight of their lengths.
+void weigh_far(benchmark::State& state) {
+  const Cage cage = lattice_cage(Box(Vec3(-0.5, -0.5, -0.5), Vec3(0.5, 0.5, 0.5)), 1, 1, 1);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  std::vector<Vec3> points;
+  for (int k = 0; k < 3000; ++k)
+    points.push_back(Vec3(std::sin(k), std::cos(1.7 * k), std::sin(2.3 * k + 1)).normalized() *
+                     (static_cast<double>(state.range(0)) * std::sqrt(3.0) / 2));
+  const auto coordinates = mean_value_coordinates(cage);
+  for (auto _ : state) benchmark::DoNotOptimize(deform_points(*coordinates, cage, cage.vertices, points, false));
 }
 
 void green(benchmark::State& state) {
@@ -201,6 +215,7 @@ void drag_preview(benchmark::State& state) {
   state.counters["vertices"] = static_cast<double>(vertices);
 }
 
+BENCHMARK(weigh_far)->Arg(2)->Arg(3)->Arg(5)->Arg(8)->Arg(20)->Unit(benchmark::kMillisecond);
 BENCHMARK(bind)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(weigh, mean_value, false)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(weigh, mean_value_with_gradients, true)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();

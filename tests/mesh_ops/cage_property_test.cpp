@@ -8,6 +8,7 @@
 
 #include "mesh_ops/deform/coordinates.h"
 #include "tests/support/gold.h"
+#include "tests/support/hard_cages.h"
 #include "tests/support/random_cages.h"
 #include "tests/support/thorough.h"
 
@@ -150,6 +151,55 @@ TEST(CageProperty, MeanValueAgreesWith120DigitsNearRandomSurfaces) {
 }
 TEST(CageProperty, GreenAgreesWith120DigitsNearRandomSurfaces) {
   expect_agreement_with_120_digits(green_coordinates, gold_green);
+}
+
+// Of the weights at random points outside, from the cage's box to ten diagonals: the largest error and the sum of the
+// exact weights' sizes, which the errors grow with. Errors are shares of that sum.
+struct FarErrors {
+  double relative = 0, over_sum = 0;
+};
+FarErrors far_errors(const Cage& cage, std::mt19937_64& random, int count) {
+  Box box;
+  for (const Vec3& v : cage.vertices) box.extend(v);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> exponent(std::log(0.51), std::log(10.0));
+  std::vector<Vec3> points;
+  for (int n = 0; n < count; ++n)
+    points.push_back(box.center() + diagonal_of(cage) * std::exp(exponent(random)) *
+                                        Vec3(normal(random), normal(random), normal(random)).normalized());
+  FarErrors worst;
+  const std::vector<Weighed> all = weighed(*make_mean_value(cage), points);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const std::vector<Gold> want = gold_mean_value(cage, gold(points[n]));
+    Gold sum = 0, largest = 0;
+    for (std::size_t v = 0; v < want.size(); ++v) {
+      sum += abs(want[v]);
+      largest = std::max(largest, Gold(abs(want[v] - all[n].weights[v])));
+    }
+    const double error = static_cast<double>(largest / sum);
+    worst.relative = std::max(worst.relative, error);
+    worst.over_sum = std::max(worst.over_sum, error / static_cast<double>(sum));
+  }
+  return worst;
+}
+
+TEST(CageProperty, MeanValueHoldsThirteenDigitsToTenDiagonals) {
+  std::mt19937_64 random(7);
+  for (int k = 0; k < cases(10, 400); ++k) {
+    const RandomCage of = k % 2 == 0 ? random_lattice(random) : random_star(random);
+    EXPECT_LE(far_errors(of.cage, random, 24).relative, 1e-13) << of.name;
+  }
+}
+
+// Outside a thin cage weights are as large as the distance over the thickness, and so are the errors.
+TEST(CageProperty, MeanValueOutsideThinCagesLosesWhatWeightsGrow) {
+  std::mt19937_64 random(8);
+  for (const double thickness : {1e-2, 1e-4, 1e-8})
+    EXPECT_LE(far_errors(flat(thickness), random, 60).over_sum, 1e-14) << thickness;
+  for (int k = 0; k < cases(10, 400); ++k) {
+    const RandomCage of = random_wedge(random);
+    EXPECT_LE(far_errors(of.cage, random, 24).over_sum, 2e-13) << of.name;
+  }
 }
 
 // The example that was found first: both faces of a sharp edge see the point in their plane and outside themselves.

@@ -81,5 +81,27 @@ TEST(Camera, AHeightThatShowsNothingIsRefused) {
   EXPECT_THROW(read_camera_json({{"ortho_height", "high"}}), FieldError);
 }
 
+// One plane is given, at any power of ten: the other one fits, or the error names the one that was given.
+TEST(Camera, ErrorsNameThePlaneThatWasGiven) {
+  const Box scene(Vec3(-1, -1, -1), Vec3(1, 1, 1));
+  int errors = 0;
+  for (int power = -323; power <= 308; ++power)
+    for (const bool near : {true, false})
+      for (const Box& box : {scene, Box()}) {
+        Camera camera;
+        camera.near_plane = camera.far_plane = 0;
+        (near ? camera.near_plane : camera.far_plane) = std::pow(10.0, power);
+        try {
+          const Camera fitted = with_planes(camera, box, 1);
+          check(fitted);
+          EXPECT_GT(fitted.near_plane, 0) << power;
+        } catch (const FieldError& error) {
+          ++errors;
+          EXPECT_TRUE(std::string(error.what()).starts_with(near ? "field \"near\"" : "field \"far\"")) << power;
+        }
+      }
+  EXPECT_LT(errors, 40);
+}
+
 }  // namespace
 }  // namespace rebake::test
