@@ -9,9 +9,9 @@
 namespace rebake {
 
 std::vector<LightDecision> summed_up(const std::vector<LightDecision>& decisions, std::size_t most) {
-  // Those that a bound decided are alike whatever it is.
+  // Those that their size decided are alike whatever it is.
   const auto reason = [](const LightDecision& one) {
-    return std::tuple(!one.runs, one.kind, one.bound > 0 ? std::string() : one.why);
+    return std::tuple(!one.runs, one.kind, one.change > 0 ? std::string() : one.why);
   };
   std::map<decltype(reason(decisions.front())), std::vector<const LightDecision*>> alike;
   for (const LightDecision& one : decisions) alike[reason(one)].push_back(&one);
@@ -26,19 +26,21 @@ std::vector<LightDecision> summed_up(const std::vector<LightDecision>& decisions
     LightDecision sum{one.kind, fmt::format("{} {}{}", those.size(), one.kind, one.kind.ends_with('s') ? "" : "s"),
                       one.runs, 0,
                       0,        one.why,
-                      ""};
-    double bounds = 0;
+                      "",       one.estimated};
+    double changes = 0;
     const LightDecision* largest = those.front();
     for (const LightDecision* other : those) {
-      if (other->bound > largest->bound) largest = other;
-      bounds += other->bound;
+      if (other->change > largest->change) largest = other;
+      changes += other->change;
       sum.seconds += other->seconds;
     }
-    sum.bound = largest->bound;
-    if (one.runs && one.bound > 0)
-      sum.why = fmt::format("{} changes most, by up to {:.3g} of 255", largest->name, largest->bound * 255);
-    else if (one.bound > 0)
-      sum.why = fmt::format("up to {:.3g} of 255 each, {:.3g} together", largest->bound * 255, bounds * 255);
+    sum.change = largest->change;
+    if (one.runs && one.change > 0)
+      sum.why = fmt::format("{} changes most, by {} {:.3g} of 255", largest->name,
+                            largest->estimated ? "about" : "up to", largest->change * 255);
+    else if (one.change > 0)
+      sum.why = fmt::format("{} {:.3g} of 255 each, {:.3g} together", one.estimated ? "about" : "up to",
+                            largest->change * 255, changes * 255);
     if (sum.seconds > 0) sum.took = fmt::format("took {:.2f} s", sum.seconds);
     result.push_back(std::move(sum));
   }

@@ -10,10 +10,11 @@ struct LightDecision {
   std::string kind;  ///< such as "cast shadow"
   std::string name;  ///< the kind and whose: "cast shadow kettle→ficus"
   bool runs = false;
-  double bound = 0;    ///< of what it changes, in display colours 0 … 1; of an object's own shadows an estimate
+  double change = 0;   ///< what it changes, in display colours 0 … 1: at most, or with `estimated` about
   double seconds = 0;  ///< of tracing, where it runs: its share of its object's
   std::string why;
-  std::string took;  ///< where it runs: that time, and what else it was for
+  std::string took;        ///< where it runs: that time, and what else it was for
+  bool estimated = false;  ///< its change, by some places alone (ChangeEstimate)
   /// Why, and how long it took.
   std::string words() const { return took.empty() ? why : why + ", " + took; }
 };

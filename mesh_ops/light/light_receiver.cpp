@@ -17,6 +17,8 @@ namespace {
 
 // The steepest that display colours rise over linear light.
 constexpr double steepest = 12.92;
+// Sites by which changes are estimated.
+constexpr std::size_t sampled_places = 512;
 
 struct Sphere {
   Vec3 center{0, 0, 0};
@@ -135,12 +137,16 @@ double LightReceiver::cast_bound(std::size_t other, const Shared& shared, const 
   return std::min(1.0, steepest * most);
 }
 
-double LightReceiver::sampled_change(bool self, bool removed, const Progress& progress) {
-  constexpr std::size_t some = 512;
+ChangeEstimate LightReceiver::sampled_change(bool self, bool removed, const Progress& progress) {
   prepare(progress);
   std::vector<std::uint8_t> wanted(baked_->sites.size(), 0);
-  const std::size_t step = std::max<std::size_t>(1, baked_->sites.size() / some);
-  for (std::size_t i = step / 2; i < baked_->sites.size(); i += step) wanted[i] = baked_->sides[i];
+  ChangeEstimate estimate;
+  for (const std::size_t i : picked_places(baked_->sides, sampled_places)) {
+    wanted[i] = baked_->sides[i];
+    ++estimate.places;
+  }
+  estimate.of =
+      baked_->sides.size() - static_cast<std::size_t>(std::count(baked_->sides.begin(), baked_->sides.end(), 0));
   const auto before = light_before(self, removed, wanted, 64, progress);
   const auto after = light_after({}, wanted, 64, {}, progress);
   double most = 0;
@@ -155,7 +161,8 @@ double LightReceiver::sampled_change(bool self, bool removed, const Progress& pr
       most = std::max(most, std::abs(to_display(changed) - to_display(color)));
     }
   }
-  return std::min(1.0, 2 * most);
+  estimate.change = std::min(1.0, 2 * most);
+  return estimate;
 }
 
 std::shared_ptr<const GlossFit> LightReceiver::gloss(const Shared& shared, const Progress& progress) {
@@ -171,15 +178,17 @@ std::string LightReceiver::why_matte(const Shared& shared) const {
   return "its colours do not change with the eye as mirrored light would";
 }
 
-double LightReceiver::mirrored_change(const GlossFit& fit) const {
-  constexpr std::size_t some = 512;
+ChangeEstimate LightReceiver::mirrored_change(const GlossFit& fit) const {
   const LightSites& sites = baked_->sites;
   const std::vector<Vec3> directions = even_directions(24);
-  const std::size_t step = std::max<std::size_t>(1, sites.size() / some);
+  // Where nothing turned, or nothing is mirrored, nothing changes.
+  std::vector<std::uint8_t> turned(sites.size());
+  for (std::size_t i = 0; i < sites.size(); ++i)
+    turned[i] = sites.baked[i].normal != sites.now[i].normal && !fit.amounts[i].isZero(0) ? 1 : 0;
+  const std::vector<std::size_t> picked = picked_places(turned, sampled_places);
   double most = 0;
-  for (std::size_t i = step / 2; i < sites.size(); i += step) {
+  for (const std::size_t i : picked) {
     const LightSite &before = sites.baked[i], &after = sites.now[i];
-    if (before.normal == after.normal || fit.amounts[i].isZero(0)) continue;
     GlossPlace place;
     place.before << before.normal.cast<float>(), fit.amounts[i][0];
     place.after << after.normal.cast<float>(), fit.amounts[i][0];
@@ -196,7 +205,8 @@ double LightReceiver::mirrored_change(const GlossFit& fit) const {
       }
     }
   }
-  return std::min(1.0, 2 * most);
+  return {std::min(1.0, 2 * most), picked.size(),
+          static_cast<std::size_t>(std::count(turned.begin(), turned.end(), 1))};
 }
 
 LightReceiver::Change LightReceiver::change(bool self, bool removed, const std::vector<std::size_t>& casters,

@@ -78,9 +78,14 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
   receivers.reserve(objects.size());
   for (std::size_t k = 0; k < objects.size(); ++k) receivers.emplace_back(objects, k, settings, options, known);
   std::vector<Candidate> candidates;
-  const auto say = [&](const char* kind, const std::string& whose, double bound, std::string why) {
-    result.decisions.push_back({kind, fmt::format("{} {}", kind, whose), false, bound, 0, std::move(why), ""});
+  const auto say = [&](const char* kind, const std::string& whose, double change, std::string why) {
+    result.decisions.push_back({kind, fmt::format("{} {}", kind, whose), false, change, 0, std::move(why), ""});
     return result.decisions.size() - 1;
+  };
+  const auto say_estimate = [&](const char* kind, const std::string& whose, const ChangeEstimate& estimate) {
+    const std::size_t line = say(kind, whose, estimate.change, estimate.words());
+    result.decisions[line].estimated = true;
+    return line;
   };
   const std::vector<MatchedLight> matches = matched_lights(settings, receivers, progress);
   const auto matched = [&](std::size_t k) { return matches[k].light != nullptr; };
@@ -100,14 +105,15 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     else if (!self)
       say("self-shadow", receiver.name(), 0, "no triangle moved against its object");
     else
-      own = say("self-shadow", receiver.name(), removed ? 0 : receiver.sampled_change(true, false, progress), "");
+      own = removed ? say("self-shadow", receiver.name(), 0, "")
+                    : say_estimate("self-shadow", receiver.name(), receiver.sampled_change(true, false, progress));
     own_line[k] = own;
     if (own && !removed) candidates.push_back({*own, k, Candidate::Kind::self});
     if (self && !settings.highlights) say("highlights", receiver.name(), 0, "not asked for");
     if (self && settings.highlights) {
       gloss[k] = receiver.gloss(light_for(k), progress);
       if (gloss[k])
-        candidates.push_back({say("highlights", receiver.name(), receiver.mirrored_change(*gloss[k]), ""), k,
+        candidates.push_back({say_estimate("highlights", receiver.name(), receiver.mirrored_change(*gloss[k])), k,
                               Candidate::Kind::highlights});
       else
         say("highlights", receiver.name(), 0, receiver.why_matte(light_for(k)));
@@ -115,7 +121,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     if (receiver.missing() && !removed) say("removed shadow", receiver.name(), 0, "not asked for");
     if (removed) {
       const std::size_t line =
-          say("removed shadow", receiver.name(), receiver.sampled_change(receiver.moved(), true, progress), "");
+          say_estimate("removed shadow", receiver.name(), receiver.sampled_change(receiver.moved(), true, progress));
       candidates.push_back({line, k, Candidate::Kind::removed});
       if (own) follows[*own] = line;
     }
@@ -129,23 +135,23 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
                               Candidate::Kind::cast, other});
     }
   }
-  // The least bounds are left out while their sum stays within the budget.
+  // The least changes are left out while their sum stays within the budget.
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return result.decisions[candidates[a].decision].bound < result.decisions[candidates[b].decision].bound;
+    return result.decisions[candidates[a].decision].change < result.decisions[candidates[b].decision].change;
   });
   for (const std::size_t k : order) {
     LightDecision& decision = result.decisions[candidates[k].decision];
-    const double sum = result.left_out + decision.bound;
+    const double sum = result.left_out + decision.change;
     // In another light all of an object's own changes count.
     const bool in_other_light =
         (candidates[k].kind == Candidate::Kind::self || candidates[k].kind == Candidate::Kind::removed) &&
         matched(candidates[k].receiver);
     decision.runs = options.everything || in_other_light || sum > settings.budget;
-    decision.why = fmt::format("{} {:.3g} of 255, {:.3g} left out before it; budget {:.3g}",
-                               candidates[k].kind == Candidate::Kind::cast ? "at most" : "about", decision.bound * 255,
-                               result.left_out * 255, settings.budget * 255);
+    decision.why = fmt::format("{} {:.3g} of 255, {:.3g} left out before it; budget {:.3g}{}",
+                               decision.estimated ? "about" : "at most", decision.change * 255, result.left_out * 255,
+                               settings.budget * 255, decision.estimated ? "; estimate: " + decision.why : "");
     if (!decision.runs) result.left_out = sum;
     if (candidates[k].kind == Candidate::Kind::highlights)
       decision.why += fmt::format("; accounts for {:.0f} % of how colours change with the eye",
@@ -162,7 +168,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     if (own.runs) continue;
     own.runs = true;
     own.why = "together with the highlights";
-    result.left_out -= own.bound;
+    result.left_out -= own.change;
   }
   const auto gloss_for = [&](std::size_t k) {
     if (!gloss[k] && settings.highlights) gloss[k] = receivers[k].gloss(light_for(k), progress);

@@ -320,10 +320,10 @@ TEST(Lighting, LeavesOutByBoundsThatAnAuditHolds) {
     const Lighting planned = lighting_of(scene, {.rays = 1024});
     const Lighting everything = lighting_of(scene, {.rays = 1024, .everything = true});
     const LightDecision& cast = *decision(planned, "cast shadow box→ground");
-    EXPECT_EQ(cast.runs, cast.bound > scene.light->budget) << away;
+    EXPECT_EQ(cast.runs, cast.change > scene.light->budget) << away;
     EXPECT_LE(planned.left_out, scene.light->budget);
-    EXPECT_LE(cast.bound, last);
-    last = cast.bound;
+    EXPECT_LE(cast.change, last);
+    last = cast.change;
     // What it changes at most, whether it ran or not.
     double change = 0;
     if (const auto found = everything.maps.find(scene.roots[0]->id);
@@ -334,7 +334,7 @@ TEST(Lighting, LeavesOutByBoundsThatAnAuditHolds) {
         const double lit = 0.4 * static_cast<double>(map.gain[node.texel][0]) + offset;
         change = std::max(change, std::abs(to_display(lit) - to_display(0.4)));
       }
-    EXPECT_LE(change, cast.bound) << away;
+    EXPECT_LE(change, cast.change) << away;
   }
   EXPECT_LT(last, 1.0 / 255);
 }
@@ -358,7 +358,7 @@ TEST(Lighting, BoundsCountBounceAndTheSharedLight) {
     node.to_parent.linear() = Eigen::AngleAxisd(pi / 2, Vec3::UnitY()).toRotationMatrix();
   });
   const Lighting lighting = lighting_of(scene);
-  EXPECT_GT(decision(lighting, "cast shadow box→ground")->bound, 0.9);
+  EXPECT_GT(decision(lighting, "cast shadow box→ground")->change, 0.9);
 }
 
 // A bend that is taken back leaves colours as they were; a mirror image and other sizes are lit alike.

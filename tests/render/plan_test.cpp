@@ -88,7 +88,7 @@ TEST(Plan, TexelsAreCodedWhereTheyTakeMuchMemory) {
     auto object = std::make_shared<BakedObject>(*made_object());
     object->sets[0].texels = std::make_shared<const FeatureTexture>(FeatureTexture::from_parts(
         side, side, AlphaCode::halved,
-        [](int, int count, Texel* rows) { std::fill_n(rows, static_cast<std::size_t>(count) * side, Texel{}); }));
+        [](int, int count, Texel* texels) { std::fill_n(texels, static_cast<std::size_t>(count) * side, Texel{}); }));
     return object;
   };
   const auto one = large(), two = large();

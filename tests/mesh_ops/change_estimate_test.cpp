@@ -1,0 +1,45 @@
+// What is said of places that were not looked at holds as often as it claims.
+#include "mesh_ops/light/change_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace rebake::test {
+namespace {
+
+TEST(ChangeEstimate, AllPlacesAreTakenWhereThereAreFew) {
+  EXPECT_EQ(picked_places({1, 0, 1, 2}, 3), (std::vector<std::size_t>{0, 2, 3}));
+  EXPECT_EQ((ChangeEstimate{0.5, 3, 3}).share_beyond(), 0);
+}
+
+TEST(ChangeEstimate, PicksAreDistinctAndTheSameEveryTime) {
+  const std::vector<std::uint8_t> places(1000, 1);
+  const std::vector<std::size_t> picked = picked_places(places, 512);
+  EXPECT_EQ(picked.size(), 512U);
+  EXPECT_TRUE(std::is_sorted(picked.begin(), picked.end()));
+  EXPECT_EQ(std::adjacent_find(picked.begin(), picked.end()), picked.end());
+  EXPECT_EQ(picked, picked_places(places, 512));
+}
+
+// Of 3000 objects, of any number of places and changes in any order, at most one in a hundred has a larger share of
+// places beyond the largest that was picked.
+TEST(ChangeEstimate, HoldsWithTheConfidenceThatItClaims) {
+  constexpr std::size_t objects = 3000, picks = 64;
+  std::size_t wrong = 0;
+  for (std::size_t n = 0; n < objects; ++n) {
+    const std::size_t count = 1000 + 7 * n;
+    const std::vector<std::size_t> picked = picked_places(std::vector<std::uint8_t>(count, 1), picks);
+    // Each place changes by a number of its own, 0 … count − 1.
+    constexpr std::size_t prime = 1'000'003;
+    std::size_t largest = 0;
+    for (const std::size_t place : picked) largest = std::max(largest, place * prime % count);
+    const double beyond = static_cast<double>(count - 1 - largest) / static_cast<double>(count);
+    wrong += beyond > ChangeEstimate{0, picks, count}.share_beyond() ? 1 : 0;
+  }
+  EXPECT_LE(wrong, objects / 50);  // 30 are expected; 60 are five standard deviations beyond
+  EXPECT_GT(wrong, 0U);
+}
+
+}  // namespace
+}  // namespace rebake::test
