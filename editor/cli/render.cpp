@@ -72,20 +72,23 @@ void print_times(const json& times) {
              times.at("peak_gpu_bytes").get<double>() / 1e6);
 }
 
-// Draws with all light that may change something, and compares.
+// Draws with all that may change something, and compares.
 json audited(const Scene& scene, const View& view, const RenderOptions& how, const Lighting& lighting, bool quiet) {
   const Lighting everything = lit(scene, progress_bar(), true);
+  RenderOptions all = how;
+  all.everything = true;
   Renderer renderer;
   const Difference difference =
-      compare(renderer.render(scene, view, how, &lighting), renderer.render(scene, view, how, &everything), 0);
+      compare(renderer.render(scene, view, how, &lighting), renderer.render(scene, view, all, &everything), 0);
   // Both pictures are rounded.
-  const double allowed = lighting.left_out * 255 + 1;
+  const double allowed = (lighting.left_out + plan(scene, view, how, nullptr, &lighting).left_out) * 255 + 1;
   if (!quiet)
-    fmt::print("audit: what was left out changes pixels by at most {} of 255; its bounds allow {:.2f}\n",
+    fmt::print("audit: what was left out changes pixels by at most {} of 255; its bounds and estimates allow {:.2f}\n",
                difference.largest, allowed);
   if (difference.largest > allowed)
     throw Error(
-        fmt::format("the audit failed: pixel {}, {} is {} of 255 off, and the bounds of what was left out allow {:.2f}",
+        fmt::format("the audit failed: pixel {}, {} is {} of 255 off, and the bounds and estimates of what was left "
+                    "out allow {:.2f}",
                     difference.x, difference.y, difference.largest, allowed));
   return {{"largest", difference.largest}, {"allowed", allowed}};
 }

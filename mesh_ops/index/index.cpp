@@ -63,6 +63,11 @@ std::uint64_t memory_of(const WeldedCorners& corners) { return bytes_of(corners.
 std::uint64_t memory_of(const WeldedSet& set) { return memory_of(set.corners) + bytes_of(set.points); }
 std::uint64_t memory_of(const EdgeTable& edges) { return bytes_of(edges.half_edges) + bytes_of(edges.first_of); }
 std::uint64_t memory_of(const Components& parts) { return bytes_of(parts.part_of) + bytes_of(parts.triangles_in); }
+std::uint64_t memory_of(const DirectionUse& use) {
+  return sizeof(DirectionUse) +
+         sizeof(double) * static_cast<std::uint64_t>(use.without->weights0.size() + use.without->weights1.size());
+}
+std::uint64_t memory_of(const std::optional<FeatureRange>&) { return sizeof(FeatureRange); }
 std::uint64_t memory_of(const CornerUvs&) { return sizeof(CornerUvs); }
 std::uint64_t memory_of(const RayTriangles& triangles) { return triangles.memory(); }
 std::uint64_t memory_of(const RayTree& tree) { return tree.memory(); }
@@ -85,6 +90,14 @@ static ArrayCache::Settings shown_texels(const TextureSet& set) {
 
 static std::shared_ptr<const WeldedSet> welded_set(const TextureSet& set) {
   return cache().get<WeldedSet>(places_of(set), {}, [&] { return weld_set(set.soup); });
+}
+
+std::shared_ptr<const DirectionUse> direction_use_of(const std::shared_ptr<const Decoder>& decoder) {
+  return cache().get<DirectionUse>({decoder}, {}, [&] { return direction_use(*decoder); });
+}
+std::shared_ptr<const std::optional<FeatureRange>> feature_range_of(
+    const std::shared_ptr<const FeatureTexture>& texture) {
+  return cache().get<std::optional<FeatureRange>>({texture}, {}, [&] { return narrow_feature_range(*texture); });
 }
 
 std::shared_ptr<const std::vector<TriangleTraits>> traits_of(const BakedObject& object) {

@@ -7,6 +7,7 @@
 #include "mesh_ops/rays/ray_tree.h"
 #include "mesh_ops/rays/scene_rays.h"
 #include "mesh_ops/scene/scene.h"
+#include "mesh_ops/texture/decoder_bounds.h"
 
 namespace rebake {
 
@@ -19,6 +20,10 @@ std::shared_ptr<const WeldedCorners> corners_of(const BakedObject& object, doubl
 std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tolerance = 0);
 std::shared_ptr<const Components> components_of(const BakedObject& object, const Joining& joining = {});
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object);
+/// What frames may leave out, see decoder_bounds.h.
+std::shared_ptr<const DirectionUse> direction_use_of(const std::shared_ptr<const Decoder>& decoder);
+std::shared_ptr<const std::optional<FeatureRange>> feature_range_of(
+    const std::shared_ptr<const FeatureTexture>& texture);
 /// Null where they are not there yet: for who must not wait.
 std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object);
 

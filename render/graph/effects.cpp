@@ -7,11 +7,13 @@ namespace rebake {
 namespace {
 
 constexpr const Effect* table[] = {
-    &effects::geometry,       &effects::supersampling,  &effects::node_frames, &effects::turned_rays,
-    &effects::light,          &effects::light_offset,   &effects::highlights,  &effects::decoder_compositing,
-    &effects::ray_per_sample, &effects::resolve,        &effects::forward,     &effects::culling,
-    &effects::occlusion,      &effects::hidden_objects, &effects::kept_pixels, &effects::coded_texels,
-    &effects::inspect,        &effects::selection,      &effects::outline,     &effects::guides,
+    &effects::geometry,       &effects::supersampling, &effects::view_direction,
+    &effects::node_frames,    &effects::turned_rays,   &effects::light,
+    &effects::light_offset,   &effects::highlights,    &effects::decoder_compositing,
+    &effects::ray_per_sample, &effects::resolve,       &effects::forward,
+    &effects::culling,        &effects::occlusion,     &effects::hidden_objects,
+    &effects::kept_pixels,    &effects::coded_texels,  &effects::inspect,
+    &effects::selection,      &effects::outline,       &effects::guides,
 };
 
 }  // namespace

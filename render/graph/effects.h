@@ -60,7 +60,7 @@ struct Effect {
 };
 
 namespace effects {
-extern const Effect geometry, supersampling, node_frames, turned_rays, light, light_offset, highlights,
+extern const Effect geometry, supersampling, view_direction, node_frames, turned_rays, light, light_offset, highlights,
     decoder_compositing, ray_per_sample, resolve, forward, culling, occlusion, hidden_objects, kept_pixels,
     coded_texels, inspect, selection, outline, guides;
 }

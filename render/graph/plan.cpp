@@ -10,6 +10,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
+#include "mesh_ops/index/index.h"
 #include "render/graph/changed_pixels.h"
 #include "render/graph/effects.h"
 
@@ -68,6 +69,53 @@ RenderOptions::Texels chosen(RenderOptions::Texels texels, std::uint64_t bytes, 
   if (!device.reads_coded_texels) return Texels::plain;
   if (texels != Texels::automatic) return texels;
   return bytes > coded_from ? Texels::coded : Texels::plain;
+}
+
+// Where no decoder's colours depend on the direction by more than is seen, directions are left out.
+void leave_out_direction(FramePlan& plan) {
+  for (const auto& decoder : plan.decoders)
+    plan.direction_change = std::max(plan.direction_change, direction_use_of(decoder)->change);
+  // Light may make a change of colours any number of times larger.
+  const bool lit = std::any_of(plan.draws.begin(), plan.draws.end(), [](const Draw& d) { return d.light != nullptr; });
+  if (plan.options.everything || plan.draws.empty() || plan.direction_change > (lit ? 0 : unseen)) return;
+  plan.sees_direction = false;
+  plan.left_out += plan.direction_change;
+  std::vector<std::size_t> frame_of;
+  const std::vector<NodeFrame> frames = std::exchange(plan.frames, {});
+  for (const NodeFrame& frame : frames)
+    frame_of.push_back(frame_index(plan, {frame.decoder, Mat3::Identity(), frame.alpha_code}));
+  for (Draw& draw : plan.draws) draw.frame = frame_of[draw.frame];
+  for (auto& decoder : plan.decoders)
+    if (!decoder->weights0.bottomRows(3).isZero(0)) decoder = direction_use_of(decoder)->without;
+}
+
+// Where all that a pixel may show, and the background, have one colour as far as is seen, one sample is as good as
+// many.
+void leave_out_samples(FramePlan& plan) {
+  if (plan.options.everything || plan.view.samples == 1 || plan.draws.empty()) return;
+  // Of each decoder, of all textures that a pixel may mix.
+  std::vector<std::optional<FeatureRange>> features(plan.decoders.size());
+  for (const Draw& draw : plan.draws) {
+    if (draw.light != nullptr) return;
+    const std::optional<FeatureRange>& range = *feature_range_of(draw.set.texels);
+    if (!range) return;
+    if (!range->any) continue;
+    std::optional<FeatureRange>& of = features[plan.frames[draw.frame].decoder];
+    if (!of) of = range;
+    for (std::size_t k = 0; k < 8; ++k) {
+      of->low[k] = std::min(of->low[k], range->low[k]);
+      of->high[k] = std::max(of->high[k], range->high[k]);
+    }
+  }
+  ColorRange colors{plan.background, plan.background};
+  for (std::size_t k = 0; k < features.size(); ++k)
+    for (int covered = 1; features[k] && covered <= plan.view.samples; ++covered)
+      colors.join(color_range(*plan.decoders[k], *features[k], static_cast<double>(covered) / plan.view.samples));
+  if (colors.widest() > unseen) return;
+  plan.left_out += colors.widest();
+  plan.why_one_sample = fmt::format(
+      "what is in view and the background differ by at most {:.2g} of 255, however covered", colors.widest() * 255);
+  plan.view.samples = 1;
 }
 
 void plan_passes(FramePlan& plan, const FrameFacts& facts, bool overlays) {
@@ -149,6 +197,8 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
     }
     if (!any_in_view) ++culled;
   }
+  leave_out_direction(result);
+  leave_out_samples(result);
   if (result.options.weights == RenderOptions::Weights::automatic) {
     std::size_t weights = 0;
     for (const auto& decoder : result.decoders) weights += weight_count(*decoder);

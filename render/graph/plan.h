@@ -43,9 +43,13 @@ struct RenderOptions {
   Precision precision = Precision::full;
   Occlusion occlusion = Occlusion::automatic;
   Texels texels = Texels::automatic;
+  bool everything = false;  ///< also what changes less than `unseen`: to audit
 
   bool operator==(const RenderOptions&) const = default;
 };
+
+/// A change of display colours (0 … 1) that a plan may make to leave work out: an eighth of a step of 8 bits.
+inline constexpr double unseen = 0.125 / 255;
 
 struct FramePlan;
 
@@ -110,8 +114,12 @@ struct FramePlan {
   std::vector<std::shared_ptr<const Decoder>> decoders;  ///< distinct weights in view
   std::vector<NodeFrame> frames;
   std::vector<PlannedPass> passes;
-  PixelRect covered;  ///< of the picture nothing is drawn outside it
-  bool kept = false;  ///< what the targets hold outside it stays
+  PixelRect covered;            ///< of the picture nothing is drawn outside it
+  bool kept = false;            ///< what the targets hold outside it stays
+  double left_out = 0;          ///< display colours change at most by so much by what is left out: 0 … 2 · unseen
+  double direction_change = 0;  ///< a bound of what the view direction changes
+  bool sees_direction = true;   ///< decoders are fed the view direction
+  std::string why_one_sample;   ///< where fewer samples are taken than the view asks for
   std::size_t triangles = 0;
   std::uint64_t texture_bytes = 0;  ///< of the scene's textures, in view or not, at 8 bytes a texel
   bool overlays = false;            ///< guides are wanted

@@ -56,9 +56,19 @@ std::optional<Decision> decide(const FrameFacts& facts) {
 std::optional<Decision> decide_supersampling(const FrameFacts& facts) {
   const View& view = facts.plan.view;
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  if (!facts.plan.why_one_sample.empty()) return Decision{false, facts.plan.why_one_sample};
   if (view.samples == 1) return Decision{false, "1 sample a pixel is asked for"};
   return Decision{true, fmt::format("{} samples a pixel: buffers of {}×{}", view.samples, view.width * view.side(),
                                     view.height * view.side())};
+}
+
+std::optional<Decision> decide_view_direction(const FrameFacts& facts) {
+  if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  const double change = facts.plan.direction_change;
+  if (!facts.plan.sees_direction)
+    return Decision{false, change == 0 ? "no decoder in view depends on it"
+                                       : fmt::format("changes colours by at most {:.2g} of 255", change * 255)};
+  return Decision{true, "colours depend on it"};
 }
 
 std::optional<Decision> decide_node_frames(const FrameFacts& facts) {
@@ -70,6 +80,7 @@ std::optional<Decision> decide_node_frames(const FrameFacts& facts) {
 
 std::optional<Decision> decide_turned_rays(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
+  if (!facts.plan.sees_direction) return Decision{false, "no decoder in view is fed a direction"};
   if (facts.turned_draws == 0) return Decision{false, "no triangle was turned apart from its object"};
   return Decision{true, plural(facts.turned_draws, "draw has", "draws have") + " turned triangles"};
 }
@@ -85,6 +96,7 @@ constexpr Use writes[] = {{Target::features},
 
 const Effect effects::geometry{"geometry", Effect::Kind::colors, decide, execute, {}, writes};
 const Effect effects::supersampling{"supersampling", Effect::Kind::colors, decide_supersampling};
+const Effect effects::view_direction{"view direction", Effect::Kind::colors, decide_view_direction};
 const Effect effects::node_frames{"node frames", Effect::Kind::colors, decide_node_frames};
 const Effect effects::turned_rays{"turned rays", Effect::Kind::colors, decide_turned_rays};
 

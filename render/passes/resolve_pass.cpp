@@ -102,6 +102,7 @@ std::optional<Decision> decide_ray_per_sample(const FrameFacts& facts) {
   constexpr double widest_single_ray = 1.0 / 256;
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   if (facts.forward() || facts.plan.view.samples == 1) return Decision{false, "a pixel has one sample"};
+  if (!facts.plan.sees_direction) return Decision{false, "no decoder in view is fed a direction"};
   if (facts.plan.frames.size() > 1 || facts.turned_draws > 0)
     return Decision{true, "samples of a pixel may differ in orientation"};
   const double pixel = pixel_span(facts.plan.view);
