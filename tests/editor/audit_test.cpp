@@ -3,13 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "editor/edits/edit.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/light/lighting.h"
 #include "render/compare.h"
 #include "render/picture.h"
@@ -91,48 +95,133 @@ const Case edited_samples[] = {
      true},
 };
 
+View view_from(const Vec3& eye) {
+  View view;
+  view.camera.eye = eye;
+  view.camera.target = {0.3, 0, 0};
+  view.camera.near_plane = 0.2;
+  view.camera.far_plane = 60;
+  view.width = view.height = 160;
+  view.samples = 4;
+  return view;
+}
+
+// Draws the scene as planned for a budget, and with everything. Returns how much was left out.
+double left_out_within_bounds(const Scene& edited, double budget, const std::vector<View>& views) {
+  static InMemory results;  // what one case has traced another need not
+  static Renderer renderer;
+  // Light's nodes far apart: bounds and light are of the same ones.
+  LightingOptions options{.rays = 64, .spacing = 8, .most_nodes = 6000, .results = &results};
+  const Scene scene = with(edited, {{{"op", "light"}, {"source", "sky"}, {"budget", budget}}});
+  const Lighting planned = lighting_of(scene, options);
+  options.everything = true;
+  const Lighting everything = lighting_of(scene, options);
+  EXPECT_EQ(everything.left_out, 0);
+  EXPECT_LE(planned.left_out, budget / 255);
+  EXPECT_EQ(planned.decisions.size(), everything.decisions.size());
+  for (const LightDecision& decision : planned.decisions) EXPECT_FALSE(decision.why.empty()) << decision.name;
+  RenderOptions all;
+  all.everything = true;
+  for (const View& view : views) {
+    const Difference off =
+        compare(renderer.render(scene, view, {}, &planned), renderer.render(scene, view, all, &everything), 0);
+    const double left_out = planned.left_out + plan(scene, view, {}, nullptr, &planned).left_out;
+    // Both pictures are rounded.
+    EXPECT_LE(off.largest, left_out * 255 + 1) << "budget " << budget << ", pixel " << off.x << ", " << off.y;
+  }
+  return planned.left_out;
+}
+
 class Audit : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Samples, Audit, ::testing::ValuesIn(edited_samples),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST_P(Audit, WhatWasLeftOutStaysWithinItsBounds) {
-  static InMemory results;  // what one case has traced another need not
-  static Renderer renderer;
   static const Scene before = samples();
   const Scene edited = with(before, GetParam().edits);
-  std::vector<View> views;
-  for (const Vec3& from : {Vec3(2.5, 2, 3), Vec3(-3, 1, 1), Vec3(0.5, -1, -3.5)}) {
-    View view;
-    view.camera.eye = from;
-    view.camera.target = {0.3, 0, 0};
-    view.camera.near_plane = 0.2;
-    view.camera.far_plane = 60;
-    view.width = view.height = 160;
-    view.samples = 4;
-    views.push_back(view);
-  }
-  // Light's nodes far apart: bounds and light are of the same ones.
-  LightingOptions options{.rays = 64, .spacing = 8, .most_nodes = 6000, .results = &results};
+  const std::vector<View> views{view_from({2.5, 2, 3}), view_from({-3, 1, 1}), view_from({0.5, -1, -3.5})};
   double most_left_out = 0;
-  for (const double budget : is_deep ? std::vector{1.0, 6.0, 40.0} : std::vector{6.0, 40.0}) {
-    const Scene scene = with(edited, {{{"op", "light"}, {"source", "sky"}, {"budget", budget}}});
-    options.everything = false;
-    const Lighting planned = lighting_of(scene, options);
-    options.everything = true;
-    const Lighting everything = lighting_of(scene, options);
-    EXPECT_EQ(everything.left_out, 0);
-    EXPECT_LE(planned.left_out, budget / 255);
-    most_left_out = std::max(most_left_out, planned.left_out);
-    EXPECT_EQ(planned.decisions.size(), everything.decisions.size());
-    for (const LightDecision& decision : planned.decisions) EXPECT_FALSE(decision.why.empty()) << decision.name;
-    for (const View& view : views) {
-      const Difference off =
-          compare(renderer.render(scene, view, {}, &planned), renderer.render(scene, view, {}, &everything), 0);
-      // Both pictures are rounded.
-      EXPECT_LE(off.largest, planned.left_out * 255 + 1) << "budget " << budget << ", pixel " << off.x << ", " << off.y;
+  for (const double budget : is_deep ? std::vector{1.0, 6.0, 40.0} : std::vector{6.0, 40.0})
+    most_left_out = std::max(most_left_out, left_out_within_bounds(edited, budget, views));
+  EXPECT_EQ(most_left_out > 0, GetParam().leaves_out) << "the case does not test what it should";
+}
+
+// A sample alone, as studies show it, or both; then one to four edits that move, remove or add something.
+class RandomScript {
+ public:
+  explicit RandomScript(unsigned seed) : random_(seed) {}
+
+  Scene scene() {
+    static const Scene both = samples(), ficus = with(both, {{{"op", "remove"}, {"node", "kettle"}}}),
+                       kettle = with(both, {{{"op", "remove"}, {"node", "ficus"}}});
+    Scene scene = std::array{both, ficus, kettle}[random_() % 3];
+    for (std::size_t edits = 1 + random_() % 4; edits > 0; --edits) {
+      const std::vector<json> lines = edit();
+      try {
+        scene = with(scene, lines);
+        said_ += json(lines).dump() + "\n";
+      } catch (const Error&) {
+        // The node is not there, or has nothing there.
+      }
+    }
+    return scene;
+  }
+  double budget() { return std::exp(number(0, std::log(40))); }
+  View view() { return view_from(3.5 * Vec3(number(-1, 1), number(-0.5, 1), number(-1, 1)).normalized()); }
+  const std::string& said() const { return said_; }
+
+ private:
+  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  std::vector<json> edit() {
+    const char* const node = random_() % 2 == 0 ? "ficus" : "kettle";
+    const json box{{"min", {number(0, 0.7), number(0, 0.7), number(0, 0.7)}}, {"max", {1, 1, 1}}};
+    const double degrees = std::exp(number(std::log(0.1), std::log(60)));
+    const json sphere{{"center", {number(-0.6, 0.6), number(-0.6, 0.6), 0}}, {"radius", number(0.05, 0.4)}};
+    const json chosen{{"op", "select"}, {"node", node}, {"box", box}, {"frame", "bounds"}};
+    switch (random_() % 7) {
+      case 0:
+        return {{{"op", "bend"},
+                 {"node", node},
+                 {"degrees", degrees},
+                 {"axis", {1, number(-1, 1), 0}},
+                 {"direction", {0, -1, 0}},
+                 {"box", box},
+                 {"frame", "bounds"}}};
+      case 1:
+        return {{{"op", "twist"}, {"node", node}, {"degrees", degrees}, {"axis", {0, 1, 0}}}};
+      case 2:
+        return {{{"op", "erase"}, {"node", node}, {"sphere", sphere}}};
+      case 3:
+        return {chosen, {{"op", "delete"}, {"node", node}}};
+      case 4:
+        return {{{"op", "transform"},
+                 {"node", node},
+                 {"translate", {number(-20, 20), number(-1, 1), 0}},
+                 {"scale", number(0.3, 1.5)}}};
+      case 5:
+        return {chosen,
+                {{"op", "separate"}, {"node", node}, {"as", "part"}},
+                {{"op", "transform"}, {"node", "part"}, {"translate", {number(-9, 9), 0.4, 0}}}};
+      default:
+        return {{{"op", "duplicate"}, {"node", node}, {"as", "second"}},
+                {{"op", "transform"}, {"node", "second"}, {"translate", {number(-9, 9), 0, 0.4}}}};
     }
   }
-  EXPECT_EQ(most_left_out > 0, GetParam().leaves_out) << "the case does not test what it should";
+
+  std::mt19937 random_;
+  std::string said_;
+};
+
+TEST(RandomAudit, WhatWasLeftOutOfRandomScriptsStaysWithinItsBounds) {
+  int left_out = 0;
+  for (int seed = 1; seed <= cases(3, 200); ++seed) {
+    RandomScript script(static_cast<unsigned>(seed));
+    const Scene scene = script.scene();
+    SCOPED_TRACE("seed " + std::to_string(seed) + ":\n" + script.said());
+    const double budget = script.budget();
+    left_out += left_out_within_bounds(scene, budget, {script.view(), script.view()}) > 0 ? 1 : 0;
+  }
+  EXPECT_GT(left_out, is_deep ? 20 : -1) << "the scripts do not test what they should";
 }
 
 }  // namespace
