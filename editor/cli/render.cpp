@@ -77,20 +77,23 @@ json audited(const Scene& scene, const View& view, const RenderOptions& how, con
   const Lighting everything = lit(scene, progress_bar(), true);
   RenderOptions all = how;
   all.everything = true;
-  Renderer renderer;
-  const Difference difference =
-      compare(renderer.render(scene, view, how, &lighting), renderer.render(scene, view, all, &everything), 0);
   // Both pictures are rounded.
   const double allowed = (lighting.left_out + plan(scene, view, how, nullptr, &lighting).left_out) * 255 + 1;
-  if (!quiet)
-    fmt::print("audit: what was left out changes pixels by at most {} of 255; its bounds and estimates allow {:.2f}\n",
-               difference.largest, allowed);
-  if (difference.largest > allowed)
-    throw Error(
-        fmt::format("the audit failed: pixel {}, {} is {} of 255 off, and the bounds and estimates of what was left "
-                    "out allow {:.2f}",
-                    difference.x, difference.y, difference.largest, allowed));
-  return {{"largest", difference.largest}, {"allowed", allowed}};
+  const double most_beyond = lighting.estimated ? Lighting::most_beyond : 0;
+  Renderer renderer;
+  const Difference difference =
+      compare(renderer.render(scene, view, how, &lighting), renderer.render(scene, view, all, &everything),
+              static_cast<int>(std::min(255.0, allowed)));
+  const std::string found = fmt::format(
+      "what was left out changes pixels by at most {} of 255, and {:.2g} % of them by more than the {:.2f} that {} "
+      "allow",
+      difference.largest, difference.share_beyond * 100, allowed,
+      lighting.estimated ? "bounds and estimates" : "bounds");
+  if (!quiet) fmt::print("audit: {}\n", found);
+  if (difference.share_beyond > most_beyond)
+    throw Error(fmt::format("the audit failed at pixel {}, {}: {}; allowed are {:g} %", difference.x, difference.y,
+                            found, most_beyond * 100));
+  return {{"largest", difference.largest}, {"allowed", allowed}, {"share_beyond", difference.share_beyond}};
 }
 
 void render(const Rendering& options) {
@@ -141,8 +144,9 @@ void describe_render(CommandDescription& command) {
   options->view.add_to(command);
   add_axes_option(command, options->axes);
   command.flag("--plan", options->plan, "print which passes run, which do not, and why");
-  command.flag("--audit", options->audit,
-               "also work out the light that was left out, and fail where a pixel is further off than its bounds say");
+  command.flag(
+      "--audit", options->audit,
+      "also work out what was left out, and fail where more pixels are further off than its bounds and estimates say");
   command.option("--time", options->time, "time this many frames", "N").between(1, 100000);
   command.flag("--json", options->json, "plan and times as JSON");
   command.does([options] { render(*options); });

@@ -11,8 +11,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
+#include <string>
 #include <thread>
+#include <utility>
 
+#include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/partial_writes.h"
 
 namespace rebake {
@@ -66,7 +69,20 @@ std::string coloured(const std::string& text, const char* sgr) {
 }
 
 Progress progress_bar() {
-  if (!is_interactive()) return Progress({}, &interrupted);
+  if (!is_interactive()) {
+    // No bar where nobody looks; but logs are told once how long something takes.
+    auto said = std::make_shared<std::pair<std::mutex, std::string>>();
+    return Progress(
+        [said](std::string_view what, double) {
+          const std::size_t at = what.find(about);
+          if (at == std::string_view::npos) return;
+          const std::scoped_lock lock(said->first);
+          // What follows the time counts steps.
+          const std::string words(what.substr(0, what.find(", ", at + 1)));
+          if (std::exchange(said->second, words) != words) fmt::print(stderr, "note: {}\n", words);
+        },
+        &interrupted);
+  }
   auto state = std::make_shared<std::pair<std::mutex, std::chrono::steady_clock::time_point>>();
   return Progress(
       [state](std::string_view what, double share) {

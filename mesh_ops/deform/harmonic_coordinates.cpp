@@ -2,8 +2,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
+#include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/deform/coordinates.h"
 #include "mesh_ops/deform/dirichlet_grid.h"
@@ -31,7 +33,9 @@ class Harmonic final : public Coordinates {
     check_memory(resolution, static_cast<double>(grid_->nodes()));
     values_.resize(grid_->nodes() * rows());
     std::vector<GridLanes> surface, values;
+    std::string words = "harmonic coordinates";
     for (std::size_t first = 0; first < rows(); first += grid_lanes) {
+      const auto start = std::chrono::steady_clock::now();
       surface.assign(grid_->surface().size(), GridLanes::Zero());
       for (std::size_t k = 0; k < surface.size(); ++k) {
         const SurfacePoint& point = grid_->surface()[k];
@@ -41,11 +45,17 @@ class Harmonic final : public Coordinates {
         }
       }
       const double share = static_cast<double>(first) / static_cast<double>(rows());
-      grid_->solve(surface, values, [&] { progress.at("harmonic coordinates", share); });
+      grid_->solve(surface, values, [&] { progress.at(words, share); });
       const std::size_t lanes = std::min(grid_lanes, rows() - first);
       for (std::size_t node = 0; node < values.size(); ++node)
         std::copy_n(values[node].data(), lanes, &values_[node * rows() + first]);
-      progress.at("harmonic coordinates", static_cast<double>(first + lanes) / static_cast<double>(rows()));
+      if (first == 0) {
+        // All groups of points take the same time.
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        const double rest = static_cast<double>((rows() - lanes + grid_lanes - 1) / grid_lanes);
+        if (took.count() * rest > 2) words += about + duration_text(took.count() * rest);
+      }
+      progress.at(words, static_cast<double>(first + lanes) / static_cast<double>(rows()));
     }
     tbb::parallel_for(std::size_t{0}, grid_->lonely().size(), [&](std::size_t k) {
       const std::size_t node = grid_->lonely()[k];

@@ -8,15 +8,17 @@ namespace rebake {
 
 /// What an effect of light changes, judged by places picked at random: no bound.
 struct ChangeEstimate {
-  double change = 0;       ///< twice the largest change of a place looked at, in display colours, at most 1
+  /// `margin` times the largest change of a place looked at, in display colours, at most 1.
+  double change = 0;
   std::size_t places = 0;  ///< looked at
   std::size_t of = 0;      ///< all
 
+  static constexpr double margin = 2;
   static constexpr double confidence = 0.99;
   /// With that confidence at most this share of all places changes more than the largest one looked at: of a share p
   /// none is met by n picks with probability (1 − p)ⁿ. 0 where all were looked at.
   double share_beyond() const;
-  /// "512 of 9000 places were looked at: with 99 % confidence at most 0.9 % change more than half of that".
+  /// "2048 of 9000 places were looked at: with 99 % confidence at most 0.22 % change more than half of that".
   std::string words() const;
 };
 

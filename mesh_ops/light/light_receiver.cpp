@@ -18,7 +18,7 @@ namespace {
 // The steepest that display colours rise over linear light.
 constexpr double steepest = 12.92;
 // Sites by which changes are estimated.
-constexpr std::size_t sampled_places = 512;
+constexpr std::size_t sampled_places = 2048;
 
 struct Sphere {
   Vec3 center{0, 0, 0};
@@ -161,7 +161,7 @@ ChangeEstimate LightReceiver::sampled_change(bool self, bool removed, const Prog
       most = std::max(most, std::abs(to_display(changed) - to_display(color)));
     }
   }
-  estimate.change = std::min(1.0, 2 * most);
+  estimate.change = std::min(1.0, ChangeEstimate::margin * most);
   return estimate;
 }
 
@@ -205,7 +205,7 @@ ChangeEstimate LightReceiver::mirrored_change(const GlossFit& fit) const {
       }
     }
   }
-  return {std::min(1.0, 2 * most), picked.size(),
+  return {std::min(1.0, ChangeEstimate::margin * most), picked.size(),
           static_cast<std::size_t>(std::count(turned.begin(), turned.end(), 1))};
 }
 

@@ -35,14 +35,14 @@ class LightReceiver {
   /// An upper bound of what another object takes from this one's light, in display colours. A sun counts where a ray to
   /// it may meet the other's bounding sphere.
   double cast_bound(std::size_t other, const Shared& shared, const Progress& progress);
-  /// About what an effect changes, by 512 sites, 64 rays each.
+  /// About what an effect changes, by 2048 sites, 64 rays each.
   ChangeEstimate sampled_change(bool self, bool removed, const Progress& progress);
   /// What it mirrors of a light that its triangles have turned in; null where it does not, and where it was joined of
   /// others or stands in another light than its own.
   std::shared_ptr<const GlossFit> gloss(const Shared& shared, const Progress& progress);
   /// Why that is null.
   std::string why_matte(const Shared& shared) const;
-  /// About what turning changes of that, by 512 sites, each seen from 24 sides.
+  /// About what turning changes of that, by 2048 sites, each seen from 24 sides.
   ChangeEstimate mirrored_change(const GlossFit& fit) const;
   /// Irradiance over π of its sites, as baked and under what runs, and their colours.
   struct Change {

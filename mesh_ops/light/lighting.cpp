@@ -220,6 +220,8 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       result.decisions.back().runs = true;
     }
   }
+  result.estimated = std::any_of(result.decisions.begin(), result.decisions.end(),
+                                 [](const LightDecision& one) { return !one.runs && one.estimated; });
   result.summary = summed_up(result.decisions);
   return result;
 }

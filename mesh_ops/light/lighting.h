@@ -21,7 +21,11 @@ struct Lighting {
   std::vector<LightDecision> decisions;
   std::vector<LightDecision> summary;                            ///< of these, for people
   std::map<NodeId, std::shared_ptr<const TurnedLight>> turning;  ///< of LightingOptions::turning
-  double left_out = 0;                                           ///< the sum of bounds of what was left out
+  double left_out = 0;  ///< the sum of what was left out changes: of bounds and of estimates
+  /// An estimate left something out: a few places may change more (ChangeEstimate), in pictures most_beyond of the
+  /// pixels at most.
+  bool estimated = false;
+  static constexpr double most_beyond = 0.01;
 
   /// Of a node's texture set; null where nothing changes, and where its vertices are others by now.
   std::shared_ptr<const LightMap> map_of(NodeId node, std::size_t number, const TextureSet& set) const;

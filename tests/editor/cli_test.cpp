@@ -64,6 +64,17 @@ TEST_F(Cli, RenderCompareAndTimes) {
   EXPECT_EQ(rebake_run("compare " + in("a.png") + " " + in("b.png") + " --min-psnr 90").code, 3);
 }
 
+TEST_F(Cli, LongWorkSaysHowLongItTakesBeforeItStarts) {
+  const std::string import = R"({"op": "import", "path": ")" + in("ball") + "\"}\n";
+  const std::string moves = R"("moves": [{"points": [0], "translate": [1, 0, 0]}]})";
+  write_text(in("fine.jsonl"), import + R"({"op": "cage", "node": "ball", "wrap": 0.019, )" + moves);
+  const Outcome fine = rebake_run("run " + in("fine.jsonl"));
+  EXPECT_EQ(fine.code, 0) << fine.text;
+  EXPECT_NE(fine.text.find("note: wrap, about "), std::string::npos) << fine.text;
+  write_text(in("coarse.jsonl"), import + R"({"op": "cage", "node": "ball", "wrap": 0.2, )" + moves);
+  EXPECT_EQ(rebake_run("run " + in("coarse.jsonl")).text.find("about"), std::string::npos);
+}
+
 TEST_F(Cli, WithoutItsModulesItSaysWhichPictureAndWhatToDo) {
   write_png({1, 1, {1, 2, 3}}, in("a.png"), {});
   const std::string alone = in("rebake");
