@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <random>
 
 #include "editor/commands/export.h"
 #include "editor/commands/session.h"
@@ -229,6 +232,56 @@ TEST(Plain, ObjectsOfFewTexelsKeepTheirColours) {
     EXPECT_TRUE(std::any_of(lines.begin(), lines.end(),
                             [](const std::string& line) { return line == "copy: shares the texels of A"; }));
   }
+}
+
+// A square with a random decoder of 4 to 8 neurons, whose texels show random features, each quarter its own.
+std::shared_ptr<const BakedObject> random_square(std::mt19937& random, int opaque) {
+  auto object = std::make_shared<BakedObject>(*square(std::max(64, opaque), opaque, 1));
+  const auto neurons = [&] { return 4 + static_cast<int>(random() % 5); };
+  object->decoder = std::make_shared<const Decoder>(made_decoder(random(), neurons(), neurons()));
+  std::array<Texel, 4> quarters;
+  for (Texel& texel : quarters) {
+    for (auto* bytes : {&texel.feat0, &texel.feat1})
+      for (std::uint8_t& byte : *bytes) byte = static_cast<std::uint8_t>(1 + random() % 255);
+    texel.feat0[3] = texel.feat0[3] / 2 + 128;
+    texel.feat1[3] = texel.feat1[3] / 2 + 128;
+  }
+  const auto& old = object->sets[0].texels;
+  object->sets[0].texels = std::make_shared<const FeatureTexture>(
+      FeatureTexture::from_rows(old->width(), old->height(), AlphaCode::halved, [&](int y, Texel* row) {
+        for (int x = 0; x < old->width(); ++x)
+          row[x] = old->opaque(x, y) ? quarters[static_cast<std::size_t>(2 * y / opaque + 2 * (2 * x / opaque)) % 4]
+                                     : empty_texel(AlphaCode::halved);
+      }));
+  return object;
+}
+
+// Whatever the two objects, and however few texels one of them has: where decoders side by side show both well, what is
+// chosen shows each of them as well.
+TEST(Plain, ChoosesNothingWorseForEitherObjectThanSideBySide) {
+  std::mt19937 random(11);
+  int held = 0;
+  for (int k = 0; k < cases(1, 20); ++k) {
+    const double ratio = std::exp(std::uniform_real_distribution<double>(0, std::log(1000.0))(random));
+    const auto few = static_cast<int>(8 + random() % 8), many = static_cast<int>(few * std::sqrt(ratio));
+    const Scene scene = two(random_square(random, few), random_square(random, many));
+    const auto worst_part = [&](std::optional<FuseWay> way) {
+      FuseOptions options;
+      options.training.steps = 50;
+      options.way = way;
+      PlainReport report;
+      best_plain_scene(
+          scene, {}, options, []() -> Renderer& { return renderer(); }, [](const DeviceError&) { FAIL(); }, report, {},
+          200);
+      double worst = std::numeric_limits<double>::infinity();
+      for (const FuseReport::Part& part : report.texels.parts) worst = std::min(worst, part.errors.psnr_db);
+      return worst;
+    };
+    if (worst_part(FuseWay::side_by_side) < 50) continue;
+    ++held;
+    EXPECT_GE(worst_part(std::nullopt), 50) << "case " << k << ", 1 : " << ratio;
+  }
+  EXPECT_GT(held, 0);
 }
 
 // By way of files, as people get it.
