@@ -12,6 +12,7 @@
 #include <chrono>
 #include <csignal>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -250,6 +251,12 @@ std::vector<fs::path> batch_scenes(const BatchOptions& options, std::vector<fs::
   SourceGuard sources;
   for (const auto& [name, folder] : by_name) sources.add(folder);
   sources.check_file(state_folder(options));
+  for (const char* scene : {"mlp.json", "scene.json"})
+    if (fs::exists(options.out / scene))
+      throw FieldError("--out", fmt::format("{} is a scene itself; choose a folder for results", options.out.string()));
+  if (const fs::path script = fs::weakly_canonical(options.script), state = fs::weakly_canonical(state_folder(options));
+      std::mismatch(state.begin(), state.end(), script.begin(), script.end()).first == state.end())
+    throw FieldError("script", fmt::format("lies in {}, where the batch keeps its own files; move it", state.string()));
   if (!options.report.empty()) {
     sources.check_file(options.report);
     if (fs::weakly_canonical(options.report) == fs::weakly_canonical(options.script))
@@ -278,8 +285,14 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
   // No scene's script may write over another scene.
   std::string folders;
   for (const fs::path& scene : all) folders += fs::absolute(scene).string() + '\0';
-  const fs::path sources = state_folder(options) / fmt::format("sources-{}-of-{}", options.shard, options.shards);
+  // Of this batch alone: another one into the same folder has other scenes.
+  const fs::path sources =
+      state_folder(options) / fmt::format("sources-{}-of-{}-{}", options.shard, options.shards, ::getpid());
   write_file_atomically(sources, folders, {});
+  const std::shared_ptr<void> cleanup(nullptr, [&](void*) {
+    std::error_code ignored;
+    fs::remove(sources, ignored);
+  });
   const Claims claims(state_folder(options) / "claims");
   std::size_t next = 0, over = 0;
   // Also where the wish to stop arrives.
@@ -309,6 +322,8 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
         } else {
           for (const Mark::File& folder : before.wrote) claims.release(folder.path, result.name);
           fs::remove(mark);
+          // Not what links of these names lead to.
+          for (const char* ending : {".log", ".files"}) fs::remove(state_folder(options) / (result.name + ending));
           running.add(start(options, scenes[k], state_folder(options) / (result.name + ".log"),
                             state_folder(options) / (result.name + ".files"), sources),
                       {k, key, Clock::now()});

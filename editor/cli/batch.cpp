@@ -57,6 +57,18 @@ void print_table(const std::vector<BatchResult>& results) {
   fmt::print("{} scenes, {} failed\n", results.size(), failed);
 }
 
+// Nothing but an earlier report is replaced, and no other name that it has.
+void prepare_report(const std::filesystem::path& report) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(report, error) || std::filesystem::file_size(report, error) == 0) return;
+  const std::string text = read_file(report);
+  const auto first = nlohmann::json::parse(text.substr(0, text.find('\n')), nullptr, false);
+  if (!first.is_object() || !first.contains("scene") || !first.contains("status"))
+    throw FileError(report, "is not a report of an earlier batch; name another file with --report, or remove it");
+  if (std::filesystem::hard_link_count(report, error) > 1)
+    std::filesystem::remove(std::filesystem::canonical(report, error), error);
+}
+
 }  // namespace
 
 void describe_batch(CommandDescription& command) {
@@ -101,6 +113,7 @@ void describe_batch(CommandDescription& command) {
     batch.report = report;
     batch_scenes(batch);
     std::filesystem::create_directories(batch.out, error);
+    prepare_report(report);
     std::ofstream lines(report);
     if (!lines) throw FileError(report, "cannot be written");
     const std::vector<BatchResult> results = run_batch(batch, progress_bar(), [&](const BatchResult& result) {

@@ -18,6 +18,11 @@ CommandDescription::Option& CommandDescription::Option::one_of(const std::vector
   option_->check(CLI::IsMember(numbers));
   return *this;
 }
+CommandDescription::Option& CommandDescription::Option::not_empty() {
+  option_->check(
+      [](const std::string& text) { return text.empty() ? std::string("must not be empty") : std::string(); });
+  return *this;
+}
 CommandDescription::Option& CommandDescription::Option::between(int least, int most) {
   option_->check(CLI::Range(least, most));
   return *this;

@@ -28,6 +28,8 @@ class CommandDescription {
     Option& one_of(const std::vector<std::string>& words);
     Option& one_of(const std::vector<int>& numbers);
     Option& between(int least, int most);
+    /// Refuses an empty text, such as a shell's variable that is not set.
+    Option& not_empty();
 
    private:
     CLI::Option* option_;

@@ -1,6 +1,8 @@
-#include <fmt/format.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <new>
 
@@ -9,18 +11,32 @@
 #include "editor/document/result_store.h"
 #include "mesh_ops/base/error.h"
 
+namespace {
+
+// A file that is opened while one of these is closed would get its number, and messages with it.
+void open_standard_streams() {
+  for (int number = 0; number <= 2; ++number)
+    if (::fcntl(number, F_GETFD) < 0) ::open("/dev/null", number == 0 ? O_RDONLY : O_WRONLY);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  open_standard_streams();
   // A full quota then fails a write, which is reported, instead of ending the program.
   std::signal(SIGXFSZ, SIG_IGN);
   rebake::stop_on_interrupt();
   rebake::keep_results_in(rebake::ResultStore::of_user());
   const auto fail = [](const std::string& what) {
     rebake::clear_progress_bar();
-    fmt::print(stderr, "{} {}\n", rebake::coloured("error:", "1;31"), rebake::printable(what));
+    rebake::complain(rebake::coloured("error:", "1;31") + " " + rebake::printable(what) + "\n");
     return 1;
   };
   try {
-    return rebake::run_program(argc, argv);
+    const int code = rebake::run_program(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      return fail("standard output cannot be written: what it should hold is lost");
+    return code;
   } catch (const rebake::ExitWith& exit) {
     return exit.code;
   } catch (const rebake::FieldError& error) {

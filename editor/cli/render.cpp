@@ -115,7 +115,7 @@ void render(const Rendering& options) {
     if (!options.out.empty()) {
       const Image picture = renderer->render(scene, view, how, &lighting);
       write_png(picture, options.out, sources);
-      if (const auto why = why_blank(scene, view, picture)) fmt::print(stderr, "note: {}\n", *why);
+      if (const auto why = why_blank(scene, view, picture)) complain(fmt::format("note: {}\n", *why));
     }
     if (options.time > 0) {
       const json times = measure(*renderer, scene, view, how, lighting, options.time);

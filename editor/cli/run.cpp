@@ -65,7 +65,8 @@ void describe_run(CommandDescription& command) {
   auto options = std::make_shared<Options>();
   command.option("script", options->script, "script; relative paths in it start at the current folder", "SCRIPT.jsonl");
   command.option("--var", options->variables, "gives {name} in the script's texts a value", "name=value...");
-  command.option("--journal", options->journal, "keep every edit safe in this file until the script is done", "FILE");
+  command.option("--journal", options->journal, "keep every edit safe in this file until the script is done", "FILE")
+      .not_empty();
   command.option("--scene", options->scene, "import this first as the node \"scene\"; gives {name} and {path}",
                  "FOLDER");
   command.option("--out", options->out, "export there at the end, unless the script exports itself", "FOLDER");
@@ -109,6 +110,7 @@ void describe_run(CommandDescription& command) {
     }
     const std::string script = read_input(options->script);
     session.document.protect_file(options->script, "the script of this run");
+    if (!options->sources.empty()) session.document.protect_file(options->sources, "the list of what is protected");
     if (!options->journal.empty()) session.document.keep_journal(options->journal);
     if (!options->scene.empty()) {
       variables["name"] = folder_title(options->scene);

@@ -58,6 +58,8 @@ void stop_on_interrupt() {
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
+void complain(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
 bool is_interactive() {
   static const bool yes = isatty(STDERR_FILENO) == 1;
   return yes;
@@ -79,7 +81,7 @@ Progress progress_bar() {
           const std::scoped_lock lock(said->first);
           // What follows the time counts steps.
           const std::string words(what.substr(0, what.find(", ", at + 1)));
-          if (std::exchange(said->second, words) != words) fmt::print(stderr, "note: {}\n", words);
+          if (std::exchange(said->second, words) != words) complain(fmt::format("note: {}\n", words));
         },
         &interrupted);
   }
@@ -92,15 +94,14 @@ Progress progress_bar() {
         state->second = now;
         if (share >= 1) return clear_progress_bar();
         const auto filled = static_cast<std::size_t>(share * 30);
-        fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'), std::string(30 - filled, ' '),
-                   share * 100);
-        std::fflush(stderr);
+        complain(fmt::format("\\r\\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'),
+                             std::string(30 - filled, ' '), share * 100));
       },
       &interrupted);
 }
 
 void clear_progress_bar() {
-  if (is_interactive()) fmt::print(stderr, "\r\033[K");
+  if (is_interactive()) complain("\r\033[K");
 }
 
 std::string printable(std::string_view text) {
@@ -121,7 +122,7 @@ std::string printable(std::string_view text) {
 
 void say_line(const std::string& line) {
   clear_progress_bar();
-  fmt::print(stderr, "{}\n", printable(line));
+  complain(printable(line) + "\n");
 }
 
 }  // namespace rebake

@@ -19,6 +19,9 @@ void stop_on_interrupt();
 
 /// A one-line bar that is redrawn at most ten times a second and removed when done.
 Progress progress_bar();
+
+/// Writes to standard error, as far as that takes it: work goes on where nobody reads it.
+void complain(const std::string& text);
 void clear_progress_bar();
 
 /// Text that may hold anything (names, paths), fit for a terminal: control characters but line ends are written out.

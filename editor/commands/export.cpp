@@ -125,6 +125,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
     const std::filesystem::path folder = absolute_path(action.report).parent_path();
     if (!std::filesystem::is_directory(folder)) throw FieldError("report", "there is no folder " + folder.string());
     if (std::filesystem::is_directory(action.report)) throw FieldError("report", "is a folder; name a file");
+    check_replaces_report(action.report);
   }
   PlainReport report;
   const auto start = std::chrono::steady_clock::now();

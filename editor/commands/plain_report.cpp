@@ -225,6 +225,14 @@ std::vector<std::string> lines_of(const PlainReport& report) {
   return lines;
 }
 
+void check_replaces_report(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) return;
+  const auto there = nlohmann::json::parse(read_file(path), nullptr, false);
+  if (!there.is_object() || !there.contains("exact") || !there.contains("width"))
+    throw FileError(path, "is not a report of an earlier export; name another file for the report, or remove it");
+}
+
 nlohmann::json to_json(const PlainReport& report) {
   const auto errors = [](const TexelErrors& e) {
     return nlohmann::json{{"texels", e.texels}, {"psnr_db", e.psnr_db}, {"worst_psnr_db", e.worst_psnr_db}};

@@ -35,6 +35,10 @@ struct PlainReport {
   double seconds = 0;  ///< of the whole command: light, trials, fitting, writing and measuring; 0 where nobody took it
 };
 
+/// Throws FileError where a file is at `path` that is not empty and no such report as JSON: it may be anything that
+/// somebody needs.
+void check_replaces_report(const std::filesystem::path& path);
+
 /// Twenty views all around (of forward-facing scenes: from the front), none of which features were fitted to.
 std::vector<View> judging_views(const Scene& scene, int size);
 

@@ -326,6 +326,13 @@ std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journa
   for (const auto& [from, to] : sources) links[from.cast<std::filesystem::path>()] = to.cast<std::filesystem::path>();
   std::optional<Document::Recovered> recovered;
   do_work(callback, [&](const Progress& progress) { recovered = Document::recover(journal, links, progress); });
+  if (!recovered->document.keeps_journal() &&
+      PyErr_WarnEx(PyExc_UserWarning,
+                   (journal.string() + " is kept as it is, and what is edited from now on is in no journal: call "
+                                       "keep_journal with another file, or save")
+                       .c_str(),
+                   1) != 0)
+    throw py::error_already_set();
   for (const std::string& lost : recovered->lost)
     if (PyErr_WarnEx(PyExc_UserWarning, ("not got back: " + lost).c_str(), 1) != 0) throw py::error_already_set();
   auto document = std::make_unique<PyDocument>(std::move(recovered->document));

@@ -122,14 +122,40 @@ bool is_partial_of(const std::string& name, const std::string& of) {
   return digits[0] == '.' && digits.find_first_not_of("0123456789abcdef", 1) == std::string::npos;
 }
 
-// What processes that were killed left behind; one that is at work holds a lock.
-void remove_leftovers(const fs::path& folder, const std::string& of) {
+// Whether something is mounted at a path or below it: what lies there belongs to somebody else.
+bool holds_mount(const fs::path& path) {
+  const auto is_mount = [](const fs::path& at) {
+    struct statx about {};
+    return ::statx(AT_FDCWD, at.c_str(), AT_SYMLINK_NOFOLLOW, STATX_BASIC_STATS, &about) != 0 ||
+           (about.stx_attributes & about.stx_attributes_mask & STATX_ATTR_MOUNT_ROOT) != 0;
+  };
+  if (is_mount(path)) return true;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(path, error), end; !error && at != end; at.increment(error))
+    if (at->is_directory(error) && is_mount(at->path())) return true;
+  return false;
+}
+
+bool is_source(const fs::path& path, const SourceGuard& guard) {
+  try {
+    guard.check_folder(path);
+    return false;
+  } catch (const FileError&) {
+    return true;
+  }
+}
+
+// What processes that were killed left behind; one that is at work holds a lock. Never what this run reads: people open
+// leftovers to rescue them.
+void remove_leftovers(const fs::path& folder, const std::string& of, bool are_folders, const SourceGuard& guard) {
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     if (!is_partial_of(at->path().filename().string(), of)) continue;
+    std::error_code ignored;
+    if (fs::is_directory(at->symlink_status(ignored)) != are_folders) continue;
     const Descriptor lock{::open(at->path().c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW)};
     if (lock.value < 0 || ::flock(lock.value, LOCK_EX | LOCK_NB) != 0) continue;
-    std::error_code ignored;
+    if (is_source(at->path(), guard) || holds_mount(at->path())) continue;
     fs::remove_all(at->path(), ignored);
   }
 }
@@ -263,7 +289,7 @@ void write_file_atomically(const fs::path& named, std::string_view bytes, const 
     }
     return;
   }
-  remove_leftovers(path.parent_path(), path.filename().string());
+  remove_leftovers(path.parent_path(), path.filename().string(), false, guard);
   const fs::path partial = path.parent_path() / partial_name(path.filename().string());
   const PartialWrite known(partial);
   try {
@@ -284,7 +310,8 @@ void remove_file(const fs::path& path) {
 }
 
 AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
-                           const std::function<void(const fs::path&)>& may_replace) {
+                           const std::function<void(const fs::path&)>& may_replace)
+    : guard_(guard) {
   if (target.empty()) throw FieldError("out", "names no folder to write to");
   guard.check_folder(target);
   target_ = followed(target);
@@ -297,7 +324,7 @@ AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
   make_folders(target_.parent_path());
   std::string hidden = ".";
   hidden += target_.filename().string();
-  remove_leftovers(target_.parent_path(), hidden);
+  remove_leftovers(target_.parent_path(), hidden, true, guard);
   staging_ = target_.parent_path() / partial_name(hidden);
   if (file_calls().mkdir(staging_.c_str(), 0777) != 0) {
     staging_.clear();
@@ -334,6 +361,8 @@ void AtomicFolder::commit() {
   for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) sync_folder(*folder);
   fs::path old;
   const auto committing = PartialWrite::committing();
+  // Again: a folder on the way may have become a link to a source since.
+  guard_.check_folder(target_);
   if (fs::exists(target_)) {
     // One system call swaps old and new; the old one, now at the staging path, is removed by the destructor.
     if (file_calls().rename(staging_.c_str(), target_.c_str(), RENAME_EXCHANGE) == 0) {

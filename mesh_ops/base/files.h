@@ -93,6 +93,7 @@ class AtomicFolder {
   void commit();
 
  private:
+  SourceGuard guard_;
   std::filesystem::path target_;
   std::filesystem::path staging_;
   std::unique_ptr<PartialWrite> partial_;

@@ -5,7 +5,7 @@
 namespace rebake {
 
 std::size_t batch_workspace(const BatchCage& cage, bool gradients) {
-  return (gradients ? 4U : 1U) * batch_lanes * (cage.edge_count + cage.vertex_count);
+  return (gradients ? 4U : 1U) * batch_lanes * (cage.edge_count + cage.vertex_count) + batch_lanes;
 }
 
 std::size_t batch_sums_at(const BatchCage& cage, bool gradients) {

@@ -21,9 +21,10 @@ enum class CageCoordinates {
 
 /// Mean value weights of one point in the cage frame, one a vertex. Sum and linear precision hold to a few rounding
 /// errors wherever the point lies. With T = float or long double that is their rounding; with DualOf them each
-/// weight carries its gradient in local units.
+/// weight carries its gradient in local units. Returns the size of all faces' terms over the size of their sum: weights
+/// are off by about as many roundings. 0 for points near the surface, whose faces are weighed exactly.
 template <class T>
-void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>& weights);
+double mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>& weights);
 
 /// Green's coordinates of one point in the cage frame: φ one a vertex and ψ one a face (by the cage's face numbers, in
 /// local units of length). False where the point is outside, and the weights mean nothing.

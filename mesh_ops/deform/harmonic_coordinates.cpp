@@ -29,6 +29,7 @@ class Harmonic final : public Coordinates {
     for (const Vec3& v : local.vertices) box.extend(v);
     const double step = box.sizes().maxCoeff() / resolution;
     check_memory(resolution, volume(local) / (step * step * step));
+    check_fineness(local, resolution, step);
     grid_ = std::make_unique<DirichletGrid>(local, resolution, progress);
     check_memory(resolution, static_cast<double>(grid_->nodes()));
     values_.resize(grid_->nodes() * rows());
@@ -94,6 +95,27 @@ class Harmonic final : public Coordinates {
   }
 
  private:
+  // Where cells are far larger than the cage is thick, few nodes lie inside, and weights there are made of what lies
+  // outside: they leave 0 … 1 by any amount.
+  static void check_fineness(const Cage& local, int resolution, double step) {
+    double area = 0;
+    for (const Face& face : local.faces)
+      area += (local.vertices[face[1]] - local.vertices[face[0]])
+                  .cross(local.vertices[face[2]] - local.vertices[face[0]])
+                  .norm() /
+              2;
+    const double thickness = 2 * volume(local) / area;  // of a flat box; half that of a rod
+    constexpr double least = 0.5;
+    if (thickness >= least * step) return;
+    const double wanted = std::ceil(resolution * least * step / thickness);
+    throw FieldError(
+        "resolution",
+        fmt::format("of {} is too coarse for a cage that is {:.2g} of its length thick; {}", resolution,
+                    thickness / (step * resolution),
+                    wanted <= 256 ? fmt::format("use at least {:.0f}", wanted)
+                                  : std::string("use mean_value or green coordinates, or a thicker cage")));
+  }
+
   void check_memory(int resolution, double nodes) const {
     const auto check = [&](const char* what, double bytes, double most) {
       if (bytes > most)

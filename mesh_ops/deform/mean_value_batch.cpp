@@ -72,7 +72,10 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
   const double *px = points, *py = points + lanes, *pz = points + 2 * lanes;
   double* const angles = workspace;                     // θ / c of each edge, then its gradient: rows of lanes
   double* const sums = angles + cage.edge_count * row;  // weights before they are normalised, likewise
+  double* const sizes =
+      sums + cage.vertex_count * row;  // of all terms that the weights are summed from: a row of lanes
   for (std::size_t i = 0; i < cage.vertex_count * row; ++i) sums[i] = start != nullptr ? start[i] : 0;
+  for (int lane = 0; lane < lanes; ++lane) sizes[lane] = 0;
 
   for (std::size_t e = 0; e < cage.edge_count; ++e) {
     const double* frame = cage.edge_frames + 4 * e;
@@ -188,6 +191,12 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
       w0[lane] += kept > 0 ? below * part0 : 0.0;
       w1[lane] += kept > 0 ? below * part1 : 0.0;
       w2[lane] += kept > 0 ? below * part2 : 0.0;
+      // The same sums with all terms positive: what roundings are shares of.
+      const double along1 = fabs(k1 * nt1) + fabs(k2 * nt2), across1 = fabs(k0) + fabs(k1 * no1) + fabs(k2 * no2);
+      const double whole_size = (fabs(out * k0) + fabs(a1 * k1) + fabs(a2 * k2)) * half;
+      const double slope0_size = across1 * by_height, slope2_size = (along1 + slope0_size * fabs(apex)) * by_length;
+      const double size = (fabs(lambda0) + fabs(lambda1) + fabs(lambda2)) * whole_size + slope0_size + slope2_size;
+      sizes[lane] += kept > 0 ? fabs(below) * size : 0.0;
       if constexpr (gradients) {
         const double by_h = 2 * whole * h / (h * h + tiny);
         const auto axis = [&](int n, double normal, double tangent, double outward) __attribute__((always_inline)) {
@@ -233,10 +242,13 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
         const double lambda2 = -((1 - lambda0) * along + lambda0 * (along + apex)) * by_length;
         const double lambda1 = 1 - lambda0 - lambda2;
         const double below = fabs(h) <= 1e-15 ? 0.0 : h;
+        const double lambdas = fabs(lambda0) + fabs(lambda1) + fabs(lambda2);
         if constexpr (!gradients) {
-          const double whole = -0.5 * (sign0 * part_value(sign0 * out, square, c0, along, far, k0 * c0) +
-                                       sign1 * part_value(sign1 * a1, square, c1, begin1, begin1 + length1, k1 * c1) +
-                                       sign2 * part_value(sign2 * a2, square, c2, end2 - length2, end2, k2 * c2));
+          const double value0 = part_value(sign0 * out, square, c0, along, far, k0 * c0),
+                       value1 = part_value(sign1 * a1, square, c1, begin1, begin1 + length1, k1 * c1),
+                       value2 = part_value(sign2 * a2, square, c2, end2 - length2, end2, k2 * c2);
+          const double whole = -0.5 * (sign0 * value0 + sign1 * value1 + sign2 * value2);
+          sizes[lane] += grazing[lane] > 0 ? fabs(below) * lambdas * (fabs(value0) + fabs(value1) + fabs(value2)) : 0.0;
           w0[lane] += grazing[lane] > 0 ? below * lambda0 * whole : 0.0;
           w1[lane] += grazing[lane] > 0 ? below * lambda1 * whole : 0.0;
           w2[lane] += grazing[lane] > 0 ? below * lambda2 * whole : 0.0;
@@ -246,6 +258,7 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
                      p2 = part(sign2 * a2, square, c2, end2 - length2, end2, k2 * c2);
           constexpr double half = -0.5;
           const double whole = half * (sign0 * p0.v + sign1 * p1.v + sign2 * p2.v);
+          sizes[lane] += grazing[lane] > 0 ? fabs(below) * lambdas * (fabs(p0.v) + fabs(p1.v) + fabs(p2.v)) : 0.0;
           w0[lane] += grazing[lane] > 0 ? below * lambda0 * whole : 0.0;
           w1[lane] += grazing[lane] > 0 ? below * lambda1 * whole : 0.0;
           w2[lane] += grazing[lane] > 0 ? below * lambda2 * whole : 0.0;

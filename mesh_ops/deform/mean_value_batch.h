@@ -23,7 +23,9 @@ struct BatchCage {
 inline constexpr std::size_t batch_face_numbers = 28;
 
 /// Where the batch works, in doubles; batch_sums_at(cage, gradients) into it lie the weights before they are
-/// normalised: vertex_count rows of lanes, each followed by its gradient's three rows if `gradients`.
+/// normalised: vertex_count rows of lanes, each followed by its gradient's three rows if `gradients`; and behind them a
+/// row of the sizes of all terms that a lane's weights are summed from. Divided by the size of their sum, these say how
+/// many roundings the weights are off.
 std::size_t batch_workspace(const BatchCage& cage, bool gradients);
 std::size_t batch_sums_at(const BatchCage& cage, bool gradients);
 

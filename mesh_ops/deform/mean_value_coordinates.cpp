@@ -8,6 +8,11 @@ namespace {
 
 namespace pl = plane_local;
 
+// Terms so many times as large as their sum leave ten digits at least. Beyond, all faces are weighed with 50: outside
+// thin cages and beside sharp edges, where points are few and time is long (a tenth of a millisecond a face). Farther
+// than this many diagonals weights are no use to anybody, and are left as double makes them.
+constexpr double most_cancelled = 1e5, exact_within = 10;
+
 class MeanValue final : public Coordinates {
  public:
   MeanValue(const Cage& cage, MeanValueBatch batch)
@@ -19,6 +24,7 @@ class MeanValue final : public Coordinates {
       edge_frames_.push_back(edge.length);
     }
     for (const FaceFrame& face : frame_.faces) {
+      all_faces_.push_back(&face);
       if (pl::is_needle(face)) {
         needles_.push_back(&face);
         continue;
@@ -87,11 +93,12 @@ class MeanValue final : public Coordinates {
     left_out.resize(batch_.face_count * batch_lanes);
     for (auto& faces : near) faces.clear();
     start.clear();
+    std::array<double, batch_lanes> needle_sizes{};
     if (!needles_.empty()) {
       start.assign(row * rows(), 0.0);
       for (std::size_t lane = 0; lane < batch_lanes; ++lane)
         for (const FaceFrame* face : needles_)
-          add_face<T>(*face, point_of(local, lane), start.data() + lane, near[lane]);
+          needle_sizes[lane] += add_face<T>(*face, point_of(local, lane), start.data() + lane, near[lane]);
     }
     const std::size_t left = run_(batch_, local.data(), start.empty() ? nullptr : start.data(), workspace.data(),
                                   weights, gradients, left_out.data());
@@ -104,13 +111,25 @@ class MeanValue final : public Coordinates {
       if (left_out[n].on)
         near[lane].push_back(face);
       else
-        add_face<T>(*face, point_of(local, lane), sums + lane, near[lane]);
+        needle_sizes[lane] += add_face<T>(*face, point_of(local, lane), sums + lane, near[lane]);
     }
+    const double* const sizes = sums + rows() * row;
+    const auto cancels = [&](std::size_t lane) {
+      double total = 0;
+      for (std::size_t v = 0; v < rows(); ++v) total += sums[v * row + lane];
+      return sizes[lane] + needle_sizes[lane] > most_cancelled * std::abs(total);
+    };
     thread_local std::vector<T> exact;
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
       const Vec3 p = point_of(local, lane);
-      if (frame_.is_far_out(p)) {
-        mean_value_weights(frame_, p, exact);
+      const bool far_out = frame_.is_far_out(p);
+      if (far_out
+              ? mean_value_weights(frame_, p, exact) > most_cancelled && p.stableNorm() < exact_within * frame_.diagonal
+              : near[lane].empty() && cancels(lane)) {
+        exact.assign(rows(), pl::constant<T>(0));
+        add_near_faces<T>(frame_, pl::local_point(p, T()), all_faces_, exact);
+      } else if (far_out) {
+        // Done.
       } else if (again[lane] != 0 || !near[lane].empty()) {
         exact.resize(rows());
         for (std::size_t v = 0; v < rows(); ++v) {
@@ -139,17 +158,19 @@ class MeanValue final : public Coordinates {
   static double part(double number) { return number; }
   static double part(const Dual& number) { return number.v; }
 
-  // What a face weighs, into one lane of rows of sums; or the face into `near`.
+  // What a face weighs, into one lane of rows of sums; or the face into `near`. Returns the size of what was added.
   template <class T>
-  void add_face(const FaceFrame& face, const Vec3& local, double* sums, std::vector<const FaceFrame*>& near) const {
+  double add_face(const FaceFrame& face, const Vec3& local, double* sums, std::vector<const FaceFrame*>& near) const {
     const pl::Seen<T> s = pl::seen(frame_, face, pl::local_point(local, T()));
     if (pl::distance_of(s) < near_distance) {
       near.push_back(&face);
-      return;
+      return 0;
     }
     const bool in_plane = pl::place(s) != pl::Place::off_plane;
     const auto terms = pl::mean_value_terms(face, s);
+    double size = 0;
     for (std::size_t k = 0; k < 3; ++k) {
+      size += std::abs(value_of(terms[k]));
       double* sum = sums + face.vertices[k] * (pl::has_gradient<T> ? 4 : 1) * batch_lanes;
       // In its plane a face has value 0, but a gradient.
       if (!in_plane) sum[0] += value_of(terms[k]);
@@ -159,9 +180,11 @@ class MeanValue final : public Coordinates {
         sum[3 * batch_lanes] += terms[k].z;
       }
     }
+    return size;
   }
 
   CageFrame frame_;
+  std::vector<const FaceFrame*> all_faces_;
   std::vector<const FaceFrame*> needles_;  ///< weighed one by one
   std::vector<const FaceFrame*> batched_;  ///< the others
   std::vector<double> vertices_, edge_frames_, face_frames_;

@@ -14,11 +14,12 @@
 namespace rebake {
 
 template <class T>
-void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>& weights) {
+double mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>& weights) {
   weights.assign(cage.vertices.size(), plane_local::constant<T>(0));
   const plane_local::Point<T> x = plane_local::local_point(local, T());
   std::vector<const FaceFrame*> near;
   const bool far_out = cage.is_far_out(local);
+  double size = 0, sum = 0;
   for (const FaceFrame& face : cage.faces) {
     const plane_local::Seen<T> s = plane_local::seen(cage, face, x);
     if (plane_local::distance_of(s) < near_distance) {
@@ -32,9 +33,13 @@ void mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>
     for (std::size_t k = 0; k < 3; ++k) {
       if (in_plane) terms[k] = terms[k] - plane_local::constant<T>(value_of(terms[k]));
       weights[face.vertices[k]] += terms[k];
+      size += std::abs(value_of(terms[k]));
+      sum += value_of(terms[k]);
     }
   }
+  const bool any_near = !near.empty();
   add_near_faces<T>(cage, x, near, weights);
+  return any_near ? 0 : size / std::abs(sum);
 }
 
 /// The nearest point of a face to what `s` sees, as barycentric coordinates.
@@ -139,6 +144,13 @@ bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_co
   for (std::size_t n = 0; n < near.size(); ++n) add(near_numbers[n], near_terms[n]);
   if (wide_values.empty()) inside = value_of(sum);
   if (!(inside > 0.125 || nearest <= plane_local::surface_tolerance<T>)) return false;
+  // Where parts of the cage overlap it is wound around more than once, and all is counted as often.
+  if (const double winding = std::round(inside); winding > 1) {
+    const T by_winding = plane_local::constant<T>(1 / winding);
+    for (T& weight : phi) weight = weight * by_winding;
+    for (T& weight : psi) weight = weight * by_winding;
+    sum = sum * by_winding;
+  }
   const FaceFrame& face = cage.faces[nearest_face];
   auto lambda = nearest_coordinates(face, plane_local::seen(cage, face, x));
   T missing = plane_local::constant<T>(1) - sum;

@@ -1,9 +1,11 @@
 #include "mesh_ops/formats/baked_folder.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <tbb/parallel_for.h>
 
 #include <atomic>
+#include <tuple>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
@@ -143,6 +145,12 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
   const fs::file_status status = fs::status(folder);
   if (!fs::exists(status)) throw FileError(folder, "does not exist");
   if (!fs::is_directory(status)) throw FileError(folder, "is not a folder");
+  const auto identity = [&] {
+    struct stat about {};
+    const bool there = ::stat(folder.c_str(), &about) == 0;
+    return std::tuple(there, about.st_dev, about.st_ino);
+  };
+  const auto before = identity();
   const std::string mlp_text = read_file(folder / "mlp.json");
   MlpFile mlp = read_mlp_json(mlp_text, folder / "mlp.json");
   const bool unsplit = !mlp.obj_num.has_value();
@@ -238,6 +246,8 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
     read_turns(read_file(turns), turns, object->sets);
   else if (const fs::path text = folder / "turns.json"; fs::exists(text))
     read_turns_json(read_file(text), text, object->sets);
+  // Exports replace folders whole: half of one and half of another would be taken for a scene.
+  if (identity() != before) throw FileError(folder, "was replaced while it was read; open it again");
   return object;
 }
 

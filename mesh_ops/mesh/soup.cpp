@@ -117,6 +117,19 @@ std::optional<Soup> reunited(const Soup& a, const Soup& b) {
 
 }  // namespace
 
+std::vector<std::uint32_t> faces_of_united(const Soup& a, const Soup& b) {
+  std::vector<std::uint32_t> order(a.triangle_count() + b.triangle_count());
+  std::iota(order.begin(), order.end(), 0U);
+  if (!reunited(a, b)) return order;
+  const auto whole_face = [&](std::uint32_t f) {
+    const auto in_a = static_cast<std::uint32_t>(a.triangle_count());
+    return f < in_a ? a.lineage()->faces[f] : b.lineage()->faces[f - in_a];
+  };
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t f, std::uint32_t g) { return whole_face(f) < whole_face(g); });
+  return order;
+}
+
 Soup united(const Soup& a, const Soup& b) {
   if (auto whole = reunited(a, b)) return std::move(*whole);
   auto positions = std::make_shared<std::vector<Vec3>>(a.positions());

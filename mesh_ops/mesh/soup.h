@@ -83,6 +83,8 @@ Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t
 /// Both soups as one. Parts of one soup without a common face become its subset again (the soup itself when all faces
 /// are there, bit for bit); others are put one after the other.
 Soup united(const Soup& a, const Soup& b);
+/// Which face each one of united(a, b) was, counted through those of a and then those of b.
+std::vector<std::uint32_t> faces_of_united(const Soup& a, const Soup& b);
 
 /// Gives the flagged faces' vertices other positions and rotations: `change` is called once for each. Vertices that
 /// change and are shared with other faces are split; where nothing changes, nothing does.

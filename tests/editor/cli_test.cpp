@@ -68,11 +68,46 @@ TEST_F(Cli, LongWorkSaysHowLongItTakesBeforeItStarts) {
   const std::string import = R"({"op": "import", "path": ")" + in("ball") + "\"}\n";
   const std::string moves = R"("moves": [{"points": [0], "translate": [1, 0, 0]}]})";
   write_text(in("fine.jsonl"), import + R"({"op": "cage", "node": "ball", "wrap": 0.019, )" + moves);
-  const Outcome fine = rebake_run("run " + in("fine.jsonl"));
+  // Nothing kept from an earlier run.
+  const Outcome fine = rebake_run("run " + in("fine.jsonl"), "REBAKE_RESULTS=");
   EXPECT_EQ(fine.code, 0) << fine.text;
   EXPECT_NE(fine.text.find("note: wrap, about "), std::string::npos) << fine.text;
   write_text(in("coarse.jsonl"), import + R"({"op": "cage", "node": "ball", "wrap": 0.2, )" + moves);
   EXPECT_EQ(rebake_run("run " + in("coarse.jsonl")).text.find("about"), std::string::npos);
+}
+
+// A journal that was opened while standard error was closed got its number, and messages were written into it.
+TEST_F(Cli, ClosedOrFullStreamsHarmNothing) {
+  write_text(in("s.jsonl"), R"({"op": "import", "path": ")" + in("ball") + "\"}\n" +
+                                R"({"op": "select", "all": true})" + "\n" + R"({"op": "no such thing"})" + "\n");
+  EXPECT_EQ(run("(" REBAKE_PROGRAM, "run " + in("s.jsonl") + " --journal " + in("j") + " 2>&-)").code, 1);
+  const Outcome recovered = rebake_run("recover " + in("j") + " -o " + in("p.rebake"));
+  EXPECT_EQ(recovered.code, 0) << recovered.text;
+  EXPECT_NE(recovered.text.find("2 edits recovered"), std::string::npos) << recovered.text;
+  EXPECT_EQ(run("(" REBAKE_PROGRAM, "info " + in("none") + " 2> /dev/full)").code, 1);
+  EXPECT_EQ(run("(" REBAKE_PROGRAM, "info " + in("ball") + " --json > /dev/full)").code, 1);
+}
+
+TEST_F(Cli, AnEmptyJournalNameIsWrongUse) { EXPECT_EQ(rebake_run("run " + in("ball") + " --journal ''").code, 2); }
+
+// A report that is named by mistake replaces no project, mesh or scene file.
+TEST_F(Cli, ReportsReplaceNothingButReports) {
+  write_text(in("m.obj"), "v 0 0 0\n");
+  const std::string plain = "export " + in("ball") + " --plain -o " + in("out") + " --report ";
+  EXPECT_EQ(rebake_run(plain + in("m.obj")).code, 1);
+  EXPECT_EQ(read_file(in("m.obj")), "v 0 0 0\n");
+  for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(rebake_run(plain + in("r.json")).code, 0);
+  write_text(in("s.jsonl"), R"({"op": "select", "all": true})");
+  const std::string batch =
+      "batch " + in("s.jsonl") + " --scenes " + in("ball") + " -o " + in("results") + " --report ";
+  EXPECT_EQ(rebake_run(batch + in("m.obj")).code, 1);
+  EXPECT_EQ(read_file(in("m.obj")), "v 0 0 0\n");
+  // Nor what else has the name of one.
+  EXPECT_EQ(rebake_run(batch + in("b.jsonl")).code, 0);
+  std::filesystem::create_hard_link(in("b.jsonl"), in("kept.jsonl"));
+  const std::string before = read_file(in("kept.jsonl"));
+  EXPECT_EQ(rebake_run(batch + in("b.jsonl")).code, 0);
+  EXPECT_EQ(read_file(in("kept.jsonl")), before);
 }
 
 TEST_F(Cli, WithoutItsModulesItSaysWhichPictureAndWhatToDo) {

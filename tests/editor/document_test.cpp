@@ -437,6 +437,32 @@ TEST_F(DocumentTest, BadProjectsAreRefusedWithWhatIsWrong) {
   says(R"({"rebake_project": 1, "sources": [], "edits": [{"op": "render"}]})", "is no edit");
 }
 
+TEST_F(DocumentTest, MergedNodesKeepTheirSelections) {
+  Document document;
+  import(document);
+  const auto selected_in = [&](const char* name) {
+    const NodePtr node = find(document.scene(), name);
+    return node->selection ? *node->selection : TriangleSet();
+  };
+  act(document, R"({"op": "select", "box": {"min": [-2, -2, -2], "max": [0.3, 2, 2]}})");
+  act(document, R"({"op": "store_selection", "name": "left"})");
+  const TriangleSet stored = selected_in("ball");
+  act(document, R"({"op": "select", "box": {"min": [-2, 0, -2], "max": [2, 2, 2]}})");
+  act(document, R"({"op": "separate", "node": "ball", "as": "part"})");
+  act(document, R"({"op": "duplicate", "node": "part", "as": "copy"})");
+  act(document, R"({"op": "select", "saved": "left"})");
+  const std::size_t in_copy = count(selected_in("copy"));
+  ASSERT_GT(in_copy, 0U);
+  // The parts fit together as they were, live selection and stored one.
+  act(document, R"({"op": "merge", "nodes": ["ball", "part"]})");
+  EXPECT_EQ(selected_in("ball"), stored);
+  act(document, R"({"op": "select", "none": true})");
+  act(document, R"({"op": "select", "saved": "left"})");
+  EXPECT_EQ(selected_in("ball"), stored);
+  act(document, R"({"op": "merge", "nodes": ["copy", "ball"]})");
+  EXPECT_EQ(count(selected_in("copy")), count(stored) + in_copy);
+}
+
 TEST_F(DocumentTest, SeparateThenMergeGivesTheOriginalBytes) {
   Document document;
   import(document);

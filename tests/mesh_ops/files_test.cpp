@@ -110,6 +110,43 @@ TEST(Files, LeftoversOfKilledWritesAreRemovedByTheNextButNothingElse) {
     EXPECT_TRUE(fs::exists(folder.path() / kept)) << kept;
 }
 
+// People open leftovers to rescue them: a source that has such a name was removed by the export that read it.
+TEST(Files, LeftoversThatThisRunReadsAreKept) {
+  const TemporaryFolder folder;
+  const fs::path leftover = folder.path() / ".out.01234567.partial", file = folder.path() / "note.89abcdef.partial";
+  fs::create_directory(leftover);
+  write_text(leftover / "mlp.json", "a source");
+  write_text(file, "a camera");
+  SourceGuard guard;
+  guard.add(leftover);
+  guard.add_file(file);
+  AtomicFolder out(folder.path() / "out", guard, [](const fs::path&) {});
+  out.write("a", "b");
+  out.commit();
+  write_file_atomically(folder.path() / "note", "text", guard);
+  EXPECT_TRUE(fs::exists(leftover / "mlp.json"));
+  EXPECT_TRUE(fs::exists(file));
+}
+
+// The place was looked at before the work began; by its end a folder on the way may be a link to a source.
+TEST(Files, TheTargetIsLookedAtAgainBeforeItIsReplaced) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "sources/ficus");
+  write_text(folder.path() / "sources/ficus/mlp.json", "precious");
+  fs::create_directory(folder.path() / "results");
+  SourceGuard guard;
+  guard.add(folder.path() / "sources/ficus");
+  AtomicFolder out(folder.path() / "results/ficus", guard, [](const fs::path&) {});
+  out.write("mlp.json", "new");
+  // With what is being written, so that nothing else stops it.
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path() / "results"))
+    fs::rename(entry.path(), folder.path() / "sources" / entry.path().filename());
+  fs::rename(folder.path() / "results", folder.path() / "aside");
+  fs::create_directory_symlink(folder.path() / "sources", folder.path() / "results");
+  EXPECT_THROW(out.commit(), FileError);
+  EXPECT_EQ(read_file(folder.path() / "sources/ficus/mlp.json"), "precious");
+}
+
 TEST(Files, PipesAndDevicesAreNoFiles) {
   const TemporaryFolder folder;
   ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);

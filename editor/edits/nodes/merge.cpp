@@ -7,8 +7,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <map>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace rebake {
 
@@ -72,6 +76,70 @@ std::size_t place_in_origin(const BakedObject& object, const TextureSet& set) {
       sources.begin());
 }
 
+// Names of the parts' stored selections, after an empty one for the live selection.
+std::vector<std::string> selection_names(const std::vector<PlacedNode>& parts) {
+  std::set<std::string> stored;
+  for (const PlacedNode& part : parts)
+    for (const auto& [name, flags] : part.node->saved_selections) stored.insert(name);
+  std::vector<std::string> names{""};
+  names.insert(names.end(), stored.begin(), stored.end());
+  return names;
+}
+
+// A texture set in the making, and for each selection which of its triangles are in it.
+struct SelectedSet {
+  TextureSet set;
+  std::vector<TriangleSet> selections;
+};
+
+std::vector<SelectedSet> with_selections(std::vector<TextureSet> sets, const Node& node,
+                                         const std::vector<std::string>& names) {
+  std::vector<SelectedSet> result;
+  std::ptrdiff_t first = 0;
+  for (TextureSet& set : sets) {
+    const auto count = static_cast<std::ptrdiff_t>(set.soup.triangle_count());
+    SelectedSet one{std::move(set), {}};
+    for (const std::string& name : names) {
+      const auto stored = node.saved_selections.find(name);
+      const TriangleSet* flags = name.empty()                            ? node.selection.get()
+                                 : stored != node.saved_selections.end() ? stored->second.get()
+                                                                         : nullptr;
+      one.selections.push_back(flags == nullptr ? TriangleSet(static_cast<std::size_t>(count), 0)
+                                                : TriangleSet(flags->begin() + first, flags->begin() + first + count));
+    }
+    first += count;
+    result.push_back(std::move(one));
+  }
+  return result;
+}
+
+SelectedSet united(const SelectedSet& a, const SelectedSet& b) {
+  SelectedSet result{{united(a.set.soup, b.set.soup), a.set.texels}, {}};
+  const std::vector<std::uint32_t> order = faces_of_united(a.set.soup, b.set.soup);
+  for (std::size_t n = 0; n < a.selections.size(); ++n) {
+    TriangleSet flags;
+    for (const std::uint32_t face : order)
+      flags.push_back(face < a.selections[n].size() ? a.selections[n][face]
+                                                    : b.selections[n][face - a.selections[n].size()]);
+    result.selections.push_back(std::move(flags));
+  }
+  return result;
+}
+
+void give_selections(Node& node, const std::vector<SelectedSet>& sets, const std::vector<std::string>& names) {
+  node.saved_selections.clear();
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    TriangleSet flags;
+    for (const SelectedSet& one : sets) flags.insert(flags.end(), one.selections[n].begin(), one.selections[n].end());
+    const bool any = count(flags) > 0;
+    auto shared = std::make_shared<const TriangleSet>(std::move(flags));
+    if (names[n].empty())
+      node.selection = any ? std::move(shared) : nullptr;
+    else
+      node.saved_selections[names[n]] = std::move(shared);
+  }
+}
+
 }  // namespace
 
 Scene apply(const Scene& scene, const Merge& edit) {
@@ -107,32 +175,34 @@ Scene apply(const Scene& scene, const Merge& edit) {
   auto merged = std::make_shared<BakedObject>(*first.node->object);
   merged->sets.clear();
   merged->bodies.clear();
+  const std::vector<std::string> selections = selection_names(parts);
+  std::vector<SelectedSet> whole;
   for (const PlacedNode& part : parts) {
     if (part.node->object->origin != merged->origin) merged->origin = nullptr;
     std::vector<TextureSet> sets = sets_in_frame(part, first);
     join_bodies(merged->bodies, part, first, sets);
-    for (TextureSet& set : sets) {
-      if (any_plain && set.texels->alpha_code() != AlphaCode::plain) {
-        auto& plain = converted[set.texels.get()];
-        if (!plain) plain = with_alpha_code(set.texels, AlphaCode::plain);
-        set.texels = plain;
+    for (SelectedSet& one : with_selections(std::move(sets), *part.node, selections)) {
+      if (any_plain && one.set.texels->alpha_code() != AlphaCode::plain) {
+        auto& plain = converted[one.set.texels.get()];
+        if (!plain) plain = with_alpha_code(one.set.texels, AlphaCode::plain);
+        one.set.texels = plain;
       }
-      const auto same = std::find_if(merged->sets.begin(), merged->sets.end(),
-                                     [&](const TextureSet& s) { return s.texels == set.texels; });
-      if (same == merged->sets.end())
-        merged->sets.push_back(std::move(set));
+      const auto same = std::find_if(whole.begin(), whole.end(),
+                                     [&](const SelectedSet& s) { return s.set.texels == one.set.texels; });
+      if (same == whole.end())
+        whole.push_back(std::move(one));
       else
-        same->soup = united(same->soup, set.soup);
+        *same = united(*same, one);
     }
   }
-  std::stable_sort(merged->sets.begin(), merged->sets.end(), [&](const TextureSet& a, const TextureSet& b) {
-    return place_in_origin(*merged, a) < place_in_origin(*merged, b);
+  std::stable_sort(whole.begin(), whole.end(), [&](const SelectedSet& a, const SelectedSet& b) {
+    return place_in_origin(*merged, a.set) < place_in_origin(*merged, b.set);
   });
+  for (const SelectedSet& one : whole) merged->sets.push_back(one.set);
   Scene result = with_changed(scene, first.node->id, [&](Node& node) {
     if (!edit.as.empty()) node.name = edit.as;
     node.object = merged;
-    node.selection = nullptr;
-    node.saved_selections.clear();
+    give_selections(node, whole, selections);
   });
   for (std::size_t k = 1; k < parts.size(); ++k) result = without(result, parts[k].node->id);
   return result;

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/select/morphology.h"
 #include "mesh_ops/select/regions.h"
@@ -12,15 +14,23 @@ namespace rebake {
 
 namespace {
 
-TriangleSet triangles_of_set(const PlacedNode& placed, int wanted) {
-  const BakedObject& object = *placed.node->object;
-  if (wanted < 0 || static_cast<std::size_t>(wanted) >= object.sets.size())
-    throw FieldError("texture_set",
-                     fmt::format("\"{}\" has {} texture sets, counted from 0", placed.node->name, object.sets.size()));
+// None where the object has fewer sets.
+TriangleSet triangles_of_set(const BakedObject& object, std::size_t wanted) {
   TriangleSet flags;
   for (std::size_t i = 0; i < object.sets.size(); ++i)
-    flags.insert(flags.end(), object.sets[i].soup.triangle_count(), i == static_cast<std::size_t>(wanted) ? 1 : 0);
+    flags.insert(flags.end(), object.sets[i].soup.triangle_count(), i == wanted ? 1 : 0);
   return flags;
+}
+
+void check_texture_set(const std::vector<PlacedNode>& targets, int wanted) {
+  std::size_t most = 0;
+  for (const PlacedNode& placed : targets) most = std::max(most, placed.node->object->sets.size());
+  if (wanted < 0 || static_cast<std::size_t>(wanted) >= most)
+    throw FieldError("texture_set", targets.size() == 1 ? fmt::format("\"{}\" has {} texture sets, counted from 0",
+                                                                      targets.front().node->name, most)
+                                                        : fmt::format("no object there has more than {} texture sets, "
+                                                                      "counted from 0",
+                                                                      most));
 }
 
 }  // namespace
@@ -48,9 +58,9 @@ Scene apply(const Scene& scene, const Select& edit) {
     }
     start = nearest_triangle(targets, point, false);
   }
-  const SelectMode mode = edit.invert ? SelectMode::set : edit.mode;
+  if (edit.texture_set) check_texture_set(targets, *edit.texture_set);
   std::size_t index = 0;
-  return with_selected(scene, targets, mode, [&](const PlacedNode& placed) {
+  return with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
     const std::size_t k = index++;
     const BakedObject& object = *placed.node->object;
     const FramePoints points(edit.frame, placed);
@@ -64,7 +74,7 @@ Scene apply(const Scene& scene, const Select& edit) {
     if (edit.half_space) return triangles_by_centre(object, region_of(points, *edit.half_space).inside);
     if (start && start->target == k && object.triangle_count() > 0)
       return joined_to(*corners_of(object), start->triangle);
-    if (edit.texture_set) return triangles_of_set(placed, *edit.texture_set);
+    if (edit.texture_set) return triangles_of_set(object, static_cast<std::size_t>(*edit.texture_set));
     if (const auto saved = placed.node->saved_selections.find(edit.saved);
         !edit.saved.empty() && saved != placed.node->saved_selections.end())
       return *saved->second;
@@ -75,7 +85,7 @@ Scene apply(const Scene& scene, const Select& edit) {
 REBAKE_DESCRIBE_EDIT(
     Select, "Selects triangles by their centres.", (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible");
+            "only of this node and those inside it; left out: of all that are visible and not locked");
       visit("all", edit.all, Need::optional, "every triangle");
       visit("none", edit.none, Need::optional, "no triangle");
       visit("invert", edit.invert, Need::optional, "those not selected now");

@@ -8,6 +8,7 @@
 #include "editor/edits/stored_view.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/index/traits.h"
+#include "mesh_ops/mesh/point_triangle.h"
 
 namespace rebake {
 
@@ -98,8 +99,9 @@ NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const V
       const std::vector<Vec3>& p = set.soup.positions();
       for (std::size_t own = 0; own < set.soup.triangle_count(); ++own, ++f) {
         const Face& face = set.soup.faces()[own];
-        const Vec3 centre = targets[k].to_world * Vec3((p[face[0]] + p[face[1]] + p[face[2]]) / 3);
-        const double distance = (centre - world).squaredNorm();
+        const Affine& to_world = targets[k].to_world;
+        const double distance =
+            distance_to_triangle(to_world * p[face[0]], to_world * p[face[1]], to_world * p[face[2]], world);
         if (distance < least && (!opaque || shows_opaque(set, own))) {
           least = distance;
           nearest = {k, f};

@@ -23,7 +23,7 @@ Scene with_selected(const Scene& scene, const std::vector<PlacedNode>& targets, 
 /// The present selection of a node, empty where nothing is selected.
 TriangleSet selection_of(const PlacedNode& placed);
 
-/// The number of the triangle whose centre is nearest to a world point, and whose it is; with `opaque` among those that
+/// The number of the triangle that is nearest to a world point, and whose it is; with `opaque` among those that
 /// show an opaque texel. Throws EditError when there is none.
 struct NearestTriangle {
   std::size_t target;

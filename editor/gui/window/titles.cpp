@@ -53,7 +53,8 @@ std::string together(const std::vector<std::string>& names) {
 
 // What differs between two scenes. Counts are those of the nodes that changed.
 struct Change {
-  std::vector<std::string> names;  ///< of nodes whose triangles or selection changed, and of removed nodes
+  std::vector<std::string> names;          ///< of nodes whose triangles or selection changed, and of removed nodes
+  std::vector<std::string> with_selected;  ///< of those that hold selected triangles afterwards
   std::size_t selected_before = 0, selected_after = 0;
   std::size_t triangles_before = 0, triangles_after = 0;
   std::vector<std::string> added;
@@ -73,6 +74,7 @@ Change change_between(const Scene& before, const Scene& after) {
     if (old.object) change.triangles_before += old.object->triangle_count();
     if (!node) continue;
     change.selected_after += selected_of(*node);
+    if (selected_of(*node) > 0) change.with_selected.push_back(node->name);
     if (node->object) change.triangles_after += node->object->triangle_count();
   }
   for (const PlacedNode& placed : placed_nodes(after))
@@ -176,8 +178,9 @@ std::string title_of(const std::vector<Edit>& group, const Scene& before, const 
   const Change change = change_between(before, after);
   if (first.type().selects) {
     if (change.names.empty()) return "Selection unchanged";
-    const std::string where = " in " + together(change.names);
-    if (change.selected_after == 0) return "Deselected " + amount(change.selected_before) + where;
+    if (change.selected_after == 0)
+      return "Deselected " + amount(change.selected_before) + " in " + together(change.names);
+    const std::string where = " in " + together(change.with_selected);
     if (change.selected_before == 0) return "Selected " + amount(change.selected_after) + where;
     return fmt::format("Selected {}{} ({}{})", amount(change.selected_after), where,
                        change.selected_after >= change.selected_before ? "+" : "−",

@@ -1,0 +1,64 @@
+// Selections as edits make them: which triangle a point means, how modes join, and several objects at once.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "editor/edits/edit.h"
+#include "mesh_ops/base/error.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+// By the triangle itself: a small one close by has a nearer centre than the large one that the point lies on.
+TEST(SelectEdit, NearestTriangleIsNotTheOneWithTheNearestCentre) {
+  auto object = std::make_shared<BakedObject>(*made_object());
+  const std::vector<Vec3> positions{{-15, 0, -15}, {15, 0, -15}, {0, 0, 15}, {4, 0.6, 4}, {5, 0.6, 4}, {4, 0.6, 5}};
+  object->sets = {
+      {Soup(positions, std::vector<Vec2>(6, Vec2(0.5, 0.5)), {Face{0, 1, 2}, Face{3, 4, 5}}), object->sets[0].texels}};
+  const Scene scene = scene_of(object, "floor");
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int k = 0; k < 100; ++k) {
+    const std::size_t wanted = k % 2;
+    double s = share(random), t = share(random);
+    if (s + t > 1) s = 1 - s, t = 1 - t;
+    const Vec3* p = &positions[3 * wanted];
+    const Vec3 point = p[0] + s * (p[1] - p[0]) + t * (p[2] - p[0]);
+    const nlohmann::json line{{"op", "select"}, {"connected", {point.x(), point.y(), point.z()}}};
+    const Scene selected = apply(scene, read_edit(line, scene)).scene;
+    EXPECT_EQ((*selected.roots[0]->selection)[wanted], 1) << point.transpose();
+    EXPECT_EQ(count(*selected.roots[0]->selection), 1U);
+  }
+}
+
+TEST(SelectEdit, InvertJoinsThePresentSelectionAsItsModeSays) {
+  const Scene scene = scene_of(made_object(), "ball");
+  for (const auto& [mode, wanted] :
+       {std::pair("set", 1.0), std::pair("add", 1.0), std::pair("remove", 0.0), std::pair("intersect", 0.0)}) {
+    const nlohmann::json line{{"op", "select"}, {"invert", true}, {"mode", mode}};
+    const Scene selected = apply(scene, read_edit(line, scene)).scene;
+    const auto& flags = selected.roots[0]->selection;
+    EXPECT_EQ(flags ? count(*flags) : 0U, wanted * 256) << mode;
+  }
+}
+
+TEST(SelectEdit, ATextureSetThatOnlySomeObjectsHave) {
+  auto two = std::make_shared<BakedObject>(*made_object());
+  two->sets.push_back(made_object({.seed = 2, .radius = 0.5})->sets[0]);
+  Scene scene = scene_of(made_object(), "one");
+  Node node;
+  node.name = "two";
+  node.object = two;
+  scene = with_added(scene, std::move(node), NodeId::none, 1);
+  const auto set = [&](int number) {
+    return apply(scene, read_edit(nlohmann::json{{"op", "select"}, {"texture_set", number}}, scene)).scene;
+  };
+  EXPECT_FALSE(set(1).roots[0]->selection);
+  EXPECT_EQ(count(*set(1).roots[1]->selection), 256U);
+  EXPECT_THROW(set(2), FieldError);
+}
+
+}  // namespace
+}  // namespace rebake::test
