@@ -254,7 +254,7 @@ class Document:
     def select(self, *, node: Node | None = None, all: bool = False, none: bool = False, invert: bool = False, box: Box | None = None, sphere: Sphere | None = None, half_space: HalfSpace | None = None, connected: Vector | None = None, texture_set: int | None = None, saved: str = "", mode: Literal["set", "add", "remove", "intersect"] = "set", frame: Literal["world", "node", "bounds"] = "world") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles by their centres.
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that are visible and not locked
         all: every triangle
         none: no triangle
         invert: those not selected now
