@@ -53,8 +53,9 @@ class Harmonic final : public Coordinates {
       if (first == 0) {
         // All groups of points take the same time.
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-        const double rest = static_cast<double>((rows() - lanes + grid_lanes - 1) / grid_lanes);
-        if (took.count() * rest > 2) words += about + duration_text(took.count() * rest);
+        const std::size_t groups = (rows() - lanes + grid_lanes - 1) / grid_lanes;
+        const double rest = took.count() * static_cast<double>(groups);
+        if (rest > 2) words += about + duration_text(rest);
       }
       progress.at(words, static_cast<double>(first + lanes) / static_cast<double>(rows()));
     }

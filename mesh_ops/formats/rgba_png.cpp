@@ -140,7 +140,7 @@ void check_header(const std::optional<Chunk>& chunk, const std::filesystem::path
   constexpr std::uint32_t largest = largest_png_side;
   if (width < 1 || height < 1 || width > largest || height > largest)
     throw FileError(name, fmt::format("declares {}×{} texels; 1 to {} a side can be read", width, height, largest));
-  const int depth = chunk->data[8], color = chunk->data[9];
+  const int depth = static_cast<unsigned char>(chunk->data[8]), color = static_cast<unsigned char>(chunk->data[9]);
   const bool known = (color == 0 && (depth == 1 || depth == 2 || depth == 4 || depth == 8 || depth == 16)) ||
                      (color == 3 && (depth == 1 || depth == 2 || depth == 4 || depth == 8)) ||
                      ((color == 2 || color == 4 || color == 6) && (depth == 8 || depth == 16));

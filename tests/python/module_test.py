@@ -129,6 +129,20 @@ class Module(unittest.TestCase):
         project = rebake.open(self.at / "p.rebake")
         np.testing.assert_allclose(project.nodes[0]["to_world"][:3, 3], [0, 1, 0])
 
+    def test_an_opened_scene_keeps_its_background(self):
+        self.document.background(color=[1, 0, 0])
+        self.document.save(self.at / "scene")
+        np.testing.assert_array_equal(rebake.open(self.at / "scene").render(16, 16, 1)[0, 0], [255, 0, 0])
+
+    def test_recovery_says_when_it_writes_no_journal(self):
+        (self.at / "was").symlink_to(FICUS)
+        script = "import os, rebake; d = rebake.Document(); d.keep_journal('j'); d.import_(path='was', as_='f'); os._exit(9)"
+        environment = {**os.environ, "PYTHONPATH": str(Path(rebake.__file__).resolve().parent)}
+        subprocess.run([sys.executable, "-c", script], cwd=self.at, env=environment, check=False)
+        (self.at / "was").unlink()
+        with self.assertWarnsRegex(UserWarning, "is in no journal"):
+            rebake.recover(self.at / "j", {str(self.at / "was"): str(FICUS)})
+
     def test_render(self):
         picture = self.document.render(64, 48)
         self.assertEqual((picture.shape, picture.dtype), ((48, 64, 3), np.uint8))
