@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
   try {
     const int code = rebake::run_program(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      return fail("standard output cannot be written: what it should hold is lost");
+      return fail("standard output cannot be written; the result is lost");
     return code;
   } catch (const rebake::ExitWith& exit) {
     return exit.code;

@@ -144,9 +144,9 @@ void describe_render(CommandDescription& command) {
   options->view.add_to(command);
   add_axes_option(command, options->axes);
   command.flag("--plan", options->plan, "print which passes run, which do not, and why");
-  command.flag(
-      "--audit", options->audit,
-      "also work out what was left out, and fail where more pixels are further off than its bounds and estimates say");
+  command.flag("--audit", options->audit,
+               "also render with everything that was left out, and fail if the picture differs by more than its bounds "
+               "and estimates allow");
   command.option("--time", options->time, "time this many frames", "N").between(1, 100000);
   command.flag("--json", options->json, "plan and times as JSON");
   command.does([options] { render(*options); });

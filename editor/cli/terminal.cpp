@@ -94,7 +94,7 @@ Progress progress_bar() {
         state->second = now;
         if (share >= 1) return clear_progress_bar();
         const auto filled = static_cast<std::size_t>(share * 30);
-        complain(fmt::format("\\r\\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'),
+        complain(fmt::format("\r\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'),
                              std::string(30 - filled, ' '), share * 100));
       },
       &interrupted);

@@ -153,6 +153,22 @@ TEST(CageProperty, GreenAgreesWith120DigitsNearRandomSurfaces) {
   expect_agreement_with_120_digits(green_coordinates, gold_green);
 }
 
+// The largest error of a mean value weight, as a share of the sum of the exact weights' sizes at its point.
+double largest_share(const Cage& cage, const std::vector<Vec3>& points) {
+  double worst = 0;
+  const std::vector<Weighed> all = weighed(*make_mean_value(cage), points);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const std::vector<Gold> want = gold_mean_value(cage, gold(points[n]));
+    Gold sum = 0, largest = 0;
+    for (std::size_t v = 0; v < want.size(); ++v) {
+      sum += abs(want[v]);
+      largest = std::max(largest, Gold(abs(want[v] - all[n].weights[v])));
+    }
+    worst = std::max(worst, static_cast<double>(largest / sum));
+  }
+  return worst;
+}
+
 // The largest error of the weights at random points outside, from the cage's box to ten diagonals, as a share of the
 // sum of the exact weights' sizes.
 double far_error(const Cage& cage, std::mt19937_64& random, int count) {
@@ -164,19 +180,7 @@ double far_error(const Cage& cage, std::mt19937_64& random, int count) {
   for (int n = 0; n < count; ++n)
     points.push_back(box.center() + diagonal_of(cage) * std::exp(exponent(random)) *
                                         Vec3(normal(random), normal(random), normal(random)).normalized());
-  double worst = 0;
-  const std::vector<Weighed> all = weighed(*make_mean_value(cage), points);
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    const std::vector<Gold> want = gold_mean_value(cage, gold(points[n]));
-    Gold sum = 0, largest = 0;
-    for (std::size_t v = 0; v < want.size(); ++v) {
-      sum += abs(want[v]);
-      largest = std::max(largest, Gold(abs(want[v] - all[n].weights[v])));
-    }
-    const double error = static_cast<double>(largest / sum);
-    worst = std::max(worst, error);
-  }
-  return worst;
+  return largest_share(cage, points);
 }
 
 TEST(CageProperty, MeanValueHoldsThirteenDigitsToTenDiagonals) {
@@ -201,18 +205,7 @@ double outside_error(const Cage& cage, std::mt19937_64& random, int count) {
                      diagonal_of(cage) * std::exp(exponent(random)) *
                          Vec3(normal(random), normal(random), normal(random)).normalized());
   }
-  double worst = 0;
-  const std::vector<Weighed> all = weighed(*make_mean_value(cage), points);
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    const std::vector<Gold> want = gold_mean_value(cage, gold(points[n]));
-    Gold sum = 0, largest = 0;
-    for (std::size_t v = 0; v < want.size(); ++v) {
-      sum += abs(want[v]);
-      largest = std::max(largest, Gold(abs(want[v] - all[n].weights[v])));
-    }
-    worst = std::max(worst, static_cast<double>(largest / sum));
-  }
-  return worst;
+  return largest_share(cage, points);
 }
 
 // Where terms cancel, faces are weighed with 50 digits; but for points within 1e-6 of two faces of which others cancel.
