@@ -241,14 +241,16 @@ TEST_F(DeskTest, AReleaseTakesThePreviewsScene) {
 }
 
 TEST_F(DeskTest, AReleaseThatWaitsForAPreviewCanBeStopped) {
-  std::atomic<bool> go_on = false;
-  desk->previews.request(desk->scene().roots, [&go_on, scene = desk->scene()](const Progress&) {
+  std::atomic<bool> begun = false, go_on = false;
+  desk->previews.request(desk->scene().roots, [&begun, &go_on, scene = desk->scene()](const Progress&) {
+    begun = true;
     while (!go_on) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return scene;
   });
   Hide hide;
   hide.node = NodeRef{id("box")};
   const std::size_t steps = desk->now->steps_done;
+  while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // else the next request replaces it
   desk->show_preview({hide});
   desk->edits({hide});
   desk->jobs.worker.cancel();

@@ -1,4 +1,4 @@
-"""Reports the slowest ten tests and every skipped one; fails for skips that tests/expected_skips does not list.
+"""Reports failures, the slowest ten tests and every skip; fails for skips that tests/expected_skips does not list.
 
 summary.py TESTS.XML PRESET DATA, where DATA is the folder of real scenes or empty.
 """
@@ -23,10 +23,20 @@ def expected(conditions):
                 yield pattern, reason
 
 
+def print_failures(name, output):
+    """The last 40 lines of what each failed test printed: logs of whole runs are often cut before them."""
+    failed = re.findall(r"^\[ RUN      \] ([\w/.]+)\n((?:(?!\[ RUN ).*\n)*?)\[  FAILED  \] \1", output, re.M)
+    for inner, text in failed or [(name, output)]:
+        print(f"\nFAILED {inner}")
+        print("\n".join(text.splitlines()[-40:]))
+
+
 def main(report, preset, data):
     times, skipped = [], set()
     for case in xml.etree.ElementTree.parse(report).getroot().iter("testcase"):
         output = case.findtext("system-out") or ""
+        if case.find("failure") is not None:
+            print_failures(case.get("name"), output)
         # One process may run many tests, and passes when some are skipped.
         inner = set(re.findall(r"^\[  SKIPPED \] ([\w/.]+)(?: \(|$)", output, re.M))
         skipped |= inner
