@@ -1,7 +1,8 @@
-"""Runs the named steps of a check one after another, stops at the first that fails, and prints what each took.
+"""Runs the named steps of a check one after another and prints what each took.
 
-Steps are pairs: timed.py NAME COMMAND [NAME COMMAND …], commands for bash. Times are wall and
-CPU (user + system of all descendants that were waited for) minutes.
+Steps are pairs: timed.py [--all] NAME COMMAND [NAME COMMAND …], commands for bash. The first step that fails ends the
+run; with --all the others follow all the same. Times are wall and CPU (user + system of all descendants that were
+waited for) minutes.
 """
 
 import os
@@ -17,21 +18,25 @@ def cpu():
 
 
 def main(words):
-    lines, start, result = [], time.monotonic(), 0
-    for name, command in zip(words[::2], words[1::2]):
+    go_on = words[0] == "--all"
+    steps = words[1:] if go_on else words
+    lines, failed, start = [], [], time.monotonic()
+    for name, command in zip(steps[::2], steps[1::2]):
         print(f"\n== {name}", flush=True)
         wall_before, cpu_before = time.monotonic(), cpu()
         result = subprocess.run(["bash", "-euo", "pipefail", "-c", command]).returncode
         lines.append((name, time.monotonic() - wall_before, cpu() - cpu_before))
         if result:
-            break
+            failed.append(name)
+            if not go_on:
+                break
     lines.append(("total", time.monotonic() - start, cpu()))
     print(f"\n{'minutes':40} {'wall':>7} {'CPU':>7}")
     for name, wall, used in lines:
         print(f"{name:40} {wall / 60:7.1f} {used / 60:7.1f}")
-    if result:
-        print(f"FAILED: {lines[-2][0]}")
-    sys.exit(result)
+    if failed:
+        print(f"FAILED: {', '.join(failed)}")
+    sys.exit(1 if failed else 0)
 
 
 if __name__ == "__main__":
