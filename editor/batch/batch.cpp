@@ -15,7 +15,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
+#include "editor/script/script_inputs.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
@@ -213,8 +215,12 @@ const char* to_string(BatchResult::Status status) {
   return names[static_cast<int>(status)];
 }
 
-std::vector<fs::path> batch_scenes(const BatchOptions& options, std::vector<fs::path>* all) {
-  std::map<std::string, fs::path> by_name;
+namespace {
+
+using ScenesByName = std::map<std::string, fs::path>;
+
+ScenesByName matched_scenes(const BatchOptions& options) {
+  ScenesByName by_name;
   const fs::path out = fs::weakly_canonical(options.out);
   for (const std::string& pattern : options.scenes) {
     std::vector<fs::path> found;
@@ -248,8 +254,35 @@ std::vector<fs::path> batch_scenes(const BatchOptions& options, std::vector<fs::
     }
   }
   if (by_name.empty()) throw FieldError("--scenes", "matches no folder");
+  return by_name;
+}
+
+// All scenes, and what the script reads for each of them.
+std::vector<std::pair<std::string, fs::path>> guarded_by(const BatchOptions& options, const ScenesByName& scenes) {
+  const std::string script = read_file(options.script);
+  std::map<std::string, std::string> variables;
+  for (const std::string& variable : options.variables)
+    variables[variable.substr(0, variable.find('='))] = variable.substr(variable.find('=') + 1);
+  std::vector<std::pair<std::string, fs::path>> guarded;
+  std::map<fs::path, std::set<std::string>> readers;
+  for (const auto& [name, folder] : scenes) {
+    guarded.emplace_back("", fs::absolute(folder));
+    variables["name"] = name;
+    variables["path"] = folder.string();
+    for (const fs::path& input : script_inputs(script, variables)) readers[fs::absolute(input)].insert(name);
+  }
+  for (const auto& [path, names] : readers) guarded.emplace_back(names.size() == 1 ? *names.begin() : "", path);
+  return guarded;
+}
+
+}  // namespace
+
+BatchScenes batch_scenes(const BatchOptions& options) {
+  const ScenesByName by_name = matched_scenes(options);
+  BatchScenes result;
+  result.guarded = guarded_by(options, by_name);
   SourceGuard sources;
-  for (const auto& [name, folder] : by_name) sources.add(folder);
+  for (const auto& [reader, path] : result.guarded) sources.add_input(path);
   sources.check_file(state_folder(options));
   for (const char* scene : {"mlp.json", "scene.json"})
     if (fs::exists(options.out / scene))
@@ -262,33 +295,29 @@ std::vector<fs::path> batch_scenes(const BatchOptions& options, std::vector<fs::
     if (fs::weakly_canonical(options.report) == fs::weakly_canonical(options.script))
       throw FieldError("--report", "is the script; name another file");
   }
-  if (all != nullptr)
-    for (const auto& [name, folder] : by_name) all->push_back(folder);
-  std::vector<fs::path> mine;
   const auto shards = static_cast<std::uint64_t>(options.shards);
   for (const auto& [name, folder] : by_name)
-    if (content_hash(name) % shards == static_cast<std::uint64_t>(options.shard - 1)) mine.push_back(folder);
-  return mine;
+    if (content_hash(name) % shards == static_cast<std::uint64_t>(options.shard - 1)) result.mine.push_back(folder);
+  return result;
 }
 
 std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& progress,
                                    const std::function<void(const BatchResult&)>& ended) {
   const std::uint64_t program = content_hash(read_file(options.program)),
                       script = content_hash(read_file(options.script));
-  std::vector<fs::path> all;
-  const std::vector<fs::path> scenes = batch_scenes(options, &all);
+  const auto [scenes, guarded] = batch_scenes(options);
   std::error_code error;
   fs::create_directories(state_folder(options), error);
   if (error) throw FileError(options.out, "cannot be made: " + error.message());
   Processes running;
   std::vector<BatchResult> results(scenes.size());
-  // No scene's script may write over another scene.
-  std::string folders;
-  for (const fs::path& scene : all) folders += fs::absolute(scene).string() + '\0';
+  // No scene's script may write over another scene, or what another script reads.
+  std::string list;
+  for (const auto& [reader, path] : guarded) list += reader + '\0' + path.string() + '\0';
   // Of this batch alone: another one into the same folder has other scenes.
   const fs::path sources =
       state_folder(options) / fmt::format("sources-{}-of-{}-{}", options.shard, options.shards, ::getpid());
-  write_file_atomically(sources, folders, {});
+  write_file_atomically(sources, list, {});
   const std::shared_ptr<void> cleanup(nullptr, [&](void*) {
     std::error_code ignored;
     fs::remove(sources, ignored);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh_ops/base/progress.h"
@@ -35,12 +36,17 @@ struct BatchResult {
 
 const char* to_string(BatchResult::Status status);
 
-/// The folders that the patterns match and that are this shard's, by name; none where others have them all. Throws
-/// FieldError when a pattern matches nothing, when two scenes have one name, and when a result would replace its scene
-/// or lie where the report does; FileError when results or the report would lie in a scene. `all`, where given, gets
-/// the folders of every shard.
-std::vector<std::filesystem::path> batch_scenes(const BatchOptions& options,
-                                                std::vector<std::filesystem::path>* all = nullptr);
+struct BatchScenes {
+  std::vector<std::filesystem::path> mine;  ///< this shard's, by name; none where others have them all
+  /// What no script may write over: all scenes, of all shards (first: empty), and what scripts read (first: the scene
+  /// whose script alone reads it).
+  std::vector<std::pair<std::string, std::filesystem::path>> guarded;
+};
+
+/// The folders that the patterns match. Throws FieldError when a pattern matches nothing, when two scenes have one
+/// name, and when a result would replace its scene or lie where the report does; FileError when the script cannot be
+/// read, and when results or the report would lie in a scene or replace what the script reads.
+BatchScenes batch_scenes(const BatchOptions& options);
 
 /// Runs all, and reports each as it ends. Shards that run at one time need a file system that all of them see alike and
 /// that makes a file for one of them only (O_EXCL), as local ones, NFS 3 and later, and Lustre do: so they find out

@@ -19,7 +19,7 @@ void describe_export(CommandDescription& command) {
   struct Options {
     std::string folder, out, layout, report;
     bool plain = false;
-    int page_size = 0;
+    int page_size = 0, picture_size = ExportAction().picture_size;
     std::string width = "auto", way, keep = ExportAction().keep;
     std::optional<double> psnr;
     double seconds = 0;
@@ -45,6 +45,10 @@ void describe_export(CommandDescription& command) {
   command.option("--keep", options->keep, "plain: what stays bit for bit", "NODE|none|auto [auto]");
   command.option("--psnr", options->psnr, "plain: what to reach; nothing is fitted further", "dB [40, all is fitted]");
   command.option("--seconds", options->seconds, "plain: for fitting", "S [as long as it takes]");
+  command
+      .option("--picture-size", options->picture_size, "plain: pixels a side of the pictures that it is judged by",
+              fmt::format("N [{}]", ExportAction().picture_size))
+      .between(16, 4096);
   command.option("--report", options->report, "plain: JSON file for what was measured", "FILE");
   add_axes_option(command, options->axes);
   command.does([options] {
@@ -76,6 +80,7 @@ void describe_export(CommandDescription& command) {
     action.psnr = options->psnr;
     action.seconds = options->seconds;
     action.report = options->report;
+    action.picture_size = options->picture_size;
     run(session, action);
     if (replaces) say_line("note: it took the place of the folder that was there");
     if (session.below_asked) throw ExitWith{4};

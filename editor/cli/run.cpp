@@ -7,6 +7,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
+#include <sstream>
 
 #include "editor/cli/commands.h"
 #include "editor/cli/terminal.h"
@@ -15,6 +17,7 @@
 #include "editor/document/sources.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
+#include "editor/script/script_inputs.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/formats.h"
@@ -32,25 +35,36 @@ std::string line_of(const char* what, const std::filesystem::path& path, std::ui
          '\n';
 }
 
-// What the result of a script rests on beside the script itself (imports, pictures of light, files of cages), and what
-// it exported.
+// What the result of a script rests on beside the script itself, and what it exported.
 std::string file_list(const Session& session, const std::string& script,
                       const std::map<std::string, std::string>& variables) {
-  std::string lines;
+  std::set<std::filesystem::path> read;
   for (const Edit& edit : session.document.history().edits())
-    if (const auto source = source_of(edit)) lines += line_of("read", source->path, content_at(source->path));
-  for (std::size_t begin = 0; begin < script.size();) {
-    const std::size_t end = std::min(script.find('\n', begin), script.size());
-    const json line = json::parse(script.begin() + static_cast<std::ptrdiff_t>(begin),
-                                  script.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false, true);
-    if (line.is_object() && line.contains("mesh") && line.at("mesh").is_string()) {
-      const std::string mesh = with_variables(line.at("mesh"), variables);
-      lines += line_of("read", mesh, content_hash(read_file(mesh)));
-    }
-    begin = end + 1;
-  }
+    if (const auto source = source_of(edit)) read.insert(absolute_path(source->path));
+  for (const std::filesystem::path& input : script_inputs(script, variables)) read.insert(absolute_path(input));
+  std::string lines;
+  for (const std::filesystem::path& path : read) lines += line_of("read", path, content_at(path));
   for (const std::string& folder : session.exports) lines += line_of("wrote", folder, folder_hash(folder));
   return lines;
+}
+
+// A journal inside of a scene that the script is going to read would be one of its files.
+void check_journal(const std::filesystem::path& journal, const std::string& scene, const std::string& script,
+                   const std::map<std::string, std::string>& variables) {
+  SourceGuard guard;
+  if (!scene.empty()) guard.add(scene);
+  for (const std::filesystem::path& input : script_inputs(script, variables)) guard.add_input(input);
+  guard.check_file(journal);
+}
+
+// A list as --protect takes it. What only this scene's own script reads is guarded while it is read.
+void protect_listed(Document& document, const std::filesystem::path& list, const std::string& scene) {
+  const std::string text = read_file(list);
+  std::istringstream words{text};
+  for (std::string reader, path; std::getline(words, reader, '\0') && std::getline(words, path, '\0');) {
+    if (reader.empty() || reader != scene) document.protect_input(path, "a file that another scene's script reads");
+  }
+  document.protect_file(list, "a file that this batch keeps");
 }
 
 }  // namespace
@@ -74,7 +88,9 @@ void describe_run(CommandDescription& command) {
                  "write there, one JSON object a line, what was read and exported, with hashes of the contents",
                  "FILE");
   command.option("--protect", options->sources,
-                 "write over none of the folders in this list, each ended by a zero byte", "FILE");
+                 "write over none of the folders and files in this list: pairs of the scene that reads it (empty: all) "
+                 "and its path, each ended by a zero byte",
+                 "FILE");
   command.option("--threads", options->threads, "use at most so many threads", "N [one a core]").between(1, 4096);
   command.option("--parent", options->parent, "end when the process with this number does", "PID");
   command.flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
@@ -100,21 +116,19 @@ void describe_run(CommandDescription& command) {
     Session session;
     session.progress = progress_bar();
     session.say = say_line;
-    if (!options->sources.empty()) {
-      const std::string folders = read_file(options->sources);
-      for (std::size_t begin = 0; begin < folders.size();) {
-        const std::size_t end = std::min(folders.find('\0', begin), folders.size());
-        session.document.protect(folders.substr(begin, end - begin));
-        begin = end + 1;
-      }
-    }
+    if (!options->sources.empty())
+      protect_listed(session.document, options->sources, options->scene.empty() ? "" : folder_title(options->scene));
     const std::string script = read_input(options->script);
     session.document.protect_file(options->script, "the script of this run");
-    if (!options->sources.empty()) session.document.protect_file(options->sources, "the list of what is protected");
-    if (!options->journal.empty()) session.document.keep_journal(options->journal);
     if (!options->scene.empty()) {
       variables["name"] = folder_title(options->scene);
       variables["path"] = options->scene;
+    }
+    if (!options->journal.empty()) {
+      check_journal(options->journal, options->scene, script, variables);
+      session.document.keep_journal(options->journal);
+    }
+    if (!options->scene.empty()) {
       Import import;
       import.path = options->scene;
       import.as = "scene";

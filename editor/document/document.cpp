@@ -195,7 +195,12 @@ std::vector<Report> Document::take_in(CarriedOut done, std::size_t replaced) {
 std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
   if (edits.empty()) return {};
   CarriedOut taken = done(scene(), edits, progress, made);
-  if (journal_) journal_->append(entry_of(taken.edits));
+  if (journal_) {
+    SourceGuard read;
+    add_sources(read, taken.edits);
+    if (!read.empty()) read.check_file(journal_->path());
+    journal_->append(entry_of(taken.edits));
+  }
   return take_in(std::move(taken));
 }
 

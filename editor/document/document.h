@@ -30,8 +30,10 @@ class Document {
   const History& history() const { return history_; }
   /// Everything that was ever imported, undone or not, where the present objects came from, and what is protected.
   SourceGuard sources() const;
-  /// Nothing may be written over this folder either.
-  void protect(const std::filesystem::path& source) { imported_.add(source); }
+  /// Nothing may be written over this folder or file either, as SourceGuard::add_input takes it.
+  void protect_input(const std::filesystem::path& source, const std::string& role) {
+    imported_.add_input(source, role);
+  }
   /// Nothing may be written over this file either. `role` as SourceGuard::add_file takes it.
   void protect_file(const std::filesystem::path& file, const std::string& role) { imported_.add_file(file, role); }
   /// Protects the files that reading an edit's JSON reads: the mesh of a cage.

@@ -78,6 +78,22 @@ Edit read_edit(const nlohmann::json& object, const Scene& scene) {
   throw FieldError("op", "\"" + op + "\" is no edit");
 }
 
+namespace {
+
+// Counts what commands that name no node change.
+std::string selected_line(const char* op, const Scene& scene) {
+  std::size_t triangles = 0, selected = 0, others = 0;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    const bool changed = placed.visible && !placed.locked;
+    if (placed.node->object && changed) triangles += placed.node->object->triangle_count();
+    if (placed.node->selection) (changed ? selected : others) += count(*placed.node->selection);
+  }
+  const std::string rest = others > 0 ? fmt::format("; {} more in hidden or locked nodes", others) : "";
+  return fmt::format("{}: {} of {} triangles selected{}", op, selected, triangles, rest);
+}
+
+}  // namespace
+
 Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress) {
   Outcome outcome = edit.type().apply(scene, edit.value(), progress);
   std::vector<std::string> lines;
@@ -86,14 +102,7 @@ Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress
     if (const auto before = find_placed(scene, id); before && !before->visible)
       if (const auto placed = find_placed(outcome.scene, id); placed && !placed->visible)
         lines.push_back(fmt::format("note: \"{}\" is hidden", placed->node->name));
-  if (edit.type().selects) {
-    std::size_t triangles = 0, selected = 0;
-    for (const PlacedNode& placed : placed_nodes(outcome.scene)) {
-      if (placed.node->object) triangles += placed.node->object->triangle_count();
-      if (placed.node->selection) selected += count(*placed.node->selection);
-    }
-    lines.push_back(fmt::format("{}: {} of {} triangles selected", edit.type().op, selected, triangles));
-  }
+  if (edit.type().selects) lines.push_back(selected_line(edit.type().op, outcome.scene));
   for (std::string& line : outcome.report.lines) line.insert(0, std::string(edit.type().op) + ": ");
   outcome.report.lines.insert(outcome.report.lines.begin(), lines.begin(), lines.end());
   return outcome;

@@ -288,6 +288,9 @@ py::array_t<double> move_by_cage(const py::object& points, const py::object& ver
     const auto weights = coordinates_of(cage, coordinates, resolution, progress);
     moved_places = deform_points(*weights, cage, targets, places, false, progress).points;
   });
+  for (std::size_t k = 0; k < moved_places.size(); ++k)
+    if (!moved_places[k].allFinite())
+      throw FieldError("points", fmt::format("row {} lies too far from the cage for coordinates", k));
   return array_of(moved_places);
 }
 

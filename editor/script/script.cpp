@@ -76,6 +76,12 @@ std::string said_by(const std::exception& error) {
   return end == std::string::npos ? what : what.substr(end + 2);
 }
 
+std::string_view command_text(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t\r\xEF\xBB\xBF");
+  if (first == std::string_view::npos || line[first] == '#' || line.substr(first).starts_with("//")) return {};
+  return line.substr(first);
+}
+
 json read_line(std::string_view text) {
   // Deeper lines mean nothing and could exhaust the stack.
   static constexpr int deepest = 32;
@@ -91,13 +97,13 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
-    const std::size_t first = line.find_first_not_of(" \t\r\xEF\xBB\xBF");
-    if (first == std::string::npos || line[first] == '#' || line.compare(first, 2, "//") == 0) continue;
+    const std::string_view command_line = command_text(line);
+    if (command_line.empty()) continue;
     const auto fail = [&](const std::string& what) {
       throw ScriptError(fmt::format("{}: line {}: {}", name.string(), number, what));
     };
     try {
-      const json object = read_line(std::string_view(line).substr(first));
+      const json object = read_line(command_line);
       const json filled = with_variables(object, variables);
       session.document.protect_files_of(filled);
       check_boxes(filled);

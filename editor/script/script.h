@@ -30,6 +30,9 @@ nlohmann::json with_variables(nlohmann::json line, const std::map<std::string, s
 /// What is wrong with a text that is no JSON, without the library's own name for it.
 std::string said_by(const std::exception& error);
 
+/// The JSON of a line of a script, without a byte order mark; empty for blank lines and comments.
+std::string_view command_text(std::string_view line);
+
 /// Parses one line of JSON, nested 32 levels at most. Throws Error, and nlohmann's exceptions for what is not JSON.
 nlohmann::json read_line(std::string_view text);
 

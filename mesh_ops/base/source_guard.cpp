@@ -73,11 +73,19 @@ void SourceGuard::add_file(const fs::path& source, const std::string& role) {
   add_source({path, false, role, identity_of(path)});
 }
 
+void SourceGuard::add_input(const fs::path& source, const std::string& role) {
+  std::error_code error;
+  if (fs::is_regular_file(source, error) && source.filename() != "scene.json")
+    add_file(source, role);
+  else
+    add(source);
+}
+
 bool SourceGuard::add_source(Source source) {
   for (Source& known : sources_)
     if (known.path == source.path && known.is_folder == source.is_folder) {
-      // The folder may have been replaced since.
-      known.seen = std::move(source.seen);
+      // It may have been replaced since; moved away, it is still what undo and journals rest on.
+      if (!source.seen.empty()) known.seen = std::move(source.seen);
       return false;
     }
   sources_.push_back(std::move(source));

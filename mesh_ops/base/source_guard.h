@@ -20,6 +20,8 @@ class SourceGuard {
   void add(const std::filesystem::path& source);
   /// Protects a file, not its neighbours. `role` completes "is …, which …" in the error: "the script of this run".
   void add_file(const std::filesystem::path& source, const std::string& role = "a file that this run reads");
+  /// Protects a file as add_file() does, unless it is a scene.json; anything else as add() does.
+  void add_input(const std::filesystem::path& source, const std::string& role = "a file that this run reads");
   bool empty() const { return sources_.empty(); }
 
   /// Throws FileError when writing a file at `path` would overwrite a protected file or add to a protected folder.

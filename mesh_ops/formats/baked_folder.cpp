@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/file_calls.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/feature_png.h"
@@ -147,7 +148,7 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
   if (!fs::is_directory(status)) throw FileError(folder, "is not a folder");
   const auto identity = [&] {
     struct stat about {};
-    const bool there = ::stat(folder.c_str(), &about) == 0;
+    const bool there = file_calls().stat(folder.c_str(), &about) == 0;
     return std::tuple(there, about.st_dev, about.st_ino);
   };
   const auto before = identity();

@@ -178,6 +178,45 @@ TEST_F(Batch, NothingIsWrittenOverAnyScene) {
   EXPECT_THROW(batch_scenes(options), FileError);
 }
 
+TEST_F(Batch, NothingIsWrittenOverWhatAnotherScriptReads) {
+  const auto other = [&](const std::string& name) { return folder_.path() / "others" / name; };
+  for (const char* name : {"a", "b", "c"}) export_scene(scene_of(made_object()), other(name), {});
+  const auto before = folder_bytes(folder_.path() / "others");
+  write_text(options.script, R"({"op": "import", "path": "{to}/{name}"})"
+                             "\n"
+                             R"({"op": "export", "out": "{to}/c"})");
+  options.variables = {"to=" + (folder_.path() / "others").string()};
+  for (const auto& [name, status] : run()) EXPECT_EQ(status, Status::failed) << name;
+  EXPECT_NE(messages["a"].find("a source of this scene"), std::string::npos) << messages["a"];
+  EXPECT_EQ(folder_bytes(folder_.path() / "others"), before);
+  // Where each writes beside what all read, nothing is in the way, also the second time.
+  write_text(options.script, R"({"op": "import", "path": "{to}/a"})"
+                             "\n"
+                             R"({"op": "export", "out": "{to}/new/{name}"})");
+  for (int twice = 0; twice < 2; ++twice)
+    for (const auto& [name, status] : run()) EXPECT_EQ(status, Status::done) << name << ": " << messages[name];
+}
+
+TEST_F(Batch, ReportsReplaceNoFileThatTheScriptReads) {
+  write_text(folder_.path() / "cage-of-a.obj", "v 0 0 0\n");
+  write_text(options.script, R"({"op": "cage", "mesh": "{to}/cage-of-{name}.obj"})");
+  options.variables = {"to=" + folder_.path().string()};
+  options.report = folder_.path() / "cage-of-a.obj";
+  EXPECT_THROW(batch_scenes(options), FileError);
+}
+
+// What a link among the batch's own files leads to is not the batch's.
+TEST_F(Batch, ItsOwnFilesFollowNoLinks) {
+  run();
+  write_text(folder_.path() / "precious", "kept");
+  for (const char* file : {"a.log", "a.files", "a.done"}) {
+    fs::remove(options.out / ".rebake-batch" / file);
+    fs::create_symlink(folder_.path() / "precious", options.out / ".rebake-batch" / file);
+  }
+  EXPECT_EQ(run()["a"], Status::done);
+  EXPECT_EQ(read_file(folder_.path() / "precious"), "kept");
+}
+
 TEST_F(Batch, NamesWithLineBreaksAndNamesOfReportsDoNoHarm) {
   fs::rename(folder_.path() / "scenes/a", folder_.path() / "scenes/a\nb");
   EXPECT_EQ(run()["a\nb"], Status::done);

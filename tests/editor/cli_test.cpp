@@ -110,6 +110,31 @@ TEST_F(Cli, ReportsReplaceNothingButReports) {
   EXPECT_EQ(read_file(in("kept.jsonl")), before);
 }
 
+TEST_F(Cli, OutputsReplaceNothingThatTheirRunReads) {
+  write_text(in("m.obj"), "v 0 0 0\n");
+  const Outcome trained = rebake_run("light train " + in("ball") + " -o " + in("m.obj") + " --edit '" +
+                                     R"({"op": "cage", "mesh": ")" + in("m.obj") + R"("})" + "'");
+  EXPECT_EQ(trained.code, 1);
+  EXPECT_NE(trained.text.find("is a file that this run reads"), std::string::npos) << trained.text;
+  EXPECT_EQ(read_file(in("m.obj")), "v 0 0 0\n");
+  // A journal inside of a scene would be one of its files.
+  const auto before = folder_bytes(in("ball"));
+  write_text(in("s.jsonl"), R"({"op": "import", "path": ")" + in("ball") + R"("})");
+  write_text(in("none.jsonl"), "# nothing\n");
+  EXPECT_EQ(rebake_run("run " + in("s.jsonl") + " --journal " + in("ball/j")).code, 1);
+  EXPECT_EQ(rebake_run("run " + in("none.jsonl") + " --scene " + in("ball") + " --journal " + in("ball/j")).code, 1);
+  EXPECT_EQ(folder_bytes(in("ball")), before);
+}
+
+TEST_F(Cli, ATerminalSeesABarThatIsWipedAgain) {
+  write_text(in("s.jsonl"), R"({"op": "import", "path": ")" + in("ball") + R"("})");
+  const Outcome seen = run("TERM=xterm script -qec '" REBAKE_PROGRAM " run " + in("s.jsonl") + "' /dev/null", "");
+  EXPECT_EQ(seen.code, 0) << seen.text;
+  EXPECT_NE(seen.text.find("\r\033[K"), std::string::npos) << seen.text;
+  EXPECT_NE(seen.text.find("[###"), std::string::npos) << seen.text;
+  EXPECT_EQ(seen.text.find("\\x"), std::string::npos) << "control codes are no text: " << seen.text;
+}
+
 TEST_F(Cli, WithoutItsModulesItSaysWhichPictureAndWhatToDo) {
   write_png({1, 1, {1, 2, 3}}, in("a.png"), {});
   const std::string alone = in("rebake");

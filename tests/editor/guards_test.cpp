@@ -84,6 +84,17 @@ TEST_F(Guards, AnEditFailsWhenItsJournalIsGone) {
   EXPECT_EQ(read_file(path("work.journal")), "something else") << "another's file stays";
 }
 
+TEST_F(Guards, AJournalInsideOfASceneRefusesItsImport) {
+  fs::copy(REBAKE_SOURCE "/samples/scenes/kettle", path("kettle"), fs::copy_options::recursive);
+  Session session;
+  session.document.keep_journal(path("kettle/work.journal"));
+  Import import;
+  import.path = path("kettle");
+  EXPECT_THROW(session.edit(import), FileError);
+  EXPECT_TRUE(session.scene().roots.empty());
+  session.document.discard_journal();
+}
+
 TEST_F(Guards, OutputsLeaveWhatTheRunReadsAlone) {
   write("script.jsonl", import_line());
   EXPECT_EQ(program("run {}/script.jsonl --list-files {}/script.jsonl"), 1);

@@ -340,10 +340,12 @@ TEST_F(PlainExport, IsExactForTurnsThatNobodySees) {
 }
 
 TEST_F(PlainExport, StoppedOrRefusedLeavesWhatWasThere) {
+  action_.way = FuseWay::side_by_side;  // the quickest
   run(session_, action_);
   const auto before = folder_bytes(path("plain"));
   std::atomic<bool> stop = false;
   session_.progress = Progress([&](std::string_view what, double) { stop = what == "fitting features"; }, &stop);
+  action_.way.reset();
   action_.keep = "none";
   EXPECT_THROW(run(session_, action_), Cancelled);
   session_.progress = {};
@@ -352,6 +354,7 @@ TEST_F(PlainExport, StoppedOrRefusedLeavesWhatWasThere) {
     PowerLoss calls;
     calls.fail_at(8, ENOSPC);
     const ReplacedFileCalls full(calls);
+    action_.way = FuseWay::side_by_side;
     action_.keep = "auto";
     EXPECT_THROW(run(session_, action_), FileError);
   }

@@ -471,6 +471,18 @@ TEST_F(Script, SaysWhatSelectionsAndRemovalsCameTo) {
                                       "delete: 128 triangles removed, 128 left", "note: \"ball\" is hidden"}));
 }
 
+TEST_F(Script, CountsAreOfTrianglesThatCommandsChange) {
+  std::vector<std::string> said;
+  session.say = [&](const std::string& line) { said.push_back(line); };
+  run(import + R"({"op": "duplicate", "node": "ball", "as": "other"}
+{"op": "select", "all": true}
+{"op": "lock", "node": "ball"}
+{"op": "select", "node": "other", "mode": "remove", "all": true})");
+  EXPECT_EQ(said,
+            (std::vector<std::string>{"select: 512 of 512 triangles selected",
+                                      "select: 0 of 256 triangles selected; 256 more in hidden or locked nodes"}));
+}
+
 TEST_F(Script, EveryWayToSelectAndErase) {
   run(import +
       R"({"op": "view", "name": "front", "camera": {"eye": [0, 0, 4], "target": [0, 0, 0], "near": 0.1, "far": 10}}

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/file_calls.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/export.h"
@@ -193,6 +194,28 @@ TEST_F(BadFolder, Images) {
   huge[16] = huge[17] = 0x7f;  // the width in the header
   write_text(png, huge);
   expect_refused("shape0.pngfeat1.png: ");
+}
+
+TEST_F(BadFolder, ReplacedWhileItIsRead) {
+  // The second time that it is asked which folder this is, it is another.
+  class Swap final : public FileCalls {
+   public:
+    explicit Swap(fs::path folder) : folder_(std::move(folder)) {}
+    int stat(const char* path, struct stat* about) override {
+      if (folder_ == path && asked_++ == 1) {
+        fs::rename(folder_, folder_.string() + "-old");
+        fs::copy(folder_.string() + "-old", folder_);
+      }
+      return FileCalls::stat(path, about);
+    }
+
+   private:
+    fs::path folder_;
+    int asked_ = 0;
+  };
+  Swap swap(folder());
+  const ReplacedFileCalls calls(swap);
+  expect_refused("was replaced while it was read");
 }
 
 }  // namespace

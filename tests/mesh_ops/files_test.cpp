@@ -279,6 +279,23 @@ TEST(SourceGuard, ComparesDevicesAndInodes) {
   EXPECT_NO_THROW(guard.check_folder(folder.path() / "elsewhere"));
 }
 
+TEST(SourceGuard, KnowsASourceThatWasMovedAway) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "scene");
+  SourceGuard guard;
+  guard.add(folder.path() / "scene");
+  fs::rename(folder.path() / "scene", folder.path() / "moved");
+  for (int twice = 0; twice < 2; ++twice) {
+    EXPECT_THROW(guard.check_file(folder.path() / "moved/shape0.obj"), FileError);
+    EXPECT_THROW(guard.check_folder(folder.path() / "moved"), FileError);
+    guard.add(folder.path() / "scene");  // as every node that was read from there does
+  }
+  // Another folder in its place is the source from then on.
+  fs::create_directories(folder.path() / "scene");
+  guard.add(folder.path() / "scene");
+  EXPECT_THROW(guard.check_folder(folder.path() / "scene"), FileError);
+}
+
 TEST(SourceGuard, SeesThroughARealMount) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "data/scene");

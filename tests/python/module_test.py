@@ -255,7 +255,7 @@ class Module(unittest.TestCase):
         rebake.move_by_cage(**good)
         for name, bad in (("faces", faces.astype(float)), ("faces", faces - 1), ("faces", faces + 2 ** 32),
                           ("faces", faces.astype(complex)), ("points", np.full((1, 3), np.nan)),
-                          ("points", np.full((1, 3), 1j)), ("points", "text"), ("points", None), ("moved", points[:, :2]),
+                          ("points", np.full((1, 3), 1j)), ("points", "text"), ("points", None), ("points", np.full((1, 3), 1e90)), ("moved", points[:, :2]),
                           ("vertices", points * np.inf)):
             with self.assertRaisesRegex((rebake.Error, ValueError), name, msg=f"{name}: {bad}"):
                 rebake.move_by_cage(**{**good, name: bad})

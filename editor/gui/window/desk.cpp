@@ -353,7 +353,8 @@ std::set<NodeId> Desk::deform_nodes() const {
       continue;
     }
     for (const PlacedNode& placed : placed_nodes(scene()))
-      if (placed.visible && placed.node->selection && count(*placed.node->selection) > 0) nodes.insert(placed.node->id);
+      if (placed.visible && !placed.locked && placed.node->selection && count(*placed.node->selection) > 0)
+        nodes.insert(placed.node->id);
   }
   return nodes;
 }

@@ -1,0 +1,36 @@
+#include "editor/script/script_inputs.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "editor/document/sources.h"
+#include "editor/script/script.h"
+
+namespace rebake {
+
+using nlohmann::json;
+
+std::vector<std::filesystem::path> script_inputs(std::string_view text,
+                                                 const std::map<std::string, std::string>& variables) {
+  std::vector<std::filesystem::path> inputs;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = command_text(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.empty()) continue;
+    try {
+      json object = read_line(line);
+      if (!object.is_object()) continue;
+      object = with_variables(std::move(object), variables);
+      if (const json* source = source_field(object); source != nullptr && source->is_string())
+        inputs.emplace_back(source->get<std::string>());
+      if (const auto mesh = object.find("mesh"); mesh != object.end() && mesh->is_string())
+        inputs.emplace_back(mesh->get<std::string>());
+    } catch (const std::exception&) {
+      // Running the line reports it.
+    }
+  }
+  return inputs;
+}
+
+}  // namespace rebake
