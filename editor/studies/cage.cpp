@@ -44,7 +44,7 @@ std::vector<Vec3> moved_by(const Setting& setting, const Coordinates& coordinate
   tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t k) {
     std::vector<T> weights, faces;
     if (green) {
-      green_weights(frame, frame.to_local(setting.points[k]), setting.cage.faces.size(), weights, faces);
+      green_weights(frame, setting.points[k], setting.cage.faces.size(), weights, faces);
       weights.insert(weights.end(), faces.begin(), faces.end());
     } else {
       mean_value_weights(frame, frame.to_local(setting.points[k]), weights);

@@ -26,10 +26,10 @@ enum class CageCoordinates {
 template <class T>
 double mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<T>& weights);
 
-/// Green's coordinates of one point in the cage frame: φ one a vertex and ψ one a face (by the cage's face numbers, in
-/// local units of length). False where the point is outside, and the weights mean nothing.
+/// Green's coordinates of one point of the cage's space: φ one a vertex and ψ one a face (by the cage's face numbers,
+/// in local units of length). False where the point is outside, and the weights mean nothing.
 template <class T>
-bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_count, std::vector<T>& phi,
+bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_count, std::vector<T>& phi,
                    std::vector<T>& psi);
 
 /// Weights of many points. x' = x + Σ w_row · motion_row, over the rows' motions (see row_motions).

@@ -15,7 +15,7 @@ class Green final : public Coordinates {
              std::uint8_t* outside) const override {
     const std::size_t vertex_count = frame_.vertices.size();
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
-      const Vec3 p = frame_.to_local(points[lane]);
+      const Vec3& p = points[lane];
       if (gradients == nullptr) {
         thread_local std::vector<double> phi, psi;
         outside[lane] = green_weights(frame_, p, face_count_, phi, psi) ? 0 : 1;

@@ -12,6 +12,8 @@ namespace pl = plane_local;
 // thin cages and beside sharp edges, where points are few and time is long (a tenth of a millisecond a face). Farther
 // than this many diagonals weights are no use to anybody, and are left as double makes them.
 constexpr double most_cancelled = 1e5, exact_within = 10;
+// Within about 1e-5 of a face, where its terms are as large as this, points are few: there all digits are kept.
+constexpr double large_terms = 1e5, most_cancelled_near = 8;
 
 class MeanValue final : public Coordinates {
  public:
@@ -62,17 +64,19 @@ class MeanValue final : public Coordinates {
   void weigh(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
              std::uint8_t* outside) const override {
     std::array<double, 3 * batch_lanes> local;
+    std::array<Vec3, batch_lanes> places;
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
       // What is no number has no weights, and must not decide about the other lanes.
-      const Vec3 given = frame_.to_local(points[lane]), p = given.allFinite() ? given : Vec3(0, 0, 0);
+      places[lane] = frame_.to_local(points[lane]).allFinite() ? points[lane] : frame_.center;
+      const Vec3 p = frame_.to_local(places[lane]);
       for (std::size_t axis = 0; axis < 3; ++axis) local[axis * batch_lanes + lane] = p[static_cast<int>(axis)];
       outside[lane] = 0;
     }
     if (gradients != nullptr) {
-      weigh_local<Dual>(local, weights, gradients);
+      weigh_local<Dual>(places, local, weights, gradients);
       for (std::size_t i = 0; i < rows() * 3 * batch_lanes; ++i) gradients[i] *= frame_.scale;
     } else {
-      weigh_local<double>(local, weights, gradients);
+      weigh_local<double>(places, local, weights, gradients);
     }
   }
 
@@ -84,7 +88,8 @@ class MeanValue final : public Coordinates {
   }
 
   template <class T>
-  void weigh_local(const std::array<double, 3 * batch_lanes>& local, double* weights, double* gradients) const {
+  void weigh_local(const std::array<Vec3, batch_lanes>& places, const std::array<double, 3 * batch_lanes>& local,
+                   double* weights, double* gradients) const {
     constexpr std::size_t row = (pl::has_gradient<T> ? 4 : 1) * batch_lanes;
     thread_local std::vector<double> workspace, start;
     thread_local std::vector<BatchNear> left_out;
@@ -117,7 +122,8 @@ class MeanValue final : public Coordinates {
     const auto cancels = [&](std::size_t lane) {
       double total = 0;
       for (std::size_t v = 0; v < rows(); ++v) total += sums[v * row + lane];
-      return sizes[lane] + needle_sizes[lane] > most_cancelled * std::abs(total);
+      const double size = sizes[lane] + needle_sizes[lane];
+      return size > (size > large_terms ? most_cancelled_near : most_cancelled) * std::abs(total);
     };
     thread_local std::vector<T> exact;
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
@@ -127,7 +133,7 @@ class MeanValue final : public Coordinates {
               ? mean_value_weights(frame_, p, exact) > most_cancelled && p.stableNorm() < exact_within * frame_.diagonal
               : near[lane].empty() && cancels(lane)) {
         exact.assign(rows(), pl::constant<T>(0));
-        add_near_faces<T>(frame_, pl::local_point(p, T()), all_faces_, exact);
+        add_near_faces<T>(frame_, pl::local_point(p, T()), wide_place(frame_, places[lane]), all_faces_, exact);
       } else if (far_out) {
         // Done.
       } else if (again[lane] != 0 || !near[lane].empty()) {
@@ -139,7 +145,12 @@ class MeanValue final : public Coordinates {
           else
             exact[v] = sum[0];
         }
-        add_near_faces<T>(frame_, pl::local_point(p, T()), near[lane], exact);
+        const double divisor =
+            add_near_faces<T>(frame_, pl::local_point(p, T()), wide_place(frame_, places[lane]), near[lane], exact);
+        if (!near[lane].empty() && sizes[lane] + needle_sizes[lane] > most_cancelled_near * std::abs(divisor)) {
+          exact.assign(rows(), pl::constant<T>(0));
+          add_near_faces<T>(frame_, pl::local_point(p, T()), wide_place(frame_, places[lane]), all_faces_, exact);
+        }
       } else {
         continue;
       }

@@ -1,6 +1,7 @@
 #include "mesh_ops/deform/near_faces.h"
 
 #include <algorithm>
+#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -94,12 +95,11 @@ double angle_at(const WideFace& face, const pl::Seen<Wide>& s) {
   return 1;
 }
 
-// Where to take gradients: the point itself, or inside beside it when it lies on the surface. There the direction is
-// the normal weighted by the angles of the faces that meet, which points outwards at every corner (Bærentzen, Aanæs
-// 2005).
-WidePoint gradient_place(const std::vector<WideFace>& faces, const WidePoint& point) {
+// Beside a point that lies on the surface, inside; nothing for another. The direction is the normal weighted by the
+// angles of the faces that meet, which points outwards at every corner (Bærentzen, Aanæs 2005).
+std::optional<WidePoint> place_inside(const std::vector<WideFace>& faces, const WidePoint& point) {
   const std::optional<WidePoint> on = snapped(faces, point);
-  if (!on) return point;
+  if (!on) return std::nullopt;
   WidePoint normal{Wide(0), Wide(0), Wide(0)};
   for (const WideFace& face : faces) {
     const pl::Seen<Wide> s = seen_from(face, *on);
@@ -107,6 +107,11 @@ WidePoint gradient_place(const std::vector<WideFace>& faces, const WidePoint& po
   }
   const Wide length = sqrt(Wide(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]));
   return length > 0 ? moved(*on, normal, Wide(-depth_inside / length)) : *on;
+}
+
+// Where gradients are taken.
+WidePoint gradient_place(const std::vector<WideFace>& faces, const WidePoint& point) {
+  return place_inside(faces, point).value_or(point);
 }
 
 pl::Point<WideDual> with_gradients(const WidePoint& place) {
@@ -122,18 +127,20 @@ void add_terms(const WideFace& face, const pl::Seen<T>& s, std::vector<T>& sums)
 }  // namespace
 
 std::vector<Wide> near_faces::wide_values(const CageFrame& cage, const WidePoint& point,
-                                          std::span<const FaceFrame* const> near, std::vector<Wide> sums) {
+                                          std::span<const FaceFrame* const> near, std::vector<Wide> sums,
+                                          double& divisor) {
   for (const WideFace& face : wide_faces(cage, near)) {
     const pl::Seen<Wide> s = seen_from(face, point);
     if (pl::distance_of(s) <= on_surface) {
       sums.assign(sums.size(), Wide(0));
       const std::array<Wide, 3> lambda = pl::barycentric(face.frame, s);
       for (std::size_t k = 0; k < 3; ++k) sums[face.frame.vertices[k]] = lambda[k];
+      divisor = std::numeric_limits<double>::infinity();
       return sums;
     }
     add_terms(face, s, sums);
   }
-  normalise(sums);
+  divisor = normalise(sums);
   return sums;
 }
 
@@ -146,28 +153,47 @@ std::vector<WideDual> near_faces::wide_gradients(const CageFrame& cage, const Wi
   return sums;
 }
 
-template <class W>
-std::vector<pl::GreenTerms<W>> wide_green_terms(const CageFrame& cage, const Vec3& point,
-                                                std::span<const FaceFrame* const> near) {
-  const pl::Point<double> local{point.x(), point.y(), point.z()};
+namespace {
+
+// The near faces where double is not enough; else none.
+std::vector<WideFace> faces_beyond_double(const CageFrame& cage, const WidePoint& exact,
+                                          std::span<const FaceFrame* const> near) {
+  const pl::Point<double> local{static_cast<double>(exact[0]), static_cast<double>(exact[1]),
+                                static_cast<double>(exact[2])};
   double least = std::numeric_limits<double>::infinity();
   for (const FaceFrame* face : near) least = std::min(least, pl::distance_of(pl::seen(cage, *face, local)));
   if (!(least < wide_green_distance)) return {};
   if (near.size() == 1 && near_faces::is_over(pl::seen(cage, *near.front(), local))) return {};
-  const std::vector<WideFace> faces = wide_faces(cage, near);
-  const WidePoint at{Wide(point.x()), Wide(point.y()), Wide(point.z())};
-  std::vector<pl::GreenTerms<W>> terms;
-  if constexpr (pl::has_gradient<W>) {
-    const pl::Point<W> place = with_gradients(gradient_place(faces, at));
-    for (const WideFace& face : faces) terms.push_back(pl::green(face.frame, seen_from(face, place)));
-  } else {
-    for (const WideFace& face : faces) terms.push_back(pl::green(face.frame, seen_from(face, at)));
-  }
+  return wide_faces(cage, near);
+}
+
+}  // namespace
+
+WideGreen wide_green(const CageFrame& cage, const WidePoint& exact, std::span<const FaceFrame* const> near) {
+  WideGreen result;
+  const std::vector<WideFace> faces = faces_beyond_double(cage, exact, near);
+  if (faces.empty()) return result;
+  const auto sum_at = [&](const WidePoint& place, std::vector<pl::GreenTerms<Wide>>* terms) {
+    Wide sum = 0;
+    for (const WideFace& face : faces) {
+      const pl::GreenTerms<Wide> of_face = pl::green(face.frame, seen_from(face, place));
+      for (const Wide& corner : of_face.corners) sum += corner;
+      if (terms != nullptr) terms->push_back(of_face);
+    }
+    return static_cast<double>(Wide(sum / (4 * boost::math::constants::pi<Wide>())));
+  };
+  result.sum = result.sum_inside = sum_at(exact, &result.terms);
+  if (const auto inside = place_inside(faces, exact)) result.sum_inside = sum_at(*inside, nullptr);
+  return result;
+}
+
+std::vector<pl::GreenTerms<WideDual>> wide_green_gradients(const CageFrame& cage, const WidePoint& exact,
+                                                           std::span<const FaceFrame* const> near) {
+  const std::vector<WideFace> faces = faces_beyond_double(cage, exact, near);
+  const pl::Point<WideDual> place = with_gradients(gradient_place(faces, exact));
+  std::vector<pl::GreenTerms<WideDual>> terms;
+  for (const WideFace& face : faces) terms.push_back(pl::green(face.frame, seen_from(face, place)));
   return terms;
 }
-template std::vector<pl::GreenTerms<Wide>> wide_green_terms(const CageFrame&, const Vec3&,
-                                                            std::span<const FaceFrame* const>);
-template std::vector<pl::GreenTerms<WideDual>> wide_green_terms(const CageFrame&, const Vec3&,
-                                                                std::span<const FaceFrame* const>);
 
 }  // namespace rebake

@@ -14,31 +14,44 @@
 
 namespace rebake {
 
+using WidePoint = std::array<Wide, 3>;
+
 /// Faces nearer than this (local units) are evaluated apart from the others.
 inline constexpr double near_distance = 1e-6;
 
+/// Sums over the other faces as large as this (local units) belong to faces on the far side of a thin part. There the
+/// weights change so fast across the part that the point's height over the near face needs more than double.
+inline constexpr double large_others = 64;
+
 using WideDual = DualOf<Wide>;
-using WidePoint = std::array<Wide, 3>;
 
 /// Turns `weights`, the sums over all faces but the `near` ones (one per vertex), into normalised mean value weights.
-/// Gradients on the surface are one-sided limits from inside.
+/// Gradients on the surface are one-sided limits from inside. Returns what the weights were divided by, with its sign:
+/// rounding of the sums given is in the weights divided by as much. Infinite on the surface. `exact`: the point before
+/// it was rounded to the frame.
 template <class T>
-void add_near_faces(const CageFrame& cage, const plane_local::Point<T>& local, std::span<const FaceFrame* const> near,
-                    std::vector<T>& weights);
+double add_near_faces(const CageFrame& cage, const plane_local::Point<T>& local, const WidePoint& exact,
+                      std::span<const FaceFrame* const> near, std::vector<T>& weights);
 
-/// Green's terms of the near faces (times 4π), one per near face, in type W: Wide at `point` itself, or WideDual with
-/// gradients, at `point` or at their limit from inside when it lies on the surface. Empty when double is enough. Sum
-/// them before rounding to double: terms of faces that share an edge cancel.
-template <class W>
-std::vector<plane_local::GreenTerms<W>> wide_green_terms(const CageFrame& cage, const Vec3& point,
-                                                         std::span<const FaceFrame* const> near);
+/// Green's terms of the near faces (times 4π), one per near face. Sum them before rounding to double: terms of faces
+/// that share an edge cancel.
+struct WideGreen {
+  std::vector<plane_local::GreenTerms<Wide>> terms;  ///< empty where double is enough
+  double sum = 0;                                    ///< of all corners, over 4π
+  /// The same inside of the point beside it if it lies on the surface, where `sum` depends on how many faces meet.
+  double sum_inside = 0;
+};
+WideGreen wide_green(const CageFrame& cage, const WidePoint& exact, std::span<const FaceFrame* const> near);
+/// The same terms with gradients, at the point or at their limit from inside when it lies on the surface.
+std::vector<plane_local::GreenTerms<WideDual>> wide_green_gradients(const CageFrame& cage, const WidePoint& exact,
+                                                                    std::span<const FaceFrame* const> near);
 
 // For add_near_faces alone.
 namespace near_faces {
 
-/// Normalised weights from `sums`, the sums over all other faces.
+/// Normalised weights from `sums`, the sums over all other faces; `divisor` as add_near_faces() returns it.
 std::vector<Wide> wide_values(const CageFrame& cage, const WidePoint& point, std::span<const FaceFrame* const> near,
-                              std::vector<Wide> sums);
+                              std::vector<Wide> sums, double& divisor);
 /// The same with gradients; the values are those of the place where gradients are taken.
 std::vector<WideDual> wide_gradients(const CageFrame& cage, const WidePoint& point,
                                      std::span<const FaceFrame* const> near, std::vector<WideDual> sums);
@@ -49,16 +62,18 @@ bool is_over(const plane_local::Seen<T>& s) {
   return value_of(s.a[0]) > height && value_of(s.a[1]) > height && value_of(s.a[2]) > height;
 }
 
+// Returns what was divided by.
 template <class T>
-void normalise(std::vector<T>& weights) {
+double normalise(std::vector<T>& weights) {
   T total = plane_local::constant<T>(0);
   for (const T& weight : weights) total += weight;
   for (T& weight : weights) weight = weight / total;
+  return value_of(total);
 }
 
-// The one face that the point is over, or on.
+// The one face that the point is over, or on. Returns what add_near_faces() does.
 template <class T>
-void add_face_below(const FaceFrame& face, plane_local::Seen<T> s, std::vector<T>& weights) {
+double add_face_below(const FaceFrame& face, plane_local::Seen<T> s, std::vector<T>& weights) {
   // A height within rounding is 0 for the weights; their gradients keep its derivative.
   if (plane_local::place(s) == plane_local::Place::on_face) s.h = s.h - plane_local::constant<T>(value_of(s.h));
   const plane_local::OverFace<T> over = plane_local::over_face(face, s);
@@ -68,6 +83,7 @@ void add_face_below(const FaceFrame& face, plane_local::Seen<T> s, std::vector<T
   for (T& weight : weights) weight = over.width * weight / divisor;
   for (std::size_t k = 0; k < 3; ++k)
     weights[face.vertices[k]] += (over.lambda[k] + over.width * over.rest[k]) / divisor;
+  return value_of(divisor) / value_of(over.width);
 }
 
 template <class T>
@@ -78,36 +94,34 @@ template <class R>
 Wide wide_value(const DualOf<R>& number) {
   return Wide(number.v);
 }
-template <class T>
-WidePoint wide_values_of(const plane_local::Point<T>& p) {
-  return {wide_value(p[0]), wide_value(p[1]), wide_value(p[2])};
-}
-
 }  // namespace near_faces
 
 template <class T>
-void add_near_faces(const CageFrame& cage, const plane_local::Point<T>& local, std::span<const FaceFrame* const> near,
-                    std::vector<T>& weights) {
+double add_near_faces(const CageFrame& cage, const plane_local::Point<T>& local, const WidePoint& exact,
+                      std::span<const FaceFrame* const> near, std::vector<T>& weights) {
   if (near.empty()) return near_faces::normalise(weights);
-  if (near.size() == 1) {
+  double others = 0;
+  for (const T& weight : weights) others += std::abs(value_of(weight));
+  if (near.size() == 1 && others < large_others) {
     const plane_local::Seen<T> s = plane_local::seen(cage, *near.front(), local);
     if (near_faces::is_over(s)) return near_faces::add_face_below(*near.front(), s, weights);
   }
   using R = typename plane_local::RealOf<T>::type;
-  const WidePoint point = near_faces::wide_values_of(local);
   std::vector<Wide> sums;
   for (const T& weight : weights) sums.push_back(near_faces::wide_value(weight));
-  const std::vector<Wide> values = near_faces::wide_values(cage, point, near, std::move(sums));
+  double divisor = 0;
+  const std::vector<Wide> values = near_faces::wide_values(cage, exact, near, std::move(sums), divisor);
   if constexpr (plane_local::has_gradient<T>) {
     std::vector<WideDual> duals;
     for (const T& weight : weights) duals.push_back({Wide(weight.v), Wide(weight.x), Wide(weight.y), Wide(weight.z)});
-    duals = near_faces::wide_gradients(cage, point, near, std::move(duals));
+    duals = near_faces::wide_gradients(cage, exact, near, std::move(duals));
     for (std::size_t v = 0; v < values.size(); ++v)
       weights[v] = T(static_cast<R>(values[v]), static_cast<R>(duals[v].x), static_cast<R>(duals[v].y),
                      static_cast<R>(duals[v].z));
   } else {
     for (std::size_t v = 0; v < values.size(); ++v) weights[v] = static_cast<R>(values[v]);
   }
+  return divisor;
 }
 
 }  // namespace rebake

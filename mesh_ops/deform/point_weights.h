@@ -1,5 +1,6 @@
 #pragma once
 
+#include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <numbers>
 #include <type_traits>
@@ -38,7 +39,7 @@ double mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<
     }
   }
   const bool any_near = !near.empty();
-  add_near_faces<T>(cage, x, near, weights);
+  add_near_faces<T>(cage, x, {local.x(), local.y(), local.z()}, near, weights);
   return any_near ? 0 : size / std::abs(sum);
 }
 
@@ -64,13 +65,26 @@ std::array<T, 3> nearest_coordinates(const FaceFrame& face, const plane_local::S
   return result;
 }
 
-/// Adds the gradients of the near faces' terms to φ and ψ, summed per vertex before they are rounded, and takes them
-/// out of `near_terms`, whose values remain to be added.
+/// Adds the near faces' values to φ and ψ, summed per vertex before they are rounded.
+template <class T>
+void add_wide_values(const CageFrame& cage, const std::vector<std::size_t>& near_numbers,
+                     const std::vector<plane_local::GreenTerms<Wide>>& terms, std::vector<T>& phi,
+                     std::vector<T>& psi) {
+  const Wide share = 1 / (4 * boost::math::constants::pi<Wide>());
+  std::vector<Wide> of_vertices(phi.size());
+  for (std::size_t n = 0; n < near_numbers.size(); ++n) {
+    const std::size_t f = near_numbers[n];
+    for (std::size_t k = 0; k < 3; ++k) of_vertices[cage.faces[f].vertices[k]] += terms[n].corners[k];
+    psi[cage.face_numbers[f]] += plane_local::constant<T>(Wide(terms[n].face * share));
+  }
+  for (std::size_t v = 0; v < phi.size(); ++v) phi[v] += plane_local::constant<T>(Wide(of_vertices[v] * share));
+}
+
+/// Adds the gradients of the near faces' terms to φ and ψ, summed per vertex before they are rounded.
 inline void add_wide_gradients(const CageFrame& cage, const std::vector<std::size_t>& near_numbers,
-                               const std::vector<plane_local::GreenTerms<WideDual>>& wide_terms,
-                               std::vector<plane_local::GreenTerms<Dual>>& near_terms, std::vector<Dual>& phi,
+                               const std::vector<plane_local::GreenTerms<WideDual>>& terms, std::vector<Dual>& phi,
                                std::vector<Dual>& psi) {
-  const Wide share(1 / (4 * std::numbers::pi));
+  const Wide share = 1 / (4 * boost::math::constants::pi<Wide>());
   std::vector<WideDual> of_vertices(phi.size());
   const auto add_gradient = [&](Dual& to, const WideDual& from) {
     to.x += static_cast<double>(Wide(from.x * share));
@@ -79,19 +93,16 @@ inline void add_wide_gradients(const CageFrame& cage, const std::vector<std::siz
   };
   for (std::size_t n = 0; n < near_numbers.size(); ++n) {
     const std::size_t f = near_numbers[n];
-    for (std::size_t k = 0; k < 3; ++k) {
-      of_vertices[cage.faces[f].vertices[k]] += wide_terms[n].corners[k];
-      near_terms[n].corners[k] = Dual(near_terms[n].corners[k].v);
-    }
-    add_gradient(psi[cage.face_numbers[f]], wide_terms[n].face);
-    near_terms[n].face = Dual(near_terms[n].face.v);
+    for (std::size_t k = 0; k < 3; ++k) of_vertices[cage.faces[f].vertices[k]] += terms[n].corners[k];
+    add_gradient(psi[cage.face_numbers[f]], terms[n].face);
   }
   for (std::size_t v = 0; v < phi.size(); ++v) add_gradient(phi[v], of_vertices[v]);
 }
 
 template <class T>
-bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_count, std::vector<T>& phi,
+bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_count, std::vector<T>& phi,
                    std::vector<T>& psi) {
+  const Vec3 local = cage.to_local(point);
   phi.assign(cage.vertices.size(), plane_local::constant<T>(0));
   psi.assign(face_count, plane_local::constant<T>(0));
   const plane_local::Point<T> x = plane_local::local_point(local, T());
@@ -127,25 +138,29 @@ bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_co
       nearest_face = f;
     }
   }
-  // Outside the sum is 0, inside 1; between them only on the surface.
-  double inside = 0;
-  std::vector<plane_local::GreenTerms<Wide>> wide_values;
-  std::vector<plane_local::GreenTerms<WideDual>> wide_gradients;
+  // Outside the sum is 0, inside 1; between them only on the surface. Where parts of the cage overlap it is wound
+  // around more than once.
+  double inside = value_of(sum), winding = 0;
+  bool wide = false;
   if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Dual>) {
-    inside = value_of(sum);
-    wide_values = wide_green_terms<Wide>(cage, local, near);
-    for (const auto& terms : wide_values)
-      for (const Wide& corner : terms.corners) inside += value_of(corner) / (4 * std::numbers::pi);
+    const WidePoint exact = near.empty() ? WidePoint() : wide_place(cage, point);
+    if (const WideGreen of_near = wide_green(cage, exact, near); !of_near.terms.empty()) {
+      wide = true;
+      add_wide_values(cage, near_numbers, of_near.terms, phi, psi);
+      winding = inside + of_near.sum_inside;
+      inside += of_near.sum;
+      sum = plane_local::constant<T>(inside);
+      if constexpr (std::is_same_v<T, Dual>)
+        add_wide_gradients(cage, near_numbers, wide_green_gradients(cage, exact, near), phi, psi);
+    }
   }
-  if constexpr (std::is_same_v<T, Dual>) {
-    wide_gradients = wide_green_terms<WideDual>(cage, local, near);
-    if (!wide_gradients.empty()) add_wide_gradients(cage, near_numbers, wide_gradients, near_terms, phi, psi);
+  if (!wide) {
+    for (std::size_t n = 0; n < near.size(); ++n) add(near_numbers[n], near_terms[n]);
+    inside = winding = value_of(sum);
   }
-  for (std::size_t n = 0; n < near.size(); ++n) add(near_numbers[n], near_terms[n]);
-  if (wide_values.empty()) inside = value_of(sum);
   if (!(inside > 0.125 || nearest <= plane_local::surface_tolerance<T>)) return false;
-  // Where parts of the cage overlap it is wound around more than once, and all is counted as often.
-  if (const double winding = std::round(inside); winding > 1) {
+  winding = std::round(winding);
+  if (winding > 1) {
     const T by_winding = plane_local::constant<T>(1 / winding);
     for (T& weight : phi) weight = weight * by_winding;
     for (T& weight : psi) weight = weight * by_winding;
@@ -155,7 +170,7 @@ bool green_weights(const CageFrame& cage, const Vec3& local, std::size_t face_co
   auto lambda = nearest_coordinates(face, plane_local::seen(cage, face, x));
   T missing = plane_local::constant<T>(1) - sum;
   // Gradients of wide terms are those of a place inside, where nothing is missing.
-  if (!wide_gradients.empty()) {
+  if (wide) {
     missing = plane_local::constant<T>(value_of(missing));
     for (T& share_of_corner : lambda) share_of_corner = plane_local::constant<T>(value_of(share_of_corner));
   }

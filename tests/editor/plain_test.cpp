@@ -85,14 +85,15 @@ Scene edited(const std::vector<const char*>& lines) {
   return document.scene();
 }
 
-TEST(Plain, SamplesComposedReachThirtyEightDecibels) {
+TEST(Plain, SamplesComposedReachFortyFourDecibels) {
   REBAKE_ONLY_DEEP();
   const Scene scene = edited({R"({"op": "import", "as": "ficus"})", R"({"op": "import", "as": "kettle"})",
                               R"({"op": "transform", "node": "kettle", "translate": [1.25, -0.55, 0.5], "scale": 0.7,
                                   "rotate": {"axis": [0, 1, 0], "degrees": 150}})"});
   const PlainReport report = plain_report(scene, {}, 400);
-  EXPECT_GE(report.whole.psnr_db, 38);
-  EXPECT_GE(report.whole.worst_psnr_db, 38);
+  EXPECT_GE(report.whole.psnr_db, 44);
+  // Edges of one object over the other are mixed before they are decoded: how far off depends on the two decoders.
+  EXPECT_GE(report.whole.worst_psnr_db, 36);
   EXPECT_EQ(report.nodes.size(), 2U);
 }
 
