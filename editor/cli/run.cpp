@@ -57,6 +57,15 @@ void check_journal(const std::filesystem::path& journal, const std::string& scen
   guard.check_file(journal);
 }
 
+// Files that the script reads and that are there already: no earlier line may write over them. Scenes are left to their
+// imports, since scripts that import what they exported run again.
+void protect_input_files(Document& document, const std::string& script,
+                         const std::map<std::string, std::string>& variables) {
+  for (const std::filesystem::path& input : script_inputs(script, variables))
+    if (std::error_code error; std::filesystem::is_regular_file(input, error) && input.filename() != "scene.json")
+      document.protect_file(input, "a file that this script reads");
+}
+
 // A list as --protect takes it. What only this scene's own script reads is guarded while it is read.
 void protect_listed(Document& document, const std::filesystem::path& list, const std::string& scene) {
   const std::string text = read_file(list);
@@ -124,6 +133,7 @@ void describe_run(CommandDescription& command) {
       variables["name"] = folder_title(options->scene);
       variables["path"] = options->scene;
     }
+    protect_input_files(session.document, script, variables);
     if (!options->journal.empty()) {
       check_journal(options->journal, options->scene, script, variables);
       session.document.keep_journal(options->journal);

@@ -4,10 +4,30 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/document/sources.h"
+#include "editor/edits/nodes/import.h"
 
 namespace rebake {
 
 namespace {
+
+// An import with the name that its node got: the folder's own may be another where journals and projects find it again.
+Edit with_name(const Edit& edit, const Scene& after) {
+  const auto* import = edit.as<Import>();
+  if (import == nullptr || !import->as.empty()) return edit;
+  Import named = *import;
+  named.as = after.roots.back()->name;
+  return named;
+}
+
+bool is_same(const Edit& own, const Edit& wanted) {
+  if (&own.type() != &wanted.type()) return false;
+  nlohmann::json a = to_json(own), b = to_json(completed(wanted));
+  if (const auto* import = wanted.as<Import>(); import != nullptr && import->as.empty()) {
+    a.erase("as");
+    b.erase("as");
+  }
+  return a == b;
+}
 
 // All that edits look at, by what scenes share.
 bool same_scene(const Scene& a, const Scene& b) {
@@ -18,10 +38,7 @@ bool same_scene(const Scene& a, const Scene& b) {
 }  // namespace
 
 bool CarriedOut::is_of(const Scene& scene, const std::vector<Edit>& wanted) const {
-  return same_scene(start, scene) &&
-         std::equal(edits.begin(), edits.end(), wanted.begin(), wanted.end(), [](const Edit& own, const Edit& other) {
-           return &own.type() == &other.type() && to_json(own) == to_json(completed(other));
-         });
+  return same_scene(start, scene) && std::equal(edits.begin(), edits.end(), wanted.begin(), wanted.end(), is_same);
 }
 
 CarriedOut carried_out(const Scene& start, const std::vector<Edit>& edits, const Progress& progress) {
@@ -30,6 +47,7 @@ CarriedOut carried_out(const Scene& start, const std::vector<Edit>& edits, const
     const Scene& before = done.scenes.empty() ? start : done.scenes.back();
     done.edits.push_back(read_edit(to_json(completed(edit)), before));
     Outcome outcome = apply(before, done.edits.back(), progress);
+    done.edits.back() = with_name(done.edits.back(), outcome.scene);
     done.scenes.push_back(std::move(outcome.scene));
     done.reports.push_back(std::move(outcome.report));
   }

@@ -127,8 +127,9 @@ class Journal::File {
 
   void append(const std::vector<json>& entries) {
     if (damaged_) throw FileError(path_, "is damaged: nothing can be written behind that");
-    if (!is_in_place())
-      throw FileError(path_, "was removed or replaced by another file, so work cannot be kept safe in it; save now");
+    if (!is_in_place() || size() != end_)
+      throw FileError(
+          path_, "was removed, replaced or changed by another program, so work cannot be kept safe in it; save now");
     std::string lines;
     std::uint64_t next = next_;
     for (json entry : entries) {
@@ -162,6 +163,11 @@ class Journal::File {
     }, named{};
     return ::fstat(descriptor_.value, &written) == 0 && file_calls().stat(path_.c_str(), &named) == 0 &&
            written.st_dev == named.st_dev && written.st_ino == named.st_ino;
+  }
+
+  std::uint64_t size() const {
+    struct stat about {};
+    return ::fstat(descriptor_.value, &about) == 0 ? static_cast<std::uint64_t>(about.st_size) : 0;
   }
 
   static int open(const fs::path& path, int flags) {

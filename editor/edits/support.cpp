@@ -41,12 +41,20 @@ PlacedNode editable_with_children(const Scene& scene, NodeId id) {
 }
 
 std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<NodeRef>& node) {
+  const bool of_group = node && !present(scene, node->id).node->object;
+  std::set<NodeId> inside;
+  if (of_group) inside.insert(editable(scene, node->id).node->id);
   std::vector<PlacedNode> result;
   for (PlacedNode& placed : placed_nodes(scene)) {
-    if (!placed.node->object || !placed.node->selection || (node && placed.node->id != node->id)) continue;
-    if (count(*placed.node->selection) == 0) continue;
+    if (of_group) {
+      if (!inside.contains(placed.node->id)) continue;
+      for (const NodePtr& child : placed.node->children) inside.insert(child->id);
+    } else if (node && placed.node->id != node->id) {
+      continue;
+    }
+    if (!placed.node->object || !placed.node->selection || count(*placed.node->selection) == 0) continue;
     // What is hidden or locked is changed only where it is named, and then refused if it is locked.
-    if (!node && (placed.locked || !placed.visible)) continue;
+    if ((!node || of_group) && (placed.locked || !placed.visible)) continue;
     editable(scene, placed.node->id);
     result.push_back(std::move(placed));
   }
@@ -55,6 +63,13 @@ std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<N
         node ? fmt::format("no triangle of \"{}\" is selected; select some first", present(scene, node->id).node->name)
              : "no triangle is selected; select some first");
   return result;
+}
+
+PlacedNode object_with_selection(const Scene& scene, const NodeRef& node) {
+  const PlacedNode placed = present(scene, node.id);
+  if (!placed.node->object)
+    throw EditError(fmt::format("\"{}\" is a group; name an object inside it", placed.node->name));
+  return with_selection(scene, node).front();
 }
 
 std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vector<TextureSet> sets) {

@@ -152,6 +152,14 @@ void prepare_study_folder(const Study& study, const std::filesystem::path& folde
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder, "cannot be created: " + error.message());
   if (::access(folder.c_str(), W_OK) != 0) throw FileError(folder, "cannot be written to");
+  const std::string base = (folder / study.name).string();
+  for (const char* ending : {".csv", ".svg", ".png", "-2.svg", "-2.png"}) {
+    guard.check_file(base + ending);
+    if (std::filesystem::is_symlink(base + ending, error))
+      throw FileError(base + ending, "is a link, which the study would write through; remove it");
+  }
+  if (std::filesystem::exists(base + ".csv", error) && !read_file(base + ".csv").starts_with("choice,"))
+    throw FileError(base + ".csv", "is no table of an earlier study; choose another folder");
 }
 
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,

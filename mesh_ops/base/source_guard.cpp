@@ -54,17 +54,22 @@ bool SourceGuard::is_same(const Source& source, const fs::path& path) {
 void SourceGuard::add(const fs::path& source) {
   std::error_code error;
   const bool file = fs::is_regular_file(source, error) || source.filename() == "scene.json";
-  const fs::path folder = plain_path(file ? fs::absolute(source).parent_path() : source);
+  add_folder(plain_path(file ? fs::absolute(source).parent_path() : source), "a source of this scene");
+}
+
+void SourceGuard::add_folder(const fs::path& folder, const std::string& role) {
   // Many nodes share a source: its links are looked for once.
-  if (!add_source({folder, true, "a source of this scene", identity_of(folder)})) return;
+  if (!add_source({folder, true, role, identity_of(folder)})) return;
+  const std::string linked = "what a link in a source of this scene leads to";
   for_each_entry(folder, [&](const fs::directory_entry& entry) {
     std::error_code ignored;
     if (!entry.is_symlink(ignored)) return;
     const fs::path target = plain_path(entry.path());
-    const bool is_folder = fs::is_directory(target, ignored);
+    if (lies_in(target, folder)) return;
+    if (!fs::is_directory(target, ignored)) add_source({target, false, linked, identity_of(target)});
     // A linked folder belongs to the scene when it is one of its objects.
-    if (lies_in(target, folder) || (is_folder && !fs::exists(target / "mlp.json", ignored))) return;
-    add_source({target, is_folder, "what a link in a source of this scene leads to", identity_of(target)});
+    else if (fs::exists(target / "mlp.json", ignored))
+      add_folder(target, linked);
   });
 }
 
@@ -86,6 +91,7 @@ bool SourceGuard::add_source(Source source) {
     if (known.path == source.path && known.is_folder == source.is_folder) {
       // It may have been replaced since; moved away, it is still what undo and journals rest on.
       if (!source.seen.empty()) known.seen = std::move(source.seen);
+      known.role = std::move(source.role);
       return false;
     }
   sources_.push_back(std::move(source));

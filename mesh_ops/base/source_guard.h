@@ -44,6 +44,8 @@ class SourceGuard {
   };
   static std::vector<Identity> identity_of(const std::filesystem::path& path);
   static bool is_same(const Source& source, const std::filesystem::path& path);
+  // With what links in it lead to.
+  void add_folder(const std::filesystem::path& folder, const std::string& role);
   // False when it is known already.
   bool add_source(Source source);
   // The source that a file at the canonical path would overwrite or be added to.

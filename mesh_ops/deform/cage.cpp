@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 
+#include "mesh_ops/base/elementary.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/union_find.h"
 
@@ -92,6 +95,52 @@ std::vector<std::uint32_t> components(const Cage& cage) {
   return lowest;
 }
 
+namespace {
+
+// How often a closed surface goes round a point that is not on it (Van Oosterom, Strackee 1983).
+double winding_around(const Vec3& point, const Cage& part) {
+  double angle = 0;
+  for (const Face& face : part.faces) {
+    const Vec3 a = part.vertices[face[0]] - point, b = part.vertices[face[1]] - point,
+               c = part.vertices[face[2]] - point;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    angle += 2 * elementary::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return angle / (4 * std::numbers::pi);
+}
+
+// Which faces to turn, so that every component that lies in no other points outwards. Those inside one turn with it: a
+// cavity stays one.
+std::vector<std::uint8_t> faces_to_turn(const Cage& cage) {
+  const std::vector<std::uint32_t> of_vertex = components(cage);
+  std::map<std::uint32_t, Cage> parts;
+  for (const Face& face : cage.faces) parts[of_vertex[face[0]]].faces.push_back(face);
+  for (auto& [first, part] : parts) part.vertices = cage.vertices;
+  // Where surfaces touch a winding is about a half.
+  const auto lies_in = [&](std::uint32_t inner, const Cage& outer) {
+    return std::abs(winding_around(cage.vertices[inner], outer)) > 0.75;
+  };
+  std::map<std::uint32_t, std::uint32_t> outermost;
+  for (const auto& [first, part] : parts) {
+    outermost[first] = first;
+    if (parts.size() == 1) continue;
+    for (const auto& [other, around] : parts) {
+      if (other == first || !lies_in(first, around)) continue;
+      const bool is_free = std::none_of(parts.begin(), parts.end(), [&](const auto& third) {
+        return third.first != other && lies_in(other, third.second);
+      });
+      if (is_free) outermost[first] = other;
+    }
+  }
+  std::map<std::uint32_t, bool> inwards;
+  for (const auto& [first, part] : parts) inwards[first] = volume(part) < 0;
+  std::vector<std::uint8_t> turn;
+  for (const Face& face : cage.faces) turn.push_back(inwards[outermost[of_vertex[face[0]]]] ? 1 : 0);
+  return turn;
+}
+
+}  // namespace
+
 Cage checked_cage(Cage cage) {
   if (cage.faces.size() < 4) throw Error("the cage has fewer than four triangles: it cannot be closed");
   for (std::size_t v = 0; v < cage.vertices.size(); ++v)
@@ -125,6 +174,12 @@ Cage checked_cage(Cage cage) {
     throw Error("the cage has no extent that numbers can hold");
   Cage scaled = cage;
   for (Vec3& v : scaled.vertices) v = (v - box.center()) / extent;
+  const std::vector<std::uint8_t> turn = faces_to_turn(scaled);
+  for (std::size_t f = 0; f < turn.size(); ++f)
+    if (turn[f] != 0) {
+      std::swap(cage.faces[f][1], cage.faces[f][2]);
+      std::swap(scaled.faces[f][1], scaled.faces[f][2]);
+    }
   const double inside = volume(scaled);
   // By its surface: what encloses something is thicker than rounding there, whatever its shape.
   double surface = 0;
@@ -133,9 +188,7 @@ Cage checked_cage(Cage cage) {
                    .cross(scaled.vertices[face[2]] - scaled.vertices[face[0]])
                    .norm() /
                2;
-  if (std::abs(inside) <= 1e-15 * surface) throw Error("the cage encloses nothing: its volume is zero");
-  if (inside < 0)
-    for (Face& face : cage.faces) std::swap(face[1], face[2]);
+  if (!(inside > 1e-15 * surface)) throw Error("the cage encloses nothing: its volume is zero");
   return cage;
 }
 

@@ -22,9 +22,9 @@ struct Cage {
 /// vertices.
 Cage lattice_cage(const Box& box, int n, int m, int k);
 
-/// The cage, its faces turned outwards when they all point inwards. Throws Error, saying what and where, when it is not
-/// finite, has faces that name missing vertices or one vertex twice, or is open, non-manifold along an edge or
-/// inconsistently oriented. Faces without area are allowed: they weigh nothing.
+/// The cage, with every component that lies in no other turned outwards, and those inside it along with it. Throws
+/// Error, saying what and where, when it is not finite, has faces that name missing vertices or one vertex twice, or is
+/// open, non-manifold along an edge or inconsistently oriented. Faces without area are allowed: they weigh nothing.
 Cage checked_cage(Cage cage);
 
 /// Signed volume: positive when the faces point outwards.

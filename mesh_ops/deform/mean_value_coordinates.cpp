@@ -12,8 +12,8 @@ namespace pl = plane_local;
 // thin cages and beside sharp edges, where points are few and time is long (a tenth of a millisecond a face). Farther
 // than this many diagonals weights are no use to anybody, and are left as double makes them.
 constexpr double most_cancelled = 1e5, exact_within = 10;
-// Within about 1e-5 of a face, where its terms are as large as this, points are few: there all digits are kept.
-constexpr double large_terms = 1e5, most_cancelled_near = 8;
+// Beside a face points are few: there all digits are kept.
+constexpr double most_cancelled_near = 8;
 
 class MeanValue final : public Coordinates {
  public:
@@ -122,8 +122,7 @@ class MeanValue final : public Coordinates {
     const auto cancels = [&](std::size_t lane) {
       double total = 0;
       for (std::size_t v = 0; v < rows(); ++v) total += sums[v * row + lane];
-      const double size = sizes[lane] + needle_sizes[lane];
-      return size > (size > large_terms ? most_cancelled_near : most_cancelled) * std::abs(total);
+      return sizes[lane] + needle_sizes[lane] > most_cancelled * std::abs(total);
     };
     thread_local std::vector<T> exact;
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {

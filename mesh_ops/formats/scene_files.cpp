@@ -119,6 +119,15 @@ std::uint64_t folder_hash(const fs::path& path) {
   return content_hash(all);
 }
 
+namespace {
+
+bool parses_with(const fs::path& file, const char* key) {
+  const json read = json::parse(read_file(file), nullptr, false);
+  return read.is_object() && read.contains(key);
+}
+
+}  // namespace
+
 void refuse_foreign_content(const fs::path& folder) {
   const std::set<std::string> own = named_folders(folder);
   const auto refuse = [&](const fs::path& path) {
@@ -126,6 +135,11 @@ void refuse_foreign_content(const fs::path& folder) {
                     fmt::format("holds \"{}\", which is not part of the scene there; choose a new or empty folder",
                                 path.lexically_relative(folder).string()));
   };
+  // Names alone do not make a scene.
+  const bool is_scene = fs::exists(folder / "scene.json"), is_baked = fs::exists(folder / "mlp.json");
+  if (is_scene && !parses_with(folder / "scene.json", "rebake_scene")) refuse(folder / "scene.json");
+  if (is_baked && !parses_with(folder / "mlp.json", "0_weights")) refuse(folder / "mlp.json");
+  if (!is_scene && !is_baked && !fs::is_empty(folder)) refuse(fs::directory_iterator(folder)->path());
   std::error_code error;
   for (auto it = fs::recursive_directory_iterator(folder, error); !error && it != fs::recursive_directory_iterator();
        it.increment(error)) {

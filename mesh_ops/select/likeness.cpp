@@ -65,9 +65,10 @@ Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector
 }
 
 TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, const LikenessBounds& bounds) {
-  const double least_cosine =
-      bounds.orientation ? elementary::sine_cosine(std::min(*bounds.orientation, 90.0) * std::numbers::pi / 180).cosine
-                         : 0;
+  // The cosine of 90 degrees in double is above 0, and planes are no farther apart.
+  const double least_cosine = bounds.orientation && *bounds.orientation < 90
+                                  ? elementary::sine_cosine(*bounds.orientation * std::numbers::pi / 180).cosine
+                                  : 0;
   const auto traits = traits_of(*placed.node->object);
   const WorldShape shape(placed);
   TriangleSet flags(traits->size());
@@ -80,7 +81,8 @@ TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, cons
     if (bounds.size || bounds.orientation) {
       const Vec3 area = shape.area(t);
       if (bounds.size && (area.norm() > model.area * *bounds.size || area.norm() * *bounds.size < model.area)) return;
-      if (bounds.orientation && std::abs(area.stableNormalized().dot(model.normal)) < least_cosine) return;
+      const Vec3 normal = area.stableNormalized();
+      if (bounds.orientation && (normal.isZero(0) || std::abs(normal.dot(model.normal)) < least_cosine)) return;
     }
     flags[f] = 1;
   });

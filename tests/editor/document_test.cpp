@@ -13,6 +13,7 @@
 #include "editor/commands/session.h"
 #include "editor/document/document.h"
 #include "editor/document/project.h"
+#include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
@@ -477,6 +478,22 @@ TEST_F(DocumentTest, SeparateThenMergeGivesTheOriginalBytes) {
             bytes);
   act(document, R"({"op": "merge", "nodes": ["corner", "ball", "part"], "as": "ball again"})");
   EXPECT_EQ(exported(document.scene()), bytes);
+}
+
+// The folder's own name may be another where a project finds it again: behind a link, or after it was moved.
+TEST_F(DocumentTest, ImportsKeepTheNameThatTheirNodeGot) {
+  std::filesystem::create_directory_symlink(path("sources/ball"), path("link"));
+  Document document;
+  for (int twice = 0; twice < 2; ++twice)
+    act(document, nlohmann::json{{"op", "import"}, {"path", path("link").string()}});
+  act(document, R"({"op": "duplicate", "node": "link", "as": "ball"})");
+  EXPECT_EQ(document.history().edits()[0].as<Import>()->as, "link");
+  EXPECT_EQ(document.history().edits()[1].as<Import>()->as, "link.2");
+  write_project(path("p.rebake"), document.history().entries(), {});
+  Scene opened;
+  read_project(path("p.rebake"), [&](const History::Entry&, const Scene& after) { opened = after; });
+  ASSERT_EQ(opened.roots.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(opened.roots[k]->name, document.scene().roots[k]->name);
 }
 
 }  // namespace

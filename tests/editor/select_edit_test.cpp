@@ -60,5 +60,47 @@ TEST(SelectEdit, ATextureSetThatOnlySomeObjectsHave) {
   EXPECT_THROW(set(2), FieldError);
 }
 
+// Commands that start from the present selection took a group for a node without one.
+TEST(SelectEdit, AGroupIsAllThatIsInIt) {
+  Scene scene = scene_of(made_object(), "ball");
+  const auto act = [&](const char* line) {
+    scene = apply(scene, read_edit(nlohmann::json::parse(line), scene)).scene;
+    std::size_t selected = 0;
+    for (const PlacedNode& placed : placed_nodes(scene))
+      if (placed.node->selection) selected += count(*placed.node->selection);
+    return selected;
+  };
+  act(R"({"op": "group", "nodes": ["ball"], "as": "g"})");
+  EXPECT_EQ(act(R"({"op": "select_triangles", "node": "ball", "triangles": [[0, 9]]})"), 10U);
+  const std::size_t grown = act(R"({"op": "grow", "node": "g"})");
+  EXPECT_GT(grown, 10U);
+  EXPECT_LT(act(R"({"op": "shrink", "node": "g"})"), grown);
+  EXPECT_EQ(act(R"({"op": "select_connected", "node": "g"})"), 256U);
+  act(R"({"op": "select_triangles", "node": "ball", "triangles": [[0, 9]]})");
+  EXPECT_THROW(act(R"({"op": "separate", "node": "g"})"), EditError) << "which node it is must be said";
+  EXPECT_EQ(act(R"({"op": "delete", "node": "g"})"), 0U);
+  EXPECT_EQ(placed_nodes(scene).back().node->object->triangle_count(), 246U);
+}
+
+TEST(SelectEdit, PlanesAreNinetyDegreesApartAtMost) {
+  auto object = std::make_shared<BakedObject>(*made_object());
+  // In the planes xy, yz and xz, and without area.
+  const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  object->sets = {{Soup(positions, std::vector<Vec2>(4, Vec2(0.5, 0.5)),
+                        {Face{0, 1, 2}, Face{0, 2, 3}, Face{0, 3, 1}, Face{1, 1, 1}}),
+                   object->sets[0].texels}};
+  const Scene scene = scene_of(object, "planes");
+  const auto like = [&](unsigned triangle, double degrees) {
+    const nlohmann::json pick{
+        {"op", "select_triangles"}, {"node", "planes"}, {"triangles", nlohmann::json::array({triangle})}};
+    const Scene picked = apply(scene, read_edit(pick, scene)).scene;
+    const nlohmann::json line{{"op", "select_like"}, {"orientation", degrees}};
+    return count(*apply(picked, read_edit(line, picked)).scene.roots[0]->selection);
+  };
+  EXPECT_EQ(like(0, 90), 3U);
+  EXPECT_EQ(like(0, 89), 1U);
+  EXPECT_THROW(like(3, 10), FieldError) << "it has no plane";
+}
+
 }  // namespace
 }  // namespace rebake::test

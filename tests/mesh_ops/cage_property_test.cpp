@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <tuple>
 
 #include "mesh_ops/deform/coordinates.h"
 #include "tests/support/gold.h"
@@ -259,6 +260,28 @@ TEST(CageProperty, GreenFollowsTurnsWherePartsOverlap) {
     EXPECT_LE(errors.position, 1e-14) << point.transpose();
     EXPECT_LE(errors.jacobian, 1e-12) << point.transpose();
   }
+}
+
+// Components were turned all together: of two boxes side by side, one wound the other way counted as outside.
+TEST(CageProperty, EveryComponentIsTurnedOutwards) {
+  const Cage box = lattice_cage(Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)), 1, 1, 1);
+  const auto joined = [&](const Vec3& offset, double scale, bool first_inwards, bool second_inwards) {
+    Cage cage;
+    for (const auto& [inwards, centre, size] :
+         {std::tuple(first_inwards, Vec3(0, 0, 0), 1.0), std::tuple(second_inwards, offset, scale)}) {
+      const auto base = static_cast<std::uint32_t>(cage.vertices.size());
+      for (const Vec3& v : box.vertices) cage.vertices.push_back(centre + size * v);
+      for (const Face& f : box.faces)
+        cage.faces.push_back({f[0] + base, f[inwards ? 2 : 1] + base, f[inwards ? 1 : 2] + base});
+    }
+    return checked_cage(std::move(cage));
+  };
+  for (const bool first : {false, true})
+    for (const bool second : {false, true}) {
+      EXPECT_NEAR(volume(joined(Vec3(3, 0.2, 0), 0.5, first, second)), 9, 1e-12) << "side by side";
+      EXPECT_NEAR(volume(joined(Vec3(2, 0, 0), 1, first, second)), 16, 1e-12) << "touching";
+      EXPECT_NEAR(volume(joined(Vec3(0, 0, 0), 0.5, first, second)), first == second ? 9 : 7, 1e-12) << "a cavity";
+    }
 }
 
 // One rounding outside a lattice's wall: the face and the cage once disagreed about what that is.

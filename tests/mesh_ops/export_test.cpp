@@ -27,6 +27,19 @@ TEST(Export, RefusesAFolderOfOtherScenes) {
   EXPECT_EQ(folder_bytes(temporary.path()), before);
 }
 
+// Names alone do not make a scene of a folder.
+TEST(Export, RefusesFilesThatAreNoScene) {
+  for (const auto& [name, text] : {std::pair("scene.json", R"({"mine": 1})"), std::pair("mlp.json", "{}"),
+                                   std::pair("shape12.obj", "v 0 0 0"), std::pair("turns.bin", "")}) {
+    const TemporaryFolder temporary;
+    fs::create_directories(temporary.path() / "out");
+    write_text(temporary.path() / "out" / name, text);
+    const auto before = folder_bytes(temporary.path());
+    EXPECT_THROW(export_scene(scene_of(made_object()), temporary.path() / "out", {}), FileError) << name;
+    EXPECT_EQ(folder_bytes(temporary.path()), before);
+  }
+}
+
 TEST(Export, FollowsLinksAndReplacesItsOwnScene) {
   const TemporaryFolder temporary;
   Scene two = scene_of(made_object({.seed = 1}));

@@ -279,6 +279,19 @@ TEST(SourceGuard, ComparesDevicesAndInodes) {
   EXPECT_NO_THROW(guard.check_folder(folder.path() / "elsewhere"));
 }
 
+TEST(SourceGuard, FollowsLinksToFoldersOfLinks) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a", "links", "scene"}) fs::create_directories(folder.path() / name);
+  write_text(folder.path() / "a/mlp.json", "{}");
+  fs::create_symlink(folder.path() / "a/mlp.json", folder.path() / "links/mlp.json");
+  fs::create_symlink(folder.path() / "links", folder.path() / "scene/b");
+  SourceGuard guard;
+  guard.add(folder.path() / "scene");
+  EXPECT_THROW(guard.check_file(folder.path() / "links/mlp.json"), FileError);
+  EXPECT_THROW(guard.check_file(folder.path() / "a/mlp.json"), FileError);
+  EXPECT_THROW(guard.check_folder(folder.path() / "a"), FileError);
+}
+
 TEST(SourceGuard, KnowsASourceThatWasMovedAway) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "scene");

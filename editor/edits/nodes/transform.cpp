@@ -22,7 +22,7 @@ Scene apply(const Scene& scene, const Transform& edit) {
   if (!edit.selection) {
     box = subtree_bounds(scene, edit.node.id);
   } else {
-    box = selection_bounds(with_selection(scene, edit.node).front());
+    box = selection_bounds(object_with_selection(scene, edit.node));
   }
   const Vec3 pivot = edit.pivot      ? *edit.pivot
                      : box.isEmpty() ? Vec3(placed.to_world.translation())

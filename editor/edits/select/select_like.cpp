@@ -29,6 +29,8 @@ Scene apply(const Scene& scene, const SelectLike& edit) {
     for (const PlacedNode& placed : targets) picked.push_back(selection_of(placed));
   }
   const Likeness model = mean_likeness(targets, picked);
+  if (edit.orientation && !(model.area > 0))
+    throw FieldError("orientation", "the triangles compared with have no area, so no plane");
   std::size_t k = 0;
   return with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
     const TriangleSet& from = picked[k++];

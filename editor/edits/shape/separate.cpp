@@ -5,7 +5,7 @@
 namespace rebake {
 
 Scene apply(const Scene& scene, const Separate& edit) {
-  const PlacedNode placed = with_selection(scene, edit.node).front();
+  const PlacedNode placed = object_with_selection(scene, edit.node);
   if (!edit.as.empty() && find(scene, edit.as) != nullptr)
     throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
   const TriangleSet& selection = *placed.node->selection;
