@@ -152,7 +152,7 @@ void train(const Options& options) {
     throw FieldError("edit", "say what moves it, such as '{\"op\": \"bend\", \"degrees\": 60, \"axis\": [0, 1, 0]}'");
   auto [scene, sources] = read_all(options.paths, options.axes, progress_bar());
   for (const std::string& text : options.edits) {
-    const json edit = json::parse(text, nullptr, false);  // what is no JSON is reported below
+    const json edit = json::parse(text, nullptr, false);  // invalid JSON is reported below
     for (const char* field : {"mesh", "picture"})
       if (edit.is_object() && edit.contains(field) && edit[field].is_string())
         sources.add_file(edit[field].get<std::string>());

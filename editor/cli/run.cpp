@@ -35,7 +35,7 @@ std::string line_of(const char* what, const std::filesystem::path& path, std::ui
          '\n';
 }
 
-// What the result of a script rests on beside the script itself, and what it exported.
+// One JSON line per input that the script read and per folder that it exported, with content hashes.
 std::string file_list(const Session& session, const std::string& script,
                       const std::map<std::string, std::string>& variables) {
   std::set<std::filesystem::path> read;
@@ -57,8 +57,8 @@ void check_journal(const std::filesystem::path& journal, const std::string& scen
   guard.check_file(journal);
 }
 
-// Files that the script reads and that are there already: no earlier line may write over them. Scenes are left to their
-// imports, since scripts that import what they exported run again.
+// Protects existing input files from earlier lines of the script. Scene folders are protected when they are imported: a
+// script may import its own export, and may be run again.
 void protect_input_files(Document& document, const std::string& script,
                          const std::map<std::string, std::string>& variables) {
   for (const std::filesystem::path& input : script_inputs(script, variables))

@@ -19,8 +19,8 @@ PlacedNode editable_with_children(const Scene& scene, NodeId id);
 /// The node, locked or not. Throws EditError when it is absent.
 PlacedNode present(const Scene& scene, NodeId id);
 
-/// Editable objects with selected triangles: one object, those of a group, or all; of groups and of all only what is
-/// visible and not locked. Throws EditError when nothing is selected.
+/// Editable objects with selected triangles: the given object, the objects in a group, or all objects. Hidden and
+/// locked objects are skipped unless named. Throws EditError when nothing is selected.
 std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<NodeRef>& node);
 /// The same of one object. Throws EditError for a group.
 PlacedNode object_with_selection(const Scene& scene, const NodeRef& node);

@@ -122,7 +122,7 @@ bool is_partial_of(const std::string& name, const std::string& of) {
   return digits[0] == '.' && digits.find_first_not_of("0123456789abcdef", 1) == std::string::npos;
 }
 
-// Whether something is mounted at a path or below it: what lies there belongs to somebody else.
+// True if a file system is mounted at the path or below it; its files must not be removed.
 bool holds_mount(const fs::path& path) {
   const auto is_mount = [](const fs::path& at) {
     struct statx about {};

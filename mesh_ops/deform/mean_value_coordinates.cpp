@@ -168,7 +168,7 @@ class MeanValue final : public Coordinates {
   static double part(double number) { return number; }
   static double part(const Dual& number) { return number.v; }
 
-  // What a face weighs, into one lane of rows of sums; or the face into `near`. Returns the size of what was added.
+  // Adds a face's terms to one lane of the sums, or the face to `near`. Returns the sum of the terms' magnitudes.
   template <class T>
   double add_face(const FaceFrame& face, const Vec3& local, double* sums, std::vector<const FaceFrame*>& near) const {
     const pl::Seen<T> s = pl::seen(frame_, face, pl::local_point(local, T()));

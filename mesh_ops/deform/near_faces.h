@@ -62,7 +62,7 @@ bool is_over(const plane_local::Seen<T>& s) {
   return value_of(s.a[0]) > height && value_of(s.a[1]) > height && value_of(s.a[2]) > height;
 }
 
-// Returns what was divided by.
+// Returns the divisor.
 template <class T>
 double normalise(std::vector<T>& weights) {
   T total = plane_local::constant<T>(0);
