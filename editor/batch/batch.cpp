@@ -47,7 +47,7 @@ std::string key_of(const BatchOptions& options, std::uint64_t program, std::uint
   return hash_text(content_hash(all));
 }
 
-// What a scene's process read and exported, and its key: the mark that it is done.
+// What a scene's process read and wrote, and its key: the mark that it is done.
 struct Mark {
   struct File {
     std::string path, content;
@@ -85,7 +85,7 @@ bool is_as_it_was(const Mark::File& file) {
   }
 }
 
-// Whether a scene was done under this key from files that are still the same, and all that it exported is whole.
+// Whether a scene was done under this key from files that are still the same, and all that it wrote is whole.
 bool still_done(const Mark& mark, const std::string& key) {
   return mark.key == key && std::all_of(mark.read.begin(), mark.read.end(), is_as_it_was) &&
          std::all_of(mark.wrote.begin(), mark.wrote.end(), is_as_it_was);
@@ -96,14 +96,14 @@ void say_quality(BatchResult& result, bool below_asked) {
   if (below_asked) result.message = "an export missed the psnr that was asked for; the log says which object suffers";
 }
 
-// Says of every exported folder whose it is, to all shards.
+// Says of every output whose it is, to all shards.
 class Claims {
  public:
   explicit Claims(fs::path folder) : folder_(std::move(folder)) { fs::create_directories(folder_); }
 
-  // The scene that exported there too; empty where there is none.
-  std::string claim(const std::string& exported, const std::string& scene) const {
-    const fs::path path = path_of(exported);
+  // The scene that was written there too; empty where there is none.
+  std::string claim(const std::string& output, const std::string& scene) const {
+    const fs::path path = path_of(output);
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file >= 0) {
       const bool whole = ::write(file, scene.data(), scene.size()) == static_cast<ssize_t>(scene.size());
@@ -115,13 +115,13 @@ class Claims {
     const std::string other = read_file(path);
     return other == scene ? "" : other.empty() ? "another scene" : other;
   }
-  void release(const std::string& exported, const std::string& scene) const {
-    const fs::path path = path_of(exported);
+  void release(const std::string& output, const std::string& scene) const {
+    const fs::path path = path_of(output);
     if (fs::exists(path) && read_file(path) == scene) fs::remove(path);
   }
 
  private:
-  fs::path path_of(const std::string& exported) const { return folder_ / hash_text(content_hash(exported)); }
+  fs::path path_of(const std::string& output) const { return folder_ / hash_text(content_hash(output)); }
 
   fs::path folder_;
 };
@@ -349,7 +349,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
           result.status = BatchResult::Status::skipped;
           say_quality(result, before.below_asked);
         } else {
-          for (const Mark::File& folder : before.wrote) claims.release(folder.path, result.name);
+          for (const Mark::File& output : before.wrote) claims.release(output.path, result.name);
           fs::remove(mark);
           // Not what links of these names lead to.
           for (const char* ending : {".log", ".files"}) fs::remove(state_folder(options) / (result.name + ending));
@@ -380,11 +380,11 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
       say_quality(result, below);
       const std::string files = read_file(state_folder(options) / (result.name + ".files"));
       result.status = BatchResult::Status::done;
-      for (const Mark::File& folder : mark_from(files).wrote)
-        if (const std::string other = claims.claim(folder.path, result.name); !other.empty()) {
+      for (const Mark::File& output : mark_from(files).wrote)
+        if (const std::string other = claims.claim(output.path, result.name); !other.empty()) {
           result.status = BatchResult::Status::failed;
           result.message =
-              fmt::format("{} is the export of {} too: put {{name}} into the script's path", folder.path, other);
+              fmt::format("{} is written for {} too: put {{name}} into the script's path", output.path, other);
         }
       if (result.status == BatchResult::Status::done)
         write_file_atomically(state_folder(options) / (result.name + ".done"),

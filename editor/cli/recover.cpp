@@ -6,6 +6,7 @@
 #include "editor/cli/commands.h"
 #include "editor/cli/terminal.h"
 #include "editor/document/document.h"
+#include "editor/document/project.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 
@@ -36,15 +37,29 @@ bool holds_project(const std::filesystem::path& path) {
   return read_file(path).find("\"rebake_project\"") != std::string::npos;
 }
 
+// A project whose sources were moved: the same edits, on the sources where they lie now.
+void relink_project(const Recovery& options) {
+  const Document document = Document::open(options.journal, links_of(options.sources), progress_bar());
+  document.save(options.out, progress_bar());
+  clear_progress_bar();
+  fmt::print("{} edits of {} saved in {}\n", document.history().undo_count(), printable(options.journal),
+             printable(options.out));
+}
+
 void recover(const Recovery& options) {
   if (!options.out.ends_with(".rebake")) throw FieldError("--out", "must end in .rebake, by which projects are known");
   std::error_code error;
-  if (std::filesystem::equivalent(options.out, options.journal, error))
+  const bool is_project = is_project_file(options.journal);
+  if (!is_project && std::filesystem::equivalent(options.out, options.journal, error))
     throw FieldError("--out", "is the journal itself, which would be lost with it; name another file");
   if (options.replace && std::filesystem::exists(options.out) && !holds_project(options.out))
     throw FileError(options.out, "is no project, so it is not replaced; choose another name");
   if (!options.replace && std::filesystem::exists(options.out))
     throw FileError(options.out, "is there already; choose another name, or --replace it");
+  if (is_project) {
+    relink_project(options);
+    return;
+  }
   Document::Recovered recovered = Document::recover(options.journal, links_of(options.sources), progress_bar());
   // A project of nothing would stand in the way of the next attempt.
   const bool nothing = recovered.edits == 0;
@@ -82,7 +97,10 @@ void recover(const Recovery& options) {
 
 void describe_recover(CommandDescription& command) {
   auto options = std::make_shared<Recovery>();
-  command.option("journal", options->journal, "journal that run --journal or the editor kept", "JOURNAL").required();
+  command
+      .option("journal", options->journal,
+              "journal that run --journal or the editor kept, or a project whose sources were moved", "JOURNAL")
+      .required();
   command.option("-o,--out", options->out, "project to write", "FILE.rebake").required();
   command.option("--source", options->sources, "where a source lies now that was moved", "OLD=NEW...");
   command.flag("--replace", options->replace, "replace a project that is there already");

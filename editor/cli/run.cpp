@@ -35,7 +35,7 @@ std::string line_of(const char* what, const std::filesystem::path& path, std::ui
          '\n';
 }
 
-// One JSON line per input that the script read and per folder that it exported, with content hashes.
+// One JSON line per input that the script read and per file and folder that it wrote, with content hashes.
 std::string file_list(const Session& session, const std::string& script,
                       const std::map<std::string, std::string>& variables) {
   std::set<std::filesystem::path> read;
@@ -44,7 +44,13 @@ std::string file_list(const Session& session, const std::string& script,
   for (const std::filesystem::path& input : script_inputs(script, variables)) read.insert(absolute_path(input));
   std::string lines;
   for (const std::filesystem::path& path : read) lines += line_of("read", path, content_at(path));
-  for (const std::string& folder : session.exports) lines += line_of("wrote", folder, folder_hash(folder));
+  std::set<std::filesystem::path> wrote;
+  for (const std::vector<std::string>* const written : {&session.exports, &session.outputs})
+    for (const std::string& path : *written) wrote.insert(absolute_path(path));
+  // A pipe or a device keeps nothing to compare.
+  for (const std::filesystem::path& path : wrote)
+    if (std::filesystem::is_directory(path) || std::filesystem::is_regular_file(path))
+      lines += line_of("wrote", path, content_at(path));
   return lines;
 }
 
@@ -94,8 +100,7 @@ void describe_run(CommandDescription& command) {
                  "FOLDER");
   command.option("--out", options->out, "export there at the end, unless the script exports itself", "FOLDER");
   command.option("--list-files", options->files,
-                 "write there, one JSON object a line, what was read and exported, with hashes of the contents",
-                 "FILE");
+                 "write there, one JSON object a line, what was read and written, with hashes of the contents", "FILE");
   command.option("--protect", options->sources,
                  "write over none of the folders and files in this list: pairs of the scene that reads it (empty: all) "
                  "and its path, each ended by a zero byte",

@@ -19,6 +19,7 @@ void run(Session& session, const RenderAction& action) {
   const Lighting lighting = lit(session.scene(), session.progress);
   const Image picture = session.renderer().render(scene, view, {}, &lighting);
   write_png(picture, action.out, session.document.sources());
+  session.outputs.push_back(action.out);
   session.say(fmt::format("rendered {}", action.out));
   for (const LightDecision& decision : lighting.summary)
     session.say(fmt::format("light: {} {}: {}", decision.runs ? "runs" : "left out", decision.name, decision.words()));

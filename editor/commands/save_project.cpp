@@ -10,6 +10,7 @@ void run(Session& session, const SaveProjectAction& action) {
   if (std::filesystem::path(action.out).extension() != ".rebake")
     throw FieldError("out", "must end in .rebake, by which projects are known");
   session.document.save(action.out, session.progress);
+  session.outputs.push_back(action.out);
   session.say("saved " + action.out);
 }
 

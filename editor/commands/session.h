@@ -29,6 +29,7 @@ class Session {
   void revise(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
 
   std::vector<std::string> exports;  ///< folders that export wrote
+  std::vector<std::string> outputs;  ///< pictures, projects and scene folders that other actions wrote
   bool below_asked = false;          ///< an export was done, but missed the quality that was asked for
   Progress progress;
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< one line for people

@@ -66,12 +66,47 @@ std::string named(std::size_t line, const json& entry) {
 
 }  // namespace
 
+namespace {
+
+struct JournalLine {
+  std::size_t number;  // in the file, from 1
+  json entry;
+};
+
+bool reads_missing_source(const json& entry, const Relinked& links) {
+  for (json edit : edits_in(entry))
+    if (const json* const source = source_field(edit);
+        source != nullptr && !trouble_with(source->get<std::string>(), edit.value("content", ""), links).empty())
+      return true;
+  return false;
+}
+
+// The lines to replay. Where a step that was undone reads a source that is missing, only those of steps that are left
+// done: nothing else rests on it.
+std::vector<JournalLine> lines_to_replay(const Journal::Contents& contents, const Relinked& links, bool& only_done) {
+  std::vector<JournalLine> lines;
+  for (const std::string& text : contents.entries) lines.push_back({lines.size() + 2, json::parse(text)});
+  const StepsDone done = steps_done(contents);
+  std::vector<JournalLine> left;
+  for (const std::size_t line : done.lines) left.push_back(lines[line]);
+  const auto misses = [&](const std::vector<JournalLine>& some) {
+    return std::any_of(some.begin(), some.end(),
+                       [&](const JournalLine& line) { return reads_missing_source(line.entry, links); });
+  };
+  only_done = !done.partly && misses(lines) && !misses(left);
+  return only_done ? left : lines;
+}
+
+}  // namespace
+
 Document::Recovered Document::recover(const fs::path& path, const Relinked& links, const Progress& progress) {
   Journal::Contents contents;
   Journal journal = Journal::resume(path, contents);
   Recovered result;
   History& history = result.document.history_;
   result.torn = contents.torn;
+  bool only_done = false;
+  const std::vector<JournalLine> lines = lines_to_replay(contents, links, only_done);
   // One line: all of it, or nothing.
   const auto replay = [&](const json& entry) {
     const bool adjusts = entry.contains("adjust");
@@ -83,7 +118,7 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
       return;
     }
     const json& step = adjusts ? entry.at("adjust") : entry;
-    const std::size_t adjusted = adjusts ? count_in(step.at("undo")) : 0;
+    const std::size_t adjusted = adjusts && !only_done ? count_in(step.at("undo")) : 0;
     const std::size_t replaced = step.value("replaces", std::size_t{0});
     if (adjusted + replaced > history.undo_count()) throw Error("there is no step to adjust");
     const Scene start = history.scene_at(history.undo_count() - adjusted - replaced, progress);
@@ -112,11 +147,9 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
     for (json one : edits_in(json::parse(text)))
       if (const json* const source = source_field(one)) imports.emplace_back(source->get<std::string>());
   check_links(links, imports);
-  std::size_t line = 1;
-  for (const std::string& text : contents.entries) {
-    progress.at("recovering", static_cast<double>(line) / static_cast<double>(contents.entries.size() + 1));
-    ++line;
-    const json entry = json::parse(text);
+  std::size_t count = 0;
+  for (const auto& [line, entry] : lines) {
+    progress.at("recovering", static_cast<double>(++count) / static_cast<double>(lines.size() + 1));
     // What follows a lost edit would not be what people made.
     if (!result.lost.empty()) {
       result.lost.push_back(named(line, entry));
@@ -135,7 +168,7 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
   for (const Journal::Contents::Line& after : contents.after)
     result.lost.push_back(named(after.number, json::parse(after.entry)) + " (behind the damage)");
   result.edits = history.undo_count();
-  if (result.lost.empty() && links.empty() && contents.damaged_line == 0 && contents.current)
+  if (result.lost.empty() && links.empty() && !only_done && contents.damaged_line == 0 && contents.current)
     result.document.journal_ = std::move(journal);
   else
     result.journal = std::move(journal);

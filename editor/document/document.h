@@ -20,7 +20,8 @@ class Document {
   static Document open(const std::filesystem::path& project, const Relinked& links = {}, const Progress& progress = {},
                        std::uint64_t memory_budget = History::default_budget);
   /// Gets the work of a journal back, as far as it can be: what stands behind damage, or wants a source that is gone,
-  /// is listed. Where all is there and nothing was relinked, it goes on writing the journal. Throws FileError for a
+  /// is listed. Undone steps that want such a source are left out. Where all is there and nothing was relinked, it goes
+  /// on writing the journal. Throws FileError for a
   /// file that is no journal.
   struct Recovered;
   static Recovered recover(const std::filesystem::path& journal, const Relinked& links = {},

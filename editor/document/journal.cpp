@@ -41,6 +41,7 @@ std::string line_of(const json& entry) {
 struct Parsed {
   Journal::Contents contents;
   std::uint64_t good_bytes = 0;  // where the last whole line before any damage ends
+  bool ends_in_newline = true;   // that line
   bool begun = false;            // the first line is whole
 };
 
@@ -69,7 +70,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
     const std::size_t end = bytes.find('\n', begin);
     const bool ends = end != std::string_view::npos;
     const std::string_view line = bytes.substr(begin, ends ? end - begin : end);
-    const std::optional<json> entry = ends ? whole(line) : std::nullopt;
+    const std::optional<json> entry = whole(line);
     begin = ends ? end + 1 : bytes.size();
     if (number == 0 && entry && entry->contains("rebake_journal")) {
       const json& of = entry->at("rebake_journal");
@@ -90,6 +91,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
     } else if (follows && number > 0) {
       contents.entries.push_back(text);
       parsed.good_bytes = begin;
+      parsed.ends_in_newline = ends;
     } else if (number > 0 && !ends) {
       contents.torn = true;  // the last line: it was being written
     } else if (number > 0) {
@@ -122,6 +124,7 @@ class Journal::File {
     if (damaged_) return std::move(parsed.contents);
     if (file_calls().ftruncate(descriptor_.value, static_cast<off_t>(end_)) != 0) fail();
     if (!parsed.begun) append({json{{"rebake_journal", journal_version}}});
+    if (!parsed.ends_in_newline) append_text("\n");
     return std::move(parsed.contents);
   }
 
@@ -137,17 +140,7 @@ class Journal::File {
       lines += line_of(entry);
       ++next;
     }
-    std::string_view rest = lines;
-    while (!rest.empty()) {
-      const ssize_t written = file_calls().pwrite(descriptor_.value, rest.data(), rest.size(),
-                                                  static_cast<off_t>(end_ + lines.size() - rest.size()));
-      if (written < 0 && errno == EINTR) continue;
-      if (written == 0) errno = ENOSPC;
-      if (written <= 0) fail();
-      rest.remove_prefix(static_cast<std::size_t>(written));
-    }
-    if (file_calls().fsync(descriptor_.value) != 0 && errno != EINVAL) fail();
-    end_ += lines.size();
+    append_text(lines);
     next_ = next;
   }
   const fs::path& path() const { return path_; }
@@ -157,6 +150,21 @@ class Journal::File {
   }
 
  private:
+  // On the disk when this returns.
+  void append_text(std::string_view text) {
+    std::string_view rest = text;
+    while (!rest.empty()) {
+      const ssize_t written = file_calls().pwrite(descriptor_.value, rest.data(), rest.size(),
+                                                  static_cast<off_t>(end_ + text.size() - rest.size()));
+      if (written < 0 && errno == EINTR) continue;
+      if (written == 0) errno = ENOSPC;
+      if (written <= 0) fail();
+      rest.remove_prefix(static_cast<std::size_t>(written));
+    }
+    if (file_calls().fsync(descriptor_.value) != 0 && errno != EINVAL) fail();
+    end_ += text.size();
+  }
+
   // Whether the path still names the file that is written.
   bool is_in_place() const {
     struct stat written {
@@ -251,26 +259,36 @@ bool Journal::in_use(const fs::path& path) {
 
 Journal::Contents Journal::read(const fs::path& path) { return parse(path, read_file(path)).contents; }
 
-std::size_t step_count(const Journal::Contents& contents) {
-  std::vector<std::size_t> ends;  // number of edits at the end of each step
+StepsDone steps_done(const Journal::Contents& contents) {
+  struct Step {
+    std::size_t line, end;  // the number of edits at its end
+  };
+  std::vector<Step> steps;
   std::size_t done = 0;
   const auto count_in = [](const json& value) { return value.is_number_unsigned() ? value.get<std::size_t>() : 1; };
-  for (const std::string& text : contents.entries) {
-    const json entry = json::parse(text);
+  for (std::size_t line = 0; line < contents.entries.size(); ++line) {
+    const json entry = json::parse(contents.entries[line]);
     if (entry.contains("undo")) {
       done -= std::min(done, count_in(entry.at("undo")));
     } else if (entry.contains("redo")) {
-      done = std::min(ends.empty() ? 0 : ends.back(), done + count_in(entry.at("redo")));
+      done = std::min(steps.empty() ? 0 : steps.back().end, done + count_in(entry.at("redo")));
     } else {
       const json& step = entry.contains("adjust") ? entry.at("adjust") : entry;
       if (entry.contains("adjust")) done -= std::min(done, count_in(step.at("undo")));
-      while (!ends.empty() && ends.back() > done) ends.pop_back();
+      while (!steps.empty() && steps.back().end > done) steps.pop_back();
       done += step.contains("edits") ? step.at("edits").size() : 1;
-      ends.push_back(done);
+      steps.push_back({line, done});
     }
   }
-  return static_cast<std::size_t>(
-      std::count_if(ends.begin(), ends.end(), [&](std::size_t end) { return end <= done; }));
+  StepsDone result;
+  std::size_t end = 0;
+  for (const Step& step : steps) {
+    if (step.end > done) break;
+    result.lines.push_back(step.line);
+    end = step.end;
+  }
+  result.partly = end != done;
+  return result;
 }
 
 }  // namespace rebake

@@ -65,8 +65,11 @@ class Journal {
   std::unique_ptr<File> file_;
 };
 
-/// Number of steps of history that a journal's whole lines leave done: edits of one line are one step, undone ones do
-/// not count.
-std::size_t step_count(const Journal::Contents& contents);
+/// Steps of history that a journal's whole lines leave done. Edits of one line are one step.
+struct StepsDone {
+  std::vector<std::size_t> lines;  ///< of each step, as an index into Contents::entries
+  bool partly = false;             ///< after them some edits of one more step are done
+};
+StepsDone steps_done(const Journal::Contents& contents);
 
 }  // namespace rebake

@@ -100,7 +100,10 @@ void read_project(const fs::path& path, const EachEdit& each, const Relinked& li
     }
     check_links(links, imports);
     if (!gone.empty())
-      throw SourcesGone(path, "its sources are not as they were; put them back, or say where they lie now:" + troubles,
+      throw SourcesGone(path,
+                        "its sources are not as they were; put them back, or say where they lie now (the editor asks; "
+                        "rebake recover P.rebake --source OLD=NEW -o Q.rebake):" +
+                            troubles,
                         gone);
     std::vector<bool> joined(root.at("edits").size());
     for (const json& one : root.value("joined", json::array())) {

@@ -16,18 +16,21 @@ class Reader {
   json read(const py::handle& value, int depth) {
     constexpr int deepest = 32;
     constexpr std::size_t most = 10'000'000;
-    if (depth > deepest) throw FieldError("value", "is nested deeper than 32 levels, or contains itself");
-    if (++count_ > most) throw FieldError("value", "holds more than ten million values, or never ends");
+    if (depth > deepest) throw FieldError(field_, "is nested deeper than 32 levels, or contains itself");
+    if (++count_ > most) throw FieldError(field_, "holds more than ten million values, or never ends");
     if (value.is_none()) return nullptr;
     if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
     if (py::isinstance<py::int_>(value)) return whole(value);
     if (py::isinstance<py::float_>(value)) return value.cast<double>();
-    if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-    if (py::hasattr(value, "__fspath__")) return value.attr("__fspath__")().cast<std::string>();
+    if (py::isinstance<py::str>(value)) return text(value);
+    if (py::hasattr(value, "__fspath__")) return text(value.attr("__fspath__")());
     if (py::isinstance<py::dict>(value)) {
       json object = json::object();
-      for (const auto& [key, entry] : value.cast<py::dict>())
-        if (!entry.is_none()) object[key.cast<std::string>()] = read(entry, depth + 1);
+      for (const auto& [key, entry] : value.cast<py::dict>()) {
+        const std::string name = text(key);
+        if (depth == 0) field_ = name;
+        if (!entry.is_none()) object[name] = read(entry, depth + 1);
+      }
       return object;
     }
     if (py::isinstance<py::array>(value) || py::hasattr(value, "tolist"))
@@ -42,14 +45,23 @@ class Reader {
   }
 
  private:
-  static json whole(const py::handle& value) {
+  std::string text(const py::handle& value) const {
+    try {
+      return value.cast<std::string>();
+    } catch (const py::cast_error&) {
+      PyErr_Clear();
+      throw FieldError(field_, "is no text in UTF-8, which journals and projects hold");
+    }
+  }
+  json whole(const py::handle& value) const {
     try {
       const auto number = value.cast<std::int64_t>();
       return number < 0 ? json(number) : json(static_cast<std::uint64_t>(number));
     } catch (const py::cast_error&) {
-      throw FieldError("value", "is a whole number beyond 64 bits");
+      throw FieldError(field_, "is a whole number beyond 64 bits");
     }
   }
+  std::string field_ = "value";  // that is being read
   std::size_t count_ = 0;
 };
 

@@ -304,15 +304,24 @@ py::tuple wrap_triangles(const py::object& points, const py::object& faces, doub
   return py::make_tuple(array_of(cage.vertices), numbers);
 }
 
+Relinked links_from(const py::dict& sources) {
+  Relinked links;
+  for (const auto& [from, to] : sources) links[from.cast<std::filesystem::path>()] = to.cast<std::filesystem::path>();
+  return links;
+}
+
 std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, const std::string& axes,
-                                          const py::object& callback) {
+                                          const py::object& callback, const py::dict& sources) {
+  const Relinked links = links_from(sources);
+  if (!links.empty() && !is_project_file(path))
+    throw FieldError("sources", "are those of a project, which this is not");
   std::optional<Document> opened;
   Import import;
   import.path = path.string();
   import.axes = Codec<Axes>::read(json(axes), {});
   do_work(callback, [&](const Progress& progress) {
     if (is_project_file(path)) {
-      opened = Document::open(path, {}, progress);
+      opened = Document::open(path, links, progress);
       return;
     }
     opened.emplace();
@@ -325,8 +334,7 @@ std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, con
 
 std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journal, const py::dict& sources,
                                              const py::object& callback) {
-  Relinked links;
-  for (const auto& [from, to] : sources) links[from.cast<std::filesystem::path>()] = to.cast<std::filesystem::path>();
+  const Relinked links = links_from(sources);
   std::optional<Document::Recovered> recovered;
   do_work(callback, [&](const Progress& progress) { recovered = Document::recover(journal, links, progress); });
   if (!recovered->document.keeps_journal() &&
@@ -492,7 +500,9 @@ PYBIND11_MODULE(rebake, module) {
   }
 
   module.def("open", &open_document, py::arg("path"), py::arg("axes") = "360", py::arg("progress") = py::none(),
-             "A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project.");
+             py::arg("sources") = py::dict(),
+             "A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project; `sources` says "
+             "where folders of a project lie now that were moved.");
   module.def("recover", &recover_document, py::arg("journal"), py::arg("sources") = py::dict(),
              py::arg("progress") = py::none(),
              "The work that a journal kept; `sources` says where folders lie now that were moved. What cannot be got "

@@ -186,6 +186,15 @@ int open_pipe(const fs::path& pipe) {
   }
 }
 
+// A rename asks only for the folder's permission, so the file's own is asked for here; that of the bits, too, since the
+// superuser may write everything.
+void refuse_write_protected(const fs::path& path) {
+  struct stat about {};
+  if (file_calls().stat(path.c_str(), &about) != 0) return;
+  if ((about.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0 || ::access(path.c_str(), W_OK) != 0)
+    throw FileError(path, "is write-protected; choose another name, or make it writable first");
+}
+
 // Through symbolic links: what they point to is replaced, not the link.
 fs::path followed(const fs::path& path) {
   std::error_code error;
@@ -289,6 +298,7 @@ void write_file_atomically(const fs::path& named, std::string_view bytes, const 
     }
     return;
   }
+  refuse_write_protected(path);
   remove_leftovers(path.parent_path(), path.filename().string(), false, guard);
   const fs::path partial = path.parent_path() / partial_name(path.filename().string());
   const PartialWrite known(partial);
@@ -319,7 +329,7 @@ AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
   if (fs::exists(target_, error)) {
     if (!fs::is_directory(target_)) throw FileError(target_, "is a file; name a folder to write to");
     may_replace(target_);
-    if (::access(target_.c_str(), W_OK) != 0) fail(target_, "cannot be written");
+    refuse_write_protected(target_);
   }
   make_folders(target_.parent_path());
   std::string hidden = ".";

@@ -46,7 +46,7 @@ void sync_folder(const std::filesystem::path& folder);
 
 /// Writes one file whole or not at all, on the disk when this returns: a temporary beside it, synced, then a rename,
 /// and the folder synced. Devices and pipes are written to. Leftovers of such writes that were killed are removed.
-/// Throws FileError; `guard` says where nothing may be written.
+/// Throws FileError, also where a write-protected file is there; `guard` says where nothing may be written.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes, const SourceGuard& guard);
 
 /// Removes a file that is not wanted any more, on the disk when this returns. Throws FileError.

@@ -188,6 +188,15 @@ Standpoint standpoint_of(const Camera& camera, const Affine& to_object) {
   return {to_object * camera.eye, camera.orthographic() ? Vec3(back.normalized()) : Vec3::Zero()};
 }
 
+namespace {
+
+// Barycentric: the middle, and places near each corner and edge.
+const std::array<Vec3, 7> inner_points = {
+    Vec3(1.0 / 3, 1.0 / 3, 1.0 / 3), Vec3(0.8, 0.1, 0.1),   Vec3(0.1, 0.8, 0.1),  Vec3(0.1, 0.1, 0.8),
+    Vec3(0.45, 0.45, 0.1),           Vec3(0.1, 0.45, 0.45), Vec3(0.45, 0.1, 0.45)};
+
+}  // namespace
+
 TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standpoint>& standpoints) {
   const auto rays = rays_of(object);
   const double size = object.bounds().diagonal().norm();
@@ -198,12 +207,25 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standp
       const std::array<Vec2, 3> uv = texel_corners(set, f);
       const Face& face = set.soup.faces()[f];
       const std::vector<Vec3>& p = set.soup.positions();
+      if ((p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]).isZero(0)) {
+        flags[first + f] = 1;  // without area it is never drawn
+        return;
+      }
       std::vector<Vec3> opaque;
       for_each_texel_inside(uv, set.texels->width(), set.texels->height(), [&](int x, int y) {
         if (!set.texels->opaque(x, y)) return;
         const Vec3 w = barycentric(uv, {x + 0.5, y + 0.5});
         opaque.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
       });
+      // Texels' centres may all lie outside of a narrow or small triangle, which shows the texels that its points lie
+      // in.
+      if (opaque.empty())
+        for (const Vec3& w : inner_points) {
+          const Vec2 at = uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2];
+          const int x = std::clamp(static_cast<int>(at.x()), 0, set.texels->width() - 1);
+          const int y = std::clamp(static_cast<int>(at.y()), 0, set.texels->height() - 1);
+          if (set.texels->opaque(x, y)) opaque.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
+        }
       // Spread over all of them.
       constexpr std::size_t most = 16;
       const std::size_t tried = std::min(most, opaque.size());

@@ -256,7 +256,14 @@ TEST_F(Batch, TwoScenesCannotHaveOneResult) {
   write_text(options.script, R"({"op": "export", "out": "{to}/same"})");
   options.variables = {"to=" + folder_.path().string()};
   EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::failed}, {"c", Status::failed}}));
-  EXPECT_NE(messages["b"].find("is the export of a too"), std::string::npos) << messages["b"];
+  EXPECT_NE(messages["b"].find("is written for a too"), std::string::npos) << messages["b"];
+}
+
+TEST_F(Batch, TwoScenesCannotHaveOneProject) {
+  write_text(options.script, R"({"op": "save_project", "out": "{to}/same.rebake"})");
+  options.variables = {"to=" + folder_.path().string()};
+  EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::failed}, {"c", Status::failed}}));
+  EXPECT_NE(messages["b"].find("is written for a too"), std::string::npos) << messages["b"];
 }
 
 TEST_F(Batch, AResultNeverReplacesItsScene) {

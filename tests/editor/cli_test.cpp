@@ -205,6 +205,25 @@ TEST_F(Cli, RecoverWritesNoProjectOfNothingAndNamesWhatIsGone) {
   EXPECT_FALSE(std::filesystem::exists(in("q.rebake")));
 }
 
+TEST_F(Cli, RecoverFindsTheMovedSourcesOfAProject) {
+  write_file_atomically(in("s.jsonl"),
+                        R"({"op": "import", "path": ")" + in("ball") + R"("})" + "\n" +
+                            R"({"op": "save_project", "out": ")" + in("p.rebake") + R"("})" + "\n",
+                        {});
+  ASSERT_EQ(rebake_run("run " + in("s.jsonl")).code, 0);
+  std::filesystem::rename(in("ball"), in("moved"));
+  const Outcome gone = rebake_run("info " + in("p.rebake"));
+  EXPECT_NE(gone.text.find("rebake recover P.rebake --source OLD=NEW"), std::string::npos) << gone.text;
+  const std::string relink = "recover " + in("p.rebake") + " --source " + in("ball=") + in("moved") + " -o ";
+  const Outcome found = rebake_run(relink + in("q.rebake"));
+  EXPECT_EQ(found.code, 0) << found.text;
+  EXPECT_EQ(rebake_run("info " + in("q.rebake")).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(in("p.rebake")));
+  EXPECT_EQ(rebake_run(relink + in("p.rebake")).code, 1) << "it is there already";
+  EXPECT_EQ(rebake_run(relink + in("p.rebake --replace")).code, 0);
+  EXPECT_EQ(rebake_run("info " + in("p.rebake")).code, 0);
+}
+
 TEST_F(Cli, ExportSaysThatItReplaces) {
   EXPECT_EQ(rebake_run("export " + in("ball") + " -o " + in("out")).text.find("took the place"), std::string::npos);
   const Outcome again = rebake_run("export " + in("ball") + " -o " + in("out"));

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "editor/edits/nodes/view.h"
+#include "editor/edits/select/select.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/features/slim.h"
 #include "mesh_ops/index/texel_patches.h"
@@ -246,6 +247,15 @@ TEST(Slim, OfTwinsOneStays) {
   twice.insert(twice.end(), object->sets[0].soup.faces().begin(), object->sets[0].soup.faces().end());
   object->sets[0].soup = Soup(object->sets[0].soup.positions(), object->sets[0].soup.uvs(), twice);
   EXPECT_EQ(apply(scene_of(object), Edit(Slim{})).scene.roots[0]->object->triangle_count(), single);
+}
+
+TEST(Slim, SaysThatNothingIsSelectedAnyMore) {
+  Select all;
+  all.all = true;
+  const Scene scene = apply(scene_of(nested()), Edit(all)).scene;
+  const Outcome slim = apply(scene, Edit(Slim{}));
+  EXPECT_EQ(slim.scene.roots[0]->selection, nullptr);
+  EXPECT_NE(joined(slim.report).find("nothing is selected any more"), std::string::npos) << joined(slim.report);
 }
 
 TEST(Slim, WhatNeedsNoSlimmingStaysShared) {

@@ -95,6 +95,20 @@ TEST(Files, ShortWritesAreGoneOnWith) {
   EXPECT_EQ(read_file(folder.path() / "a"), "a longer text than three bytes");
 }
 
+TEST(Files, WriteProtectedFilesAndFoldersAreNotReplaced) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "kept", scene = folder.path() / "scene";
+  write_file_atomically(file, "what was there", {});
+  fs::permissions(file, fs::perms::owner_read);
+  EXPECT_THROW(write_file_atomically(file, "new", {}), FileError);
+  EXPECT_EQ(read_file(file), "what was there");
+  fs::create_directory(scene);
+  fs::permissions(scene, fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THROW(AtomicFolder(scene, {}, [](const fs::path&) {}), FileError);
+  fs::permissions(scene, fs::perms::owner_all);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2) << "nothing half-written";
+}
+
 TEST(Files, LeftoversOfKilledWritesAreRemovedByTheNextButNothingElse) {
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / ".out.01234567.partial");

@@ -2,6 +2,7 @@
 import inspect
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -142,6 +143,23 @@ class Module(unittest.TestCase):
         (self.at / "was").unlink()
         with self.assertWarnsRegex(UserWarning, "is in no journal"):
             rebake.recover(self.at / "j", {str(self.at / "was"): str(FICUS)})
+
+    def test_a_project_opens_with_sources_that_were_moved(self):
+        shutil.copytree(FICUS, self.at / "scene")
+        document = rebake.Document()
+        document.import_(path=self.at / "scene")
+        document.save(self.at / "p.rebake")
+        (self.at / "scene").rename(self.at / "moved")
+        with self.assertRaisesRegex(rebake.FileError, "not as they were"):
+            rebake.open(self.at / "p.rebake")
+        opened = rebake.open(self.at / "p.rebake", sources={self.at / "scene": self.at / "moved"})
+        self.assertEqual(len(opened.edits()), 1)
+        with self.assertRaisesRegex(rebake.FieldError, "sources"):
+            rebake.open(FICUS, sources={"a": "b"})
+
+    def test_text_that_is_not_utf8_names_its_field(self):
+        with self.assertRaisesRegex(rebake.FieldError, 'field "path".*UTF-8'):
+            rebake.Document().import_(path="scene\udcff")
 
     def test_render(self):
         picture = self.document.render(64, 48)

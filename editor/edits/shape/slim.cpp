@@ -213,9 +213,10 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
     }
     for (const std::string& line : slimmed.lines) lines.push_back(fmt::format("{}: {}", name, line));
     if (slimmed.object.get() == &before) continue;
-    bool lost = false;
+    bool lost = false, deselected = false;
     for (const PlacedNode& placed : group)
       result = with_changed(result, placed.node->id, [&](Node& node) {
+        deselected = deselected || node.selection != nullptr;
         // Stored selections follow as long as triangles keep their order.
         if (count(slimmed.dropped) > 0) keep_triangles(node, slimmed.dropped, false);
         lost = lost || (slimmed.reordered && !node.saved_selections.empty());
@@ -225,6 +226,7 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
       });
     if (lost)
       lines.push_back(fmt::format("{}: its stored selections are gone, since triangles are in another order", name));
+    if (deselected) lines.push_back(fmt::format("{}: nothing is selected any more", name));
     if (count(slimmed.dropped) > 0 && (scene.light || !before.bodies.empty()))
       lines.push_back(fmt::format(
           "{}: light that follows edits takes what was slimmed for removed; slim a scene without it", name));

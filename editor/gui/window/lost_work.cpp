@@ -64,7 +64,7 @@ std::vector<LostWork> work_in(const fs::path& folder, bool discarded) {
       std::vector<std::string> names;
       for (const std::string& text : contents.entries) add_sources(json::parse(text), names);
       work.sources = joined(names);
-      work.steps = step_count(contents);
+      work.steps = steps_done(contents).lines.size();
     } catch (const std::exception& problem) {
       work.sources = problem.what();
     }
