@@ -19,7 +19,7 @@ namespace {
 constexpr int lanes = static_cast<int>(batch_lanes);
 // Below this distance (local units) from a face, and below this share of the distance from an edge's nearer end where a
 // point lies beyond it and beside its line, the face is left out.
-constexpr double near_distance = 1e-6;
+constexpr double near_distance = 2e-6;
 constexpr double near_line = 1e-4;
 // Where the angle of an edge has a series: see plane_local::EdgeSeries.
 constexpr double series_ratio = 1.0 / 7;

@@ -16,8 +16,9 @@ namespace rebake {
 
 using WidePoint = std::array<Wide, 3>;
 
-/// Faces nearer than this (local units) are evaluated apart from the others.
-inline constexpr double near_distance = 1e-6;
+/// Faces nearer than this are evaluated apart from the others. Local units: the cage's diagonal is 1 to 2 of them, so
+/// this covers 1e-6 diagonals of any cage.
+inline constexpr double near_distance = 2e-6;
 
 /// Sums over the other faces as large as this (local units) belong to faces on the far side of a thin part. There the
 /// weights change so fast across the part that the point's height over the near face needs more than double.
