@@ -2,6 +2,7 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <limits>
 
 #include "editor/studies/deforming.h"
 #include "editor/studies/hard_points.h"
@@ -79,8 +80,10 @@ double single_reproduction(const Setting& setting, const Coordinates& coordinate
   return worst;
 }
 
-// The same at points that are hard to weigh, in double; and computed in float where `single`.
+// The same at points that are hard to weigh, in double; and computed in float where `single`. NaN for harmonic
+// coordinates, whose grids refuse cages as thin as these.
 double hard_error(CageCoordinates kind, int resolution, bool single) {
+  if (kind == CageCoordinates::harmonic) return std::numeric_limits<double>::quiet_NaN();
   double worst = 0;
   for (const HardPoints& hard : hard_points()) {
     const auto coordinates = coordinates_of(hard.cage, kind, resolution);
