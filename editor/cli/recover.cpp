@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "editor/cli/commands.h"
 #include "editor/cli/terminal.h"
@@ -37,6 +38,20 @@ bool holds_project(const std::filesystem::path& path) {
   return read_file(path).find("\"rebake_project\"") != std::string::npos;
 }
 
+// 0 where it cannot be read.
+std::size_t edits_in_project(const std::filesystem::path& path) {
+  const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
+  return root.is_object() && root.contains("edits") ? root.at("edits").size() : 0;
+}
+
+void refuse_larger_project(const Recovery& options, std::size_t recovered) {
+  if (!options.replace || !std::filesystem::exists(options.out)) return;
+  if (const std::size_t there = edits_in_project(options.out); there > recovered)
+    throw FileError(options.out, fmt::format("holds {} edits, more than the {} that were recovered, so it is not "
+                                             "replaced; choose another name",
+                                             there, recovered));
+}
+
 // A project whose sources were moved: the same edits, on the sources where they lie now.
 void relink_project(const Recovery& options) {
   const Document document = Document::open(options.journal, links_of(options.sources), progress_bar());
@@ -63,6 +78,7 @@ void recover(const Recovery& options) {
   Document::Recovered recovered = Document::recover(options.journal, links_of(options.sources), progress_bar());
   // A project of nothing would stand in the way of the next attempt.
   const bool nothing = recovered.edits == 0;
+  if (!nothing) refuse_larger_project(options, recovered.edits);
   if (!nothing) recovered.document.save(options.out, progress_bar());
   clear_progress_bar();
   const std::size_t undone = recovered.document.history().redo_count();

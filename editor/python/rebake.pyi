@@ -287,7 +287,7 @@ class Document:
         node: only of this node and those inside it; left out: of all that is visible
         point: world point, near a triangle that shows something; left out: from the present selection
         tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
-        gap: opaque texels at most this far apart hang together too (the object's units)
+        gap: opaque texels at most this far apart are connected too; texels are sampled up to a quarter of it apart, so a connection just below it may be missed (the object's units)
         mode: how the result joins the present selection
         """
     def select_like(self, *, node: Node | None = None, point: Vector | None = None, color: float | None = None, features: float | None = None, opacity: float | None = None, size: float | None = None, orientation: float | None = None, contiguous: bool = False, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
@@ -309,14 +309,14 @@ class Document:
         node: only of this node and those inside it; left out: of all that is visible
         at_most: triangles of a part that counts as floating
         tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
-        gap: opaque texels at most this far apart hang together too (the object's units)
+        gap: opaque texels at most this far apart are connected too; texels are sampled up to a quarter of it apart, so a connection just below it may be missed (the object's units)
         mode: how the result joins the present selection
         """
     def select_unneeded(self, *, node: Node | None = None, transparent: bool = False, duplicates: bool = False, unseen: int = 0, distance: float = 3.0, unseen_from: Sequence[str] | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles that no picture needs, for cleaning: look at the count, then delete.
 
         node: only of this node and those inside it; left out: of all that is visible
-        transparent: without an opaque texel
+        transparent: without an opaque texel in it or within one texel of its edges
         duplicates: same corners and same texels as a triangle drawn later
         unseen: not seen from this many eyes on a sphere around the object; other objects hide nothing
         distance: of the eyes, in half diagonals of the object's box

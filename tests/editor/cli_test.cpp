@@ -205,6 +205,27 @@ TEST_F(Cli, RecoverWritesNoProjectOfNothingAndNamesWhatIsGone) {
   EXPECT_FALSE(std::filesystem::exists(in("q.rebake")));
 }
 
+TEST_F(Cli, RecoverReplacesNoProjectThatHoldsMore) {
+  const std::string import = R"({"op": "import", "path": ")" + in("ball") + R"("})" + "\n",
+                    hide = R"({"op": "hide", "node": "ball"})"
+                           "\n";
+  write_file_atomically(in("s.jsonl"), import + hide + R"({"op": "save_project", "out": ")" + in("p.rebake") + "\"}\n",
+                        {});
+  ASSERT_EQ(rebake_run("run " + in("s.jsonl")).code, 0);
+  write_file_atomically(in("s.jsonl"),
+                        import + R"({"op": "hide", "node": "nobody"})"
+                                 "\n",
+                        {});
+  ASSERT_EQ(rebake_run("run " + in("s.jsonl") + " --journal " + in("j")).code, 1);
+  const std::string project = read_file(in("p.rebake"));
+  const Outcome refused = rebake_run("recover " + in("j") + " --replace -o " + in("p.rebake"));
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.text.find("holds 2 edits, more than the 1"), std::string::npos) << refused.text;
+  EXPECT_EQ(read_file(in("p.rebake")), project);
+  EXPECT_TRUE(std::filesystem::exists(in("j")));
+  EXPECT_EQ(rebake_run("recover " + in("j") + " -o " + in("q.rebake")).code, 0);
+}
+
 TEST_F(Cli, RecoverFindsTheMovedSourcesOfAProject) {
   write_file_atomically(in("s.jsonl"),
                         R"({"op": "import", "path": ")" + in("ball") + R"("})" + "\n" +

@@ -1,11 +1,15 @@
 // Selections as edits make them: which triangle a point means, how modes join, and several objects at once.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "editor/edits/edit.h"
+#include "editor/edits/select/selecting.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/mesh/point_triangle.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -30,6 +34,45 @@ TEST(SelectEdit, NearestTriangleIsNotTheOneWithTheNearestCentre) {
     const Scene selected = apply(scene, read_edit(line, scene)).scene;
     EXPECT_EQ((*selected.roots[0]->selection)[wanted], 1) << point.transpose();
     EXPECT_EQ(count(*selected.roots[0]->selection), 1U);
+  }
+}
+
+// Sets and triangles that are too far away are skipped, which must not change what is found.
+TEST(SelectEdit, NearestTriangleIsThatOfASearchThroughAll) {
+  auto object = std::make_shared<BakedObject>(*made_object({.columns = 12, .rows = 6}));
+  for (unsigned seed = 2; seed < 5; ++seed) {
+    object->sets.push_back(made_object({.columns = 12, .rows = 6, .seed = seed, .radius = 0.4 * seed})->sets[0]);
+  }
+  Scene scene = scene_of(object, "one");
+  Node other;
+  other.name = "other";
+  other.object = object;
+  other.to_parent = Eigen::Translation3d(1.5, 0, 0) * Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()) *
+                    Eigen::Scaling(Vec3(0.5, 1, 2));
+  scene = with_added(scene, std::move(other), NodeId::none, 1);
+  const std::vector<PlacedNode> targets = selectable(scene, std::nullopt);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-3, 3);
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 point(any(random), any(random), any(random));
+    const auto distance_of = [&](std::size_t target, std::size_t wanted) {
+      for (const TextureSet& set : targets[target].node->object->sets) {
+        if (wanted >= set.soup.triangle_count()) {
+          wanted -= set.soup.triangle_count();
+          continue;
+        }
+        const Face& face = set.soup.faces()[wanted];
+        std::array<Vec3, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) p[i] = targets[target].to_world * set.soup.positions()[face[i]];
+        return distance_to_triangle(p[0], p[1], p[2], point);
+      }
+      return std::numeric_limits<double>::infinity();
+    };
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t target = 0; target < targets.size(); ++target)
+      for (std::size_t f = 0; f < object->triangle_count(); ++f) least = std::min(least, distance_of(target, f));
+    const NearestTriangle found = nearest_triangle(targets, point, false);
+    EXPECT_NEAR(distance_of(found.target, found.triangle), least, 1e-14) << point.transpose();
   }
 }
 

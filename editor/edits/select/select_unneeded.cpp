@@ -50,7 +50,8 @@ REBAKE_DESCRIBE_EDIT(
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
             "only of this node and those inside it; left out: of all that is visible");
-      visit("transparent", edit.transparent, Need::optional, "without an opaque texel");
+      visit("transparent", edit.transparent, Need::optional,
+            "without an opaque texel in it or within one texel of its edges");
       visit("duplicates", edit.duplicates, Need::optional, "same corners and same texels as a triangle drawn later");
       visit("unseen", edit.unseen, Need::optional,
             "not seen from this many eyes on a sphere around the object; other objects hide nothing");

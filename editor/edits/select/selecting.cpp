@@ -1,9 +1,13 @@
 #include "editor/edits/select/selecting.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "editor/edits/stored_view.h"
 #include "mesh_ops/index/index.h"
@@ -90,27 +94,75 @@ Scene with_selected(const Scene& scene, const std::vector<PlacedNode>& targets, 
   return result;
 }
 
-NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const Vec3& world, bool opaque) {
-  NearestTriangle nearest{0, 0};
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < targets.size(); ++k) {
-    std::size_t f = 0;
-    for (const TextureSet& set : targets[k].node->object->sets) {
-      const std::vector<Vec3>& p = set.soup.positions();
-      for (std::size_t own = 0; own < set.soup.triangle_count(); ++own, ++f) {
-        const Face& face = set.soup.faces()[own];
-        const Affine& to_world = targets[k].to_world;
-        const double distance =
-            distance_to_triangle(to_world * p[face[0]], to_world * p[face[1]], to_world * p[face[2]], world);
-        if (distance < least && (!opaque || shows_opaque(set, own))) {
-          least = distance;
-          nearest = {k, f};
+namespace {
+
+struct Nearest {
+  double distance = std::numeric_limits<double>::infinity();
+  NearestTriangle triangle{0, 0};
+  // Of equally near triangles the first counts, in whatever order they are looked at.
+  bool before(const Nearest& other) const {
+    return std::tie(distance, triangle.target, triangle.triangle) <
+           std::tie(other.distance, other.triangle.target, other.triangle.triangle);
+  }
+};
+
+double distance_to(const Box& box, const Vec3& point) {
+  return (box.min() - point).cwiseMax(point - box.max()).cwiseMax(0).stableNorm();
+}
+
+struct SetOfTarget {
+  double distance;  // of its bounding box
+  const TextureSet* set;
+  std::size_t target, first;  // triangle
+};
+
+// The nearer of `best` and the nearest triangle of a set. Distances are at least those of bounding boxes, to the last
+// bit: which triangles are skipped does not change the result.
+Nearest nearest_of_set(const SetOfTarget& part, const Affine& to_world, const Vec3& world, bool opaque,
+                       const Nearest& best) {
+  const TextureSet& set = *part.set;
+  const std::vector<Vec3>& p = set.soup.positions();
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, set.soup.triangle_count(), 4096), best,
+      [&](const tbb::blocked_range<std::size_t>& range, Nearest least) {
+        for (std::size_t f = range.begin(); f < range.end(); ++f) {
+          const Face& face = set.soup.faces()[f];
+          const Vec3 corners[] = {to_world * p[face[0]], to_world * p[face[1]], to_world * p[face[2]]};
+          Box box(corners[0]);
+          box.extend(corners[1]).extend(corners[2]);
+          const double bound = std::max(part.distance, distance_to(box, world));
+          if (bound > least.distance) continue;
+          const double distance = distance_to_triangle(corners[0], corners[1], corners[2], world);
+          const Nearest found{std::max(bound, distance), {part.target, part.first + f}};
+          if (found.before(least) && (!opaque || shows_opaque(set, f))) least = found;
         }
-      }
+        return least;
+      },
+      [](const Nearest& a, const Nearest& b) { return b.before(a) ? b : a; });
+}
+
+}  // namespace
+
+NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const Vec3& world, bool opaque) {
+  std::vector<SetOfTarget> parts;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    std::size_t first = 0;
+    for (const TextureSet& set : targets[k].node->object->sets) {
+      if (set.soup.triangle_count() > 0)
+        parts.push_back({distance_to(transformed(set.soup.bounds(), targets[k].to_world), world), &set, k, first});
+      first += set.soup.triangle_count();
     }
   }
-  if (!std::isfinite(least)) throw EditError("no object there shows anything: all its texels are transparent");
-  return nearest;
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const SetOfTarget& a, const SetOfTarget& b) { return a.distance < b.distance; });
+  Nearest nearest;
+  for (const SetOfTarget& part : parts) {
+    if (part.distance > nearest.distance) break;
+    nearest = nearest_of_set(part, targets[part.target].to_world, world, opaque, nearest);
+  }
+  if (!std::isfinite(nearest.distance))
+    throw EditError("no object there shows anything: all its texels are transparent");
+  return nearest.triangle;
 }
 
 void WeldingField::check() const {

@@ -52,8 +52,11 @@ struct JoiningFields {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     WeldingField::fields(self.welding, visit);
-    visit("gap", self.gap, Need::optional, "opaque texels at most this far apart hang together too",
-          Unit::object_length);
+    visit(
+        "gap", self.gap, Need::optional,
+        "opaque texels at most this far apart are connected too; texels are sampled up to a quarter of it apart, so a "
+        "connection just below it may be missed",
+        Unit::object_length);
   }
   /// Throws FieldError.
   Joining checked() const;
