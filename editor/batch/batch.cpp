@@ -269,7 +269,7 @@ std::vector<std::pair<std::string, fs::path>> guarded_by(const BatchOptions& opt
     guarded.emplace_back("", fs::absolute(folder));
     variables["name"] = name;
     variables["path"] = folder.string();
-    for (const fs::path& input : script_inputs(script, variables)) readers[fs::absolute(input)].insert(name);
+    for (const ScriptInput& input : script_inputs(script, variables)) readers[fs::absolute(input.path)].insert(name);
   }
   for (const auto& [path, names] : readers) guarded.emplace_back(names.size() == 1 ? *names.begin() : "", path);
   return guarded;
@@ -283,7 +283,7 @@ BatchScenes batch_scenes(const BatchOptions& options) {
   result.guarded = guarded_by(options, by_name);
   SourceGuard sources;
   for (const auto& [reader, path] : result.guarded) sources.add_input(path);
-  sources.check_file(state_folder(options));
+  for (const fs::path& kept : {state_folder(options), state_folder(options) / "claims"}) sources.check_file(kept);
   for (const char* scene : {"mlp.json", "scene.json"})
     if (fs::exists(options.out / scene))
       throw FieldError("--out", fmt::format("{} is a scene itself; choose a folder for results", options.out.string()));

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,14 +22,20 @@ struct Recovery {
   bool keep = false, replace = false;
 };
 
+// Paths may hold "=" too: the first behind which something exists, else the first.
+std::size_t divider_of(const std::string& pair) {
+  for (std::size_t at = pair.find('='); at != std::string::npos; at = pair.find('=', at + 1))
+    if (std::error_code error; at + 1 < pair.size() && std::filesystem::exists(pair.substr(at + 1), error)) return at;
+  return pair.find('=');
+}
+
 Relinked links_of(const std::vector<std::string>& pairs) {
   Relinked links;
   for (const std::string& pair : pairs) {
-    const std::size_t equals = pair.find('=');
+    const std::size_t equals = divider_of(pair);
     if (equals == std::string::npos || equals == 0 || equals + 1 == pair.size())
       throw FieldError("--source", "\"" + pair + "\" must be OLD=NEW");
-    if (!links.emplace(absolute_path(pair.substr(0, equals)), pair.substr(equals + 1)).second)
-      throw FieldError("--source", "\"" + pair.substr(0, equals) + "\" is given twice");
+    links.emplace(absolute_path(pair.substr(0, equals)), pair.substr(equals + 1));
   }
   return links;
 }
@@ -55,8 +62,9 @@ void refuse_larger_project(const Recovery& options, std::size_t recovered) {
 // A project whose sources were moved: the same edits, on the sources where they lie now.
 void relink_project(const Recovery& options) {
   const Document document = Document::open(options.journal, links_of(options.sources), progress_bar());
-  document.save(options.out, progress_bar());
+  const std::vector<std::string> warnings = document.save(options.out, progress_bar());
   clear_progress_bar();
+  for (const std::string& warning : warnings) say_line("warning: " + warning);
   fmt::print("{} edits of {} saved in {}\n", document.history().undo_count(), printable(options.journal),
              printable(options.out));
 }
@@ -64,7 +72,7 @@ void relink_project(const Recovery& options) {
 void recover(const Recovery& options) {
   if (!options.out.ends_with(".rebake")) throw FieldError("--out", "must end in .rebake, by which projects are known");
   std::error_code error;
-  const bool is_project = is_project_file(options.journal);
+  const bool is_project = is_project_file(options.journal) && !Journal::is_journal(options.journal);
   if (!is_project && std::filesystem::equivalent(options.out, options.journal, error))
     throw FieldError("--out", "is the journal itself, which would be lost with it; name another file");
   if (options.replace && std::filesystem::exists(options.out) && !holds_project(options.out))
@@ -79,7 +87,9 @@ void recover(const Recovery& options) {
   // A project of nothing would stand in the way of the next attempt.
   const bool nothing = recovered.edits == 0;
   if (!nothing) refuse_larger_project(options, recovered.edits);
-  if (!nothing) recovered.document.save(options.out, progress_bar());
+  if (!nothing)
+    for (const std::string& warning : recovered.document.save(options.out, progress_bar()))
+      say_line("warning: " + warning);
   clear_progress_bar();
   const std::size_t undone = recovered.document.history().redo_count();
   if (nothing && recovered.lost.empty())
@@ -89,6 +99,8 @@ void recover(const Recovery& options) {
                                          : "holds no edit, so no project is written; remove it if nothing is missed");
   fmt::print("{} {} recovered{}\n", recovered.edits, recovered.edits == 1 ? "edit" : "edits",
              nothing ? "; no project is written" : " into " + printable(options.out));
+  if (std::fflush(stdout) != 0 && !nothing)
+    throw FileError(options.out, "is written, but standard output cannot be; the journal stays");
   if (undone > 0) say_line(fmt::format("note: what was undone ({}) is not part of a project", undone));
   if (recovered.nameless) say_line("note: the journal's first line is damaged; all behind it is whole");
   if (recovered.torn) say_line("note: one more edit was being written when the program ended; it is lost");

@@ -41,7 +41,7 @@ std::string file_list(const Session& session, const std::string& script,
   std::set<std::filesystem::path> read;
   for (const Edit& edit : session.document.history().edits())
     if (const auto source = source_of(edit)) read.insert(absolute_path(source->path));
-  for (const std::filesystem::path& input : script_inputs(script, variables)) read.insert(absolute_path(input));
+  for (const ScriptInput& input : script_inputs(script, variables)) read.insert(absolute_path(input.path));
   std::string lines;
   for (const std::filesystem::path& path : read) lines += line_of("read", path, content_at(path));
   std::set<std::filesystem::path> wrote;
@@ -59,17 +59,25 @@ void check_journal(const std::filesystem::path& journal, const std::string& scen
                    const std::map<std::string, std::string>& variables) {
   SourceGuard guard;
   if (!scene.empty()) guard.add(scene);
-  for (const std::filesystem::path& input : script_inputs(script, variables)) guard.add_input(input);
+  for (const ScriptInput& input : script_inputs(script, variables)) guard.add_input(input.path);
   guard.check_file(journal);
 }
 
-// Protects existing input files from earlier lines of the script. Scene folders are protected when they are imported: a
-// script may import its own export, and may be run again.
+// Protects existing inputs from earlier lines of the script: files, and the files in scene folders. A scene folder as a
+// whole is protected when it is imported, since a script may import its own export, and may run again; or from the
+// start if the import says which content it expects.
 void protect_input_files(Document& document, const std::string& script,
                          const std::map<std::string, std::string>& variables) {
-  for (const std::filesystem::path& input : script_inputs(script, variables))
-    if (std::error_code error; std::filesystem::is_regular_file(input, error) && input.filename() != "scene.json")
-      document.protect_file(input, "a file that this script reads");
+  for (const ScriptInput& input : script_inputs(script, variables)) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(input.path, error) && input.path.filename() != "scene.json")
+      document.protect_file(input.path, "a file that this script reads");
+    else if (input.content_known)
+      document.protect_input(input.path, "a scene that this script reads");
+    else if (const std::filesystem::path folder = scene_folder_of(input.path);
+             std::filesystem::is_directory(folder, error))
+      document.protect_contents(folder, "a scene that this script reads");
+  }
 }
 
 // A list as --protect takes it. What only this scene's own script reads is guarded while it is read.

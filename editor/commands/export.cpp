@@ -138,7 +138,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
       report, session.progress, action.picture_size);
   const ExportReport written =
       export_scene(plain, action.out, {options.layout, session.document.sources(), action.page_size}, session.progress);
-  session.exports.push_back(action.out);
+  session.wrote_scene(action.out, true);
   for (const std::string& note : written.notes) session.say("note: " + note);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (const std::string& line : lines_of(report)) session.say(line);
@@ -205,7 +205,7 @@ void run(Session& session, const ExportAction& action) {
   const ExportReport report =
       format_named(action.format)
           .write(scene, action.out, {action.layout, session.document.sources(), action.page_size}, session.progress);
-  session.exports.push_back(action.out);
+  session.wrote_scene(action.out, true);
   for (const std::string& note : report.notes) session.say("note: " + note);
   if (!report.keeps_everything) say_losses(session, scene, action, report);
   if (action.format == "mobilenerf") say_light_lost(session, scene);

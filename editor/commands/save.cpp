@@ -12,7 +12,7 @@ void run(Session& session, const SaveAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
   const ExportReport report =
       format_named("rebake").write(session.scene(), action.out, {{}, session.document.sources()}, session.progress);
-  session.outputs.push_back(action.out);
+  session.wrote_scene(action.out, false);
   for (const std::string& note : report.notes) session.say("note: " + note);
   session.say(fmt::format("saved {}", action.out));
 }

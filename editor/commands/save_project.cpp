@@ -9,7 +9,8 @@ namespace rebake {
 void run(Session& session, const SaveProjectAction& action) {
   if (std::filesystem::path(action.out).extension() != ".rebake")
     throw FieldError("out", "must end in .rebake, by which projects are known");
-  session.document.save(action.out, session.progress);
+  for (const std::string& warning : session.document.save(action.out, session.progress))
+    session.say("warning: " + warning);
   session.outputs.push_back(action.out);
   session.say("saved " + action.out);
 }

@@ -24,6 +24,11 @@ void Session::revise(const std::vector<Edit>& edits, const CarriedOut* made) {
     for (const std::string& line : done.lines) report(line);
 }
 
+void Session::wrote_scene(const std::string& folder, bool exported) {
+  (exported ? exports : outputs).push_back(folder);
+  document.release_contents(folder);
+}
+
 Renderer& Session::renderer() {
   if (!renderer_) renderer_ = std::make_unique<Renderer>();
   return *renderer_;

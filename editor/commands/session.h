@@ -28,6 +28,8 @@ class Session {
   /// In place of the last step, as a step of its own: undo returns to the last one.
   void revise(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
 
+  /// To be called when a scene folder was written.
+  void wrote_scene(const std::string& folder, bool exported);
   std::vector<std::string> exports;  ///< folders that export wrote
   std::vector<std::string> outputs;  ///< pictures, projects and scene folders that other actions wrote
   bool below_asked = false;          ///< an export was done, but missed the quality that was asked for

@@ -128,10 +128,10 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
       if (json* const source = source_field(one)) {
         const fs::path imported = source->get<std::string>();
         if (const std::string trouble = trouble_with(imported, one.value("content", ""), links); !trouble.empty()) {
-          result.gone.push_back({imported, trouble});
+          result.gone.push_back({imported, one.value("content", ""), trouble});
           throw FileError(imported, trouble);
         }
-        *source = relinked(imported, links).string();
+        *source = relinked(imported, one.value("content", ""), links).string();
       }
       Edit edit = read_edit(one, before);
       Scene scene = rebake::apply(before, edit, progress).scene;
@@ -291,14 +291,14 @@ bool Document::redo_step(const Progress& progress) {
   return history_.redo_count() > 0 && redo(history_.redo_step(), progress);
 }
 
-void Document::save(const fs::path& project, const Progress& progress) const {
+std::vector<std::string> Document::save(const fs::path& project, const Progress& progress) const {
   if (!starts_empty_) throw Error("only what was imported by edits can be saved as a project");
   if (Journal::is_journal(project))
     throw FileError(project,
                     "is a journal that may hold work: get it back with \"rebake recover\", or name another file");
   std::vector<History::Entry> entries = history_.entries();
   entries.erase(entries.begin() + static_cast<std::ptrdiff_t>(history_.undo_count()), entries.end());
-  write_project(project, entries, sources(), progress);
+  return write_project(project, entries, sources(), progress);
 }
 
 void Document::discard_journal() {

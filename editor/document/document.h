@@ -35,6 +35,11 @@ class Document {
   void protect_input(const std::filesystem::path& source, const std::string& role) {
     imported_.add_input(source, role);
   }
+  /// As SourceGuard::add_contents takes it.
+  void protect_contents(const std::filesystem::path& folder, const std::string& role) {
+    imported_.add_contents(folder, role);
+  }
+  void release_contents(const std::filesystem::path& folder) { imported_.release_contents(folder); }
   /// Nothing may be written over this file either. `role` as SourceGuard::add_file takes it.
   void protect_file(const std::filesystem::path& file, const std::string& role) { imported_.add_file(file, role); }
   /// Protects the files that reading an edit's JSON reads: the mesh of a cage.
@@ -68,8 +73,9 @@ class Document {
   bool undo_step(const Progress& progress = {});
   bool redo_step(const Progress& progress = {});
 
-  /// Writes the project. Throws FileError.
-  void save(const std::filesystem::path& project, const Progress& progress = {}) const;
+  /// Writes the project. Returns warnings: sources that are not as they were, without which it cannot be opened. Throws
+  /// FileError.
+  std::vector<std::string> save(const std::filesystem::path& project, const Progress& progress = {}) const;
   /// Removes the journal: the work is not wanted, or safe elsewhere.
   void discard_journal();
 

@@ -27,8 +27,8 @@ std::string checksum(json root) {
 // Where links lead: relative paths mean the same however the file is named.
 fs::path real_folder_of(const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)).parent_path(); }
 
-fs::path source_path(const fs::path& folder, const json& name, const Relinked& links) {
-  return relinked((folder / name.get<std::string>()).lexically_normal(), links);
+fs::path source_path(const fs::path& folder, const json& name) {
+  return (folder / name.get<std::string>()).lexically_normal();
 }
 
 void check_form(const fs::path& path, const json& root) {
@@ -54,8 +54,8 @@ bool is_project_file(const fs::path& path) {
   return path.extension() == ".rebake" && fs::is_regular_file(path, error);
 }
 
-void write_project(const fs::path& path, const std::vector<History::Entry>& entries, const SourceGuard& guard,
-                   const Progress& progress) {
+std::vector<std::string> write_project(const fs::path& path, const std::vector<History::Entry>& entries,
+                                       const SourceGuard& guard, const Progress& progress) {
   const fs::path folder = real_folder_of(path);
   json root = {{"rebake_project", project_version - 1}, {"sources", json::array()}, {"edits", json::array()}};
   for (std::size_t k = 0; k < entries.size(); ++k) {
@@ -75,12 +75,22 @@ void write_project(const fs::path& path, const std::vector<History::Entry>& entr
     if (std::find(root["sources"].begin(), root["sources"].end(), entry) == root["sources"].end())
       root["sources"].push_back(entry);
   }
+  std::vector<std::string> warnings;
+  for (const json& source : root["sources"]) {
+    const fs::path read = source_path(folder, source.at("path"));
+    if (const std::string trouble = trouble_with(read, source.at("content"), {}); !trouble.empty())
+      warnings.push_back(
+          fmt::format("{} {}: the project opens only with it as it was; save a scene folder to keep the "
+                      "present scene",
+                      read.string(), trouble));
+  }
   try {
     root["checksum"] = checksum(root);
     write_file_atomically(path, root.dump(1) + '\n', guard);
   } catch (const json::type_error&) {
     throw FileError(path, "holds text only: a name or path has bytes that are not UTF-8");
   }
+  return warnings;
 }
 
 void read_project(const fs::path& path, const EachEdit& each, const Relinked& links, const Progress& progress) {
@@ -92,11 +102,11 @@ void read_project(const fs::path& path, const EachEdit& each, const Relinked& li
     std::vector<SourcesGone::Source> gone;
     std::vector<fs::path> imports;
     for (const json& source : root.at("sources")) {
-      const fs::path& imported = imports.emplace_back(source_path(folder, source.at("path"), {}));
+      const fs::path& imported = imports.emplace_back(source_path(folder, source.at("path")));
       const std::string trouble = trouble_with(imported, source.at("content"), links);
       if (trouble.empty()) continue;
       troubles += fmt::format("\n  {} {}", imported.string(), trouble);
-      gone.push_back({imported, trouble});
+      gone.push_back({imported, source.at("content"), trouble});
     }
     check_links(links, imports);
     if (!gone.empty())
@@ -129,7 +139,8 @@ void read_project(const fs::path& path, const EachEdit& each, const Relinked& li
       if (replaced[number] > 0) scene = bases.at(number - replaced[number]);
       progress.at("opening", static_cast<double>(number++) / static_cast<double>(root.at("edits").size()));
       try {
-        if (json* const source = source_field(line)) *source = source_path(folder, *source, links).string();
+        if (json* const source = source_field(line))
+          *source = relinked(source_path(folder, *source), line.value("content", ""), links).string();
         const Edit edit = read_edit(line, scene);
         if (const auto source = source_of(edit); source && source->content.empty())
           throw FieldError("content", "is missing: without it a changed source would not be noticed");

@@ -28,9 +28,10 @@ namespace rebake {
 bool is_project_file(const std::filesystem::path& path);
 
 /// Writes the project whole or not at all, on the disk when this returns. Imports must be completed(). Throws
-/// FileError, also where the file would lie in one of `guard`'s sources.
-void write_project(const std::filesystem::path& path, const std::vector<History::Entry>& entries,
-                   const SourceGuard& guard, const Progress& progress = {});
+/// FileError, also where the file would lie in one of `guard`'s sources. Returns a warning for each source that is not
+/// as it was: without it the project cannot be opened.
+std::vector<std::string> write_project(const std::filesystem::path& path, const std::vector<History::Entry>& entries,
+                                       const SourceGuard& guard, const Progress& progress = {});
 
 /// An edit of a project that is read, and the scene after it.
 using EachEdit = std::function<void(const History::Entry& entry, const Scene& after)>;

@@ -28,21 +28,36 @@ std::optional<fs::path> way_to(const fs::path& source, const fs::path& folder) {
 
 namespace {
 
-// The link that says most about where a source lies: the longest.
-const Relinked::value_type* link_for(const fs::path& source, const Relinked& links) {
-  const Relinked::value_type* chosen = nullptr;
+// The old path that says most about where a source lies: the longest.
+const fs::path* old_path_of(const fs::path& source, const Relinked& links) {
+  const fs::path* chosen = nullptr;
   for (const Relinked::value_type& link : links)
-    if (way_to(source, link.first) && (chosen == nullptr || way_to(link.first, chosen->first))) chosen = &link;
+    if (way_to(source, link.first) && (chosen == nullptr || way_to(link.first, *chosen))) chosen = &link.first;
   return chosen;
+}
+
+bool holds(const fs::path& path, const std::string& content) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return false;
+  try {
+    return hash_text(content_at(path)) == content;
+  } catch (const FileError&) {
+    return false;
+  }
 }
 
 }  // namespace
 
-fs::path relinked(const fs::path& source, const Relinked& links) {
-  const Relinked::value_type* link = link_for(source, links);
-  if (link == nullptr) return source;
-  const fs::path way = *way_to(source, link->first);
-  return way == "." ? absolute_path(link->second) : absolute_path(link->second) / way;
+fs::path relinked(const fs::path& source, const std::string& content, const Relinked& links) {
+  const fs::path* const old = old_path_of(source, links);
+  if (old == nullptr) return source;
+  const fs::path way = *way_to(source, *old);
+  std::vector<fs::path> places;
+  for (auto [link, end] = links.equal_range(*old); link != end; ++link)
+    places.push_back(way == "." ? absolute_path(link->second) : absolute_path(link->second) / way);
+  places.push_back(source);
+  const auto found = std::find_if(places.begin(), places.end(), [&](const fs::path& at) { return holds(at, content); });
+  return found != places.end() ? *found : places.front();
 }
 
 void check_links(const Relinked& links, const std::vector<fs::path>& sources) {
@@ -88,7 +103,7 @@ nlohmann::json* source_field(nlohmann::json& edit) {
 }
 
 std::string trouble_with(const fs::path& source, const std::string& content, const Relinked& links) {
-  const fs::path where = relinked(source, links);
+  const fs::path where = relinked(source, content, links);
   const std::string at = where == source ? "" : fmt::format(" (looked for at {})", where.string());
   std::error_code error;
   if (!fs::exists(where, error)) return at.empty() ? "is not there any more" : "is not there" + at;

@@ -14,11 +14,13 @@
 
 namespace rebake {
 
-/// Where sources lie now that were moved: old path → new path; folders stand for all in them.
-using Relinked = std::map<std::filesystem::path, std::filesystem::path>;
+/// Where sources lie now that were moved: old path → new path; folders stand for all in them. An old path may have
+/// several new ones, for sources that were read from it with different contents.
+using Relinked = std::multimap<std::filesystem::path, std::filesystem::path>;
 
-/// The path of a source, relinked.
-std::filesystem::path relinked(const std::filesystem::path& source, const Relinked& links);
+/// Where a source with this content lies: of the new paths of the longest old path that holds it, and then of its own
+/// path, the first with that content; else the first new path.
+std::filesystem::path relinked(const std::filesystem::path& source, const std::string& content, const Relinked& links);
 /// Throws FieldError, naming the sources there are, for a link whose old path none of them lies at or in.
 void check_links(const Relinked& links, const std::vector<std::filesystem::path>& sources);
 
@@ -38,6 +40,7 @@ class SourcesGone : public FileError {
  public:
   struct Source {
     std::filesystem::path path;  ///< as it was imported
+    std::string content;         ///< hash of it, as it was
     std::string trouble;         ///< what is wrong with it
   };
   SourcesGone(const std::filesystem::path& file, const std::string& message, std::vector<Source> gone)

@@ -306,7 +306,13 @@ py::tuple wrap_triangles(const py::object& points, const py::object& faces, doub
 
 Relinked links_from(const py::dict& sources) {
   Relinked links;
-  for (const auto& [from, to] : sources) links[from.cast<std::filesystem::path>()] = to.cast<std::filesystem::path>();
+  for (const auto& [from, to] : sources) {
+    const auto old = from.cast<std::filesystem::path>();
+    if (py::isinstance<py::list>(to) || py::isinstance<py::tuple>(to))
+      for (const auto& one : to) links.emplace(old, one.cast<std::filesystem::path>());
+    else
+      links.emplace(old, to.cast<std::filesystem::path>());
+  }
   return links;
 }
 
@@ -407,12 +413,15 @@ PYBIND11_MODULE(rebake, module) {
   type.def(
       "save",
       [](PyDocument& document, const std::filesystem::path& path) {
+        std::vector<std::string> warnings;
         document.work([&](Session& session) {
           if (path.extension() == ".rebake")
-            run(session, SaveProjectAction{path.string()});
+            warnings = session.document.save(path, session.progress);
           else
             run(session, SaveAction{path.string()});
         });
+        for (const std::string& warning : warnings)
+          if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
       },
       py::arg("path"), "Writes a project (.rebake), or a scene folder that keeps every node.");
   type.def(

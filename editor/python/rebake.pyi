@@ -49,10 +49,10 @@ class DeviceError(Error):
     """The machine lacks something: no OpenGL, no memory on the GPU."""
 
 def open(path: str | PathLike[str], axes: Literal["360", "forward"] = "360",
-         progress: Progress | None = None, sources: dict[str, str] = {}) -> Document:
+         progress: Progress | None = None, sources: dict[str, str | list[str]] = {}) -> Document:
     """A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project (.rebake). `sources`: where
     folders of a project lie now that were moved, old path to new."""
-def recover(journal: str | PathLike[str], sources: dict[str, str] = {},
+def recover(journal: str | PathLike[str], sources: dict[str, str | list[str]] = {},
             progress: Progress | None = None) -> Document:
     """The work that a journal kept; goes on writing it. `sources`: where moved ones lie now, old path to new."""
 def move_by_cage(points: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.uint32],
@@ -271,7 +271,7 @@ class Document:
     def select_picture(self, *, node: Node | None = None, polygon: Sequence[Sequence[float]] | None = None, brush: Brush | None = None, depth: Sequence[float] | None = None, view: str = "", camera: Camera | None = None, size: Sequence[int] = [800,800], through: bool = False, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles in a camera's picture: those seen through a pixel of the region, or with through all whose centre falls into it.
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that is visible and not locked
         polygon: inside a polygon in the picture
         brush: under a brush stroke in the picture
         depth: only at these depths along the view axis (scene units)
@@ -282,18 +282,18 @@ class Document:
         mode: how the result joins the present selection
         """
     def select_connected(self, *, node: Node | None = None, point: Vector | None = None, tolerance: float = 0.0, gap: float = 0.0, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
-        """Selects the parts that hang together, across opaque texels, with the triangle nearest to a point or with the present selection.
+        """Selects the connected parts (triangles that share an edge, opaque along it) that hold the triangle nearest to a point, or the present selection.
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that is visible and not locked
         point: world point, near a triangle that shows something; left out: from the present selection
         tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
-        gap: opaque texels at most this far apart are connected too; texels are sampled up to a quarter of it apart, so a connection just below it may be missed (the object's units)
+        gap: opaque texels at most this far apart are connected too; they are sampled up to a quarter of it apart, so only connections of up to 0.6 of it are sure to be found (the object's units)
         mode: how the result joins the present selection
         """
     def select_like(self, *, node: Node | None = None, point: Vector | None = None, color: float | None = None, features: float | None = None, opacity: float | None = None, size: float | None = None, orientation: float | None = None, contiguous: bool = False, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles that are like the picked ones: within every tolerance that is given, of the mean over the present selection or of the triangle nearest to a point.
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that is visible and not locked
         point: world point, near a triangle that shows something; left out: like the present selection
         color: distance of mean decoded colours, channels 0 to 1
         features: root mean square difference of mean features (share)
@@ -306,16 +306,16 @@ class Document:
     def select_floaters(self, *, node: Node | None = None, at_most: int = 100, tolerance: float = 0.0, gap: float = 0.0, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
         """Selects small parts that hang together with nothing else, across opaque texels; look at the count, then delete.
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that is visible and not locked
         at_most: triangles of a part that counts as floating
         tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
-        gap: opaque texels at most this far apart are connected too; texels are sampled up to a quarter of it apart, so a connection just below it may be missed (the object's units)
+        gap: opaque texels at most this far apart are connected too; they are sampled up to a quarter of it apart, so only connections of up to 0.6 of it are sure to be found (the object's units)
         mode: how the result joins the present selection
         """
     def select_unneeded(self, *, node: Node | None = None, transparent: bool = False, duplicates: bool = False, unseen: int = 0, distance: float = 3.0, unseen_from: Sequence[str] | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles that no picture needs, for cleaning: look at the count, then delete.
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that is visible and not locked
         transparent: without an opaque texel in it or within one texel of its edges
         duplicates: same corners and same texels as a triangle drawn later
         unseen: not seen from this many eyes on a sphere around the object; other objects hide nothing
@@ -333,27 +333,27 @@ class Document:
     def select_folded(self, *, node: Node | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles that the last deformation of their object folded or collapsed (det J ≤ 0 at a corner).
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that is visible and not locked
         mode: how the result joins the present selection
         """
     def grow(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> dict[str, NDArray[np.bool_]]:
         """Adds the triangles that share a corner with the selection.
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that is visible and not locked
         steps: how often
         tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
         """
     def shrink(self, *, node: Node | None = None, steps: int = 1, tolerance: float = 0.0) -> dict[str, NDArray[np.bool_]]:
         """Takes away the selected triangles that share a corner with others.
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that is visible and not locked
         steps: how often
         tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
         """
     def fill(self, *, node: Node | None = None, at_most: int = 1000, tolerance: float = 0.0) -> dict[str, NDArray[np.bool_]]:
         """Adds the islands inside the selection: unselected triangles, joined through edges, that border it.
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that is visible and not locked
         at_most: triangles of an island that is filled
         tolerance: corners at most this far apart count as one; 0: only equal ones (the object's units)
         """
@@ -382,7 +382,7 @@ class Document:
     def erase(self, *, node: Node | None = None, box: Box | None = None, sphere: Sphere | None = None, half_space: HalfSpace | None = None, frame: Literal["world", "node", "bounds"] = "world", polygon: Sequence[Sequence[float]] | None = None, brush: Brush | None = None, depth: Sequence[float] | None = None, view: str = "", camera: Camera | None = None, size: Sequence[int] = [800,800], through: bool = False) -> None:
         """Clears the opacity of texels inside a region or in a picture, where an object's edge runs through triangles; all other texels stay bit for bit.
 
-        node: only of this node and those inside it; left out: of all that is visible
+        node: only of this node and those inside it; left out: of all that is visible and not locked
         box: inside a box
         sphere: inside a sphere; radius as for select
         half_space: on the side that the normal points to

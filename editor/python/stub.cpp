@@ -92,10 +92,10 @@ class DeviceError(Error):
     """The machine lacks something: no OpenGL, no memory on the GPU."""
 
 def open(path: str | PathLike[str], axes: Literal["360", "forward"] = "360",
-         progress: Progress | None = None, sources: dict[str, str] = {}) -> Document:
+         progress: Progress | None = None, sources: dict[str, str | list[str]] = {}) -> Document:
     """A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project (.rebake). `sources`: where
     folders of a project lie now that were moved, old path to new."""
-def recover(journal: str | PathLike[str], sources: dict[str, str] = {},
+def recover(journal: str | PathLike[str], sources: dict[str, str | list[str]] = {},
             progress: Progress | None = None) -> Document:
     """The work that a journal kept; goes on writing it. `sources`: where moved ones lie now, old path to new."""
 def move_by_cage(points: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.uint32],

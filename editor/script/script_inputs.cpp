@@ -10,9 +10,8 @@ namespace rebake {
 
 using nlohmann::json;
 
-std::vector<std::filesystem::path> script_inputs(std::string_view text,
-                                                 const std::map<std::string, std::string>& variables) {
-  std::vector<std::filesystem::path> inputs;
+std::vector<ScriptInput> script_inputs(std::string_view text, const std::map<std::string, std::string>& variables) {
+  std::vector<ScriptInput> inputs;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = command_text(text.substr(0, end));
@@ -23,9 +22,9 @@ std::vector<std::filesystem::path> script_inputs(std::string_view text,
       if (!object.is_object()) continue;
       object = with_variables(std::move(object), variables);
       if (const json* source = source_field(object); source != nullptr && source->is_string())
-        inputs.emplace_back(source->get<std::string>());
+        inputs.push_back({source->get<std::string>(), object.contains("content")});
       if (const auto mesh = object.find("mesh"); mesh != object.end() && mesh->is_string())
-        inputs.emplace_back(mesh->get<std::string>());
+        inputs.push_back({mesh->get<std::string>(), false});
     } catch (const std::exception&) {
       // Running the line reports it.
     }

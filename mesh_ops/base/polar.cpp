@@ -53,6 +53,17 @@ LocalRotation local_rotation(const Mat3& jacobian) {
   return svd_rotation(jacobian);
 }
 
+LocalRotation local_orthogonal(const Mat3& jacobian) {
+  const double size = jacobian.cwiseAbs().maxCoeff();
+  if (!(size > 0) || !std::isfinite(size)) return {Mat3::Identity(), false};
+  const Mat3 scaled = jacobian / size;
+  if (scaled.determinant() < 0) {
+    const Eigen::JacobiSVD<Mat3> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    if (svd.singularValues()[2] > svd.singularValues()[1] / 8) return {svd.matrixU() * svd.matrixV().transpose(), true};
+  }
+  return local_rotation(jacobian);
+}
+
 Mat3 orthogonal_factor(const Mat3& linear) {
   const double scale = linear.cwiseAbs().maxCoeff();
   if (!linear.allFinite() || scale == 0) throw std::invalid_argument("the transform is singular or not finite");

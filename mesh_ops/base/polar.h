@@ -15,6 +15,11 @@ struct LocalRotation {
 /// By scaled Newton iteration (Higham 1986) where det J > 1e-6 ‖J‖³, else by singular values. Scale does not matter.
 LocalRotation local_rotation(const Mat3& jacobian);
 
+/// As local_rotation(), but the orthogonal polar factor, a reflection, if J mirrors: det J < 0 and the smallest
+/// singular value is more than an eighth of the middle one. Nearer to collapse the rotation is taken, which has no jump
+/// at det J = 0.
+LocalRotation local_orthogonal(const Mat3& jacobian);
+
 /// The orthogonal polar factor by scaled Newton iteration: a reflection where det J < 0, and useless where J is nearly
 /// singular.
 Mat3 newton_polar_factor(const Mat3& jacobian);

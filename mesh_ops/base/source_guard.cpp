@@ -19,8 +19,13 @@ constexpr std::size_t most_entries = 20000;
 // Without links, dots and a slash at the end; the part that does not exist yet by its name.
 fs::path plain_path(const fs::path& path) {
   std::error_code error;
-  fs::path result = fs::weakly_canonical(fs::absolute(path), error);
-  if (error) result = fs::absolute(path).lexically_normal();
+  fs::path named = fs::absolute(path);
+  // A link to what does not exist yet: writing makes it there.
+  constexpr int most_links = 40;
+  for (int k = 0; k < most_links && fs::is_symlink(named, error) && !fs::exists(named, error); ++k)
+    named = named.parent_path() / fs::read_symlink(named, error);
+  fs::path result = fs::weakly_canonical(named, error);
+  if (error) result = named.lexically_normal();
   return result.has_filename() ? result : result.parent_path();
 }
 
@@ -46,9 +51,13 @@ std::vector<SourceGuard::Identity> SourceGuard::identity_of(const fs::path& path
   return {{about.st_dev, about.st_ino}};
 }
 
+bool SourceGuard::was_seen(const Source& source, const std::vector<Identity>& there) {
+  return !there.empty() && std::find(source.seen.begin(), source.seen.end(), there.front()) != source.seen.end();
+}
+
 bool SourceGuard::is_same(const Source& source, const fs::path& path) {
   const std::vector<Identity> there = identity_of(path);
-  return !there.empty() && (there == source.seen || there == identity_of(source.path));
+  return !there.empty() && (was_seen(source, there) || there == identity_of(source.path));
 }
 
 void SourceGuard::add(const fs::path& source) {
@@ -59,14 +68,14 @@ void SourceGuard::add(const fs::path& source) {
 
 void SourceGuard::add_folder(const fs::path& folder, const std::string& role) {
   // Many nodes share a source: its links are looked for once.
-  if (!add_source({folder, true, role, identity_of(folder)})) return;
+  if (!add_source({folder, true, role, identity_of(folder), false})) return;
   const std::string linked = "what a link in a source of this scene leads to";
   for_each_entry(folder, [&](const fs::directory_entry& entry) {
     std::error_code ignored;
     if (!entry.is_symlink(ignored)) return;
     const fs::path target = plain_path(entry.path());
     if (lies_in(target, folder)) return;
-    if (!fs::is_directory(target, ignored)) add_source({target, false, linked, identity_of(target)});
+    if (!fs::is_directory(target, ignored)) add_source({target, false, linked, identity_of(target), false});
     // A linked folder belongs to the scene when it is one of its objects.
     else if (fs::exists(target / "mlp.json", ignored))
       add_folder(target, linked);
@@ -75,7 +84,7 @@ void SourceGuard::add_folder(const fs::path& folder, const std::string& role) {
 
 void SourceGuard::add_file(const fs::path& source, const std::string& role) {
   const fs::path path = plain_path(source);
-  add_source({path, false, role, identity_of(path)});
+  add_source({path, false, role, identity_of(path), false});
 }
 
 void SourceGuard::add_input(const fs::path& source, const std::string& role) {
@@ -86,11 +95,22 @@ void SourceGuard::add_input(const fs::path& source, const std::string& role) {
     add(source);
 }
 
+void SourceGuard::add_contents(const fs::path& folder, const std::string& role) {
+  const fs::path path = plain_path(folder);
+  add_source({path, true, role, identity_of(path), true});
+}
+
+void SourceGuard::release_contents(const fs::path& folder) {
+  const fs::path path = plain_path(folder);
+  std::erase_if(sources_, [&](const Source& source) { return source.whole_may_go && is_same(source, path); });
+}
+
 bool SourceGuard::add_source(Source source) {
   for (Source& known : sources_)
     if (known.path == source.path && known.is_folder == source.is_folder) {
       // It may have been replaced since; moved away, it is still what undo and journals rest on.
-      if (!source.seen.empty()) known.seen = std::move(source.seen);
+      if (!source.seen.empty() && !was_seen(known, source.seen)) known.seen.push_back(source.seen.front());
+      known.whole_may_go = known.whole_may_go && source.whole_may_go;
       known.role = std::move(source.role);
       return false;
     }
@@ -100,9 +120,10 @@ bool SourceGuard::add_source(Source source) {
 
 const SourceGuard::Source* SourceGuard::source_holding(const fs::path& wanted) const {
   for (const Source& source : sources_) {
-    if (lies_in(wanted, source.path)) return &source;
+    const auto may_go = [&](const fs::path& at) { return source.whole_may_go && at == wanted; };
+    if (lies_in(wanted, source.path) && !may_go(source.path)) return &source;
     for (fs::path at = wanted;; at = at.parent_path()) {
-      if (is_same(source, at)) return &source;
+      if (is_same(source, at) && !may_go(at)) return &source;
       // Only a folder protects what is below it.
       if (!source.is_folder || at == at.parent_path()) break;
     }
@@ -127,7 +148,7 @@ void SourceGuard::check_folder(const fs::path& path) const {
                               ", which would be lost with it; write to another folder");
   };
   for (const Source& source : sources_) {
-    if (lies_in(source.path, wanted)) refuse(source);
+    if (lies_in(source.path, wanted) && !(source.whole_may_go && source.path == wanted)) refuse(source);
     for (fs::path at = source.path.parent_path(); at != at.parent_path(); at = at.parent_path())
       if (const auto there = identity_of(at); !there.empty() && there == identity_of(wanted)) refuse(source);
   }
@@ -139,7 +160,7 @@ void SourceGuard::check_folder(const fs::path& path) const {
     if (entry.is_symlink(ignored)) return;
     const std::vector<Identity> there = identity_of(entry.path());
     for (std::size_t k = 0; k < sources_.size(); ++k)
-      if (!there.empty() && (there == identities[k] || there == sources_[k].seen)) refuse(sources_[k]);
+      if (!there.empty() && (there == identities[k] || was_seen(sources_[k], there))) refuse(sources_[k]);
   });
 }
 

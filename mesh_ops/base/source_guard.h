@@ -22,6 +22,11 @@ class SourceGuard {
   void add_file(const std::filesystem::path& source, const std::string& role = "a file that this run reads");
   /// Protects a file as add_file() does, unless it is a scene.json; anything else as add() does.
   void add_input(const std::filesystem::path& source, const std::string& role = "a file that this run reads");
+  /// Protects what is in a scene folder, which may be replaced as a whole: a script may import its own export, and may
+  /// run again.
+  void add_contents(const std::filesystem::path& folder, const std::string& role);
+  /// Ends what add_contents() protects: the run has replaced the folder.
+  void release_contents(const std::filesystem::path& folder);
   bool empty() const { return sources_.empty(); }
 
   /// Throws FileError when writing a file at `path` would overwrite a protected file or add to a protected folder.
@@ -40,9 +45,11 @@ class SourceGuard {
     std::filesystem::path path;  ///< canonical
     bool is_folder;
     std::string role;
-    std::vector<Identity> seen;  ///< what the path led to when it was added
+    std::vector<Identity> seen;  ///< what the path led to whenever it was added
+    bool whole_may_go = false;   ///< of a folder: replacing all of it is allowed
   };
   static std::vector<Identity> identity_of(const std::filesystem::path& path);
+  static bool was_seen(const Source& source, const std::vector<Identity>& there);
   static bool is_same(const Source& source, const std::filesystem::path& path);
   // With what links in it lead to.
   void add_folder(const std::filesystem::path& folder, const std::string& role);

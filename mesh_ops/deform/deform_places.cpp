@@ -59,7 +59,7 @@ DeformedPlaces deform_places(const BakedObject& object, const WeldedCorners& cor
     }
     determinants[i] = moved.jacobians[i].determinant();
     if (moved.points[i] == world[i] && moved.jacobians[i].isIdentity(0)) return;
-    const LocalRotation local = local_rotation(moved.jacobians[i] * scales);
+    const LocalRotation local = local_orthogonal(moved.jacobians[i] * scales);
     defined[i] = local.defined ? 1 : 0;
     rotations[i] = frame.transpose() * local.rotation * frame;
   });

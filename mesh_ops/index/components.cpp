@@ -38,12 +38,33 @@ std::uint32_t opaque_along(const FeatureTexture& texels, const Vec2& a, const Ve
   return mask;
 }
 
-// Opaque texel centres of every triangle, at a pitch of at most a quarter of the gap.
-void opaque_points(const BakedObject& object, double gap, std::vector<Vec3>& points,
-                   std::vector<std::uint32_t>& owner) {
+// Places along an edge that are opaque (bits as of opaque_along), at a pitch of at most `pitch` where 32 are enough for
+// that, with its ends.
+void add_edge_points(const Vec3& a, const Vec3& b, std::uint32_t opaque, double pitch, std::vector<Vec3>& points) {
+  constexpr std::uint32_t places = 32;
+  const double apart = (b - a).norm() / places;
+  const auto stride =
+      static_cast<std::uint32_t>(apart > 0 ? std::clamp(pitch / apart, 1.0, places - 1.0) : places - 1.0);
+  for (std::uint32_t i = 0; i < places; i = i + stride < places - 1 || i == places - 1 ? i + stride : places - 1) {
+    if ((opaque >> i & 1U) == 0) continue;
+    const double share = i == 0 ? 0 : i == places - 1 ? 1 : (i + 0.5) / places;
+    points.push_back(a + share * (b - a));
+  }
+}
+
+// Points of every triangle in opaque texels, at a pitch of at most a quarter of the gap: centres of texels inside it,
+// and places along its edges, which may lie half a texel farther out.
+void opaque_points(const BakedObject& object, const std::vector<std::shared_ptr<const EdgeOpacity>>& opacity,
+                   double gap, std::vector<Vec3>& points, std::vector<std::uint32_t>& owner) {
   std::uint32_t triangle = 0;
-  for (const TextureSet& set : object.sets)
+  for (std::size_t s = 0; s < object.sets.size(); ++s) {
+    const TextureSet& set = object.sets[s];
     for (std::size_t f = 0; f < set.soup.triangle_count(); ++f, ++triangle) {
+      for (std::size_t k = 0; k < 3; ++k)
+        add_edge_points(set.soup.positions()[set.soup.faces()[f][k]],
+                        set.soup.positions()[set.soup.faces()[f][(k + 1) % 3]], opacity[s]->along[f * 3 + k], gap / 4,
+                        points);
+      owner.resize(points.size(), triangle);
       const std::array<Vec2, 3> uv = texel_corners(set, f);
       const Face& face = set.soup.faces()[f];
       const std::vector<Vec3>& p = set.soup.positions();
@@ -60,6 +81,7 @@ void opaque_points(const BakedObject& object, double gap, std::vector<Vec3>& poi
         owner.push_back(triangle);
       });
     }
+  }
 }
 
 std::uint32_t reversed(std::uint32_t bits) {
@@ -218,7 +240,7 @@ Components opaque_components(const BakedObject& object, const WeldedCorners& cor
   if (gap > 0) {
     std::vector<Vec3> points;
     std::vector<std::uint32_t> owner;
-    opaque_points(object, gap, points, owner);
+    opaque_points(object, opacity, gap, points, owner);
     if (!points.empty()) join_near(parts, points, owner, gap, object.bounds().min());
   }
   std::vector<std::uint32_t> own(total);

@@ -95,6 +95,28 @@ TEST_F(Guards, AJournalInsideOfASceneRefusesItsImport) {
   session.document.discard_journal();
 }
 
+TEST_F(Guards, ScenesOfLaterLinesAreReplacedAsAWholeOnly) {
+  const auto line_of = [&](const char* form) { return fmt::format(fmt::runtime(form), path("later").string()); };
+  fs::copy(fs::path(REBAKE_SOURCE) / "samples/scenes/kettle", path("later"), fs::copy_options::recursive);
+  const std::string render =
+                        line_of("{{\"op\": \"render\", \"out\": \"{}/mlp.json\", \"width\": 16, \"height\": 16}}\n"),
+                    import = line_of("{{\"op\": \"import\", \"path\": \"{}\", \"as\": \"later\"}}\n"),
+                    exported = line_of("{{\"op\": \"export\", \"out\": \"{}\"}}\n");
+  const std::string decoder = read_file(path("later/mlp.json"));
+  write("script.jsonl", import_line() + render + import);
+  EXPECT_EQ(program("run {}/script.jsonl"), 1);
+  EXPECT_EQ(read_file(path("later/mlp.json")), decoder);
+  // One that must have another content would be lost.
+  write("script.jsonl", import_line() + exported +
+                            line_of("{{\"op\": \"import\", \"path\": \"{}\", \"content\": \"0000000000000000\"}}\n"));
+  EXPECT_EQ(program("run {}/script.jsonl"), 1);
+  EXPECT_NE(log().find("would be written into"), std::string::npos) << log();
+  // A script may import its own export, again and again.
+  write("script.jsonl", import_line() + exported + import);
+  EXPECT_EQ(program("run {}/script.jsonl"), 0) << log();
+  EXPECT_EQ(program("run {}/script.jsonl"), 0) << log();
+}
+
 TEST_F(Guards, OutputsLeaveWhatTheRunReadsAlone) {
   write("script.jsonl", import_line());
   EXPECT_EQ(program("run {}/script.jsonl --list-files {}/script.jsonl"), 1);

@@ -155,6 +155,32 @@ TEST_F(Recovery, MovedSourcesAreNamedAndFoundWhereTheyLieNow) {
   EXPECT_EQ(Document::recover(path("journal"), {{path("sources/ball"), path("other")}}).edits, 0U);
 }
 
+TEST_F(Recovery, OnePathWithTwoContentsIsFoundInTwoPlaces) {
+  Document document;
+  document.keep_journal(path("journal"));
+  const auto import = [&] {
+    Import edit;
+    edit.path = path("sources/ball").string();
+    document.edit(edit);
+  };
+  import();
+  fs::rename(path("sources/ball"), path("first"));
+  export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("sources/ball"), {});
+  import();
+  const std::vector<std::string> warnings = document.save(path("p.rebake"));
+  ASSERT_EQ(warnings.size(), 1U) << "the first is not there any more";
+  EXPECT_NE(warnings[0].find("has changed since it was read"), std::string::npos) << warnings[0];
+  document = Document();
+  EXPECT_THROW(Document::open(path("p.rebake")), SourcesGone);
+  // The second is where it was, or moved too.
+  Relinked links{{path("sources/ball"), path("first")}};
+  EXPECT_EQ(Document::open(path("p.rebake"), links).history().undo_count(), 2U);
+  fs::rename(path("sources/ball"), path("second"));
+  links.emplace(path("sources/ball"), path("second"));
+  EXPECT_EQ(Document::open(path("p.rebake"), links).history().undo_count(), 2U);
+  EXPECT_EQ(Document::recover(path("journal"), links).edits, 2U);
+}
+
 TEST_F(Recovery, AnImportThatWasUndoneNeedsNoSource) {
   export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("sources/wrong"), {});
   const auto background = [](Document& document, double blue) {

@@ -164,9 +164,25 @@ TEST(Deform, FoldsAreCountedAndNothingBecomesNaN) {
       if (set.soup.rotations() == nullptr) continue;
       for (const Turn& turn : *set.soup.rotations()) {
         EXPECT_TRUE(turn.matrix().isUnitary(1e-12));
-        EXPECT_GT(turn.matrix().determinant(), 0);
+        // A mirror is a mirror for colours too; what collapses is given a rotation.
+        EXPECT_EQ(turn.matrix().determinant() > 0, scale.x() >= 0) << scale.transpose();
       }
     }
+  }
+}
+
+TEST(Deform, MirroringTwiceIsNothing) {
+  const auto object = made_object();
+  for (const Vec3& scale : {Vec3(-1, 1, 1), Vec3(1, -1, 1), Vec3(-1, -1, -1)}) {
+    const DeformedObject once = deformed(*object, Affine::Identity(), all(*object), 0, affine(scale.asDiagonal()));
+    for (const Turn& turn : *once.object->sets[0].soup.rotations())
+      EXPECT_LE((turn.matrix() - Mat3(scale.asDiagonal())).norm(), 1e-14) << scale.transpose();
+    EXPECT_EQ(once.report.undefined, 0U);
+    const DeformedObject twice =
+        deformed(*once.object, Affine::Identity(), all(*object), 0, affine(scale.asDiagonal()));
+    if (twice.object->sets[0].soup.rotations() == nullptr) continue;
+    for (const Turn& turn : *twice.object->sets[0].soup.rotations())
+      EXPECT_LE((turn.matrix() - Mat3::Identity()).norm(), 1e-14) << scale.transpose();
   }
 }
 

@@ -317,10 +317,42 @@ TEST(SourceGuard, KnowsASourceThatWasMovedAway) {
     EXPECT_THROW(guard.check_folder(folder.path() / "moved"), FileError);
     guard.add(folder.path() / "scene");  // as every node that was read from there does
   }
-  // Another folder in its place is the source from then on.
+  // Another folder in its place is a source too.
   fs::create_directories(folder.path() / "scene");
   guard.add(folder.path() / "scene");
   EXPECT_THROW(guard.check_folder(folder.path() / "scene"), FileError);
+  EXPECT_THROW(guard.check_folder(folder.path() / "moved"), FileError);
+}
+
+TEST(SourceGuard, FollowsLinksToFilesThatDoNotExistYet) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "scene");
+  fs::create_symlink("scene/report.jsonl", folder.path() / "link");
+  fs::create_symlink("link", folder.path() / "another");
+  SourceGuard guard;
+  guard.add(folder.path() / "scene");
+  EXPECT_THROW(guard.check_file(folder.path() / "link"), FileError);
+  EXPECT_THROW(guard.check_file(folder.path() / "another"), FileError);
+}
+
+TEST(SourceGuard, ContentsMayGoAsAWholeOnly) {
+  const TemporaryFolder folder;
+  const fs::path scene = folder.path() / "scene";
+  fs::create_directories(scene);
+  fs::create_directory_symlink("scene", folder.path() / "link");
+  SourceGuard guard;
+  guard.add_contents(scene, "a scene that this script reads");
+  EXPECT_NO_THROW(guard.check_folder(scene));
+  EXPECT_NO_THROW(guard.check_folder(folder.path() / "link"));
+  for (const char* inside : {"scene/mlp.json", "link/mlp.json", "scene/more/x.png"})
+    EXPECT_THROW(guard.check_file(folder.path() / inside), FileError) << inside;
+  EXPECT_THROW(guard.check_folder(scene / "more"), FileError);
+  EXPECT_THROW(guard.check_folder(folder.path()), FileError);
+  SourceGuard released = guard;
+  released.release_contents(folder.path() / "link");
+  EXPECT_NO_THROW(released.check_file(scene / "mlp.json"));
+  guard.add(scene);
+  EXPECT_THROW(guard.check_folder(scene), FileError) << "imported";
 }
 
 TEST(SourceGuard, SeesThroughARealMount) {

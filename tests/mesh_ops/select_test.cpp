@@ -1,6 +1,8 @@
 // What selecting relies on: welding, parts that hang together, likeness, pictures, visibility.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include <cmath>
 #include <random>
 
@@ -94,9 +96,33 @@ TEST(Select, PartsHangTogetherAcrossOpaqueTexelsOnly) {
 TEST(Select, ToleranceAndGapJoinWhatIsApart) {
   EXPECT_EQ(parts_of(strip(3, 0.01, everywhere)), 3U);
   EXPECT_EQ(parts_of(strip(3, 0.01, everywhere), {.tolerance = 0.02, .gap = 0}), 1U);
-  // Texel centres of neighbours are 0.05 + 1/16 apart.
-  EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = 0.1}), 3U);
-  EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = 0.13}), 1U);
+  EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = 0.049}), 3U);
+  EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = 0.051}), 1U);
+}
+
+// Squares that come near with one corner each, wherever their texels lie in the texture.
+TEST(Select, AGapIsThatOfTrianglesNotOfTexelCentres) {
+  for (const double inset : {0.0, 0.4, 0.5, 0.6, 1.0}) {
+    BakedObject object = strip(1, 0, everywhere);
+    const double side = object.sets[0].texels->width(), low = (3 + inset) / side, high = (12 - inset) / side;
+    constexpr double diagonal = 0.1 / std::numbers::sqrt2;
+    std::vector<Vec3> positions;
+    std::vector<Vec2> uvs;
+    std::vector<Face> faces;
+    for (const Vec3& at : {Vec3(0, 0, 0), Vec3(1 + diagonal, 1 + diagonal, 0)}) {
+      const auto base = static_cast<std::uint32_t>(positions.size());
+      for (const Vec2& corner : {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)}) {
+        positions.emplace_back(at + Vec3(corner.x(), corner.y(), 0));
+        uvs.emplace_back(corner.x() > 0 ? high : low, corner.y() > 0 ? high : low);
+      }
+      faces.push_back({base, base + 1, base + 2});
+      faces.push_back({base, base + 2, base + 3});
+    }
+    object.sets[0].soup = Soup(positions, uvs, faces);
+    EXPECT_EQ(parts_of(object, {.tolerance = 0, .gap = 0.09}), 2U) << inset;
+    EXPECT_EQ(parts_of(object, {.tolerance = 0, .gap = 0.101}), 1U) << inset;
+    EXPECT_EQ(parts_of(object, {.tolerance = 0, .gap = 0.5}), 1U) << inset;
+  }
 }
 
 TEST(Select, AVanishingToleranceOrGapJoinsNothing) {

@@ -12,7 +12,7 @@ Scene apply(const Scene& scene, const Grow& edit) {
 REBAKE_DESCRIBE_EDIT(
     Grow, "Adds the triangles that share a corner with the selection.", (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible");
+            "only of this node and those inside it; left out: of all that is visible and not locked");
       visit("steps", edit.steps, Need::optional, "how often");
       WeldingField::fields(edit.welding, visit);
     })

@@ -33,11 +33,11 @@ Scene apply(const Scene& scene, const SelectConnected& edit) {
 
 REBAKE_DESCRIBE_EDIT(
     SelectConnected,
-    "Selects the parts that hang together, across opaque texels, with the triangle nearest to a point or with the "
-    "present selection.",
+    "Selects the connected parts (triangles that share an edge, opaque along it) that hold the triangle nearest to a "
+    "point, or the present selection.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible");
+            "only of this node and those inside it; left out: of all that is visible and not locked");
       visit("point", edit.point, Need::optional,
             "world point, near a triangle that shows something; left out: from the present selection");
       JoiningFields::fields(edit.joining, visit);

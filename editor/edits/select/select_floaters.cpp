@@ -28,7 +28,7 @@ REBAKE_DESCRIBE_EDIT(
     "Selects small parts that hang together with nothing else, across opaque texels; look at the count, then delete.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible");
+            "only of this node and those inside it; left out: of all that is visible and not locked");
       visit("at_most", edit.at_most, Need::optional, "triangles of a part that counts as floating");
       JoiningFields::fields(edit.joining, visit);
       visit("mode", edit.mode, Need::optional, "how the result joins the present selection");

@@ -15,7 +15,7 @@ REBAKE_DESCRIBE_EDIT(
     "Selects triangles that the last deformation of their object folded or collapsed (det J ≤ 0 at a corner).",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible");
+            "only of this node and those inside it; left out: of all that is visible and not locked");
       visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
     })
 

@@ -46,7 +46,7 @@ REBAKE_DESCRIBE_EDIT(
     "present selection or of the triangle nearest to a point.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible");
+            "only of this node and those inside it; left out: of all that is visible and not locked");
       visit("point", edit.point, Need::optional,
             "world point, near a triangle that shows something; left out: like the present selection");
       visit("color", edit.color, Need::optional, "distance of mean decoded colours, channels 0 to 1");

@@ -28,7 +28,7 @@ REBAKE_DESCRIBE_EDIT(
     "centre falls into it.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible");
+            "only of this node and those inside it; left out: of all that is visible and not locked");
       PictureFields::fields(edit.picture, visit);
       visit("through", edit.through, Need::optional, "hidden triangles too");
       visit("mode", edit.mode, Need::optional, "how the result joins the present selection");

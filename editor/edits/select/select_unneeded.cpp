@@ -49,7 +49,7 @@ REBAKE_DESCRIBE_EDIT(
     SelectUnneeded, "Selects triangles that no picture needs, for cleaning: look at the count, then delete.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible");
+            "only of this node and those inside it; left out: of all that is visible and not locked");
       visit("transparent", edit.transparent, Need::optional,
             "without an opaque texel in it or within one texel of its edges");
       visit("duplicates", edit.duplicates, Need::optional, "same corners and same texels as a triangle drawn later");

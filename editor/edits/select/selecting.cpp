@@ -180,8 +180,9 @@ Scene with_selection_stepped(const Scene& scene, const std::optional<NodeRef>& n
                              TriangleSet (*change)(const WeldedCorners&, const TriangleSet&)) {
   if (steps < 1) throw FieldError("steps", "must be at least 1");
   welding.check();
+  const std::vector<PlacedNode> targets = selectable(scene, node);
   with_selection(scene, node);
-  return with_selected(scene, selectable(scene, node), SelectMode::set, [&](const PlacedNode& placed) {
+  return with_selected(scene, targets, SelectMode::set, [&](const PlacedNode& placed) {
     const auto corners = corners_of(*placed.node->object, welding.tolerance);
     TriangleSet flags = selection_of(placed);
     for (int step = 0; step < steps; ++step) {

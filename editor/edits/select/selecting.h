@@ -54,8 +54,8 @@ struct JoiningFields {
     WeldingField::fields(self.welding, visit);
     visit(
         "gap", self.gap, Need::optional,
-        "opaque texels at most this far apart are connected too; texels are sampled up to a quarter of it apart, so a "
-        "connection just below it may be missed",
+        "opaque texels at most this far apart are connected too; they are sampled up to a quarter of it apart, so only "
+        "connections of up to 0.6 of it are sure to be found",
         Unit::object_length);
   }
   /// Throws FieldError.

@@ -69,7 +69,7 @@ REBAKE_DESCRIBE_EDIT(
     "other texels stay bit for bit.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible");
+            "only of this node and those inside it; left out: of all that is visible and not locked");
       visit("box", edit.box, Need::optional, "inside a box");
       visit("sphere", edit.sphere, Need::optional, "inside a sphere; radius as for select");
       visit("half_space", edit.half_space, Need::optional, "on the side that the normal points to");

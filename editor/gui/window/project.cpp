@@ -137,7 +137,7 @@ void Project::ask_for_sources(const fs::path& wanted_by, const std::vector<Sourc
                               const Relinked& links) {
   relinking = Relinking{wanted_by, {}, links};
   for (const SourcesGone::Source& source : gone)
-    relinking->sources.push_back({source.path, source.trouble, relinked(source.path, links).string()});
+    relinking->sources.push_back({source.path, source.trouble, relinked(source.path, source.content, links).string()});
 }
 
 void Project::relink(bool go_on_without) {
@@ -145,7 +145,7 @@ void Project::relink(bool go_on_without) {
   Relinked links = wanted.known;
   for (const Relinking::Source& source : wanted.sources) {
     links.erase(source.path);
-    if (source.now != source.path.string() && !source.now.empty()) links[source.path] = source.now;
+    if (source.now != source.path.string() && !source.now.empty()) links.emplace(source.path, source.now);
   }
   if (is_project_file(wanted.wanted_by)) {
     open_project(wanted.wanted_by, links);
@@ -156,17 +156,19 @@ void Project::relink(bool go_on_without) {
 
 void Project::save(const fs::path& file) {
   auto saved = std::make_shared<Scene>();
+  auto warnings = std::make_shared<std::vector<std::string>>();
   worker_.start(
       "saving",
-      [file, saved](Session& session) {
-        session.document.save(file, session.progress);
+      [file, saved, warnings](Session& session) {
+        *warnings = session.document.save(file, session.progress);
         *saved = session.scene();
       },
-      [this, file, saved] {
+      [this, file, saved, warnings] {
         path = file;
         saved_ = *saved;
         settings_.remember(file.string());
         messages_.say("Saved " + file.string());
+        for (const std::string& warning : *warnings) messages_.fail(warning);
         if (saved_then) std::exchange(saved_then, nullptr)();
       },
       // What was to follow is not wanted any more: another save is another thing.
