@@ -1,6 +1,8 @@
 // Compiled for several kinds of processors (mesh_ops/CMakeLists.txt).
 #include "mesh_ops/light/convolution.h"
 
+#include <cstring>
+
 #ifndef REBAKE_CONVOLVE_NAME
 #define REBAKE_CONVOLVE_NAME convolve_row_baseline
 #endif
@@ -9,7 +11,7 @@ namespace rebake {
 
 namespace {
 
-using Vector = float __attribute__((vector_size(convolution_lanes * sizeof(float)), aligned(4), may_alias));
+using Vector = float __attribute__((vector_size(convolution_lanes * sizeof(float))));
 constexpr int lanes = convolution_lanes;
 
 }  // namespace
@@ -30,11 +32,12 @@ void REBAKE_CONVOLVE_NAME(const Convolution& convolution, const float* input, Pl
         const float* at = input + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * layout.plane) +
                           (row + dy) * static_cast<std::ptrdiff_t>(layout.pitch) + x;
         for (int dx = -reach; dx <= reach; ++dx, w += lanes) {
-          const Vector values = *reinterpret_cast<const Vector*>(at + dx);
+          Vector values;
+          std::memcpy(&values, at + dx, sizeof values);  // at any alignment
           for (int o = 0; o < lanes; ++o) sums[o] += w[o] * values;
         }
       }
-    for (int o = 0; o < lanes; ++o) *reinterpret_cast<Vector*>(result + o * width + x) = sums[o];
+    for (int o = 0; o < lanes; ++o) std::memcpy(result + o * width + x, &sums[o], sizeof sums[o]);
   }
 }
 
