@@ -10,19 +10,19 @@
 
 namespace rebake {
 
-/// Patches of texels that may show others' texels instead of their own.
+/// Near-duplicate patches of texels that may use the texels of a representative instead of their own.
 struct AlikePatches {
-  ShownBy shown_by;        ///< of each set, each patch (texel_patches)
-  std::size_t merged = 0;  ///< patches that show another's texels
+  ShownBy shown_by;        ///< per set and patch (texel_patches)
+  std::size_t merged = 0;  ///< patches that use a representative's texels
   std::size_t patches = 0;
-  std::uint64_t texels = 0;  ///< opaque ones that no patch shows any more
-  double squared_loss = 0;   ///< of display colours, over all opaque texels, channels and directions
+  std::uint64_t texels = 0;  ///< opaque texels that no patch uses any more
+  double squared_loss = 0;   ///< mean square error of display colours over all opaque texels, channels and directions
 };
 
-/// Finds patches of one size and opacity whose display colours differ by at most `squared_loss` in the mean square over
-/// their opaque texels, a few directions and channels. Each follows the first that it is like; what is followed follows
-/// none. Candidates are found by their features, weighted by what these do to colours; only what is decoded counts.
-/// Nothing where texels cannot be moved. Deterministic.
+/// Finds patches of equal size and opacity whose display colours differ by at most `squared_loss` (mean square over
+/// opaque texels, a few directions and channels). The first of them in order is the representative; representatives
+/// keep their own texels. Candidates are found by features weighted by their effect on colours, and accepted by decoded
+/// colours. Empty if texels cannot be moved. Deterministic.
 AlikePatches alike_patches(const BakedObject& object, double squared_loss, const Progress& progress = {});
 
 }  // namespace rebake

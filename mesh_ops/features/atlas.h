@@ -10,42 +10,42 @@
 
 namespace rebake {
 
-/// Texels of some sets moved closer together, in as few textures of at most `largest_side`² as they need.
+/// Texture sets repacked into as few textures of at most `largest_side`² as possible.
 struct PackedSets {
   std::vector<TextureSet> sets;
   std::uint64_t texel_area = 0;  ///< width × height over all new textures
 };
 
-/// A texture of moved texels that is not made yet, and the triangles that use it.
+/// A repacked texture that is not created yet, and the triangles that use it.
 struct PackedPage {
   Soup soup;
-  TexelRows texels;  ///< reads the sets' textures, which it keeps
+  TexelRows texels;  ///< reads from the sets' textures, which it owns
 };
 
-/// A patch of a set.
+/// Identifies a patch of a set.
 struct PatchNumber {
   std::size_t set = 0, patch = 0;
   bool operator==(const PatchNumber&) const = default;
 };
-/// For each set, for each patch (texel_patches): whose texels it is to show, which has the same size and shows its own.
+/// Per set and patch (texel_patches): the representative whose texels it uses, of the same size.
 using ShownBy = std::vector<std::vector<PatchNumber>>;
 
-/// Moves the patches of texels that triangles use, whole and bit for bit, into new textures; drops the rest. UVs follow
-/// by whole texels, so nearest sampling finds the same texels. Positions, turns and the order of faces within a texture
-/// are kept. Textures of another alpha code than `code` are converted (halved from plain loses the alpha's lowest bit,
-/// as the published exporter does). With `shown_by` patches show others' texels, and their own are dropped. Throws
-/// Error for a patch larger than `largest_side`, and for UVs outside [0, 1].
+/// Moves the used patches of texels bit for bit into new textures and drops the rest. UVs move by whole texels, so
+/// nearest sampling finds the same texels. Positions, rotations and the order of faces within a texture are kept.
+/// Textures with another alpha code are converted to `code` (from plain to halved loses the lowest bit of alpha, as in
+/// the published exporter). `shown_by` replaces patches by representatives. Throws Error for a patch larger than
+/// `largest_side` and for UVs outside [0, 1].
 PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code, const ShownBy& shown_by = {});
 
-/// As pack(), without making the textures.
+/// As pack(), without creating the textures.
 std::vector<PackedPage> packed_pages(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code,
                                      const ShownBy& shown_by = {});
 
-/// The texture with its alpha stored the other way; the same pointer when it already is.
+/// The texture converted to an alpha code; the same pointer if it has it already.
 std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture,
                                                       AlphaCode code);
 
-/// True when all UVs of the faces lie in [0, 1], so that texels can be moved.
+/// Whether all UVs of the faces lie in [0, 1], so that texels can be moved.
 bool can_pack(const TextureSet& set);
 
 }  // namespace rebake

@@ -7,18 +7,18 @@
 
 namespace rebake {
 
-/// Fits texels within the branches of a side-by-side student: what mixes texels of two branches in a pixel, as where
-/// features have come into another branch's sector, shows the colours of neither.
+/// Fits texels within the branches of a side-by-side student. A pixel that mixes texels of two branches shows the
+/// colours of neither, and so does a texel whose features leave the sector of its branch.
 class BranchFit {
  public:
-  /// Both must outlive it.
+  /// Both must outlive this object.
   BranchFit(const Composition& composition, const Student& student);
 
-  /// For each block the branch that its texels are stored in; nothing where they may be in any. Neighbours on the
-  /// surface take the same one where that costs them little.
+  /// Per block: the branch that stores its texels; nothing if any may. Neighbours on the surface get the same branch if
+  /// that costs little.
   std::vector<std::optional<std::uint32_t>> choose(const Sightlines& sightlines, std::size_t iterations,
                                                    const Progress& progress) const;
-  /// Features of a group as they are stored in a branch, and their error, as NetworkKernels::fit_texels.
+  /// Fits the features of a group in a branch; results as NetworkKernels::fit_texels().
   void fit(std::uint32_t branch, const Composition::Part& part, const TexelGroup& group,
            const std::vector<Sighting>& sightings, const TexelFit& how, Lanes* features, Lanes* error,
            Lanes* work) const;
@@ -29,8 +29,8 @@ class BranchFit {
 
   const Composition& composition_;
   const Student& student_;
-  std::vector<FeatureNetwork> networks_;                 ///< of each branch
-  std::vector<std::vector<std::uint32_t>> branches_of_;  ///< of each teacher; rigid ones first
+  std::vector<FeatureNetwork> networks_;                 ///< per branch
+  std::vector<std::vector<std::uint32_t>> branches_of_;  ///< per teacher; rigid branches first
 };
 
 }  // namespace rebake

@@ -7,83 +7,84 @@
 
 namespace rebake {
 
-/// A share of a composition's texels, drawn evenly over its blocks, with directions from which they are seen.
+/// A sample of a composition's texels, even over its blocks, with visible directions.
 struct TexelSample {
   struct Piece {
     TexelGroup group;
     std::uint32_t part;
-    std::vector<Vec3> directions;  ///< to train on
-    std::vector<Vec3> held_out;    ///< to judge by
+    std::vector<Vec3> directions;  ///< for training
+    std::vector<Vec3> held_out;    ///< for scoring
   };
   std::vector<Piece> pieces;
 };
-/// About `texels` of them: as many from each part as it has, but at least two groups, and a share of an eighth.
+/// Samples about `texels` texels, per part in proportion to its texels, with at least two groups and an eighth of the
+/// sample each.
 TexelSample sampled(const Composition& composition, const Sightlines& sightlines, std::size_t texels,
                     std::uint64_t seed, const Progress& progress);
 
-/// What a fused folder is made by: one decoder, and first guesses of texels' features.
+/// The decoder of a fused folder, with initial guesses of texels' features.
 struct Student {
-  FeatureNetwork decoder;  ///< fed directions of the world
-  /// Signature → features, where it was trained.
+  FeatureNetwork decoder;  ///< takes world directions
+  /// Maps a signature to features, if trained.
   std::optional<FeatureNetwork> encoder;
-  /// A teacher that the decoder contains, or began as.
+  /// A teacher that the decoder contains, or was initialised from.
   struct Branch {
     std::size_t teacher;
     Mat3 turn;  ///< fed direction = turn · world direction
-    /// Features as the student stores them from those of the teacher: encode · features + offset.
+    /// Student's features = encode · teacher's features + offset.
     Eigen::Matrix<double, 8, 8> encode = Eigen::Matrix<double, 8, 8>::Identity();
     Eigen::Matrix<double, 8, 1> offset = Eigen::Matrix<double, 8, 1>::Zero();
   };
   std::vector<Branch> branches;
-  std::uint32_t selectors = 0;  ///< a bit for each feature that tells branches apart
-  bool keeps = false;           ///< the decoder is its one branch's own, and the texels of that stay bit for bit
-  bool exact = false;  ///< the decoder shows what its branches' teachers show, but for the rounding of features
+  std::uint32_t selectors = 0;  ///< bit mask of the features that select a branch
+  bool keeps = false;           ///< the decoder is that of its only branch, whose texels stay bit for bit
+  bool exact = false;           ///< the decoder equals its branches' teachers up to the rounding of features
 };
 
-/// Texels that need no fit.
+/// Whether a part's texels stay unchanged.
 bool stays(const Student& student, const Composition::Part& part);
-/// Texels that only have to be rounded.
+/// Whether a part's texels only need rounding.
 bool shown_exactly(const Student& student, const Composition::Part& part);
 
 struct TrainingOptions {
-  int steps = 8000;    ///< of Adam on decoder and encoder together; more gains little
-  double rate = 0.02;  ///< of Adam at the start, for a new decoder
+  int steps = 8000;    ///< Adam steps on decoder and encoder together; more gains little
+  double rate = 0.02;  ///< initial rate of Adam for a new decoder
   std::uint64_t seed = 1;
-  /// When training ends at the latest, with what has been learnt.
+  /// Deadline of training; the result so far is used.
   std::optional<std::chrono::steady_clock::time_point> until = std::nullopt;
 };
 
 /// The teachers as networks.
 std::vector<FeatureNetwork> networks_of(const Composition& composition);
 
-/// A base's decoder as it is; the encoder learns to use it.
+/// Keeps the decoder of `base` and trains an encoder for it.
 Student keeping(const Composition& composition, const TexelSample& sample, std::size_t base,
                 const TrainingOptions& options, const Progress& progress);
-/// Teachers side by side in one decoder: each keeps its own neurons, and the plane of the two features that matter
-/// least is cut into sectors, one for each, by which all others are switched off. Averages of texels stay right, and
-/// partly covered pixels nearly: both keep to the sector. Bent parts get branches for `bent_turns` turns each.
+/// Puts the teachers side by side in one decoder: each keeps its own neurons, and the plane of the two least important
+/// features is cut into a sector per branch, outside of which the branch is silenced. Averages of texels of a branch
+/// stay in its sector, and so do partly covered pixels. Bent parts get branches for `bent_turns` rotations each.
 Student side_by_side(const Composition& composition, const TexelSample& sample, std::size_t bent_turns);
-/// Most branches that find room in the plane.
+/// Maximum number of sectors.
 inline constexpr std::size_t most_branches = 4;
 
-/// A student's decoder, widened and trained further. Texels may start as its branches say.
+/// A student's decoder, widened and fine-tuned. Texels may be initialised by its branches.
 Student adapted(const Student& student, const Composition& composition, const TexelSample& sample, std::size_t width,
                 const TrainingOptions& options, const Progress& progress);
-/// Decoder and encoder from random weights.
+/// Trains decoder and encoder from random weights.
 Student from_scratch(const Composition& composition, const TexelSample& sample, std::size_t width,
                      const TrainingOptions& options, const Progress& progress);
 
-/// The rounding of stored features. `bits` (1 … 8) a feature; features 3 and 7 have 7 at most in halved alpha.
+/// Quantisation of stored features with `bits` (1 … 8) per feature; features 3 and 7 have at most 7 with halved alpha.
 std::array<FeatureLevels, texel_features> feature_levels(int bits, AlphaCode code);
 
-/// A teacher's features as a branch stores them, in place.
+/// Converts a teacher's features to those of a branch, in place.
 void store_in(const Student::Branch& branch, Lanes* features);
 
-/// Where features start: as the branch of their teacher says that fits best, else, or where that is better, as encoded.
+/// Initial guess of features: by the best branch of their teacher or by the encoder, whichever is better.
 void first_guess(const Student& student, const FeatureNetwork& teacher, const Composition::Part& part,
                  const TexelGroup& group, const std::vector<Sighting>& sightings, Lanes* features, Lanes* work);
 
-/// Lanes of workspace that all of the above want.
+/// Size of the workspace `work` of the functions above, in lanes.
 std::size_t workspace_of(const Student& student, const std::vector<FeatureNetwork>& teachers);
 
 }  // namespace rebake

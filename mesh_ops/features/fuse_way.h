@@ -2,12 +2,12 @@
 
 namespace rebake {
 
-/// How one decoder is made for several.
+/// Methods of fusing several decoders into one.
 enum class FuseWay {
-  keep,          ///< that of the largest part (or of the node to keep), whose texels stay bit for bit
-  train,         ///< that one, trained further
-  scratch,       ///< a new one
-  side_by_side,  ///< all decoders next to each other in one
+  keep,          ///< the decoder of the largest part (or of the node to keep), whose texels stay bit for bit
+  train,         ///< the same, fine-tuned
+  scratch,       ///< a new decoder, trained from scratch
+  side_by_side,  ///< all decoders side by side in one
 };
 
 }  // namespace rebake

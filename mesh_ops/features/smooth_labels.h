@@ -5,15 +5,15 @@
 
 namespace rebake {
 
-/// Two things that would rather have one label.
+/// An edge between two nodes that prefer equal labels.
 struct LabelBorder {
   std::uint32_t a, b;
-  double cost;  ///< of having two, at least 0
+  double cost;  ///< cost of different labels, ≥ 0
 };
 
-/// A label for each thing, so that the sum of costs[thing][label] and of borders between two labels is near its least:
-/// alpha expansion by CGAL, within twice the least sum (Boykov, Veksler and Zabih 2001); at least as good as each
-/// thing's own best label. All things have costs of equally many labels, at least one. Deterministic.
+/// Labels per node that nearly minimise the sum of costs[node][label] and of edges with different labels: alpha
+/// expansion by CGAL, within a factor of two of the minimum (Boykov, Veksler and Zabih 2001), and at least as good as
+/// each node's own best label. All nodes have costs for the same number of labels, at least one. Deterministic.
 std::vector<std::uint32_t> smooth_labels(const std::vector<std::vector<double>>& costs,
                                          const std::vector<LabelBorder>& borders);
 

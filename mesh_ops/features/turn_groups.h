@@ -6,7 +6,7 @@
 
 namespace rebake {
 
-/// An object's faces by the turn that all their corners have.
+/// An object's faces grouped by the rotation that all their corners share.
 struct TurnGroups {
   struct Group {
     Mat3 turn;
@@ -14,14 +14,14 @@ struct TurnGroups {
   };
   static constexpr std::uint32_t bent = 0xffffffff;
   std::vector<Group> groups;
-  std::vector<std::uint32_t> group_of;  ///< a face, through the object's sets; bent where its corners differ
+  std::vector<std::uint32_t> group_of;  ///< per face, in the order of sets; `bent` if its corners differ
   bool any_bent = false;
 };
 
-/// Beside bent faces, a few (below 1 %) that happen to be turned alike count as bent.
+/// Groups of fewer than 1 % of the faces count as bent if there are bent faces.
 TurnGroups turn_groups(const BakedObject& object);
 
-/// Equal but for the rounding of a folded rotation.
+/// Equal up to the rounding of a folded rotation.
 bool nearly_equal(const Decoder& a, const Decoder& b);
 
 }  // namespace rebake

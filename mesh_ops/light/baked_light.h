@@ -10,38 +10,38 @@
 
 namespace rebake {
 
-/// What an object's light says of it wherever the object stands: its sites, their colours, and the light that it was
-/// baked in. Nodes that show one object share it.
+/// Light data of an object that does not depend on its placement: sites, their colours, and the light it was baked in.
+/// Shared by all nodes of the object.
 class BakedLight {
  public:
-  /// Options must outlive it.
+  /// `options` must outlive this object.
   BakedLight(std::shared_ptr<const BakedObject> object, const SceneLight& settings, const LightingOptions& options,
              const Progress& progress);
 
   std::vector<std::shared_ptr<const LightChart>> charts;
   LightSites sites;
-  std::vector<Radiance> colors;  ///< seen from both sides alike
+  std::vector<Radiance> colors;  ///< linear, per site; the same for both sides
   std::vector<float> facing;
-  std::vector<std::uint8_t> sides;  ///< that show, as traced_light wants them
+  std::vector<std::uint8_t> sides;  ///< visible sides per site, as the `wanted` of traced_light()
   std::shared_ptr<const Light> light;
-  double confidence = 0;     ///< in it, where it was found
-  Radiance albedo{1, 1, 1};  ///< that nine sites of ten stay below
+  double confidence = 0;     ///< of `light` if it was estimated, 0 … 1
+  Radiance albedo{1, 1, 1};  ///< upper bound for 90 % of the sites
 
-  /// What it mirrors; of objects of one body that has not been turned.
+  /// Specular fit; available for objects with a single, unrotated body.
   const std::shared_ptr<const GlossFit>& gloss();
   bool may_mirror() const { return bodies_.size() == 1 && bodies_.front().to_object.matrix().isIdentity(0); }
-  /// Colours of what shows.
+  /// Colours of the visible sides.
   const std::vector<Radiance>& shown_colors();
-  /// What light fell on the sites of some sides as they were baked, whole; all sides where `wanted` is empty.
+  /// Light on the `wanted` sides as baked; on all sides if `wanted` is empty.
   std::vector<SiteLight> as_baked(const std::vector<std::uint8_t>& wanted, int rays, const Progress& progress);
   const std::shared_ptr<const BakedObject>& object() const { return object_; }
-  /// Whether it is as its light was baked.
+  /// Whether the object's geometry is the one that its light was baked on.
   bool untouched() const { return untouched_; }
-  /// What falls on what shows of an untouched object, among others that stand around it.
+  /// Light on the visible sides of an untouched object with `others` around it.
   std::vector<SiteLight> among(const std::vector<Occluder>& others, int rays, const Progress& progress);
-  /// The sides of `wanted` (of all, where it is empty) that belong to a body.
+  /// The `wanted` sides (all sides if empty) that belong to a body.
   std::vector<std::uint8_t> of_body(std::size_t body, const std::vector<std::uint8_t>& wanted) const;
-  /// kept_light(), kept if the options say so.
+  /// kept_light() with the cache of the options.
   std::vector<SiteLight> traced(const std::vector<LightSite>& at, const std::vector<std::uint8_t>& wanted,
                                 const std::vector<Occluder>& occluders, const Light& in, const Mat3& to_light, int rays,
                                 const Progress& progress) const;
@@ -51,14 +51,15 @@ class BakedLight {
   std::vector<BakedBody> bodies_;
   bool untouched_;
   const LightingOptions& options_;
-  std::vector<SiteLight> roughly_;  ///< as baked, by few rays
+  std::vector<SiteLight> roughly_;  ///< light as baked, traced with few rays
   std::shared_ptr<const GlossFit> gloss_;
   std::vector<Radiance> shown_colors_;
-  std::map<int, std::vector<SiteLight>> of_shown_;  ///< as baked, by rays
-  std::map<int, OpenRays> open_;                    ///< of what shows, by rays
+  std::map<int, std::vector<SiteLight>> of_shown_;  ///< light of the visible sides as baked, by number of rays
+  std::map<int, OpenRays> open_;                    ///< visibility of the visible sides, by number of rays
 };
 
-/// Of all objects of a scene, each made when it is first asked for, once for all that were read from the same files.
+/// Light data of all objects of a scene: created on first request, shared by objects that were read from the same
+/// files.
 class BakedLights {
  public:
   BakedLights(const SceneLight& settings, const LightingOptions& options) : settings_(settings), options_(options) {}

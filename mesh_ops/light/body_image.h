@@ -10,20 +10,20 @@
 
 namespace rebake {
 
-/// The piece of a cage with the most vertices.
+/// The connected component of a cage with the most vertices.
 ProxyMesh largest_piece(const Cage& whole);
 
-/// A smooth body around what an object shows, cut open and laid out as an image, and for each of its vertices the
-/// object's site that stands for it.
+/// A smooth proxy body around an object's opaque surface, cut open and parametrised as an image; and for each of its
+/// vertices the site of the object that represents it.
 struct BodyImage {
   ProxyMesh mesh;
   DiskChart chart;
   std::vector<std::uint32_t> sites;
 };
 
-/// A wrap around the opaque triangles, of this coarseness (as in wrap.h) or coarser until it is nearly one piece; of
-/// the sites the nearest one that faces the same way, as `facing` says what of each shows. Throws Error where there is
-/// nothing to wrap, and where the wrap cannot be laid out.
+/// Wraps the opaque triangles with this coarseness (see wrap.h), or coarser until the wrap is nearly one component.
+/// Each vertex is represented by the nearest site with the same orientation; `facing` gives the visible share of each
+/// side. Throws Error if nothing is opaque or the wrap cannot be parametrised.
 BodyImage body_image(const BakedObject& object, const std::vector<LightSite>& sites, const std::vector<float>& facing,
                      double coarseness, const Progress& progress = {});
 

@@ -6,23 +6,23 @@
 
 namespace rebake {
 
-/// What an effect of light changes, judged by places picked at random: no bound.
+/// Estimate (not a bound) of the change by a light effect, from randomly sampled places.
 struct ChangeEstimate {
-  /// `margin` times the largest change of a place looked at, in display colours, at most 1.
+  /// `margin` times the largest sampled change, in display colours, at most 1.
   double change = 0;
-  std::size_t places = 0;  ///< looked at
-  std::size_t of = 0;      ///< all
+  std::size_t places = 0;  ///< sampled
+  std::size_t of = 0;      ///< total number of places
 
   static constexpr double margin = 2;
   static constexpr double confidence = 0.99;
-  /// With that confidence at most this share of all places changes more than the largest one looked at: of a share p
-  /// none is met by n picks with probability (1 − p)ⁿ. 0 where all were looked at.
+  /// With this confidence, at most this share of all places changes more than the largest sampled change: n samples
+  /// miss a share p with probability (1 − p)ⁿ. 0 if all places were sampled.
   double share_beyond() const;
   /// "2048 of 9000 places were looked at: with 99 % confidence at most 0.22 % change more than half of that".
   std::string words() const;
 };
 
-/// `most` of the places that are not 0, picked at random but always the same (Floyd 1987); all where there are no more.
+/// Up to `most` of the non-zero places, sampled with a fixed seed (Floyd 1987); all of them if there are fewer.
 std::vector<std::size_t> picked_places(const std::vector<std::uint8_t>& places, std::size_t most);
 
 }  // namespace rebake

@@ -7,9 +7,9 @@
 
 namespace rebake {
 
-/// Surfaces that may be of one material: a number for each linear colour, the same for colours of much the same
-/// chromaticity, so wide that a warm sun and a blue sky do not tell lit from shaded ones. The most common chromaticity
-/// takes what is near it and is 0, then the most common of the rest.
+/// Clusters linear colours by chromaticity, as candidates for one material. Returns a cluster number per colour.
+/// Clusters are wide enough that a warm sun and a blue sky do not separate lit from shaded points. Cluster 0 is around
+/// the most common chromaticity, cluster 1 around the most common of the rest, and so on.
 std::vector<std::uint32_t> chromaticity_clusters(const std::vector<Radiance>& colors);
 
 }  // namespace rebake

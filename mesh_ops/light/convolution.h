@@ -2,28 +2,28 @@
 
 #include <cstddef>
 
-// Convolutions of a small network over planes of floats. Plain arrays: this crosses into a file that is compiled for
-// newer processors too, which must share no inline function with any other. Every implementation gives the same bits.
+// Convolutions of a small network over planes of floats. Plain arrays only: the implementation is also compiled for
+// newer processors and must share no inline function with other files. All implementations give the same bits.
 
 namespace rebake {
 
 inline constexpr int convolution_lanes = 8;
 
-/// Planes with a border of zeros, one wide before and at least convolution_lanes wide behind each row.
+/// Planes with a zero border: one value before each row, at least convolution_lanes values after it.
 struct PlaneLayout {
-  std::size_t pitch, plane;  ///< floats a row and a plane, borders included
+  std::size_t pitch, plane;  ///< floats per row and per plane, with borders
 };
 
 struct Convolution {
-  int inputs, outputs;   ///< planes; outputs a multiple of convolution_lanes
-  int kernel;            ///< 1 or 3: its width
+  int inputs, outputs;   ///< numbers of planes; outputs is a multiple of convolution_lanes
+  int kernel;            ///< width: 1 or 3
   const float* weights;  ///< [output / lanes][input][row of the kernel][column][lane]
-  const float* bias;     ///< of each output
+  const float* bias;     ///< per output plane
 };
 
-/// Row `row` of the outputs from `block` · lanes on, of `width` (a multiple of lanes) columns: sums and bias, without
-/// any nonlinearity. `input` points to the first plane's first value inside its border; `result`: lanes rows of
-/// `width`.
+/// Computes row `row` of the output planes [block · lanes, block · lanes + lanes), `width` columns (a multiple of
+/// lanes): weighted sums plus bias, without a nonlinearity. `input` points to the first value of the first plane inside
+/// its border; `result` has lanes rows of `width` values.
 using ConvolveRow = void (*)(const Convolution& convolution, const float* input, PlaneLayout layout, int width, int row,
                              int block, float* result);
 

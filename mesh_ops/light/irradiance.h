@@ -12,28 +12,29 @@
 
 namespace rebake {
 
-/// What reaches a site on its two sides: [0] the one that the normal points to.
+/// Light on the two sides of a site; [0] is the side that the normal points to.
 struct SiteLight {
-  std::array<Radiance, 2> irradiance{Radiance(0, 0, 0), Radiance(0, 0, 0)};  ///< over π
-  std::array<float, 2> open{0, 0};   ///< cosine-weighted share of the half space that nothing hides
-  std::array<float, 2> sunny{0, 0};  ///< share of suns that nothing hides, by their irradiance
+  std::array<Radiance, 2> irradiance{Radiance(0, 0, 0), Radiance(0, 0, 0)};  ///< divided by π
+  std::array<float, 2> open{0, 0};   ///< cosine-weighted visibility of the half space, 0 … 1
+  std::array<float, 2> sunny{0, 0};  ///< visible share of the suns' irradiance, 0 … 1
 };
 
-/// By how much two sides are open: the share of the first in what shows, 1, ½ or 0. A side that is as good as closed,
-/// or a tenth as open as the other, does not show: the inside of what has one, but for cracks and a missing bottom.
+/// Share of the first side in the visible surface (1, ½ or 0), from the visibility of both sides. A side counts as
+/// hidden if it is nearly closed or a tenth as visible as the other: the inside of a body with cracks or without a
+/// bottom.
 double facing_by_openness(double first, double second);
 
-/// Which of the sites' rays an object lets through, as traced_light sends them: those over both half spaces, then those
-/// to each sun. A flag a ray.
+/// Visibility flags of rays from sites past one object, in the order of traced_light(): the rays over each half space,
+/// then those to each sun.
 class OpenRays {
  public:
   OpenRays(std::size_t sites, int rays, std::size_t suns);
-  /// Bytes.
+  /// Memory in bytes.
   static std::uint64_t memory_for(std::size_t sites, int rays, std::size_t suns);
   bool at(std::size_t site, std::size_t side, std::size_t ray) const {
     return (words_[word(site, side, ray)] >> ray % 64 & 1) != 0;
   }
-  /// Callable from many threads for different sides, whose words are their own.
+  /// Thread-safe for different sides, which own separate words.
   void set(std::size_t site, std::size_t side, std::size_t ray) {
     words_[word(site, side, ray)] |= std::uint64_t{1} << ray % 64;
   }
@@ -48,21 +49,21 @@ class OpenRays {
 };
 
 struct IrradianceOptions {
-  int rays = 256;  ///< over each half space; a quarter of that to each sun
-  /// Of the same sites, sides, rays and suns among what `around` does not hold.
+  int rays = 256;  ///< per half space; a quarter of it per sun
+  /// Visibility of the same rays past occluders that `around` does not contain.
   const OpenRays* known = nullptr;
-  OpenRays* found = nullptr;  ///< to be filled; of none yet
+  OpenRays* found = nullptr;  ///< receives the visibility; no flag may be set yet
 };
 
-/// Traced light at sites among `around`, with directions of their space turned by `to_light` into the light's. Many
-/// sites see it along the same lines, even_axes() of the light's space, cosine-weighted (3 to 4 % off at 64 rays over a
-/// smooth body): what turned with its light and with all that it sees gets the same, but for rays that pass borders by
-/// the rounding of floats. With fewer than 512 rays neighbours take others. Deterministic. `wanted`: of each site 1 for
-/// the first side, 2 for the other, 3 for both; empty: both of all.
+/// Traces light at sites among `around`; `to_light` rotates directions from their space into the light's. Sites share
+/// the directions even_axes() of the light's space, cosine-weighted (error of 3 to 4 % at 64 rays on a smooth body). So
+/// a scene that is rotated together with its light gets the same result, except for rays that pass edges within float
+/// rounding. With fewer than 512 rays, neighbouring sites use different direction sets. Deterministic. `wanted`: per
+/// site 1 for the first side, 2 for the second, 3 for both; empty for both sides of all sites.
 std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
                                     const SceneRays& around, const Light& light, const Mat3& to_light,
                                     const IrradianceOptions& options, const Progress& progress = {});
-/// The suns' part of that alone, `rays` to each; nothing of `open`.
+/// The suns' part only, with `rays` rays per sun; `open` stays 0.
 std::vector<SiteLight> traced_suns(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted,
                                    const SceneRays& around, const Light& light, const Mat3& to_light, int rays,
                                    const Progress& progress = {});

@@ -13,36 +13,36 @@
 
 namespace rebake {
 
-/// traced_light(), from where such results are kept if it is there; rounded to floats where they are. `results` may be
-/// null. `first_lets_through`, where it is there, is asked when something must be traced: kept_open_rays() of the first
-/// occluder, the same sites, sides, suns and rays, with `to_light` the identity. The first occluder is not asked then.
+/// traced_light() through the cache `results`, which may be null; cached results are rounded to floats.
+/// `first_lets_through`, if given, is called on a cache miss and returns kept_open_rays() of the first occluder for the
+/// same sites, sides, suns and rays, with `to_light` the identity; the first occluder is not traced then.
 std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
                                   const std::vector<Occluder>& occluders, const Light& light, const Mat3& to_light,
                                   int rays, Results* results, const Progress& progress,
                                   const std::function<const OpenRays&()>& first_lets_through = {});
 
-/// The rays that an occluder lets through, likewise kept; suns stand in the sites' space.
+/// Visibility of rays past an occluder, cached; suns are in the sites' space.
 OpenRays kept_open_rays(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
                         const Occluder& occluder, const std::vector<Sun>& suns, int rays, Results* results,
                         const Progress& progress);
 
-/// Transfer of what each site shows, by the share of its first side in that.
+/// Transfer of the visible surface of each site; `facing` is the share of its first side, 0 … 1.
 std::vector<sh::Coefficients> shown_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,
                                              const SceneRays& around, int rays, const Progress& progress = {});
-/// The same, likewise kept.
+/// The same, cached.
 std::vector<sh::Coefficients> kept_transfer(const std::vector<LightSite>& sites, const std::vector<float>& facing,
                                             const std::vector<Occluder>& occluders, int rays, Results* results,
                                             const Progress& progress);
 
-/// Charts of all texture sets, with nodes `spacing` texels apart, wider where there would be more than `most_nodes`.
+/// Charts of all texture sets, with nodes `spacing` texels apart, or farther to stay within `most_nodes`.
 std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& object, double spacing,
                                                             std::size_t most_nodes);
 
-/// The light that an object stood in as it was baked, likewise kept.
+/// estimated_light() of an object, cached.
 LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t most_nodes, Results* results,
                             const Progress& progress);
 
-/// found_gloss() among a body, likewise kept.
+/// found_gloss() with the occluder `body`, cached.
 GlossFit kept_gloss(const BakedObject& object, const std::vector<std::shared_ptr<const LightChart>>& charts,
                     const LightSites& sites, const std::vector<float>& facing, const std::vector<Radiance>& colors,
                     const Light& light, const std::vector<SiteLight>& baked, const Occluder& body, Results* results);

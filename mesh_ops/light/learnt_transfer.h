@@ -10,65 +10,65 @@
 
 namespace rebake {
 
-/// How transfer is predicted from a pose. All but `linear` predict what transfer is in frames that turn with the
-/// surface, so that they need not learn to turn.
+/// Method of predicting transfer from a pose. All but `linear` predict transfer in frames that rotate with the surface,
+/// so that rotation need not be learnt.
 enum class TransferWay {
   linear,         ///< coefficients in the body's space are linear in the pose (as in precomputed transfer for morphable
                   ///< models, MoMoPRT)
-  turned_linear,  ///< what turning leaves over is linear in the pose
-  turned_kernel   ///< that, and a Gaussian kernel for what is not linear
+  turned_linear,  ///< coefficients in rotated frames are linear in the pose
+  turned_kernel   ///< the same plus Gaussian kernels for the nonlinear remainder
 };
 
-/// Traced poses of one body, as models are learnt from. All hold the same sites in the same order.
+/// Training set: traced poses of one body, with the same sites in the same order.
 struct TransferTraining {
-  std::vector<std::uint32_t> probes;            ///< sites by whose places poses are told apart
-  std::vector<Vec3> rest_probes;                ///< their places at rest
-  std::vector<std::vector<Vec3>> posed_probes;  ///< their places in each pose
-  Eigen::MatrixXf local;                        ///< a pose a row: 16 coefficients a site, in frames that turn along
-  Eigen::MatrixXf plain;                        ///< the same in the body's space; empty where nobody wants it
-  double seconds = 0;                           ///< that tracing took
+  std::vector<std::uint32_t> probes;            ///< sites whose positions identify a pose
+  std::vector<Vec3> rest_probes;                ///< probe positions at rest
+  std::vector<std::vector<Vec3>> posed_probes;  ///< probe positions per pose
+  Eigen::MatrixXf local;                        ///< row per pose: 16 coefficients per site, in rotated frames
+  Eigen::MatrixXf plain;                        ///< the same in the body's space; empty unless requested
+  double seconds = 0;                           ///< tracing time
 
-  /// Which frames are kept: TransferWay::linear needs both.
+  /// Frames to store: TransferWay::linear needs both.
   enum class Frames { turned, both };
   TransferTraining(const std::vector<Vec3>& rest, std::size_t poses, Frames frames, std::size_t probe_count = 48);
-  /// Fills in the pose `k`: places, turns since rest and transfer of each site.
+  /// Sets pose `k`: position, rotation since rest and transfer of each site.
   void set(std::size_t k, const std::vector<Vec3>& places, const std::vector<Mat3>& turns,
            const std::vector<sh::Coefficients>& transfer);
   std::vector<Vec3> probes_in(const std::vector<Vec3>& places) const;
 };
 
-/// Transfer of a body as a function of its pose.
+/// A trained model of a body's transfer as a function of its pose.
 class LearntTransfer {
  public:
   struct Options {
     TransferWay way = TransferWay::turned_kernel;
-    int rank = 48;  ///< principal components that are kept of coefficients
+    int rank = 48;  ///< number of principal components of coefficients
   };
-  /// Principal components over the poses; their weights by ridge regression, what is chosen by an eighth of the poses
-  /// that is held back. Throws Error for fewer than 8 poses.
+  /// Principal components over the poses, with weights by ridge regression; an eighth of the poses is held out to
+  /// select the regularisation. Throws Error for fewer than 8 poses.
   static LearntTransfer learnt(const TransferTraining& training, const Options& options, const Progress& progress = {});
 
-  /// Coefficients of each site, 16 after each other: in turned frames, or with `linear` in the body's space.
+  /// 16 coefficients per site: in rotated frames, or with `linear` in the body's space.
   Eigen::VectorXf predict(const PoseSpace::Place& place) const;
   std::vector<Vec3> probes_in(const std::vector<Vec3>& places) const;
   std::size_t site_count() const { return static_cast<std::size_t>(mean.size()) / sh::count; }
-  /// PoseSpace::Place::range up to which it is better than turning alone, by `rebake study transfer`.
+  /// PoseSpace::Place::range up to which the model beats rotation alone (`rebake study transfer`).
   static constexpr double trusted_range = 2;
-  /// Bytes of what prediction needs.
+  /// Memory of the model in bytes.
   std::uint64_t memory() const;
 
-  // As files hold it:
+  // Stored in files:
   TransferWay way = TransferWay::turned_kernel;
   std::vector<std::uint32_t> probes;
   PoseSpace space;
-  Eigen::VectorXf mean;        ///< 16 a site
-  Eigen::MatrixXf components;  ///< a component a column
-  Eigen::MatrixXd linear;      ///< weights: a component a row; 1 and the pose's coordinates
-  Eigen::MatrixXd centers;     ///< a kernel a column; empty without
-  Eigen::MatrixXd kernel;      ///< weights: a component a row, a kernel a column
-  double width = 1;            ///< of the kernels, in coordinates
-  double held_back_error = 0;  ///< relative, of the poses held back
-  double seconds = 0;          ///< of learning, without tracing
+  Eigen::VectorXf mean;        ///< 16 per site
+  Eigen::MatrixXf components;  ///< column per component
+  Eigen::MatrixXd linear;      ///< weights, row per component: constant and the pose's coordinates
+  Eigen::MatrixXd centers;     ///< column per kernel; empty without kernels
+  Eigen::MatrixXd kernel;      ///< weights: row per component, column per kernel
+  double width = 1;            ///< kernel width, in pose coordinates
+  double held_back_error = 0;  ///< relative error on the held-out poses
+  double seconds = 0;          ///< training time, without tracing
 };
 
 }  // namespace rebake

@@ -8,19 +8,19 @@
 
 namespace rebake {
 
-/// A coarse grid of light over a texture set: each patch of texels has its own nodes, so that light interpolated
-/// between nodes of one never takes any of another.
+/// A coarse grid of light nodes over a texture set. Each patch of texels has its own nodes, so light is never
+/// interpolated across patches.
 struct LightChart {
-  Soup::Uvs uvs;                        ///< that it was made of
-  int width = 0, height = 0;            ///< of the texture whose texels are the nodes
-  std::vector<Eigen::Vector2f> places;  ///< of each vertex in it, in texels, y down; nodes lie at whole numbers + ½
+  Soup::Uvs uvs;                        ///< the UVs it was made from
+  int width = 0, height = 0;            ///< of the grid, in nodes
+  std::vector<Eigen::Vector2f> places;  ///< per vertex: position in the grid, y down; nodes are at integers + ½
 
-  /// A node that opaque texels take light from: a point of a triangle.
+  /// A node that opaque texels use: a point of a triangle.
   struct Node {
     std::uint32_t texel;  ///< y · width + x
-    std::uint32_t face;   ///< of the set
+    std::uint32_t face;   ///< face of the set
     Eigen::Vector3f weights;
-    std::uint32_t patch = 0;  ///< number of its patch: texels beside each other may be of different ones
+    std::uint32_t patch = 0;  ///< patch number; adjacent texels may belong to different patches
   };
   std::vector<Node> nodes;
 

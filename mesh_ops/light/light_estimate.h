@@ -8,23 +8,23 @@
 namespace rebake {
 
 struct EstimateOptions {
-  std::size_t sites = 3000;  ///< looked at
-  int rays = 256;            ///< from each, over each half space
-  int lobes = 96;            ///< of the sky
-  bool sun = true;           ///< looks for one
+  std::size_t sites = 3000;  ///< number of sampled sites
+  int rays = 256;            ///< rays per site and half space
+  int lobes = 96;            ///< number of lobes of the sky
+  bool sun = true;           ///< whether to search for a sun
 };
 
-/// The light that an object was baked in, as far as its colours tell. Scale and tint are those of albedos of ½ on the
-/// whole: they cancel where colours are changed by it.
+/// Estimate of the light that an object was baked in. Scale and tint assume a mean albedo of ½; they cancel when
+/// colours are corrected.
 struct LightEstimate {
   Light light;
-  /// Share of the colours' variance within surfaces of one chromaticity that it explains, 0 … 1.
+  /// Explained share of the variance of colours within clusters of one chromaticity, 0 … 1.
   double confidence = 0;
-  bool sun = false;  ///< one was found
+  bool sun = false;  ///< whether a sun was found
 };
 
-/// Non-negative lobes, what hides them, and a sun where there is one, fitted to linear colours of sites (one each) by
-/// robust least squares; albedos are one a cluster of chromaticities, in turn with the light. Deterministic.
+/// Fits non-negative lobes, their visibility past `body`, and a sun to the linear `colors` of sites, by robust least
+/// squares that alternates between the light and one albedo per chromaticity cluster. Deterministic.
 LightEstimate estimated_light(const LightSites& sites, const std::vector<Radiance>& colors, const SceneRays& body,
                               const EstimateOptions& options = {}, const Progress& progress = {});
 

@@ -10,58 +10,58 @@
 
 namespace rebake {
 
-/// One object of a scene whose colours light may change: what its own edits and others may take from its light, and the
-/// change itself. What that needs is made when it is first asked for.
+/// One object of a scene as receiver of light: bounds and estimates of the effects of its own edits and of other
+/// objects, and the correction of its colours. Data is prepared on first use.
 class LightReceiver {
  public:
-  /// All of these must outlive it.
+  /// All references must outlive this object.
   LightReceiver(const std::vector<PlacedNode>& objects, std::size_t own, const SceneLight& settings,
                 const LightingOptions& options, BakedLights& known);
 
   const std::string& name() const { return placed().node->name; }
-  /// Whether triangles moved against their object, or were joined with others'.
+  /// Whether triangles moved relative to their object, or were merged with those of others.
   bool moved() const { return moved_; }
-  /// Whether some of what it was baked with is gone.
+  /// Whether parts that it was baked with have been removed.
   bool missing() const { return missing_; }
-  /// Whether another object is part of the same body, still in one piece with it.
+  /// Whether another object belongs to the same body and has not moved relative to this one.
   bool related(std::size_t other) const;
 
-  /// Another light than its own; `to_light` turns the world's directions into the light's.
+  /// A light shared by objects; `to_light` rotates world directions into the light's space.
   struct Shared {
-    const Light* light = nullptr;  ///< null: each object stands in its own
+    const Light* light = nullptr;  ///< null: each object uses its own light
     Mat3 to_light = Mat3::Identity();
   };
 
-  /// An upper bound of what another object takes from this one's light, in display colours. A sun counts where a ray to
-  /// it may meet the other's bounding sphere.
+  /// Upper bound of the shadow of another object on this one, in display colours. A sun counts if a ray to it may meet
+  /// the other's bounding sphere.
   double cast_bound(std::size_t other, const Shared& shared, const Progress& progress);
-  /// About what an effect changes, by 2048 sites, 64 rays each.
+  /// Estimated change by an effect, from 2048 sites with 64 rays each.
   ChangeEstimate sampled_change(bool self, bool removed, const Progress& progress);
-  /// What it mirrors of a light that its triangles have turned in; null where it does not, and where it was joined of
-  /// others or stands in another light than its own.
+  /// Specular fit if triangles have rotated; null if nothing is reflected, if the object was merged from others, or if
+  /// it uses a light other than its own.
   std::shared_ptr<const GlossFit> gloss(const Shared& shared, const Progress& progress);
-  /// Why that is null.
+  /// The reason why gloss() is null.
   std::string why_matte(const Shared& shared) const;
-  /// About what turning changes of that, by 2048 sites, each seen from 24 sides.
+  /// Estimated change of the reflection by rotation, from 2048 sites with 24 view directions each.
   ChangeEstimate mirrored_change(const GlossFit& fit) const;
-  /// Irradiance over π of its sites, as baked and under what runs, and their colours.
+  /// Irradiance (divided by π) of the sites as baked and with the running effects, and their colours.
   struct Change {
     std::vector<Radiance> before, after, colors;
     std::optional<Mirrors> mirrors;
   };
-  /// `gloss`: null where highlights stay as they were baked.
+  /// `gloss`: null if highlights stay as baked.
   Change change(bool self, bool removed, const std::vector<std::size_t>& casters, const Shared& shared,
                 const std::shared_ptr<const GlossFit>& gloss, const Progress& progress);
-  /// What that does to colours, a map a texture set; null where nothing changes.
+  /// The correction of colours, a map per texture set; null entries change nothing.
   std::vector<std::shared_ptr<const LightMap>> maps(const Change& change) const;
-  /// The same, to go along with triangles that move on; null where it cannot.
+  /// The correction in a form that follows dragged triangles; null if not possible.
   std::shared_ptr<const TurnedLight> turned(const Change& change, const std::vector<std::size_t>& casters,
                                             const Shared& shared, const Progress& progress) const;
 
-  /// What it was baked in: found or given. Throws EditError for a node that is flattened.
+  /// The light it was baked in, estimated or given. Throws EditError for a node with a singular transform.
   std::shared_ptr<const Light> light(const Progress& progress);
   double confidence() const { return baked_->confidence; }
-  /// Turns its light's directions into the world's.
+  /// Rotation from its light's space to the world.
   Mat3 turn() const;
 
  private:
@@ -73,7 +73,7 @@ class LightReceiver {
   bool in_world() const;
   Mat3 to_own_light() const;
   void prepare(const Progress& progress);
-  /// Sites in the space that light is traced in.
+  /// Sites in the space of tracing.
   const std::vector<LightSite>& now() const;
   Radiance shown(std::size_t i, const std::vector<SiteLight>& lit) const;
   Occluder occluder(std::size_t k) const;
@@ -90,10 +90,10 @@ class LightReceiver {
   std::vector<std::size_t> relatives_;
   bool moved_ = false, missing_ = false;
   BakedLights& known_;
-  // Made by prepare():
+  // Set by prepare():
   std::shared_ptr<BakedLight> baked_;
-  std::vector<std::shared_ptr<const LightChart>> charts_;  ///< of its own arrays
-  std::vector<LightSite> in_world_;                        ///< the sites, where the node is sheared
+  std::vector<std::shared_ptr<const LightChart>> charts_;  ///< charts of its own arrays
+  std::vector<LightSite> in_world_;                        ///< sites in world space, for sheared nodes
 };
 
 }  // namespace rebake

@@ -9,21 +9,21 @@
 
 namespace rebake {
 
-/// A point of a surface that light falls on, as it was when the light was baked or as it is.
+/// A surface point that receives light, as baked or as edited.
 struct LightSite {
   Vec3 position;
-  Vec3 normal;                   ///< of length 1 and smooth over the surface; zero where there is no area
-  Vec3 tangent;                  ///< of length 1, across the normal; goes with the surface when that is bent
-  std::array<double, 2> offset;  ///< how far above it rays start, to its two sides: [0] where the normal points
+  Vec3 normal;                   ///< unit and smooth over the surface; zero for triangles without area
+  Vec3 tangent;                  ///< unit, perpendicular to the normal; follows the surface when it is bent
+  std::array<double, 2> offset;  ///< distance above the surface at which rays start, per side; [0]: side of the normal
 };
 
-/// The points of an object's light charts, set by set, node by node.
+/// Sites at all nodes of an object's light charts, in the order of texture sets and nodes.
 struct LightSites {
-  std::vector<std::size_t> first;   ///< of each set, and the end
-  std::vector<std::uint32_t> body;  ///< number of each site's body
-  std::vector<std::uint32_t> part;  ///< of its part that hangs together (Components)
-  std::vector<LightSite> baked;     ///< in its body's own space
-  std::vector<LightSite> now;       ///< in the object's space
+  std::vector<std::size_t> first;   ///< first site of each texture set, and the total
+  std::vector<std::uint32_t> body;  ///< per site: body number
+  std::vector<std::uint32_t> part;  ///< per site: connected component (Components)
+  std::vector<LightSite> baked;     ///< per site: as baked, in the body's space
+  std::vector<LightSite> now;       ///< per site: as edited, in object space
   std::size_t size() const { return now.size(); }
 };
 LightSites light_sites(const BakedObject& object, const std::vector<std::shared_ptr<const LightChart>>& charts);

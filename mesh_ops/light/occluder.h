@@ -9,18 +9,18 @@
 
 namespace rebake {
 
-/// Something that shades: an object, and where it stands in the space that light is traced in.
+/// An occluding object, and its placement in the space of tracing.
 struct Occluder {
   std::shared_ptr<const BakedObject> object;
   Affine to_frame;
 };
 
-/// Rays among them. What lies much farther than most of an object, such as a backdrop, shades nothing: it is what
-/// shines.
+/// A ray tracer over the occluders. Triangles much farther away than most of their object, such as a backdrop, do not
+/// occlude: they are light sources.
 SceneRays rays_among(const std::vector<Occluder>& occluders);
 
-/// A hash of an object's triangles and all their texels: of what shades, and of what colours follow from. Like how far
-/// an object shades, it is known as long as its arrays live.
+/// Hash of an object's triangles and texels, which determine its occlusion and its colours. Cached as long as its
+/// arrays live.
 std::uint64_t surface_hash(const BakedObject& object);
 
 }  // namespace rebake

@@ -8,35 +8,35 @@
 
 namespace rebake {
 
-/// The poses that a body takes, as coordinates: displacements of a few of its points that lie far apart, along their
-/// principal axes over the poses that were seen, in standard deviations. Whatever moves the body (a cage, a bend, both)
-/// has a place in it, so that a model learnt in it can tell whether it was made for that.
+/// A coordinate system of poses: displacements of a few well-spread points (probes), projected onto their principal
+/// components over the training poses, in standard deviations. It covers any deformation (cages, bends), so a model can
+/// tell whether a pose lies within its training range.
 class PoseSpace {
  public:
-  /// The points' numbers among `rest`, at most `probes` of them, by farthest-point sampling.
+  /// Indices of at most `probes` points of `rest`, by farthest-point sampling.
   static std::vector<std::uint32_t> probes_of(const std::vector<Vec3>& rest, std::size_t probes);
 
   PoseSpace() = default;
-  /// `rest` and each of `poses`: where the probes are.
+  /// Probe positions at rest and in each training pose.
   PoseSpace(std::vector<Vec3> rest, const std::vector<std::vector<Vec3>>& poses);
 
   struct Place {
     Eigen::VectorXd coordinates;
-    /// How far out: up to 1 within what was seen, by the distance from the mean pose and by what the axes leave over
-    /// (a twentieth of the largest displacement is allowed).
+    /// Up to 1 within the training range, by the distance from the mean pose and by the residual of the projection (a
+    /// twentieth of the largest displacement is allowed).
     double range;
   };
   Place place(const std::vector<Vec3>& probes) const;
   Eigen::Index dimensions() const { return axes.rows(); }
 
-  // As files hold it:
+  // Stored in files:
   std::vector<Vec3> rest;
-  double size = 1;             ///< of the body, that displacements are measured in
-  Eigen::VectorXd mean;        ///< of displacements, three a probe
-  Eigen::MatrixXd axes;        ///< rows of length 1 over standard deviation
-  Eigen::VectorXd deviations;  ///< along each axis
-  double farthest = 1;         ///< largest distance of a pose that was seen, in coordinates
-  double largest = 1;          ///< largest displacement from the mean, in sizes
+  double size = 1;             ///< size of the body, the unit of displacements
+  Eigen::VectorXd mean;        ///< mean displacements, three per probe
+  Eigen::MatrixXd axes;        ///< rows: unit principal components divided by their standard deviation
+  Eigen::VectorXd deviations;  ///< standard deviation per component
+  double farthest = 1;         ///< largest distance of a training pose, in coordinates
+  double largest = 1;          ///< largest displacement from the mean, in units of `size`
 
  private:
   Eigen::VectorXd displacement(const std::vector<Vec3>& probes) const;

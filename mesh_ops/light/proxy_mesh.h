@@ -7,7 +7,7 @@
 
 namespace rebake {
 
-/// A smooth mesh that stands for what an object's triangles show, its vertices the points whose transfer is learnt.
+/// A smooth mesh that represents an object's visible surface; models learn the transfer at its vertices.
 struct ProxyMesh {
   std::vector<Vec3> vertices;
   std::vector<Face> faces;
@@ -15,15 +15,15 @@ struct ProxyMesh {
 
 Box bounds(const ProxyMesh& mesh);
 
-/// How the surface around each vertex turned from one pose to another of the same faces: the rotation in the mean of
-/// its triangles' motions, weighted by area.
+/// Rotation of the surface around each vertex between two poses with the same faces: the rotation of the area-weighted
+/// mean of the motions of its triangles.
 std::vector<Mat3> vertex_turns(const ProxyMesh& rest, const ProxyMesh& posed);
 
-/// The vertices as points that light falls on, with smooth normals; tangents turn with the surface. Rays start one mesh
-/// cell above it, as that is where a mesh stands for a smooth surface.
+/// Sites at the vertices, with smooth normals; tangents rotate with the surface. Rays start one mesh cell above it,
+/// where a mesh represents a smooth surface.
 std::vector<LightSite> vertex_sites(const ProxyMesh& rest, const ProxyMesh& posed, const std::vector<Mat3>& turns);
 
-/// The mesh as an object that lets no ray through.
+/// The mesh as an opaque object.
 std::shared_ptr<const BakedObject> solid_object(const ProxyMesh& mesh);
 
 }  // namespace rebake

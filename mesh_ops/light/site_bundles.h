@@ -12,36 +12,36 @@
 
 namespace rebake {
 
-/// Rays from sides of sites, of which many take the same directions.
+/// Rays from sides of sites that share directions.
 class SiteBundles {
  public:
   struct Side {
     std::uint32_t site;
     std::uint8_t side;
-    Vec3 normal;  ///< outwards
+    Vec3 normal;  ///< unit, outwards
   };
-  /// `wanted`: of each site 1 for the first side, 2 for the other, 3 for both; empty: both of all. Sites without a
-  /// normal have none. Sites take turns in so many `sets`, whose directions may differ: what directions are off by is
-  /// the same for all of a part where they are the same. `around` must outlive it.
+  /// `wanted`: per site 1 for the first side, 2 for the second, 3 for both; empty for both sides of all sites. Sites
+  /// without a normal are skipped. Sites alternate between `sets` direction sets, so that the sampling error is not
+  /// constant over a surface. `around` must outlive this object.
   SiteBundles(std::span<const LightSite> sites, std::span<const std::uint8_t> wanted, const SceneRays& around,
               std::size_t sets = 1);
 
   std::size_t sets() const { return first_.size() - 1; }
-  /// Set by set.
+  /// Grouped by set.
   const std::vector<Side>& sides() const { return sides_; }
   enum class Ways {
-    outwards,  ///< along a direction or against it, as leads away from the surface
-    forward,   ///< along a direction, where that leads away from the surface
+    outwards,  ///< along the direction or its opposite, whichever leads away from the surface
+    forward,   ///< along the direction, only if it leads away from the surface
   };
-  /// Whether a ray may pass, as far as is known; null: any may.
+  /// Known visibility: whether a ray may be unoccluded. Null: all may.
   using MayPass = std::function<bool(std::size_t side, std::size_t ray)>;
-  /// `passes`: of `count` rays from number `first` on, a bit each; those that nothing hides.
+  /// `passes`: bits of the unoccluded rays among the `count` rays from index `first`.
   struct Batch {
     std::size_t first, count;
     std::uint64_t passes;
   };
-  /// Visits every side of a set once for each batch of rays, batch by batch in their order, many sides at once; `what`
-  /// is being done, from one share of it to another.
+  /// Visits every side of a set once per batch of rays, in the order of batches, sides in parallel. Reports progress as
+  /// `what`, from the share `from` to `to`.
   void send(std::size_t set, std::span<const Vec3> directions, Ways ways, const MayPass& may_pass,
             const Progress& progress, std::string_view what, double from, double to,
             const std::function<void(std::size_t side, const Batch& batch)>& visit) const;
@@ -49,7 +49,7 @@ class SiteBundles {
  private:
   static std::vector<Vec3> starts_of(std::span<const LightSite> sites, const std::vector<Side>& sides);
 
-  std::vector<std::size_t> first_;  ///< of each set's sides, and the end
+  std::vector<std::size_t> first_;  ///< first side of each set, and the total
   std::vector<Side> sides_;
   ParallelRays rays_;
 };

@@ -16,7 +16,7 @@
 
 namespace rebake {
 
-/// A point of the unit disk; raised to the half sphere it is a direction, cosine-weighted over all of them.
+/// A point of the unit disk. Projected onto the half sphere, even points are cosine-weighted directions.
 struct DiskPoint {
   double x, y;
 };
@@ -32,12 +32,12 @@ inline std::vector<DiskPoint> disk_points(int count) {
   return points;
 }
 
-/// The angle by which a site, or a set of them, turns its points: each its own, so that errors of neighbours differ.
+/// Rotation angle of the sample points of a site or set, pseudo-random, so that errors of neighbours differ.
 inline double own_angle(std::size_t number) {
   return 2 * std::numbers::pi * static_cast<double>(mixed(number, 0x51, 7) >> 11) * 0x1p-53;
 }
 
-/// Directions over a side of a site, going with its tangent.
+/// Local frame over one side of a site, aligned with its tangent.
 class SiteFrame {
  public:
   SiteFrame(const LightSite& site, std::size_t number, bool back = false)
@@ -49,7 +49,7 @@ class SiteFrame {
         sine_(std::sin(own_angle(number))) {}
 
   const Vec3& normal() const { return normal_; }
-  /// Where rays start.
+  /// Origin of rays.
   const Vec3& from() const { return from_; }
   DiskPoint turned(const DiskPoint& p) const { return {cosine_ * p.x - sine_ * p.y, sine_ * p.x + cosine_ * p.y}; }
   Vec3 direction(const DiskPoint& point) const {
@@ -62,13 +62,13 @@ class SiteFrame {
   double cosine_, sine_;
 };
 
-/// Directions of a half sphere, evenly over all of it: a Fibonacci lattice (Hannay and Nye 2004) in general position to
-/// the axes, each `set` of them turned another way. With their opposites each half sphere has about as many.
+/// Even directions over a half sphere: a Fibonacci lattice (Hannay and Nye 2004) in general position to the axes,
+/// rotated differently for each `set`. Together with their opposites, every half sphere contains about `count`.
 inline std::vector<Vec3> even_axes(int count, std::size_t set = 0) {
   constexpr double golden = 0.6180339887498949;
   Eigen::Quaterniond turn = Eigen::Quaterniond(0.82, 0.31, -0.39, 0.28).normalized();
   if (set > 0) {
-    // Any rotation as likely as any other (Shoemake 1992).
+    // Uniform random rotation (Shoemake 1992).
     const auto share = [&](std::uint64_t part) { return static_cast<double>(mixed(set, 0x53, part) >> 11) * 0x1p-53; };
     const double u = share(0), a = 2 * std::numbers::pi * share(1), b = 2 * std::numbers::pi * share(2);
     turn = Eigen::Quaterniond(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a),
@@ -83,7 +83,7 @@ inline std::vector<Vec3> even_axes(int count, std::size_t set = 0) {
   return axes;
 }
 
-/// Calls visit(i) for every number below `count`, many at once; `what` is being done, from one share of it to another.
+/// Calls visit(i) for all i < count in parallel. Reports progress as `what`, from the share `from` to `to`.
 template <class Visit>
 void for_each_site(std::size_t count, const Progress& progress, std::string_view what, double from, double to,
                    Visit visit) {

@@ -10,25 +10,24 @@
 
 namespace rebake {
 
-/// Precomputed radiance transfer (Sloan, Kautz and Snyder 2002): of each site the clamped cosine over π where nothing
-/// hides the sky, as spherical harmonics. Its product with a sky's radiance is irradiance over π.
+/// Precomputed radiance transfer (Sloan, Kautz and Snyder 2002): per site the clamped cosine divided by π times the
+/// visibility of the sky, as spherical harmonics. Its dot product with a sky's radiance is irradiance / π.
 struct Transfer {
   std::vector<sh::Coefficients> sites;
-  /// Root mean square error over that of the coefficients, as half of the rays says of all. Half of a Fibonacci lattice
-  /// is less even than one of as many points: from 64 rays on it says 1 to 2.2 times what it is off by.
+  /// Relative root mean square error, estimated from half of the rays. Half of a Fibonacci lattice is less even than a
+  /// lattice of that size, so from 64 rays on this is 1 to 2.2 times the true error.
   double relative_error = 0;
 };
 
-/// Traced over the half space that each site's normal points to, with so many rays that are the same for all sites, as
-/// traced_light does; sites without a normal get 0.
+/// Traces the half space on the normal's side of each site with `rays` directions shared by all sites, as
+/// traced_light() does. Sites without a normal get 0.
 Transfer traced_transfer(std::span<const LightSite> sites, const SceneRays& around, int rays,
                          const Progress& progress = {});
 
-/// What becomes of a site's transfer when its surroundings turn with it: right where the part moved rigidly and nothing
-/// else hides anything from it.
+/// Transfer rotated with its surroundings: exact if the part moved rigidly and nothing else occludes it.
 Transfer turned_transfer(const Transfer& transfer, std::span<const Mat3> turns);
 
-/// Root mean square difference over the root mean square of `truth`; 0 where both are 0.
+/// Root mean square difference divided by the root mean square of `truth`; 0 if both are 0.
 double relative_difference(const std::vector<sh::Coefficients>& transfer, const std::vector<sh::Coefficients>& truth);
 
 }  // namespace rebake

@@ -11,48 +11,48 @@
 
 namespace rebake {
 
-/// What was learnt of one body's transfer: at some of its sites, the keys, from which the others take theirs.
+/// A trained model of one body's transfer at some of its sites, the keys; other sites interpolate the keys.
 struct TransferModel {
-  std::uint64_t body = 0;   ///< hash of what shades (surface_hash)
-  std::uint64_t sites = 0;  ///< how many it had
-  std::string poses_from;   ///< what moved it, for people
-  int poses = 0, rays = 0;  ///< that it was learnt from
+  std::uint64_t body = 0;   ///< surface_hash() of the body
+  std::uint64_t sites = 0;  ///< number of sites
+  std::string poses_from;   ///< the deforming edit, for people
+  int poses = 0, rays = 0;  ///< training poses, and rays per site
   double tracing_seconds = 0;
-  std::vector<std::uint32_t> keys;  ///< numbers of sites
-  std::vector<float> facing;        ///< of the keys, what showed (facing_of)
-  LearntTransfer learnt;            ///< of the keys: TransferWay::turned_linear; with a net its range is what counts
-  std::optional<UnetTransfer> net;  ///< then it is what predicts, its vertices are the keys
-  double net_error = 0;             ///< relative, of the poses held back
-  double turning_error = 0;         ///< of these, when only turned along; 0 where an older file does not tell
-  /// Relative, of the poses held back, by what predicts.
+  std::vector<std::uint32_t> keys;  ///< site indices
+  std::vector<float> facing;        ///< per key: facing_of()
+  LearntTransfer learnt;  ///< linear model of the keys (turned_linear); gives the trusted range also with a network
+  std::optional<UnetTransfer> net;  ///< predicts instead of `learnt`, if present; its vertices are the keys
+  double net_error = 0;             ///< relative error of the network on the held-out poses
+  double turning_error = 0;         ///< the same by rotation alone; 0 if an older file does not contain it
+  /// Relative error on the held-out poses.
   double error() const { return net ? net_error : learnt.held_back_error; }
 
-  /// Coefficients of each key in turned frames, 16 after each other, in a pose: where it lies among those learnt from,
-  /// and the sites of the keys there.
+  /// 16 coefficients per key in rotated frames. `place`: the pose in pose space; `keys_there`: the key sites in that
+  /// pose.
   Eigen::VectorXf predict(const PoseSpace::Place& place, const std::vector<LightSite>& keys_there) const;
 };
 
 struct TransferModelOptions {
   int poses = 200, rays = 128;
   std::size_t keys = 4096;
-  /// Deep transfer: a U-Net on an image of a wrap of this coarseness or coarser (body_image). It learns from seven
-  /// poses of eight.
+  /// Deep transfer: a U-Net on a geometry image of a wrap of this coarseness or coarser (body_image), trained on seven
+  /// of eight poses.
   std::optional<UnetTraining> net{};
   double coarseness = 0.03;
 };
-/// Learns from poses of the object that `start` is of, which must be as its light was baked. `pose(k)` moves its
-/// triangles, the same way for the same number. Throws Error for an object that edits moved already, for poses of other
-/// triangles, and where a net is wanted without LibTorch.
+/// Trains a model on poses of the object of `start`, which must be unedited. `pose(k)` returns the object in pose k,
+/// deterministically. Throws Error for an edited object, for poses with other triangles, and for a network without
+/// LibTorch.
 TransferModel learnt_model(const TurnedLight& start,
                            const std::function<std::shared_ptr<const BakedObject>(int k)>& pose,
                            const TransferModelOptions& options, const Progress& progress = {});
 
-/// As files and stores hold it: a line of JSON for people, then numbers, then a hash of all.
+/// Serialised form: a line of JSON for people, then numbers, then a hash over all.
 std::string bytes_of(const TransferModel& model);
-/// Throws Error, saying what is wrong.
+/// Parses the serialised form. Throws Error that states the fault.
 TransferModel transfer_model_of(std::string_view bytes);
 
-/// Where the model of a body is kept (Results).
+/// Cache key of a body's model (Results).
 std::string transfer_model_key(const BakedObject& body, std::size_t sites);
 
 }  // namespace rebake

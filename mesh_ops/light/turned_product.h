@@ -8,14 +8,14 @@
 
 namespace rebake {
 
-/// Radiance ready for products with transfer that is turned, without making the turn's matrices: each degree is a sum
-/// of zonal harmonics about directions that degrees share, and only those directions are turned (Nowrouzezahrai,
-/// Simari and Fiume 2012). Equal to sh::Rotation within 1e-14 of the product's size.
+/// Radiance in a form for dot products with rotated transfer that needs no rotation matrices: each degree is a sum of
+/// zonal harmonics about shared directions, and only these are rotated (Nowrouzezahrai, Simari and Fiume 2012). Equal
+/// to sh::Rotation within a relative error of 1e-14.
 class TurnedProduct {
  public:
-  /// Coefficients of red, green and blue.
+  /// `radiance`: coefficients of red, green and blue.
   explicit TurnedProduct(const std::array<sh::Coefficients, 3>& radiance);
-  /// (turn applied to transfer) · radiance, a channel; `turn` is a rotation.
+  /// (turn applied to transfer) · radiance, per channel; `turn` is a rotation.
   Radiance operator()(const Mat3& turn, const Eigen::Ref<const sh::Coefficients>& transfer) const;
 
  private:
@@ -23,9 +23,9 @@ class TurnedProduct {
   std::array<std::array<Radiance, sh::degrees>, directions> shares_{};  ///< [direction][degree]
 };
 
-/// The sky's radiance as coefficients, less what hides it sends back: its product with a transfer, and that `bounce`,
-/// is irradiance over π to order 4. Without suns, which are too sharp for that. `to_light` turns directions into the
-/// light's.
+/// Coefficients of the sky's radiance minus the radiance reflected by occluders: the dot product with a transfer, plus
+/// `bounce`, is irradiance / π to order 4. Without suns, which are too sharp for that. `to_light` rotates directions
+/// into the light's space.
 std::array<sh::Coefficients, 3> projected_sky(const Light& light, const Mat3& to_light);
 
 }  // namespace rebake

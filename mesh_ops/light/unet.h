@@ -8,13 +8,13 @@
 
 namespace rebake {
 
-/// A trained U-Net (unet_layers), batch normalisation folded into its convolutions.
+/// A trained U-Net (unet_layers) with batch normalisation folded into its convolutions.
 class Unet {
  public:
-  /// Throws std::invalid_argument for a side that is not a positive multiple of 64, or another number of weights.
+  /// Throws std::invalid_argument if `side` is not a positive multiple of 64 or the number of weights does not fit.
   Unet(int side, int channels, std::vector<float> weights);
 
-  /// [channel][row][column], 6 planes in, 16 out. The same bits on every processor.
+  /// Input 6 planes, output 16 planes, as [channel][row][column]. The same bits on every processor.
   std::vector<float> run(std::span<const float> image) const;
   int side() const { return side_; }
   int channels() const { return channels_; }
@@ -23,7 +23,7 @@ class Unet {
  private:
   struct Packed {
     UnetLayer layer;
-    std::vector<float> weights, bias;  ///< as Convolution wants them
+    std::vector<float> weights, bias;  ///< in the layout of Convolution
   };
   int side_, channels_;
   std::vector<float> weights_;

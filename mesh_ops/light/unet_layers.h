@@ -5,18 +5,17 @@
 
 namespace rebake {
 
-// A U-Net of residual blocks over square images (Ronneberger et al. 2015, He et al. 2016): three times halved, twice as
-// many channels each time.
+// A U-Net of residual blocks over square images (Ronneberger et al. 2015, He et al. 2016): three downsamplings by two,
+// each with twice as many channels.
 inline constexpr int unet_levels = 3, unet_inputs = 6, unet_outputs = 16;
 
 /// One convolution.
 struct UnetLayer {
   int inputs, outputs, kernel, stride;
 };
-/// In the order in which they are applied. Throws std::invalid_argument for channels that are not a positive multiple
-/// of 8.
+/// The layers in order of application. Throws std::invalid_argument if `channels` is not a positive multiple of 8.
 std::vector<UnetLayer> unet_layers(int channels);
-/// Floats of all layers: of each its weights [output][input][row][column], then its biases.
+/// Number of floats of all layers: per layer the weights [output][input][row][column], then the biases.
 std::size_t unet_weight_count(int channels);
 
 }  // namespace rebake

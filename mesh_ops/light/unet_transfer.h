@@ -6,12 +6,12 @@
 
 namespace rebake {
 
-/// Deep precomputed radiance transfer: a U-Net takes a geometry image of the pose, positions and normals, and gives
-/// what turning leaves over of each texel's transfer. Unlike the published method, which predicts coefficients in the
-/// body's space: a turned frame need not be learnt.
+/// Deep precomputed radiance transfer: a U-Net maps a geometry image of the pose (positions and normals) to each
+/// texel's transfer in frames that rotate with the surface. The published method predicts coefficients in the body's
+/// space; in rotated frames the network need not learn the rotation.
 class UnetTransfer {
  public:
-  /// Learns from poses as they are added; throws Error where there is no LibTorch.
+  /// Training set that is filled pose by pose. learnt() throws Error without LibTorch.
   class Training {
    public:
     Training(ProxyMesh rest, GeometryImage image);
@@ -23,31 +23,31 @@ class UnetTransfer {
     ProxyMesh rest_;
     GeometryImage image_;
     std::vector<float> images_;  ///< [pose][plane][texel]
-    std::vector<float> local_;   ///< [pose][vertex][coefficient], in turned frames
+    std::vector<float> local_;   ///< [pose][vertex][coefficient], in rotated frames
     std::size_t poses_ = 0;
   };
 
-  /// All of it, as files hold it.
+  /// The complete state, as stored in files.
   struct State {
     DiskChart chart;
     int side = 64, channels = 8;
     std::vector<float> weights;
-    Box box;               ///< of the body at rest
-    Eigen::VectorXf mean;  ///< [vertex][coefficient]: where the image is coarse, the surface keeps that
-    float scale = 1;       ///< of departures from it
-    double seconds = 0;    ///< of learning, without tracing
+    Box box;               ///< bounds of the body at rest
+    Eigen::VectorXf mean;  ///< mean over the poses, [vertex][coefficient]
+    float scale = 1;       ///< scale of deviations from the mean
+    double seconds = 0;    ///< training time, without tracing
   };
-  /// Throws std::invalid_argument where numbers do not go together.
+  /// Throws std::invalid_argument for inconsistent sizes.
   explicit UnetTransfer(State state);
   const State& state() const { return state_; }
 
-  /// Coefficients of each vertex in turned frames, 16 after each other.
+  /// 16 coefficients per vertex, in rotated frames.
   Eigen::VectorXf predict(const std::vector<LightSite>& sites) const;
   std::uint64_t memory() const;
   double seconds() const { return state_.seconds; }
 
  private:
-  State state_;  ///< its weights are the net's
+  State state_;  ///< its weights equal those of net_
   GeometryImage image_;
   Unet net_;
 };
