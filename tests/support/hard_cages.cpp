@@ -18,7 +18,9 @@ Cage dented() {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> shift(-0.06, 0.06);
   for (Vec3& v : cage.vertices) {
-    v = v.normalized() * 0.4 + Vec3(shift(random), shift(random), shift(random));
+    // One after the other: compilers evaluate a call's arguments in different orders.
+    const double z = shift(random), y = shift(random), x = shift(random);
+    v = v.normalized() * 0.4 + Vec3(x, y, z);
     if (v.x() > 0.2) v.x() = 0.35 - v.x();
   }
   return checked_cage(cage);
