@@ -108,7 +108,7 @@ void describe_run(CommandDescription& command) {
                  "FOLDER");
   command.option("--out", options->out, "export there at the end, unless the script exports itself", "FOLDER");
   command.option("--list-files", options->files,
-                 "write there, one JSON object a line, what was read and written, with hashes of the contents", "FILE");
+                 "write a JSON line there per input read and per output written, with content hashes", "FILE");
   command.option("--protect", options->sources,
                  "write over none of the folders and files in this list: pairs of the scene that reads it (empty: all) "
                  "and its path, each ended by a zero byte",
