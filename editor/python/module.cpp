@@ -306,12 +306,19 @@ py::tuple wrap_triangles(const py::object& points, const py::object& faces, doub
 
 Relinked links_from(const py::dict& sources) {
   Relinked links;
+  const auto path_from = [](const py::handle& value) {
+    try {
+      return value.cast<std::filesystem::path>();
+    } catch (const py::cast_error&) {
+      throw FieldError("sources", "must map paths to paths, or to lists of paths");
+    }
+  };
   for (const auto& [from, to] : sources) {
-    const auto old = from.cast<std::filesystem::path>();
+    const std::filesystem::path old = path_from(from);
     if (py::isinstance<py::list>(to) || py::isinstance<py::tuple>(to))
-      for (const auto& one : to) links.emplace(old, one.cast<std::filesystem::path>());
+      for (const auto& one : to) links.emplace(old, path_from(one));
     else
-      links.emplace(old, to.cast<std::filesystem::path>());
+      links.emplace(old, path_from(to));
   }
   return links;
 }
@@ -508,10 +515,11 @@ PYBIND11_MODULE(rebake, module) {
     type.attr(name.c_str()) = edits.attr(name.c_str());
   }
 
-  module.def("open", &open_document, py::arg("path"), py::arg("axes") = "360", py::arg("progress") = py::none(),
-             py::arg("sources") = py::dict(),
-             "A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project; `sources` says "
-             "where folders of a project lie now that were moved.");
+  module.def(
+      "open", &open_document, py::arg("path"), py::arg("axes") = "360", py::arg("progress") = py::none(),
+      py::arg("sources") = py::dict(),
+      "Opens a MobileNeRF folder, a Rebake scene or a project. `sources` maps moved folders of a project to their "
+      "new paths.");
   module.def("recover", &recover_document, py::arg("journal"), py::arg("sources") = py::dict(),
              py::arg("progress") = py::none(),
              "The work that a journal kept; `sources` says where folders lie now that were moved. What cannot be got "

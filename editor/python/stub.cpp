@@ -93,8 +93,8 @@ class DeviceError(Error):
 
 def open(path: str | PathLike[str], axes: Literal["360", "forward"] = "360",
          progress: Progress | None = None, sources: dict[str, str | list[str]] = {}) -> Document:
-    """A document with what lies at a path: a MobileNeRF folder, a Rebake scene or a project (.rebake). `sources`: where
-    folders of a project lie now that were moved, old path to new."""
+    """Opens a MobileNeRF folder, a Rebake scene or a project (.rebake). `sources` maps moved folders of a project to
+    their new paths."""
 def recover(journal: str | PathLike[str], sources: dict[str, str | list[str]] = {},
             progress: Progress | None = None) -> Document:
     """The work that a journal kept; goes on writing it. `sources`: where moved ones lie now, old path to new."""

@@ -156,6 +156,8 @@ class Module(unittest.TestCase):
         self.assertEqual(len(opened.edits()), 1)
         with self.assertRaisesRegex(rebake.FieldError, "sources"):
             rebake.open(FICUS, sources={"a": "b"})
+        with self.assertRaisesRegex(rebake.FieldError, "must map paths"):
+            rebake.open(self.at / "p.rebake", sources={self.at / "scene": 7})
 
     def test_text_that_is_not_utf8_names_its_field(self):
         with self.assertRaisesRegex(rebake.FieldError, 'field "path".*UTF-8'):
