@@ -36,28 +36,28 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
-// Where the batch keeps what it knows of a scene: a mark when it is done, and what its process said.
+// Folder of the batch's own files: per scene a mark when it is done, and the log of its process.
 fs::path state_folder(const BatchOptions& options) { return options.out / ".rebake-batch"; }
 
-// What a result depends on, but for the files that the script itself names. A scene that was done under the same key
-// need not be done again.
+// Hash of the inputs of a result: version, program, script, scene and variables, but not files that the script names. A
+// scene that was done with the same key need not run again.
 std::string key_of(const BatchOptions& options, std::uint64_t program, std::uint64_t script, const fs::path& scene) {
   std::string all = fmt::format("{} {:016x} {:016x} {:016x}", REBAKE_VERSION, program, script, folder_hash(scene));
   for (const std::string& variable : options.variables) all += '\n' + variable;
   return hash_text(content_hash(all));
 }
 
-// What a scene's process read and wrote, and its key: the mark that it is done.
+// Mark that a scene is done: its key, and the files that its process read and wrote, with hashes of their contents.
 struct Mark {
   struct File {
     std::string path, content;
   };
   std::string key;
-  bool below_asked = false;  // an export missed the quality that the script asked for
+  bool below_asked = false;  // an export missed the PSNR that the script requires
   std::vector<File> read, wrote;
 };
 
-// One JSON object a line; what is none is left out.
+// Parses one JSON object per line; skips other lines.
 Mark mark_from(const std::string& text) {
   Mark mark;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -85,7 +85,7 @@ bool is_as_it_was(const Mark::File& file) {
   }
 }
 
-// Whether a scene was done under this key from files that are still the same, and all that it wrote is whole.
+// Whether the scene was done with this key, and all files that it read and wrote are unchanged.
 bool still_done(const Mark& mark, const std::string& key) {
   return mark.key == key && std::all_of(mark.read.begin(), mark.read.end(), is_as_it_was) &&
          std::all_of(mark.wrote.begin(), mark.wrote.end(), is_as_it_was);
@@ -96,12 +96,13 @@ void say_quality(BatchResult& result, bool below_asked) {
   if (below_asked) result.message = "an export missed the psnr that was asked for; the log says which object suffers";
 }
 
-// Says of every output whose it is, to all shards.
+// Ownership of outputs by scenes, across all shards: one file per output that is created exclusively and has the
+// scene's name.
 class Claims {
  public:
   explicit Claims(fs::path folder) : folder_(std::move(folder)) { fs::create_directories(folder_); }
 
-  // The scene that was written there too; empty where there is none.
+  // Claims an output for a scene. Returns the name of the scene that owns it already; empty if the claim succeeds.
   std::string claim(const std::string& output, const std::string& scene) const {
     const fs::path path = path_of(output);
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -126,7 +127,7 @@ class Claims {
   fs::path folder_;
 };
 
-// So that all processes together have a thread a core.
+// Threads per process, so that all processes together have one thread per core.
 int threads_of_each(int jobs) { return std::max(1, tbb::this_task_arena::max_concurrency() / jobs); }
 
 pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& log, const fs::path& files_list,
@@ -162,7 +163,7 @@ pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& 
   return process;
 }
 
-// Processes that are stopped and waited for when the batch ends early.
+// Running processes. The destructor interrupts them (SIGINT) and waits for them, for a batch that ends early.
 class Processes {
  public:
   struct Job {
@@ -179,7 +180,7 @@ class Processes {
   }
   std::size_t size() const { return jobs_.size(); }
   void add(pid_t process, Job job) { jobs_.emplace(process, std::move(job)); }
-  // The next that ends, with its status; nothing when a signal came in between.
+  // Waits until a process ends, and sets its `status`. Returns nothing if a signal interrupts the wait.
   std::optional<Job> wait(int& status) {
     const auto ended = jobs_.find(::waitpid(-1, &status, 0));
     if (ended == jobs_.end()) return std::nullopt;
@@ -192,7 +193,7 @@ class Processes {
   std::map<pid_t, Job> jobs_;
 };
 
-// The error that a process ended with, from what it said.
+// Error message of a failed process, from its log or its exit status.
 std::string last_error(const fs::path& log, int status) {
   std::string found;
   try {
@@ -201,7 +202,7 @@ std::string last_error(const fs::path& log, int status) {
     if (const std::size_t at = text.rfind(mark); at != std::string::npos)
       found = text.substr(at + mark.size(), text.find_last_not_of('\n') + 1 - at - mark.size());
   } catch (const FileError&) {
-    // Without its log the status has to do.
+    // There is no log: use the status only.
   }
   if (WIFSIGNALED(status))
     return fmt::format("crashed (signal {}){}{}", WTERMSIG(status), found.empty() ? "" : ": ", found);
@@ -225,7 +226,7 @@ ScenesByName matched_scenes(const BatchOptions& options) {
   for (const std::string& pattern : options.scenes) {
     std::vector<fs::path> found;
     if (std::error_code error; fs::exists(pattern, error)) {
-      found.emplace_back(pattern);  // a name may hold what means something in a pattern
+      found.emplace_back(pattern);  // the name of a scene may contain wildcard characters
     } else {
       glob_t matches{};
       if (::glob(pattern.c_str(), GLOB_BRACE | GLOB_TILDE, nullptr, &matches) == 0)
@@ -236,7 +237,7 @@ ScenesByName matched_scenes(const BatchOptions& options) {
     std::vector<fs::path> folders;
     for (fs::path& path : found) {
       if (!path.has_filename()) path = path.parent_path();
-      // Files beside the scenes, and the results among them, are not scenes.
+      // Skip files, and the output folder, which may be among the scenes.
       if (fs::is_directory(path) && fs::weakly_canonical(path) != out) folders.push_back(path);
     }
     for (const fs::path& folder : folders) {
@@ -257,7 +258,7 @@ ScenesByName matched_scenes(const BatchOptions& options) {
   return by_name;
 }
 
-// All scenes, and what the script reads for each of them.
+// See BatchScenes::guarded.
 std::vector<std::pair<std::string, fs::path>> guarded_by(const BatchOptions& options, const ScenesByName& scenes) {
   const std::string script = read_file(options.script);
   std::map<std::string, std::string> variables;
@@ -311,10 +312,10 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
   if (error) throw FileError(options.out, "cannot be made: " + error.message());
   Processes running;
   std::vector<BatchResult> results(scenes.size());
-  // No scene's script may write over another scene, or what another script reads.
+  // No script may overwrite another scene or an input of another script.
   std::string list;
   for (const auto& [reader, path] : guarded) list += reader + '\0' + path.string() + '\0';
-  // Of this batch alone: another one into the same folder has other scenes.
+  // A unique name, since another batch with the same output folder has other scenes.
   const fs::path sources =
       state_folder(options) / fmt::format("sources-{}-of-{}-{}", options.shard, options.shards, ::getpid());
   write_file_atomically(sources, list, {});
@@ -324,7 +325,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
   });
   const Claims claims(state_folder(options) / "claims");
   std::size_t next = 0, over = 0;
-  // Also where the wish to stop arrives.
+  // Also throws Cancelled on cancellation.
   const auto report = [&](std::size_t more) {
     over += more;
     progress.at(fmt::format("{} of {} scenes", over, scenes.size()),
@@ -351,7 +352,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
         } else {
           for (const Mark::File& output : before.wrote) claims.release(output.path, result.name);
           fs::remove(mark);
-          // Not what links of these names lead to.
+          // Remove these names first: if they are links, their targets must not be overwritten.
           for (const char* ending : {".log", ".files"}) fs::remove(state_folder(options) / (result.name + ending));
           running.add(start(options, scenes[k], state_folder(options) / (result.name + ".log"),
                             state_folder(options) / (result.name + ".files"), sources),
@@ -361,7 +362,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
       } catch (const FileError& why) {
         result.message = why.what();
       }
-      // Outside: what goes wrong with the report itself ends the batch, and is not the scene's failure.
+      // Outside the try block: an error of the report ends the batch and is not a failure of the scene.
       if (!started) finish(k);
     }
     if (running.size() == 0) continue;
@@ -374,7 +375,7 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
     const Processes::Job& job = *ended_job;
     BatchResult& result = results[job.scene];
     result.seconds = std::chrono::duration<double>(Clock::now() - job.since).count();
-    // 4: done, but below the quality that the script asked for.
+    // Exit code 4: done, but an export missed the PSNR that the script requires.
     const bool below = WIFEXITED(status) && WEXITSTATUS(status) == 4;
     if (below || (WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
       say_quality(result, below);

@@ -10,48 +10,55 @@
 
 namespace rebake {
 
-/// One script over many scenes, each in a process of its own, so that what fails or crashes harms no other.
+/// Options of a batch: one script over many scenes. Each scene has its own process, so that an error or crash affects
+/// no other scene.
 struct BatchOptions {
   std::filesystem::path script;
-  std::vector<std::string> scenes;     ///< folders, or patterns such as scenes/* (as of a shell, with {a,b})
+  std::vector<std::string> scenes;     ///< folders, or glob patterns such as scenes/*, with {a,b} and ~
   std::filesystem::path out;           ///< a scene's result goes to out/NAME, unless the script exports
   std::vector<std::string> variables;  ///< name=value, for the script
-  int jobs = 1;
-  bool resume = false;            ///< leave out what was done before with the same program, script, variables and
-                                  ///< files, and whose results are still as they were written
-  int shard = 1, shards = 1;      ///< scenes fall to shards by their names: each task may see another list of them
-  std::filesystem::path report;   ///< where its caller writes a report; empty: nowhere
-  std::filesystem::path program;  ///< that is run for each scene: rebake itself
+  int jobs = 1;                        ///< processes at a time
+  /// Skip scenes that were done before with the same program, script, variables and input files, if all their outputs
+  /// are unchanged.
+  bool resume = false;
+  /// Run only shard `shard` of 1 … `shards`. A hash of its name assigns a scene to a shard, so that tasks agree even if
+  /// they see different lists of scenes.
+  int shard = 1, shards = 1;
+  std::filesystem::path report;   ///< file to which the caller writes a report; empty for none
+  std::filesystem::path program;  ///< executable to run for each scene: rebake itself
 };
 
+/// Result of one scene.
 struct BatchResult {
   enum class Status { done, skipped, failed };
   std::string name;
   std::filesystem::path scene;
   Status status = Status::failed;
-  bool below_asked = false;  ///< done, but an export missed the quality that the script asked for
-  std::string message;       ///< why it failed
-  double seconds = 0;
+  bool below_asked = false;  ///< done, but an export missed the PSNR that the script requires
+  std::string message;       ///< reason of a failure, or of `below_asked`
+  double seconds = 0;        ///< duration of the process
 };
 
 const char* to_string(BatchResult::Status status);
 
+/// Scenes of a batch.
 struct BatchScenes {
-  std::vector<std::filesystem::path> mine;  ///< this shard's, by name; none where others have them all
-  /// What no script may write over: all scenes, of all shards (first: empty), and what scripts read (first: the scene
-  /// whose script alone reads it).
+  std::vector<std::filesystem::path> mine;  ///< folders of this shard in the order of their names; may be empty
+  /// Paths that scripts must not overwrite: the scenes of all shards, and the inputs of scripts. `first` is the name of
+  /// the one scene whose script may, since no other reads the path; empty if none may.
   std::vector<std::pair<std::string, std::filesystem::path>> guarded;
 };
 
-/// The folders that the patterns match. Throws FieldError when a pattern matches nothing, when two scenes have one
-/// name, and when a result would replace its scene or lie where the report does; FileError when the script cannot be
-/// read, and when results or the report would lie in a scene or replace what the script reads.
+/// Matches the patterns and checks all paths. Throws FieldError if a pattern matches nothing, if two scenes have the
+/// same name, and if a result would replace its scene or the report. Throws FileError if the script cannot be read.
+/// Also throws FileError if the batch's own files or the report would lie in a scene or replace an input of a script.
 BatchScenes batch_scenes(const BatchOptions& options);
 
-/// Runs all, and reports each as it ends. Shards that run at one time need a file system that all of them see alike and
-/// that makes a file for one of them only (O_EXCL), as local ones, NFS 3 and later, and Lustre do: so they find out
-/// when two scenes export to one folder. Results come in the order of the scenes. Throws FileError when the script or
-/// the output folder is no good, Cancelled when stopping was asked for (what is done stays done).
+/// Runs the scenes of this shard and calls `ended` for each when it ends. Returns the results in the order of the
+/// scenes. Concurrent shards need a common file system with exclusive creation of files (O_EXCL), such as local ones,
+/// NFS 3 and later, or Lustre: it lets them detect that two scenes export to one folder. Throws FieldError and
+/// FileError as batch_scenes() does, FileError if the output folder cannot be used, and Cancelled; scenes that are done
+/// stay done.
 std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& progress,
                                    const std::function<void(const BatchResult&)>& ended);
 

@@ -13,9 +13,9 @@ namespace rebake {
 
 namespace {
 
-constexpr std::size_t judged_points = 1000;  ///< that errors are taken over
+constexpr std::size_t judged_points = 1000;  ///< number of points for which errors are measured
 
-// Every so-many-th place.
+// At most judged_points of the places, evenly spaced in the list.
 std::vector<Vec3> judged(const std::vector<Vec3>& places) {
   std::vector<Vec3> points;
   const std::size_t count = std::min(judged_points, places.size());
@@ -23,20 +23,22 @@ std::vector<Vec3> judged(const std::vector<Vec3>& places) {
   return points;
 }
 
+/// A deformation by a cage, and the points for which errors are measured.
 struct Setting {
-  double diagonal;
+  double diagonal;  ///< of the scene, unit of errors
   const Cage& cage;
-  std::vector<Vec3> moved;
-  std::vector<Vec3> points;  ///< judged
+  std::vector<Vec3> moved;  ///< vertices of the deformed cage
+  std::vector<Vec3> points;
 };
 
+// Largest distance between corresponding points, as a multiple of `unit`.
 double largest(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double unit) {
   double worst = 0;
   for (std::size_t k = 0; k < a.size(); ++k) worst = std::max(worst, (a[k] - b[k]).norm() / unit);
   return worst;
 }
 
-// Where weights of single points, in any precision, say that points go.
+// Positions of the deformed points, from weights computed point by point with numbers of type T.
 template <class T>
 std::vector<Vec3> moved_by(const Setting& setting, const Coordinates& coordinates, bool green) {
   const CageFrame frame = frame_of(setting.cage);
@@ -60,7 +62,8 @@ std::vector<Vec3> moved_by(const Setting& setting, const Coordinates& coordinate
   return result;
 }
 
-// How far weights are from reproducing the points themselves: the cage shrunk to nothing must take all points along.
+// Error of linear reproduction: if the cage shrinks to the origin, all points must end there. Returns the largest
+// distance from it, as a share of the diagonal.
 double reproduction(const Setting& setting, const Coordinates& coordinates) {
   const std::vector<Vec3> nowhere(setting.cage.vertices.size(), Vec3(0, 0, 0));
   const std::vector<Vec3> motions = coordinates.row_motions(setting.cage, nowhere);
@@ -71,6 +74,7 @@ double reproduction(const Setting& setting, const Coordinates& coordinates) {
   return worst;
 }
 
+// As reproduction(), for weights computed point by point with numbers of type T.
 template <class T>
 double single_reproduction(const Setting& setting, const Coordinates& coordinates, bool green) {
   Setting shrunk = setting;
@@ -80,8 +84,8 @@ double single_reproduction(const Setting& setting, const Coordinates& coordinate
   return worst;
 }
 
-// The same at points that are hard to weigh, in double; and computed in float where `single`. NaN for harmonic
-// coordinates, whose grids refuse cages as thin as these.
+// Largest error at hard_points(), with weights computed in double, or in float if `single`. NaN for harmonic
+// coordinates, whose grids reject cages as thin as these.
 double hard_error(CageCoordinates kind, int resolution, bool single) {
   if (kind == CageCoordinates::harmonic) return std::numeric_limits<double>::quiet_NaN();
   double worst = 0;
@@ -99,7 +103,7 @@ double hard_error(CageCoordinates kind, int resolution, bool single) {
   return worst;
 }
 
-// As dragging keeps weights, as float.
+// Largest error at hard_points() with the weights that CageBinding stores as float.
 double kept_hard_error(CageCoordinates kind, int resolution) {
   double worst = 0;
   for (const HardPoints& hard : hard_points()) {
@@ -141,7 +145,7 @@ StudyTable study_cage(const StudyInput& input) {
          {bind, drag, static_cast<double>(binding->memory()) / 1e6, reproduction(setting, *coordinates),
           largest(exact.points, reference, soup.diagonal), hard_error(kind, resolution, false)}});
     if (kind == CageCoordinates::harmonic) return;
-    // The same, as dragging keeps it.
+    // With weights stored as float (CageBinding), as while a cage is dragged.
     const CageBinding kept(*coordinates, cage, setting.points);
     kept.positions(setting.moved, out);
     std::vector<Vec3> nowhere;
@@ -151,7 +155,7 @@ StudyTable study_cage(const StudyInput& input) {
     table.rows.push_back({name + ", kept as float",
                           {bind, drag, static_cast<double>(binding->memory()) / 1e6, lost,
                            largest(out, reference, soup.diagonal), kept_hard_error(kind, resolution)}});
-    // And computed in float, point by point.
+    // With weights computed in float, point by point.
     const bool green = kind == CageCoordinates::green;
     const double single = median_milliseconds(1, [&] { moved_by<float>(setting, *coordinates, green); }) *
                           static_cast<double>(soup.places.size()) / static_cast<double>(setting.points.size());

@@ -6,7 +6,7 @@ StudyTable study_decoder(const StudyInput& input) {
   using Weights = RenderOptions::Weights;
   using Shading = RenderOptions::Shading;
   using Precision = RenderOptions::Precision;
-  // One sample, so that forward shading can take part.
+  // One sample per pixel, since forward shading supports no more.
   View view = input.view;
   view.samples = 1;
   const Image reference =

@@ -4,8 +4,8 @@
 
 namespace rebake {
 
-/// The ficus that ships with Rebake: beside the installed program, else in the source tree. Throws Error when neither
-/// is there.
+/// Folder of the ficus sample: next to the installed program, otherwise in the source tree. Throws Error if neither
+/// exists.
 std::filesystem::path default_study_scene();
 
 }  // namespace rebake

@@ -7,15 +7,17 @@
 
 namespace rebake {
 
-/// What studies of deformation work on: everything visible.
+/// Test geometry of the deformation studies: all visible objects of a scene as one triangle soup.
 struct StudySoup {
-  TriangleList opaque;       ///< triangles that show something, in world space
-  std::vector<Vec3> places;  ///< their corners, each place once
-  double diagonal;           ///< of their box
+  TriangleList opaque;       ///< triangles with an opaque texel, world space
+  std::vector<Vec3> places;  ///< distinct positions of their corners
+  double diagonal;           ///< of their bounding box, scene units
 };
+/// Throws Error if nothing visible is opaque.
 StudySoup study_soup(const Scene& scene);
 
-/// The cage twisted by a radian about its middle's upright, from its foot to its top: far from rigid everywhere.
+/// Vertices of the cage twisted by 1 radian, from bottom to top, about the vertical axis through its centre: a
+/// deformation that is rigid nowhere.
 std::vector<Vec3> twisted(const Cage& cage);
 
 }  // namespace rebake

@@ -13,7 +13,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// One decoder in one orientation shows all of itself: a turned copy beside it is what one folder cannot hold.
+// The scene with a rotated copy of itself beside it. One plain folder cannot represent that exactly, so a decoder must
+// be fitted.
 Scene not_exact(const Scene& scene) {
   const Box box = world_bounds(scene);
   Node group;
@@ -77,7 +78,7 @@ StudyTable study_fuse(const StudyInput& input) {
           fused.report.whole.psnr_db, fused.report.whole.worst_psnr_db, static_cast<double>(width)}});
   };
 
-  // The teacher of most texels.
+  // The teacher with the most texels.
   std::vector<std::uint64_t> texels(composition.teachers.size());
   for (const Composition::Block& block : composition.blocks)
     texels[composition.parts[block.part].teacher] += block.opaque;

@@ -28,7 +28,7 @@ void GradientBinding::rotations(const std::vector<Vec3>& moved, std::vector<Mat3
   const std::size_t block_size = coordinates_.rows() * 3 * batch_lanes;
   const std::size_t step = std::max<std::size_t>(stride, 1);
   const std::size_t samples = (order_.size() + step - 1) / step;
-  // Whole blocks where every point is wanted; else single lanes of those that hold one.
+  // Computes whole blocks, and reads the lanes of the sample points. Blocks without a sample point are skipped.
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_of(points_.size()), 64), [&](const auto& range) {
     for (std::size_t block = range.begin(); block < range.end(); ++block) {
       const std::size_t first = block * batch_lanes, last = std::min(first + batch_lanes, order_.size());

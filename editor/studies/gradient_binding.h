@@ -6,15 +6,17 @@
 
 namespace rebake {
 
-/// Gradients of a cage's weights kept as float, to be turned into local rotations many times: three times the memory of
-/// the weights, to compare with what edits do (`rebake study rotation`).
+/// Points bound to a cage by cached gradients of their weights, to compute local rotations many times. Gradients are
+/// float and take three times the memory of the weights. Used only by `rebake study rotation`, for comparison with the
+/// method of edits.
 class GradientBinding {
  public:
+  /// `coordinates` must outlive this object.
   GradientBinding(const Coordinates& coordinates, const Cage& rest, const std::vector<Vec3>& points);
 
-  /// Local rotations when the cage's vertices are at `moved`; of every `stride`-th point in an order in which
-  /// neighbours lie side by side, and for those between the nearest of them, or with `interpolated` between their two
-  /// neighbours by distance.
+  /// Local rotations of all points for cage vertices at `moved`. With `stride` > 1, only every stride-th point along a
+  /// space-filling curve is computed. The others copy the nearer of their two computed neighbours on the curve or, with
+  /// `interpolated`, interpolate both by distance.
   void rotations(const std::vector<Vec3>& moved, std::vector<Mat3>& out, std::size_t stride = 1,
                  bool interpolated = false) const;
 
@@ -22,8 +24,8 @@ class GradientBinding {
   Cage rest_;
   const Coordinates& coordinates_;
   std::vector<Vec3> points_;
-  std::vector<std::uint32_t> order_;  ///< points along a space-filling curve
-  std::vector<float> gradients_;      ///< [row][axis][lane]
+  std::vector<std::uint32_t> order_;  ///< point indices, sorted along a Z-order curve
+  std::vector<float> gradients_;      ///< per block of batch_lanes points: [row][axis][lane]
 };
 
 }  // namespace rebake

@@ -7,7 +7,7 @@ namespace rebake {
 
 namespace {
 
-// On and beside each edge and corner; both cages have a size of about 1.
+// Points on and beside each edge and near each corner. Both cages have a size of about 1.
 std::vector<Vec3> points_beside_edges(const Cage& cage) {
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   Vec3 center(0, 0, 0);

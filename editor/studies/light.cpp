@@ -18,7 +18,7 @@ namespace rebake {
 
 namespace {
 
-// What surfaces are made of: palettes of linear albedos.
+// A palette of linear albedos for the test surface.
 struct Albedos {
   const char* name;
   std::vector<Radiance> colors;
@@ -39,7 +39,7 @@ const Albedos& eight_hues() {
                                 {0.4, 0.15, 0.4}}};
   return albedos;
 }
-// That chromaticity does not tell apart.
+// Albedos of the same chromaticity, which clusters by chromaticity cannot separate.
 const Albedos& eight_greys() {
   static const Albedos albedos{
       "8 greys",
@@ -48,7 +48,7 @@ const Albedos& eight_greys() {
   return albedos;
 }
 
-// The first object's surface, without its colours: it gets such as a known light would have given it.
+// Surface of the first visible object, for which colours under a known light are simulated.
 class Body {
  public:
   Body(const Scene& scene, const Progress& progress) {
@@ -71,6 +71,7 @@ class Body {
 
   const LightSites& sites() const { return sites_; }
   const SceneRays& rays() const { return *rays_; }
+  // Traced light per site, on its visible side.
   std::vector<Radiance> irradiance(const Light& light, int rays, const Progress& progress) const {
     std::vector<Radiance> shown;
     const auto lit = traced_light(sites_.baked, {}, *rays_, light, Mat3::Identity(), {.rays = rays}, progress);
@@ -78,8 +79,8 @@ class Body {
     return shown;
   }
 
-  // Colours as so many photographs from all around tell them, the mean of those that see a site: albedo times light,
-  // and a gloss that moves with the eye. What no photograph sees has none.
+  // Simulated colour per site: the mean over all of `views` photographs from all around that see it. A photograph sees
+  // albedo times irradiance plus a view-dependent highlight. Sites that no photograph sees are black.
   std::vector<Radiance> photographed(const std::vector<Radiance>& irradiance, const Light& light,
                                      const Albedos& albedos, int views) const {
     const double size = object_->bounds().diagonal().norm();
@@ -89,7 +90,7 @@ class Body {
       const LightSite& site = sites_.baked[i];
       int seen = 0;
       for (int k = 0; k < views; ++k) {
-        // From above the ground, as people walk around things.
+        // Cameras are above the ground, as for a person who walks around the object.
         const double height = 0.1 + 0.8 * (k + 0.5) / views,
                      around = 2 * std::numbers::pi * std::fmod(k * 0.6180339887498949 + 0.1, 1.0);
         const double level = std::sqrt(1 - height * height);
@@ -115,7 +116,7 @@ class Body {
   }
 
  private:
-  // One for each block of space an eighth of the object wide.
+  // A pseudo-random albedo per cube of space; cubes are an eighth of the object's diagonal wide.
   const Radiance& albedo(const Vec3& place, const Albedos& albedos) const {
     const Vec3 cell = (place - object_->bounds().min()) / object_->bounds().diagonal().norm() * 8;
     std::uint64_t number = 0;
@@ -130,7 +131,8 @@ class Body {
   std::vector<float> facing_;
 };
 
-// Root mean square of what is off, over that of what it is; scale and tint are free, as they are in an estimate.
+// Relative root mean square error in percent, after the best scale per channel: an estimate leaves scale and tint
+// undetermined.
 double percent_off(const std::vector<Radiance>& found, const std::vector<Radiance>& truth) {
   Radiance both = Radiance::Zero(), own = Radiance::Zero();
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -176,7 +178,7 @@ StudyTable study_light(const StudyInput& input) {
     const auto found = body.irradiance(estimate.light, 256, input.progress);
     const auto seen = static_cast<double>(
         std::count_if(colors.begin(), colors.end(), [](const Radiance& color) { return color.sum() > 0; }));
-    // 180 where only one of them has a sun; of none there is nothing to say.
+    // 180 if only one of the two lights has a sun; NaN if neither has.
     const double degrees =
         light.suns.empty() != estimate.light.suns.empty() ? 180
         : light.suns.empty()
@@ -187,7 +189,7 @@ StudyTable study_light(const StudyInput& input) {
                           {time, percent_off(found, truth[lit]), degrees, estimate.confidence,
                            100 * seen / static_cast<double>(colors.size())}});
   };
-  // What a light of one radiance everywhere would leave.
+  // Baseline: a uniform environment.
   Light even;
   even.sky = SkyMap(Radiance(1, 1, 1));
   table.rows.push_back({"sun: even light instead",

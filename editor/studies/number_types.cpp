@@ -2,6 +2,7 @@
 
 namespace rebake {
 
+// Instantiations of weights for number types that only studies use.
 template double mean_value_weights(const CageFrame&, const Vec3&, std::vector<float>&);
 template double mean_value_weights(const CageFrame&, const Vec3&, std::vector<long double>&);
 template double mean_value_weights(const CageFrame&, const Vec3&, std::vector<LongDual>&);

@@ -20,7 +20,7 @@ PosedBody in_lattice(std::string name, ProxyMesh rest) {
   Box box = bounds(rest);
   const Vec3 room = Vec3::Constant(0.05 * box.diagonal().norm());
   box = Box(box.min() - room, box.max() + room);
-  // The most cells along the longest sides.
+  // Two cells along the shortest side, three along the others.
   std::array<int, 3> cells{3, 3, 3};
   Eigen::Index thinnest = 0;
   box.sizes().minCoeff(&thinnest);
@@ -37,7 +37,7 @@ ProxyMesh PosedBody::caged(std::uint32_t seed, double amplitude) const {
   Box box;
   for (const Vec3& v : cage.vertices) box.extend(v);
   const double deviation = amplitude * box.sizes().maxCoeff();
-  // Box and Muller (1958): the library's normal deviates differ between libraries.
+  // Box–Muller transform (1958): std::normal_distribution differs between standard libraries.
   const auto uniform = [&] { return (random() + 0.5) / 4294967296.0; };
   const auto normal = [&] {
     const double radius = std::sqrt(-2 * std::log(uniform()));

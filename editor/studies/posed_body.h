@@ -11,32 +11,34 @@
 
 namespace rebake {
 
-/// A body that transfer is studied on: a smooth mesh in a lattice cage of 44 points.
+/// Test body for the study of radiance transfer: a smooth mesh in a lattice cage with 44 vertices.
 struct PosedBody {
   std::string name;
   ProxyMesh rest;
   Cage cage;
   std::shared_ptr<const Coordinates> coordinates;
-  DiskChart chart;  ///< laid out on a square
+  DiskChart chart;  ///< parametrisation over the unit square
 
-  /// Each cage point moved by a normal deviate along each axis, `amplitude` of the cage's longest side as its standard
-  /// deviation; the same for the same seed.
+  /// Random pose: each cage vertex moves by a normal deviate along each axis. The standard deviation is `amplitude`
+  /// times the cage's longest side. Deterministic per seed.
   ProxyMesh caged(std::uint32_t seed, double amplitude) const;
-  /// Bent along its longest axis.
+  /// The body bent along its longest axis.
   ProxyMesh bent(double degrees) const;
 };
 
-/// A sheet of `side`² vertices with bumps; row by row.
+/// A height field with Gaussian bumps: `side`² vertices in row-major order.
 PosedBody bumpy_sheet(int side);
-/// A wrap around part of a scene: what shows something in the box, in shares of the scene's, and hangs together most.
+/// Largest connected component of a wrap around the opaque triangles in a part of a scene. `shares`: the part, in
+/// shares of the scene's box, 0 … 1; `coarseness`: see wrap(). Throws Error if the part is empty.
 PosedBody wrapped_part(const Scene& scene, const Box& shares, double coarseness);
 
-/// A pose as it is traced: its points, how they turned, and what they see of the sky.
+/// A pose with its traced radiance transfer, per vertex.
 struct TracedPose {
   std::vector<LightSite> sites;
-  std::vector<Mat3> turns;
+  std::vector<Mat3> turns;  ///< local rotation from the rest pose
   Transfer transfer;
 };
+/// Traces the transfer with `rays` rays per vertex.
 TracedPose traced_pose(const ProxyMesh& rest, const ProxyMesh& posed, int rays, const Progress& progress = {});
 
 }  // namespace rebake

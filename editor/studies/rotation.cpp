@@ -20,7 +20,7 @@ namespace {
 std::pair<double, double> angles(const std::vector<Mat3>& a, const std::vector<Mat3>& b) {
   double worst = 0, sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
-    // By the chord, which small angles do not lose: ‖A − B‖ = 2√2 sin(angle / 2).
+    // From the chord ‖A − B‖ = 2√2 sin(angle / 2), which is accurate for small angles.
     const double chord = std::min(1.0, (a[k] - b[k]).norm() / (2 * std::numbers::sqrt2));
     const double angle = 2 * std::asin(chord) * 180 / std::numbers::pi;
     worst = std::max(worst, angle);
@@ -29,7 +29,7 @@ std::pair<double, double> angles(const std::vector<Mat3>& a, const std::vector<M
   return {worst, sum / static_cast<double>(a.size())};
 }
 
-// Jacobians of the cage's motion, by weights that carry their gradients.
+// Jacobians of the deformation from mean value weights in dual numbers of type T, which carry gradients.
 template <class T>
 std::vector<Mat3> jacobians_by(const std::vector<Vec3>& points, const Cage& cage, const std::vector<Vec3>& moved) {
   const CageFrame frame = frame_of(cage);
@@ -47,7 +47,7 @@ std::vector<Mat3> jacobians_by(const std::vector<Vec3>& points, const Cage& cage
   return result;
 }
 
-// Central differences of where points go.
+// Jacobians of the deformation from central differences.
 std::vector<Mat3> differences(const Coordinates& coordinates, const Cage& cage, const std::vector<Vec3>& moved,
                               const std::vector<Vec3>& points, double step) {
   std::vector<Mat3> jacobians(points.size());
@@ -62,7 +62,7 @@ std::vector<Mat3> differences(const Coordinates& coordinates, const Cage& cage, 
   return jacobians;
 }
 
-// What turns a cage's motion into rotations of points.
+// A method to compute local rotations of points from a cage's motion.
 using Method = std::function<std::vector<Mat3>(const Coordinates&, const Cage&, const std::vector<Vec3>& moved,
                                                const std::vector<Vec3>& points)>;
 
@@ -72,7 +72,7 @@ std::vector<Mat3> factors(const std::vector<Mat3>& jacobians, LocalRotation (*fa
   return result;
 }
 
-// The largest angle, in degrees, by which a method misses a rigid turn at points that are hard to weigh.
+// Largest error of a method at hard_points(), where the exact rotation is known; degrees.
 double hard_angle(const Method& method) {
   double worst = 0;
   for (const HardPoints& hard : hard_points()) {
@@ -93,7 +93,7 @@ StudyTable study_rotation(const StudyInput& input) {
   StudyTable table{
       {"milliseconds", "worst, degrees", "mean, degrees", "worst at hard points, degrees"}, {}, 0, 1, true, true};
 
-  // What all are compared with: dual numbers in long double, and their singular value decomposition.
+  // Reference: dual numbers in long double, and singular value decomposition.
   std::vector<Mat3> reference = jacobians_by<LongDual>(soup.places, cage, moved);
   for (Mat3& jacobian : reference) jacobian = svd_rotation(jacobian).rotation;
   const DeformedPoints exact = deform_points(*coordinates, cage, moved, soup.places, true);
@@ -146,7 +146,7 @@ StudyTable study_rotation(const StudyInput& input) {
               GradientBinding(of, rest, points).rotations(to, result);
               return result;
             });
-      else  // a rigid turn is the same everywhere: it would not show what leaving out points costs
+      else  // hard_points() rotate rigidly, where skipping points causes no error
         add(fmt::format("1 in {}, {}", stride, interpolated ? "interpolated" : "the nearest"), time, rotations, {});
     }
   return table;

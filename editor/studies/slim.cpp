@@ -13,7 +13,7 @@ namespace rebake {
 
 namespace {
 
-// What the scene's objects take as folders: triangles as OBJ, texels as PNG.
+// Size of all visible objects in folders on disk in MB: triangles as OBJ, texels as PNG.
 double folder_megabytes(const Scene& scene) {
   std::uint64_t bytes = 0;
   for (const PlacedNode& placed : placed_nodes(scene)) {
@@ -45,7 +45,7 @@ StudyTable study_slim(const StudyInput& input) {
                    false,
                    false};
   table.second_x = 2;
-  // Pictures without a difference have no PSNR that can be plotted.
+  // The infinite PSNR of equal images cannot be plotted: cap it.
   constexpr double equal_db = 70;
   const auto add = [&](const std::string& name, const Scene& scene) {
     PlainReport report;

@@ -41,7 +41,7 @@ Image enlarged(const Image& image, int width, int height) {
   return result;
 }
 
-// What gnuplot makes of a script.
+// Runs gnuplot on a script and returns its output. Throws Error if gnuplot fails.
 std::string plotted(const std::string& script) {
   std::string name = (std::filesystem::temp_directory_path() / "rebake-plot-XXXXXX").string();
   const int file = ::mkstemp(name.data());
@@ -103,7 +103,7 @@ double median_milliseconds(int repeats, const std::function<void()>& run) {
 
 namespace {
 
-// A field of a CSV file (RFC 4180).
+// A field of a CSV file, quoted if necessary (RFC 4180).
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string result = "\"";
@@ -111,7 +111,8 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-// BASE.svg and BASE.png: the column `x` against the table's `y`; nothing when no row has finite numbers for both.
+// Plots the table's column y over column `x` into BASE.svg and BASE.png. Writes nothing if no row has finite values for
+// both.
 void write_plot(const Study& study, const StudyTable& table, std::size_t x, const std::string& base,
                 const SourceGuard& guard) {
   std::string data, points;
@@ -122,7 +123,7 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
   if (rows.empty()) return;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const StudyTable::Row& row = rows[k];
-    // A logarithm has no zero: what is exact is drawn at the bottom.
+    // A logarithmic axis has no zero: exact values are drawn at its lower end.
     const auto drawn = [](double value, bool log) { return log ? std::max(value, 1e-17) : value; };
     data += fmt::format("{} {}\n", drawn(row.values[x], table.log_x), drawn(row.values[table.y], table.log_y));
     points += fmt::format("{}$rows every ::{}::{} using 1:2 with points pt {} ps 1.4 title \"{}\"", k == 0 ? "" : ", ",
@@ -134,8 +135,7 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
       data, study.help, table.columns[x], table.columns[table.y],
       table.log_x ? "set logscale x\nset format x '10^{%L}'\n" : "",
       table.log_y ? "set logscale y\nset format y '10^{%L}'\n" : "");
-  // Its output is written here, so that no name of a file reaches gnuplot.
-  // As high as its key.
+  // The plot is as high as its legend. Its output comes through a pipe, so that no output path reaches gnuplot.
   const std::size_t height = std::max<std::size_t>(440, 60 + 20 * table.rows.size());
   for (const auto& [terminal, extension] :
        {std::pair{fmt::format("svg size 860,{} dynamic background rgb 'white'", height), "svg"},

@@ -12,30 +12,30 @@
 
 namespace rebake {
 
-/// What a study measures: choices, a row each, and what each costs and gives.
+/// Result of a study: one row of measured costs and errors per choice.
 struct StudyTable {
   struct Row {
     std::string choice;
-    std::vector<double> values;  ///< as many as columns; NaN where there is none
+    std::vector<double> values;  ///< one per column; NaN if it does not apply
   };
   std::vector<std::string> columns;  ///< names with units
   std::vector<Row> rows;
-  /// Columns that the plot shows. Accuracy stands upright, time lies; errors and times that span decades are plotted by
-  /// their logarithms.
+  /// Plotted columns: cost as x, accuracy or error as y. Logarithmic axes are for values that span decades.
   std::size_t x = 0, y = 1;
   bool log_x = false, log_y = false;
-  std::optional<std::size_t> second_x = std::nullopt;  ///< plotted too, as NAME-2
+  std::optional<std::size_t> second_x = std::nullopt;  ///< column for the x axis of a second plot, NAME-2
 };
 
-/// What a study is made on.
+/// Input of a study.
 struct StudyInput {
-  std::function<Renderer&()> renderer;  ///< made when it is first wanted; throws DeviceError without OpenGL
+  std::function<Renderer&()> renderer;  ///< created on first use; throws DeviceError without OpenGL
   const Scene& scene;
   View view;
-  int frames;  ///< timed for each choice; the median counts
+  int frames;  ///< number of timed frames per choice; the median is reported
   Progress progress;
 };
 
+/// A subject of `rebake study`.
 struct Study {
   const char* name;
   const char* help;
@@ -53,7 +53,7 @@ StudyTable study_transfer(const StudyInput& input);
 StudyTable study_light(const StudyInput& input);
 StudyTable study_slim(const StudyInput& input);
 
-/// The one table of studies.
+/// All studies, in the order of `rebake study --help`.
 inline constexpr Study study_table[] = {
     {"samples", "samples a pixel, against 64 samples", study_samples},
     {"resolution", "share of the resolution, enlarged, against 64 samples", study_resolution},
@@ -67,22 +67,22 @@ inline constexpr Study study_table[] = {
     {"slim", "what nobody sees removed, and fewer bits a feature: size, pictures, frame", study_slim},
 };
 
-/// Table of a study of pictures: milliseconds a frame (the median), PSNR, the largest difference of a channel in 1/255,
-/// the fastest and the slowest frame, and where the largest difference is, as shares of the picture's size.
+/// Empty table for comparisons of images. Columns: median frame time in ms; PSNR in dB, at most 100; largest channel
+/// difference in 1/255; fastest and slowest frame in ms; x and y of the largest difference as shares of the image size.
 StudyTable picture_table();
-/// Times a choice and compares its picture, enlarged where it is smaller (bilinear, as a screen does), with the
-/// reference.
+/// Row of picture_table() for a choice: times its frames and compares its image with the reference. An image of another
+/// size is resized bilinearly first.
 StudyTable::Row measured(const StudyInput& input, const std::string& choice, const View& view,
                          const RenderOptions& options, const Image& reference);
 
-/// Median milliseconds of `repeats` runs.
+/// Median time of `repeats` runs in milliseconds.
 double median_milliseconds(int repeats, const std::function<void()>& run);
 
-/// Writes NAME.csv, NAME.svg and NAME.png, and NAME-2 where there is a second plot (plots need gnuplot; throws Error
-/// without it). `guard` says where nothing may be written.
+/// Writes NAME.csv, NAME.svg and NAME.png, and NAME-2.svg and NAME-2.png for a second plot. Throws FileError if a file
+/// cannot be written or `guard` protects it, and Error if gnuplot, which plots need, is missing.
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
                  const SourceGuard& guard);
-/// Makes the folder, so that what is in the way is found before anything is measured. Throws FileError.
+/// Creates the folder and checks all outputs, so that problems are found before the measurement. Throws FileError.
 void prepare_study_folder(const Study& study, const std::filesystem::path& folder, const SourceGuard& guard);
 
 }  // namespace rebake

@@ -20,12 +20,13 @@ constexpr int training_poses = 480, training_rays = 256, truth_rays = 2048;
 constexpr int image_side = 64;
 constexpr double amplitude = 0.06, beyond = 1.6;
 
+// A test pose.
 struct Tested {
   ProxyMesh mesh;
   TracedPose truth;
 };
 
-// Poses that models have not seen: of the range that they were trained in, wider, and of another kind.
+// Test poses: random ones in the range of the training set, random ones in a wider range, and bent ones.
 std::array<std::vector<Tested>, 3> tested_poses(const PosedBody& body, const Progress& progress) {
   std::array<std::vector<Tested>, 3> sets;
   constexpr std::uint32_t each = 8, seed = 100000;
@@ -56,12 +57,12 @@ TransferTraining trained_poses(const PosedBody& body, UnetTransfer::Training* im
 
 using Coefficients = std::vector<sh::Coefficients>;
 
-// A way to transfer: coefficients in the body's space, to be compared; and as it is used, light on each point.
+// A method that predicts the radiance transfer of a pose.
 struct Way {
   std::string name;
-  std::function<Coefficients(const Tested&)> transfer;
-  std::function<void(const Tested&)> light;
-  double bytes = 0, tracing_seconds = 0, learning_seconds = 0, undersampled = 0;
+  std::function<Coefficients(const Tested&)> transfer;  // coefficients in the body's space, to measure errors
+  std::function<void(const Tested&)> light;             // computes the light per point, to measure time
+  double bytes = 0, tracing_seconds = 0, learning_seconds = 0, undersampled = 0;  // see GeometryImage::undersampled
 };
 
 Coefficients turned(const Coefficients& local, const std::vector<Mat3>& turns) {
@@ -130,7 +131,7 @@ void study_body(const StudyInput& input, const PosedBody& body, StudyTable& tabl
     const auto trace = [rays, &body](const Tested& t) { return traced_pose(body.rest, t.mesh, rays).transfer.sites; };
     ways.push_back({fmt::format("traced, {} rays", rays), trace, [=](const Tested& t) { trace(t); }});
   }
-  // Used as the program uses it: outside its range it gives way to turning.
+  // As the program does it: outside the model's trusted range, only rotate the transfer at rest.
   {
     const LearntTransfer* model = &models[1];
     const auto inside = [model](const Tested& t) {

@@ -26,8 +26,8 @@ StudyTable study_wrap(const StudyInput& input) {
     table.rows.push_back(
         {fmt::format("{}", coarseness),
          {time, bind, static_cast<double>(cage.vertices.size()), static_cast<double>(cage.faces.size()),
-          static_cast<double>(std::set(component.begin(), component.end())
-                                  .size()),  // A flat object's box has no volume to compare with.
+          static_cast<double>(std::set(component.begin(), component.end()).size()),
+          // A flat object's box has no volume to compare with.
           box.volume() > 0 ? volume(cage) / box.volume() : std::numeric_limits<double>::quiet_NaN()}});
   }
   return table;

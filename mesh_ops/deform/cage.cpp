@@ -67,7 +67,7 @@ double volume(const Cage& cage) {
   Box box;
   for (const Vec3& v : cage.vertices) box.extend(v);
   if (box.isEmpty()) return 0;
-  // In 50 digits: of a rod that is 1e8 times as long as wide, doubles leave nothing.
+  // 50 digits: for a rod that is 1e8 times as long as wide, the volume would be lost in the rounding of double.
   using Wide = boost::multiprecision::cpp_bin_float_50;
   using Wide3 = std::array<Wide, 3>;
   const Vec3 origin = box.center();
@@ -97,7 +97,7 @@ std::vector<std::uint32_t> components(const Cage& cage) {
 
 namespace {
 
-// How often a closed surface goes round a point that is not on it (Van Oosterom, Strackee 1983).
+// Winding number of a closed surface around a point that is not on it (Van Oosterom, Strackee 1983).
 double winding_around(const Vec3& point, const Cage& part) {
   double angle = 0;
   for (const Face& face : part.faces) {
@@ -109,14 +109,14 @@ double winding_around(const Vec3& point, const Cage& part) {
   return angle / (4 * std::numbers::pi);
 }
 
-// Which faces to turn, so that every component that lies in no other points outwards. Those inside one turn with it: a
-// cavity stays one.
+// Per face, 1 if it must be flipped. Components that lie inside no other one must face outwards; components inside
+// those are flipped along with them, so a cavity stays a cavity.
 std::vector<std::uint8_t> faces_to_turn(const Cage& cage) {
   const std::vector<std::uint32_t> of_vertex = components(cage);
   std::map<std::uint32_t, Cage> parts;
   for (const Face& face : cage.faces) parts[of_vertex[face[0]]].faces.push_back(face);
   for (auto& [first, part] : parts) part.vertices = cage.vertices;
-  // Where surfaces touch a winding is about a half.
+  // A point on the other surface has a winding number of about ½.
   const auto lies_in = [&](std::uint32_t inner, const Cage& outer) {
     return std::abs(winding_around(cage.vertices[inner], outer)) > 0.75;
   };
@@ -166,7 +166,7 @@ Cage checked_cage(Cage cage) {
   }
   if (open > 0)
     throw Error(fmt::format("the cage is open: {} of its edges belong to one triangle only; close the holes", open));
-  // By the box's size: a cage may be thin, but not nothing.
+  // The longest side of the box decides, since a cage may be thin.
   Box box;
   for (const Vec3& v : cage.vertices) box.extend(v);
   const double extent = box.sizes().maxCoeff();
@@ -181,7 +181,7 @@ Cage checked_cage(Cage cage) {
       std::swap(scaled.faces[f][1], scaled.faces[f][2]);
     }
   const double inside = volume(scaled);
-  // By its surface: what encloses something is thicker than rounding there, whatever its shape.
+  // Relative to the area: a cage of any shape with a volume has a mean thickness above rounding.
   double surface = 0;
   for (const Face& face : scaled.faces)
     surface += (scaled.vertices[face[1]] - scaled.vertices[face[0]])

@@ -9,7 +9,7 @@
 
 namespace rebake {
 
-/// A closed triangle mesh around what it deforms; faces are counter-clockwise seen from outside.
+/// A closed triangle mesh around the geometry that it deforms. Faces are counter-clockwise seen from outside.
 struct Cage {
   std::vector<Vec3> vertices;
   std::vector<Face> faces;
@@ -17,23 +17,24 @@ struct Cage {
   bool operator==(const Cage&) const = default;
 };
 
-/// The box divided into n × m × k cells, as a closed surface. Corners are numbered with x running fastest, then y,
-/// then z, over those on the surface. Throws Error when a count is below 1 or the surface would exceed 100,000
-/// vertices.
+/// The surface of a box divided into n × m × k cells, with two triangles per cell side. Vertices are the lattice points
+/// on the surface, numbered with x running fastest, then y, then z. Throws Error if a count is below 1 or the surface
+/// would exceed 100,000 vertices.
 Cage lattice_cage(const Box& box, int n, int m, int k);
 
-/// The cage, with every component that lies in no other turned outwards, and those inside it along with it. Throws
-/// Error, saying what and where, when it is not finite, has faces that name missing vertices or one vertex twice, or is
-/// open, non-manifold along an edge or inconsistently oriented. Faces without area are allowed: they weigh nothing.
+/// Validates a cage and orients it: components that lie inside no other one face outwards; components inside those are
+/// flipped along with them, so cavities stay cavities. Throws Error, naming the place, for non-finite vertices, for
+/// vertex indices out of range or repeated in a face, and for open, non-manifold or inconsistently oriented edges.
+/// Throws Error if the volume is zero. Faces without area are allowed and get no weight.
 Cage checked_cage(Cage cage);
 
-/// Signed volume: positive when the faces point outwards.
+/// Signed volume: positive if the faces point outwards.
 double volume(const Cage& cage);
 
-/// For each vertex the lowest vertex that it hangs together with through faces.
+/// Connected components: per vertex, the lowest vertex of its component.
 std::vector<std::uint32_t> components(const Cage& cage);
 
-/// Pairs of faces that cut through each other.
+/// Number of pairs of faces that intersect.
 std::size_t self_intersections(const Cage& cage);
 
 }  // namespace rebake

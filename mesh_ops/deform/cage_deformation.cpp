@@ -14,8 +14,8 @@ namespace rebake {
 
 namespace {
 
-// What all vertices move alike, taken out of their motions where it is most of them: their weights sum to 1 but for
-// rounding, which a long way would multiply.
+// Subtracts the mean motion of the vertices if no vertex deviates from it by half its length, and returns it (else
+// zero). Weights sum to 1 only up to rounding, and a long translation would amplify that error.
 Vec3 take_shift(std::vector<Vec3>& motions, std::size_t vertices) {
   Vec3 mean(0, 0, 0);
   for (std::size_t v = 0; v < vertices; ++v) mean += motions[v] / static_cast<double>(vertices);

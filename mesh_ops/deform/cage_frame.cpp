@@ -24,7 +24,7 @@ std::array<R, 3> rounded(const Wide3& a) {
   return {static_cast<R>(a[0]), static_cast<R>(a[1]), static_cast<R>(a[2])};
 }
 
-// A face without the numbers of its edges. Its height is 0 where it has no area.
+// The frame of a face, without edge numbers. Its height stays 0 if the face has no area.
 template <class R>
 FaceFrameOf<R> face_of(const Face& face, const std::array<Wide3, 3>& corners) {
   std::array<Wide, 3> squares;
@@ -60,7 +60,7 @@ FaceFrameOf<R> face_of(const Face& face, const std::array<Wide3, 3>& corners) {
     local.lengths[k] = static_cast<R>(side_length);
     local.edge_t[k] = static_cast<R>(along_t);
     local.edge_o[k] = static_cast<R>(along_o);
-    // tangent × normal, with t × n = o and o × n = −t.
+    // Edge direction × face normal, with t × n = o and o × n = −t.
     local.normal_t[k] = static_cast<R>(Wide(-along_o));
     local.normal_o[k] = static_cast<R>(along_t);
   }
@@ -79,7 +79,7 @@ CageFrame frame_of(const Cage& cage) {
   if (box.isEmpty() || !box.sizes().allFinite() || box.sizes().maxCoeff() <= 0) throw Error("the cage has no extent");
   CageFrame frame;
   frame.center = box.center();
-  // The diagonal's length without squaring what may be 1e±300.
+  // Length of the diagonal; scaled first because squares of 1e±300 would overflow.
   int exponent = 0;
   std::frexp(box.sizes().maxCoeff(), &exponent);
   const double diagonal = (box.sizes() * std::ldexp(1.0, -exponent)).norm();

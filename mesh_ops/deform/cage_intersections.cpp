@@ -13,7 +13,7 @@ std::size_t self_intersections(const Cage& cage) {
   std::vector<Mesh::Vertex_index> vertices;
   for (const Vec3& v : cage.vertices) vertices.push_back(mesh.add_vertex({v.x(), v.y(), v.z()}));
   for (const Face& face : cage.faces) {
-    // What has no area cuts nothing, and CGAL's predicates want none of it.
+    // Faces without area intersect nothing, and CGAL's predicates do not accept them.
     const auto point = [&](std::size_t k) { return mesh.point(vertices[face[k]]); };
     if (CGAL::collinear(point(0), point(1), point(2))) continue;
     mesh.add_face(vertices[face[0]], vertices[face[1]], vertices[face[2]]);

@@ -10,7 +10,7 @@ namespace rebake {
 
 namespace {
 
-// Rows: towards the direction, across both, along the axis.
+// Rotation into the axes of the form. Rows: towards the direction, across both, along the axis.
 Mat3 frame_of(const ClosedForm& form) {
   const Vec3 z = form.axis.stableNormalized();
   Vec3 x = form.direction - form.direction.dot(z) * z;
@@ -41,10 +41,10 @@ Deformed deform(const ClosedForm& form, const Vec3& point) {
   const Vec3 p = frame * (point - form.origin);
   const double length = form.to - form.from;
   const double inside = std::clamp(p.z(), form.from, form.to);
-  const double slope = p.z() > form.from && p.z() < form.to ? 1 : 0;  // of `inside` by z
+  const double slope = p.z() > form.from && p.z() < form.to ? 1 : 0;  // derivative of `inside` by z
   const double share = (inside - form.from) / length, beyond = p.z() - inside;
-  // The motion and the Jacobian less the identity, so that what does not move loses no bit and small angles none
-  // either: cos a − 1 = −2 sin²(a/2).
+  // Motion and Jacobian minus identity, so that unmoved points keep their bits and small angles lose no digits:
+  // cos a − 1 = −2 sin²(a/2).
   Vec3 motion(0, 0, 0);
   Mat3 j = Mat3::Zero();
   const double angle = form.radians * share, s = elementary::sine_cosine(angle).sine,
@@ -69,7 +69,7 @@ Deformed deform(const ClosedForm& form, const Vec3& point) {
     }
     case ClosedForm::Kind::bend: {
       if (share == 0) break;
-      // The axis becomes an arc of its own length: there it runs (1 − cos a)/κ aside and sin a / κ along.
+      // The axis becomes an arc of the same length: (1 − cos a)/κ sideways and sin a / κ along the axis.
       const double kappa = form.radians / length, arc = inside - form.from;
       const double aside = kappa != 0 ? -c1 / kappa : 0, shortened = kappa != 0 ? s / kappa - arc : 0;
       motion = {aside + c1 * p.x() + s * beyond, 0, shortened - s * p.x() + c1 * beyond};
@@ -106,12 +106,13 @@ std::vector<ClosedForm> along_curve(const ClosedForm& form, const std::vector<Ve
       pieces.push_back(piece);
       continue;
     }
-    // Turning about a line that is not across the piece is a bend, and a twist about the piece itself.
+    // A rotation about a direction that is not perpendicular to the segment splits into a bend and a twist about the
+    // segment.
     const Vec3 along = way / length;
     const double twisted = turn.dot(along);
     const Vec3 across = turn - twisted * along;
     const double bent = across.norm();
-    constexpr double rounding = 1e-14;  // of products of unit vectors
+    constexpr double rounding = 1e-14;  // rounding of products of unit vectors
     if (std::abs(twisted) > rounding) {
       ClosedForm twist = piece;
       twist.kind = ClosedForm::Kind::twist;
@@ -131,8 +132,8 @@ std::vector<ClosedForm> along_curve(const ClosedForm& form, const std::vector<Ve
 
 namespace {
 
-// A piece's part in what becomes of a point: how far it goes follows from where the point was at first, so that what
-// lies beyond the piece moves with it rigidly, however far later pieces have turned it already.
+// Applies one segment to a point. Its angle follows from the undeformed position `rest`, so that everything beyond the
+// segment moves rigidly with it, even after later segments have rotated it.
 Deformed deform_after(const ClosedForm& form, const Vec3& rest, const Deformed& so_far) {
   const Mat3 frame = frame_of(form);
   const double along = form.axis.stableNormalized().dot(rest - form.origin), length = form.to - form.from;
@@ -142,8 +143,8 @@ Deformed deform_after(const ClosedForm& form, const Vec3& rest, const Deformed& 
   const Vec3 p = frame * (so_far.point - form.origin);
   const double angle = form.radians * share, rate = form.radians / length, s = elementary::sine_cosine(angle).sine,
                half = elementary::sine_cosine(angle / 2).sine, c1 = -2 * half * half, c = 1 + c1;
-  Vec3 motion(0, 0, 0), by_inside(0, 0, 0);  // and its derivative by `inside`
-  Mat3 j = Mat3::Zero();                     // its derivative by p
+  Vec3 motion(0, 0, 0), by_inside(0, 0, 0);  // motion, and its derivative by `inside`
+  Mat3 j = Mat3::Zero();                     // derivative of the motion by p
   if (form.kind == ClosedForm::Kind::twist) {
     motion = {c1 * p.x() - s * p.y(), s * p.x() + c1 * p.y(), 0};
     j << c1, -s, 0, s, c1, 0, 0, 0, 0;

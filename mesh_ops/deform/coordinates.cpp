@@ -7,7 +7,8 @@ namespace rebake {
 
 namespace {
 
-// What someone holds.
+// Entry of the cache of shared_coordinates(): coordinates that some caller holds, and the inputs they were computed
+// from.
 struct Held {
   Cage cage;
   CageCoordinates kind;

@@ -7,16 +7,17 @@
 
 namespace rebake {
 
-/// Triangles with a corner where the last deformation of their object folded or collapsed: the face attribute "folded"
-/// (std::uint8_t), which deformed() sets.
+/// Triangles with a corner that the last deformation of the object folded or collapsed (det J ≤ 0): the face attribute
+/// "folded" (std::uint8_t), which deformed() sets.
 TriangleSet folded_triangles(const BakedObject& object);
 
-/// The object with its flagged triangles deformed in world space (see deform_places). Where a falloff is 0, corners
-/// shared with unflagged triangles are split.
+/// A deformed copy of an object.
 struct DeformedObject {
   std::shared_ptr<const BakedObject> object;
   DeformationReport report;
 };
+/// Deforms the flagged triangles in world space; see deform_places(). If `falloff` is 0, corners that they share with
+/// unflagged triangles are split.
 DeformedObject deformed(const BakedObject& object, const Affine& to_world, const TriangleSet& flags, double falloff,
                         const SpaceDeformation& deformation);
 

@@ -43,7 +43,8 @@ DeformedPlaces deform_places(const BakedObject& object, const WeldedCorners& cor
   DeformedPlaces result;
   DeformationReport& report = result.report;
   report.points = count;
-  // Rotations live in the object's own frame: orthogonal, whatever its transform scales.
+  // Rotations are stored in object space and must be orthogonal. The transform is split into `scales` · `frame`, and
+  // only the orthogonal factor changes the space of a rotation.
   const Mat3 frame = orthogonal_factor(to_world.linear());
   const Mat3 scales = to_world.linear() * frame.transpose();
   std::vector<Mat3>& rotations = result.rotations;
@@ -74,7 +75,7 @@ DeformedPlaces deform_places(const BakedObject& object, const WeldedCorners& cor
       }
     for (std::size_t i = 0; i < count; ++i) report.opaque_outside += shows[i] & moved.outside[i];
   }
-  bool any = false;  // of those that are numbers
+  bool any = false;  // any finite place so far
   for (std::size_t i = 0; i < count; ++i) {
     report.not_finite += is_number[i] != 0 ? 0 : 1;
     report.outside += !moved.outside.empty() && moved.outside[i] != 0 ? 1 : 0;
@@ -84,7 +85,7 @@ DeformedPlaces deform_places(const BakedObject& object, const WeldedCorners& cor
     report.least_determinant = any ? std::min(report.least_determinant, determinants[i]) : determinants[i];
     any = true;
   }
-  // Where two rotations are equally near, that of a place beside it: from those that have one outwards.
+  // Places without a unique nearest rotation take a neighbour's: breadth-first from the places that have one.
   if (report.undefined > 0) {
     std::vector<std::vector<std::uint32_t>> beside(count);
     for (std::size_t t = 0; t < flags.size(); ++t) {

@@ -9,41 +9,42 @@
 
 namespace rebake {
 
-/// What a deformation did to an object.
+/// Statistics of the deformation of an object. Counts are numbers of welded corners ("places") of deformed triangles.
 struct DeformationReport {
-  std::size_t points = 0;          ///< places that corners of deformed triangles lie at
-  std::size_t folded = 0;          ///< of them, those where det J ≤ 0: turned inside out or collapsed
-  std::size_t undefined = 0;       ///< those with no local rotation of their own, which got a neighbour's
-  std::size_t outside = 0;         ///< those that the coordinates do not reach; they stay
-  std::size_t opaque_outside = 0;  ///< of them, corners of triangles that show something
-  std::size_t not_finite = 0;      ///< those whose position is no number, or would be none; they stay
-  double least_determinant = 1;    ///< of J, over all points that have one
+  std::size_t points = 0;          ///< all places
+  std::size_t folded = 0;          ///< places with det J ≤ 0: mirrored or collapsed
+  std::size_t undefined = 0;       ///< places without a unique nearest rotation; they take a neighbour's
+  std::size_t outside = 0;         ///< places where the coordinates are undefined; they do not move
+  std::size_t opaque_outside = 0;  ///< places counted in `outside` that belong to triangles with opaque texels
+  std::size_t not_finite = 0;      ///< places with a non-finite position or Jacobian; they do not move
+  double least_determinant = 1;    ///< smallest det J over all finite places
 };
 
-/// A deformation of space: where points go, and its Jacobian there.
+/// A deformation of space, with Jacobians: maps world-space points to their deformed positions.
 using SpaceDeformation = std::function<DeformedPoints(const std::vector<Vec3>& world)>;
 
-/// The places that corners of flagged triangles lie at.
+/// Welded corners ("places") of the flagged triangles.
 struct FlaggedPlaces {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-  std::vector<std::uint32_t> number_of;  ///< of every welded place its number among these, or none
-  std::vector<std::uint8_t> shared;      ///< a flag a welded place: unflagged triangles have it too
-  std::vector<Vec3> world;               ///< in world space
+  std::vector<std::uint32_t> number_of;  ///< per welded place of the object: its number among these, or none
+  std::vector<std::uint8_t> shared;      ///< per welded place of the object: 1 if an unflagged triangle uses it too
+  std::vector<Vec3> world;               ///< positions in world space
 };
 FlaggedPlaces flagged_places(const BakedObject& object, const WeldedCorners& corners, const Affine& to_world,
                              const TriangleSet& flags);
 
-/// What became of them, one each.
+/// Deformed places; one entry per place of FlaggedPlaces.
 struct DeformedPlaces {
-  std::vector<Vec3> world;
-  std::vector<Mat3> rotations;       ///< in the object's space: what colours turn by
-  std::vector<double> determinants;  ///< of the Jacobians; 1 where there is none
+  std::vector<Vec3> world;           ///< deformed positions in world space
+  std::vector<Mat3> rotations;       ///< rotation of view-dependent colours, in object space
+  std::vector<double> determinants;  ///< det J; 1 for places that are not finite
   DeformationReport report;
 };
 
-/// Places deformed in world space, once each, so that corners that coincide move alike bit for bit; what the
-/// deformation leaves where it was keeps its bits. It fades out within `falloff` of the border (see fade_out).
+/// Deforms places in world space, each once, so that coincident corners move identically, bit for bit. Unmoved places
+/// keep their bits. The deformation fades out within `falloff` (world units) of the border to unflagged triangles; see
+/// fade_out().
 DeformedPlaces deform_places(const BakedObject& object, const WeldedCorners& corners, const Affine& to_world,
                              const TriangleSet& flags, const FlaggedPlaces& places, double falloff,
                              const SpaceDeformation& deformation);

@@ -17,16 +17,17 @@ namespace {
 constexpr std::uint32_t none = GridDomain::none;
 constexpr std::string_view task = "harmonic coordinates";
 
-// All in steps. The farthest corner of a cell that the surface cuts:
+// Lengths in steps. Largest distance of a corner of a cell that the surface cuts:
 constexpr double cell_reach = 1.75;
-// Nodes farther from the surface than this lie on the same side as their neighbours do.
+// Nodes farther from the surface than this lie on the same side as their neighbours.
 constexpr double clear_of_surface = 1.01;
-// Nodes nearer than this to the surface have its value.
+// Nodes nearer to the surface than this take its value.
 constexpr double least_cut = 1e-8;
-// How far a node outside looks for what it continues, and how far where it finds too little.
+// Search radius of an outer node for samples to extrapolate from, and the radius if too few are found.
 constexpr double near_reach = 2.45, far_reach = 3.75;
 
-// The nearest point of a triangle (Ericson 2005, 5.1.5: by the region that the projection falls into).
+// Barycentric coordinates of the nearest point of a triangle (Ericson 2005, 5.1.5: by the region that contains the
+// projection).
 std::array<double, 3> nearest_on(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
   const double area = n.squaredNorm();
@@ -55,7 +56,7 @@ Vec3 weighted(const std::array<double, 3>& corners, const std::vector<Vec3>& ver
   return corners[0] * vertices[face[0]] + corners[1] * vertices[face[1]] + corners[2] * vertices[face[2]];
 }
 
-// How often the surface goes around a point (van Oosterom and Strackee 1983).
+// Winding number of the surface around a point (van Oosterom and Strackee 1983).
 double winding_number(const Vec3& p, const std::vector<Vec3>& vertices, const std::vector<Face>& faces) {
   double sum = 0;
   for (const Face& face : faces) {
@@ -142,7 +143,8 @@ void DirichletGrid::find_distances(const std::vector<Vec3>& vertices, const std:
   }
 }
 
-// By the winding number: of every node near the surface, and of one for all that hang together clear of it.
+// Classifies nodes by winding number: each node near the surface, and one node per connected component (flood fill) of
+// the others.
 std::vector<std::uint8_t> DirichletGrid::find_inside(const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
                                                      const Progress& progress) const {
   constexpr std::uint8_t unknown = 2;
@@ -186,7 +188,7 @@ std::vector<std::uint8_t> DirichletGrid::find_inside(const std::vector<Vec3>& ve
 
 void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
                               const Progress& progress) {
-  // Where lines of the grid meet faces. A line through an edge meets both of its faces, rather than neither.
+  // Intersections of grid lines with faces. A line through an edge intersects both of its faces, never neither.
   struct Hit {
     std::size_t node;
     std::size_t direction;
@@ -209,7 +211,7 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
       };
       const double area = edge(0, (*corners[0])[right], (*corners[0])[up]);
       if (area == 0) continue;
-      constexpr double slack = 1e-9;  // of the triangle
+      constexpr double slack = 1e-9;  // relative to the triangle's size
       const auto range = [&](int along) {
         const double least = std::min({(*corners[0])[along], (*corners[1])[along], (*corners[2])[along]}),
                      most = std::max({(*corners[0])[along], (*corners[1])[along], (*corners[2])[along]});
@@ -238,7 +240,7 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
           const std::ptrdiff_t stride = domain.stride(on);
           add(node, on, share, point);
           add(node + stride, back, 1 - share, point);
-          // A node on the surface is cut off on both sides.
+          // The links of a node on the surface are cut on both sides.
           if (share < least_cut) {
             add(node, back, 0, point);
             add(node - stride, on, 1, point);
@@ -250,7 +252,8 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
         }
     }
   }
-  // Where rounding hid what lies between a node inside and one outside: the surface beside the nearer.
+  // If rounding missed the intersection between an inside and an outside node, the surface point nearest to the closer
+  // node stands in.
   std::vector<std::uint8_t> cut(domain.node_of.size() * grid_directions, 0);
   for (const Hit& hit : hits) cut[domain.slot_of[hit.node] * grid_directions + hit.direction] = 1;
   for (std::size_t slot = 0; slot < domain.node_of.size(); ++slot)
@@ -323,7 +326,8 @@ void DirichletGrid::continue_outwards(const std::vector<Vec3>& vertices, const s
   }
 }
 
-// The value at the foot and a slope: the least squares' over nodes inside and where their links meet the surface.
+// Linear extrapolation: the value at the foot plus a gradient. The gradient is fitted by weighted least squares to
+// inside nodes and to the surface points where their links are cut.
 std::vector<DirichletGrid::Term> DirichletGrid::continuation(const Outer& outer, double reach,
                                                              const std::vector<Vec3>& surface_places) const {
   const GridDomain& domain = multigrid_->domain();
@@ -355,7 +359,7 @@ std::vector<DirichletGrid::Term> DirichletGrid::continuation(const Outer& outer,
     for (int y = low[1]; y <= high[1]; ++y)
       for (int x = low[0]; x <= high[0]; ++x) {
         const std::uint32_t slot = domain.slot_of[number(x, y, z)];
-        // Not from across a gap: from the side of the surface that the foot is on.
+        // Only samples on the side of the surface where the foot is, not those across a gap.
         if (slot == none || (Vec3(x, y, z) - outer.foot_place).dot(out) > 0) continue;
         add(slot, Vec3(x, y, z));
         const std::uint32_t row = domain.cuts_of[slot];

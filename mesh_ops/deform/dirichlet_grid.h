@@ -11,59 +11,63 @@
 
 namespace rebake {
 
-/// A point of a cage's surface: a face's corners, weighted (barycentric coordinates).
+/// A point of a cage's surface: a face, and barycentric coordinates at its corners.
 struct SurfacePoint {
   std::uint32_t face;
   std::array<double, 3> corners;
 };
 
-/// Functions that are harmonic inside a closed surface and have given values on it, on a regular grid. Nodes inside
-/// solve Laplace's equation (see GridMultigrid); those outside that cells of inside points use continue the function
-/// linearly from the surface. Values inside and up to the surface are right to second order in the step; linear
-/// functions are exact everywhere. Where two parts of the surface lie less than a step apart, points between the last
-/// nodes take from both.
+/// Solver of the Dirichlet problem on a regular grid: functions that are harmonic inside a closed surface and have
+/// given values on it. Inside nodes solve Laplace's equation (see GridMultigrid). Outer nodes are the outside nodes of
+/// cells that contain inside points; their values are extrapolated linearly from the surface. Errors are of second
+/// order in the step, inside and up to the surface; linear functions are exact. If two parts of the surface lie less
+/// than a step apart, points between the outermost nodes mix values of both.
 class DirichletGrid {
  public:
-  /// `resolution` cells along the longest side of the surface's box.
+  /// `resolution`: cells along the longest side of the surface's box.
   DirichletGrid(const Cage& surface, int resolution, const Progress& progress = {});
 
-  /// Where values are asked for.
+  /// Points at which solve() needs surface values.
   const std::vector<SurfacePoint>& surface() const { return surface_; }
-  /// Nodes inside and those outside that cells of inside points use.
+  /// Number of inside and outer nodes.
   std::size_t nodes() const { return inside_nodes() + outer_.size(); }
-  /// `surface_values` one a point of surface(), `values` one a node. Those of lonely() nodes are zero.
-  /// `check_stop` is called now and then, and may throw.
+  /// Solves for grid_lanes functions together. `surface_values`: one entry per point of surface(). `values` receives
+  /// one entry per node, zero for lonely() nodes. `check_stop` is called once per multigrid cycle and may throw. Throws
+  /// Error if the solver does not converge.
   void solve(
       const std::vector<GridLanes>& surface_values, std::vector<GridLanes>& values,
       const std::function<void()>& check_stop = [] {});
 
-  /// Of the nodes, how many lie inside: the first ones. The others' values are continued.
+  /// Number of inside nodes. They come first; outer nodes follow.
   std::size_t inside_nodes() const { return multigrid_->domain().node_of.size(); }
-  /// Nodes outside that have too few inside beside them to continue from, as in spikes thinner than a step.
+  /// Outer nodes with too few inside nodes near them to extrapolate from, as in spikes thinner than a step.
   const std::vector<std::size_t>& lonely() const { return lonely_; }
+  /// Position of an inside or outer node.
   Vec3 place(std::size_t node) const;
 
   struct Cell {
-    std::array<std::uint32_t, 8> nodes;  ///< x runs fastest
-    Vec3 at;                             ///< 0 … 1 within it
+    std::array<std::uint32_t, 8> nodes;  ///< node numbers of the corners; x runs fastest
+    Vec3 at;                             ///< position within the cell, 0 … 1 per axis
   };
   double step() const { return step_; }
-  /// The cell that a point lies in; false where it is outside, more than a cell from the surface.
+  /// Finds the cell that contains a point. Returns false if the point is outside, more than a cell from the surface.
   bool find_cell(const Vec3& point, Cell& cell) const;
 
  private:
+  /// An outer node.
   struct Outer {
     std::uint32_t node;
-    std::uint32_t foot;  ///< the nearest point of the surface
-    Vec3 foot_place;     ///< in steps
+    std::uint32_t foot;  ///< nearest point of the surface: index in surface()
+    Vec3 foot_place;     ///< position of that point, in steps
   };
+  /// A summand of an extrapolated value.
   struct Term {
-    std::uint32_t source;  ///< a slot inside; beyond those a point of the surface
+    std::uint32_t source;  ///< slot of an inside node, or inside_nodes() + index in surface()
     double coefficient;
   };
 
   std::size_t number(int x, int y, int z) const;
-  Vec3 place_of(std::size_t node) const;  ///< in steps
+  Vec3 place_of(std::size_t node) const;  ///< position in steps, from the first node
   void find_distances(const std::vector<Vec3>& vertices, const std::vector<Face>& faces, const Progress& progress);
   std::vector<std::uint8_t> find_inside(const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
                                         const Progress& progress) const;
@@ -75,13 +79,14 @@ class DirichletGrid {
   double step_ = 0;
   Vec3 origin_;
   std::array<int, 3> size_{};
-  std::vector<float> distance_;         ///< of every node near the surface from it, in steps
-  std::vector<std::uint32_t> nearest_;  ///< face of the surface, or none
+  std::vector<float> distance_;         ///< per node: distance from the surface in steps; infinite beyond 1.75
+  std::vector<std::uint32_t> nearest_;  ///< per node: nearest face of the surface, or none
   std::vector<SurfacePoint> surface_;
-  std::vector<std::array<std::uint32_t, grid_directions>> cut_points_;  ///< beside the domain's cuts
+  /// Per row of the domain's `cuts` and direction: index in surface_, or none.
+  std::vector<std::array<std::uint32_t, grid_directions>> cut_points_;
   std::vector<Outer> outer_;
-  std::vector<std::uint32_t> outer_of_;  ///< of every node its place in outer_, or none
-  std::vector<std::size_t> first_term_;  ///< of every outer node, and one more
+  std::vector<std::uint32_t> outer_of_;  ///< per node: index in outer_, or none
+  std::vector<std::size_t> first_term_;  ///< per outer node: its first entry in terms_; one more at the end
   std::vector<Term> terms_;
   std::vector<std::size_t> lonely_;
   std::unique_ptr<GridMultigrid> multigrid_;

@@ -7,7 +7,7 @@
 
 namespace rebake {
 
-/// Functions of each number type; of double, those that are the same on every processor.
+/// Elementary functions for each number type. Those of double give the same bits on every processor.
 namespace real {
 template <class R>
 R atan2(const R& y, const R& x) {
@@ -38,7 +38,7 @@ R sqrt(const R& x) {
 }
 }  // namespace real
 
-/// A number with its gradient in space (forward-mode automatic differentiation).
+/// A number `v` with its gradient (x, y, z) in space: forward-mode automatic differentiation.
 template <class Real>
 struct DualOf {
   Real v = 0, x = 0, y = 0, z = 0;
@@ -89,7 +89,7 @@ DualOf<R>& operator+=(DualOf<R>& a, const DualOf<R>& b) {
   return a = a + b;
 }
 
-/// f(a), where the derivative of f there is `slope`.
+/// f(a) by the chain rule: `value` = f(a.v), `slope` = f′(a.v).
 template <class R>
 DualOf<R> chained(R value, R slope, const DualOf<R>& a) {
   return {value, slope * a.x, slope * a.y, slope * a.z};

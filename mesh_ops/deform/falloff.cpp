@@ -26,7 +26,7 @@ Vec3 BorderPiece::nearest(const Vec3& p) const {
 void fade_out(const std::vector<Vec3>& rest, const std::vector<BorderPiece>& border, double falloff,
               DeformedPoints& deformed) {
   if (border.empty()) return;
-  // In a box of size 1, so that no square of a distance overflows.
+  // Scaled to a box of size 1, so that no squared distance overflows.
   Box box;
   for (const BorderPiece& piece : border) {
     box.extend(piece.begin);
@@ -50,7 +50,7 @@ void fade_out(const std::vector<Vec3>& rest, const std::vector<BorderPiece>& bor
     const double distance = away.stableNorm(), t = distance / falloff;
     if (t >= 1) return;
     const double share = t * t * (3 - 2 * t);
-    // The slope is zero where the distance is, so that its direction need not exist there.
+    // At distance 0 the gradient of the share is 0, so its direction is not needed.
     const Vec3 slope = distance > 0 ? Vec3(away * (6 * t * (1 - t) / falloff / distance)) : Vec3(0, 0, 0);
     const Vec3 motion = deformed.points[i] - rest[i];
     deformed.points[i] = share > 0 ? Vec3(rest[i] + share * motion) : rest[i];

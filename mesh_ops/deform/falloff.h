@@ -7,19 +7,20 @@
 
 namespace rebake {
 
-/// A piece of the border of what is deformed: an edge that a deformed and another triangle share, or, where both ends
-/// are the same, a corner that they do.
+/// A piece of the border of the deformed triangles: an edge shared by a deformed and an unchanged triangle. If both
+/// ends are equal, it is a shared corner.
 struct BorderPiece {
   Vec3 begin, end;
 
   Vec3 nearest(const Vec3& p) const;
 };
 
-/// The border of the flagged triangles in world space: edges first, then corners that no such edge has.
+/// The border of the flagged triangles in world space: shared edges, and shared corners that belong to no such edge.
 std::vector<BorderPiece> border_of(const WeldedCorners& corners, const TriangleSet& flags, const FlaggedPlaces& places);
 
-/// Fades a deformation of points out towards the border, smoothly: whole at `falloff` from it and beyond, nothing on
-/// it. Jacobians follow.
+/// Fades a deformation out towards the border: the full motion at distance `falloff` and beyond, none on the border,
+/// with a cubic smoothstep between. Adjusts positions and Jacobians of `deformed`, whose entries belong to the points
+/// `rest`.
 void fade_out(const std::vector<Vec3>& rest, const std::vector<BorderPiece>& border, double falloff,
               DeformedPoints& deformed);
 

@@ -5,17 +5,17 @@
 
 #include "mesh_ops/deform/plane_local.h"
 
-// Integrals over a triangle that is thin, or small, beside the point's distance from it. There the closed forms are
-// differences of what the edges see, far larger than what the triangle does: a needle's weights are off by rounding
-// times its length over its height. Gauss-Legendre sums have terms of one sign and cancel nothing.
+// Integrals over a triangle that is thin or small compared with its distance from the point. There, closed forms
+// subtract the contributions of the edges, which are far larger than their difference: the weights of a needle are off
+// by rounding times its length over its height. Gauss-Legendre sums have terms of one sign and do not cancel.
 
 namespace rebake::plane_local {
 
-/// Thinner ones lose more than a digit by the closed forms.
+/// Whether a triangle is so thin that closed forms lose more than a digit.
 inline bool is_needle(const FaceFrame& face) { return 16 * face.height < face.length; }
 
-/// Distances in extents of the face from which sums hold to rounding, with few nodes and with many. Between the two the
-/// closed forms lose up to three digits, but take a tenth of the time.
+/// Distances, in extents of the face, from which quadrature is exact to rounding: with few nodes and with many. Between
+/// the two, closed forms lose up to three digits but take a tenth of the time.
 inline constexpr double few_nodes_from = 8, many_nodes_from = 1.5;
 
 template <class T>
@@ -23,19 +23,19 @@ double distance_in_extents(const FaceFrame& face, const Seen<T>& s) {
   return std::hypot(value_of(s.h), distance_in_plane(s)) / (is_needle(face) ? face.height : face.length);
 }
 
-/// A place in a triangle by its barycentric coordinates, and its share of the area.
+/// A quadrature node: barycentric coordinates, and its share of the area.
 struct TriangleNode {
   double share;
   std::array<double, 3> lambda;
 };
 
-/// Gauss-Legendre on a square that is collapsed to the triangle at corner 0 (Duffy): n nodes along and n across.
+/// Gauss-Legendre nodes on a square collapsed to the triangle at corner 0 (Duffy): n nodes along and n across.
 template <int n>
 const std::vector<TriangleNode>& triangle_nodes() {
   static const std::vector<TriangleNode> nodes = [] {
     using Rule = boost::math::quadrature::gauss<double, n>;
     // On [0, 1]; Boost lists the nodes ≥ 0 of [−1, 1] only.
-    std::vector<std::array<double, 2>> line;  // place, weight
+    std::vector<std::array<double, 2>> line;  // position, weight
     for (std::size_t k = 0; k < Rule::abscissa().size(); ++k)
       for (const double sign : {1.0, -1.0})
         if (sign > 0 || Rule::abscissa()[k] != 0)
@@ -49,7 +49,8 @@ const std::vector<TriangleNode>& triangle_nodes() {
   return nodes;
 }
 
-/// f(dA, λ, r²) at those nodes. The nearest pole of 1 / r is so far that the remainder is below 1e-17 of the sum.
+/// Calls f(dA, λ, r²) at the nodes of a triangle. The nearest pole of 1 / r is so far away that the remainder is below
+/// 1e-17 of the sum.
 template <bool many, class T, class F>
 void for_each_triangle_node(const FaceFrame& face, const Seen<T>& s, const F& f) {
   const double area = face.length * face.height / 2;
@@ -64,9 +65,9 @@ void for_each_triangle_node(const FaceFrame& face, const Seen<T>& s, const F& f)
   }
 }
 
-/// The same on a needle: on each side of corner 0's foot on the longest edge, 10 (15) along the edge in pieces no
-/// longer than half their distance, and 7 (15) across it in each. The nearest pole of 1 / r is then so far that the
-/// remainder is below 1e-17 of the sum.
+/// Calls f(dA, λ, r²) at the nodes of a needle. On each side of corner 0's foot on the longest edge, the edge is cut
+/// into pieces no longer than half their distance from the point. Each piece has 10 (15) nodes along the edge and 7
+/// (15) across it. The nearest pole of 1 / r is then so far away that the remainder is below 1e-17 of the sum.
 template <bool many, class T, class F>
 void for_each_needle_node(const FaceFrame& face, const Seen<T>& s, const F& f) {
   using Across = boost::math::quadrature::gauss<double, many ? 15 : 7>;
@@ -79,7 +80,7 @@ void for_each_needle_node(const FaceFrame& face, const Seen<T>& s, const F& f) {
     }
   };
   const double beside = std::hypot(value_of(s.out[1]), value_of(s.h));
-  for (const std::size_t corner : {std::size_t{1}, std::size_t{2}}) {  // from it to the foot
+  for (const std::size_t corner : {std::size_t{1}, std::size_t{2}}) {  // each side runs from this corner to the foot
     const double reach = corner == 1 ? face.apex : face.length - face.apex;
     const double direction = corner == 1 ? 1 : -1;
     if (!(reach > 0)) continue;
@@ -90,7 +91,7 @@ void for_each_needle_node(const FaceFrame& face, const Seen<T>& s, const F& f) {
         const double low = start + begin * reach, high = low + size * reach;
         return 2 * size * reach > std::hypot(beside, std::max({0.0, low, -high}));
       };
-      // A point on the edge itself is not asked for, but must not make this endless.
+      // Callers pass no point on the edge itself, but for one the loop must end too.
       while (too_long() && size > std::numeric_limits<double>::epsilon()) size /= 2;
       for_each_of(Along::abscissa(), Along::weights(), [&](double place, double weight_along) {
         const double u = begin + size * place, share = u * reach / face.length;
@@ -118,8 +119,8 @@ void for_each_node(const FaceFrame& face, const Seen<T>& s, const F& f) {
     for_each_triangle_node<many>(face, s, f);
 }
 
-/// h ∫ λᵢ / r⁴ dA by the form that holds; `far_out`: for a point so far from the cage that the sum over its faces
-/// cancels, and every digit of them counts.
+/// h ∫ λᵢ / r⁴ dA, by closed form or quadrature, whichever is accurate. `far_out`: the point is so far from the cage
+/// that the sum over its faces cancels, so every digit counts.
 template <class T>
 std::array<T, 3> mean_value_terms(const FaceFrame& face, const Seen<T>& s, bool far_out = false) {
   const double distance = distance_in_extents(face, s);
@@ -137,7 +138,7 @@ std::array<T, 3> mean_value_terms(const FaceFrame& face, const Seen<T>& s, bool 
   return sums;
 }
 
-/// ∫ λᵢ h / r³ dA and ∫ 1 / r dA by the form that holds.
+/// ∫ λᵢ h / r³ dA per corner and ∫ 1 / r dA, by closed form or quadrature, whichever is accurate.
 template <class T>
 GreenTerms<T> green_terms(const FaceFrame& face, const Seen<T>& s) {
   if (!(distance_in_extents(face, s) > few_nodes_from)) return green(face, s);

@@ -61,7 +61,7 @@ class Green final : public Coordinates {
       const double stretch = std::sqrt(std::max(0.0, square)) / (std::sqrt(8.0) * area);
       const Vec3 n(frame_.faces[k].normal[0], frame_.faces[k].normal[1], frame_.faces[k].normal[2]);
       const Vec3 turned = u2.cross(v2);
-      // A face that collapsed has no normal: its share vanishes with its area.
+      // A collapsed face has no normal, and its contribution vanishes with its area.
       const Vec3 normal = turned.stableNorm() > 0 ? Vec3(turned.stableNormalized()) : Vec3(0, 0, 0);
       motions[rest.vertices.size() + f] = (stretch * normal - n) / frame_.scale;
     }
@@ -69,7 +69,8 @@ class Green final : public Coordinates {
   }
 
  private:
-  // As for other faces, by the map from the face's own plane: in doubles a needle's height is lost in its corners.
+  // Motion of a needle's row with 50 digits, since double loses the height of a needle in its corners. Same formula as
+  // for other faces, from the linear map of the face's plane.
   Vec3 needle_motion(const FaceFrame& face, const std::vector<Vec3>& moved) const {
     const WideFace wide = wide_face(frame_, face);
     std::array<std::array<Wide, 3>, 3> corners;

@@ -14,11 +14,11 @@ namespace rebake {
 
 namespace {
 
-// Below this many nodes the grid is swept until it is solved.
+// Grids with fewer nodes than this are solved by smoothing alone.
 constexpr std::size_t coarsest_nodes = 64;
 constexpr int coarsest_sweeps = 60;
 constexpr int most_cycles = 80;
-// Largest residual, of the largest that the surface's values make: a few roundings.
+// Relative tolerance: largest residual over the largest right side. A few rounding errors.
 constexpr double converged = 3e-15;
 
 template <class Visit>
@@ -44,7 +44,7 @@ std::array<int, 3> place_of(const GridDomain& domain, std::uint32_t node) {
   return {static_cast<int>(node % nx), static_cast<int>(node / nx % ny), static_cast<int>(node / nx / ny)};
 }
 
-// Every other node. Its links are twice as long, and cut where one of the two that they follow is.
+// The grid of every other node. Its links are twice as long, and cut if one of the two fine links is.
 GridDomain coarser(const GridDomain& fine) {
   GridDomain coarse;
   for (std::size_t axis = 0; axis < 3; ++axis) coarse.size[axis] = (fine.size[axis] + 1) / 2;
@@ -147,7 +147,8 @@ void GridMultigrid::relax(Level& level, const std::vector<std::uint32_t>& slots)
   });
 }
 
-// Cut rows are weighted as the others are: their coefficients grow without limit towards the surface.
+// Equations with cut links are scaled to the same diagonal as the others, since their coefficients grow without limit
+// towards the surface.
 void GridMultigrid::find_residual(Level& level) {
   for_slots(level.links.size(), [&](std::size_t slot) {
     const auto& links = level.links[slot];
@@ -188,7 +189,7 @@ void GridMultigrid::restrict_residual(std::size_t number) {
           if (from == GridDomain::none) continue;
           sum += fine.residual[from] * (1.0 / (8 << (std::abs(x) + std::abs(y) + std::abs(z))));
         }
-    // Equations are multiplied by their step's square.
+    // Equations are multiplied by the step squared, which is four times as large here.
     coarse.right[slot] = sum * 4;
     coarse.values[slot].setZero();
   });
@@ -202,7 +203,7 @@ void GridMultigrid::add_correction(std::size_t number) {
     GridLanes sum = GridLanes::Zero();
     double share = 1;
     for (const int a : at) share *= a % 2 == 0 ? 1 : 0.5;
-    // Behind the last coarse node lies none inside.
+    // No inside node lies beyond the last coarse node.
     const auto last = [&](std::size_t axis) { return std::min((at[axis] + 1) / 2, coarse.domain.size[axis] - 1); };
     for (int z = at[2] / 2; z <= last(2); ++z)
       for (int y = at[1] / 2; y <= last(1); ++y)
@@ -232,7 +233,7 @@ double GridMultigrid::cycle(std::size_t number) {
   const double left = number == 0 ? largest(level.residual) : 0;
   restrict_residual(number);
   cycle(number + 1);
-  // Twice below the finest grid, where it costs next to nothing.
+  // A W-cycle below the finest grid, where it costs little.
   if (number > 0) cycle(number + 1);
   add_correction(number);
   for (const auto& colour : level.cut_colours) relax(level, colour);
@@ -255,7 +256,7 @@ const std::vector<GridLanes>& GridMultigrid::solve(const std::vector<GridLanes>&
     check_stop();
     const double left = cycle(0);
     if (left <= converged * scale) return finest.values;
-    // As near as rounding lets it come.
+    // Rounding prevents further progress.
     if (left <= 100 * converged * scale && left > before / 2) return finest.values;
     before = left;
   }

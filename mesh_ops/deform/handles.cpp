@@ -18,8 +18,8 @@ namespace {
 using Kernel = CGAL::Simple_cartesian<double>;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-// Rotations by sums, products and square roots only. CGAL's default calls Eigen's closed-form eigenvalues, whose
-// arctangent has other last bits on other processors and C libraries.
+// Closest rotations by sums, products and square roots only. CGAL's default uses Eigen's closed-form eigenvalues, whose
+// arctangent has different last bits on other processors and C libraries.
 struct RotationTraits : CGAL::Deformation_Eigen_closest_rotation_traits_3 {
   void compute_close_rotation(const Matrix& covariance, Matrix& rotation) {
     rotation = local_rotation(covariance.transpose()).rotation;
@@ -31,14 +31,14 @@ using Deformation = CGAL::Surface_mesh_deformation<Mesh, CGAL::Default, CGAL::De
 struct RigidMotion {
   Mat3 turn = Mat3::Identity();
   Vec3 shift{0, 0, 0};
-  bool is_exact = false;  ///< it takes all to their places, up to rounding
+  bool is_exact = false;  ///< it maps all points to their targets, up to rounding
 
   Vec3 operator()(const Vec3& p) const { return turn * p + shift; }
 };
 
-// The smallest rotation that takes unit vector a to unit vector b. Near opposite vectors it is the product of two
-// reflections: through the plane between them, and through a plane that holds b and stands on theirs. The half angle's
-// cosine, by which the usual form divides, is lost there.
+// The smallest rotation that maps unit vector a to unit vector b. For nearly opposite vectors it is the product of two
+// reflections: in the plane halfway between them, and in the plane that contains b and is perpendicular to the plane of
+// a and b. The usual formula divides by the cosine of the half angle, which is lost there.
 Mat3 rotation_between(const Vec3& a, const Vec3& b) {
   constexpr double nearly_opposite = -0.99;
   if (a.dot(b) > nearly_opposite) return Eigen::Quaterniond::FromTwoVectors(a, b).toRotationMatrix();
@@ -50,8 +50,8 @@ Mat3 rotation_between(const Vec3& a, const Vec3& b) {
   return reflection(across) * reflection(between);
 }
 
-// The rotation that takes the centred points nearest to their places; of those that do so equally, one that turns
-// least: a single line of points leaves the turn about it open, a single point every turn.
+// The rotation that best maps centred points to their targets (Kabsch). If it is not unique (collinear or coincident
+// points), the one with the smallest angle.
 Mat3 fitted_turn(const Mat3& covariance) {
   const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3& sizes = svd.singularValues();
@@ -62,7 +62,7 @@ Mat3 fitted_turn(const Mat3& covariance) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-// Of points in a box of size 1.
+// The rigid motion that best maps points to their targets. Coordinates must be of order 1.
 RigidMotion fitted(const std::vector<Vec3>& rest, const std::vector<Vec3>& places) {
   RigidMotion motion;
   Vec3 from(0, 0, 0), to(0, 0, 0);
@@ -83,8 +83,9 @@ RigidMotion fitted(const std::vector<Vec3>& rest, const std::vector<Vec3>& place
   return motion;
 }
 
-// What is minimised: of each vertex, how far the edges of its triangles are from turned ones, weighed by the cotangents
-// of the angles opposite (Chao et al. 2010, spokes and rims). 0 where every triangle's surroundings turn rigidly.
+// The energy that is minimised (Chao et al. 2010, spokes and rims): per vertex, squared differences between deformed
+// and rotated edges of its triangles, weighted by the cotangents of the opposite angles. 0 if the surroundings of every
+// triangle rotate rigidly.
 double rigidity_energy(const std::vector<Vec3>& rest, const std::vector<Vec3>& moved, const std::vector<Face>& faces) {
   std::vector<Mat3> turns(rest.size(), Mat3::Zero());
   const auto for_edges = [&](const Face& face, const auto& visit) {
@@ -121,13 +122,13 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
     for (const std::uint32_t v : face) used[v] = 1;
   if (std::none_of(held.begin(), held.end(), [&](const HandledVertex& h) { return used[h.vertex] != 0; }))
     throw Error("none of the held points belongs to a triangle of the cage; fix some that do");
-  // Held points are where they were asked to be, bit for bit.
+  // Constrained vertices get exactly their targets.
   for (const HandledVertex& h : held) result.vertices[h.vertex] = h.place;
   for (std::uint32_t v = 0; v < cage.vertices.size(); ++v)
     if (used[v] != 0 && component[v] == v && has_held[v] == 0) ++result.free_components;
   if (result.vertices == cage.vertices) return result;
 
-  // In a box of diagonal 1, as the solver's tolerances expect.
+  // Scaled to a box of diagonal 1, which the solver's tolerances expect.
   Box box;
   for (const Vec3& v : cage.vertices) box.extend(v);
   const double size = box.diagonal().stableNorm();
@@ -146,7 +147,7 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
     if (rest == places) motions[first] = {Mat3::Identity(), Vec3(0, 0, 0), true};
     all_exact = all_exact && motions[first].is_exact;
   }
-  // Rigidity is the same from wherever the cage rigidly stands: the solver starts from where it fits.
+  // The energy does not change under rigid motions, so the solver starts from the rigidly moved cage.
   std::vector<Vec3> rest(cage.vertices.size()), moved(cage.vertices.size());
   for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
     rest[v] = local(cage.vertices[v]);
@@ -165,7 +166,7 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
         throw Error("two parts of the cage meet in a single point: handles need a cage without such places");
     Deformation deformation(mesh);
     for (const auto v : mesh.vertices()) deformation.insert_roi_vertex(v);
-    // A point of no face is held where it is asked to be, and moves nothing else.
+    // A vertex of no face gets its target, and influences no other.
     for (const HandledVertex& h : held)
       if (used[h.vertex] != 0) deformation.insert_control_vertex(number[h.vertex]);
     if (!deformation.preprocess()) throw Error("the handles do not determine the cage; fix some more points");
@@ -192,7 +193,7 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
     result.energy = rigidity_energy(rest, moved, solved);
   }
   for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
-    // A component that is held where it was keeps its bits.
+    // A component whose constrained vertices did not move keeps its bits.
     const bool stands = motions[component[v]].is_exact && motions[component[v]].turn.isIdentity(0) &&
                         motions[component[v]].shift.isZero(0);
     if (used[v] != 0 && has_held[component[v]] != 0 && !stands) result.vertices[v] = box.center() + moved[v] * size;

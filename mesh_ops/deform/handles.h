@@ -8,27 +8,29 @@
 
 namespace rebake {
 
-/// Where a cage's vertices are held: those without a place are free.
+/// A constrained vertex of a cage and its target position. Other vertices are free.
 struct HandledVertex {
   std::uint32_t vertex;
   Vec3 place;
 };
 
-/// The cage deformed as rigidly as possible (Sorkine, Alexa 2007; CGAL) with some of its vertices held in place.
+/// Result of an as-rigid-as-possible deformation (Sorkine, Alexa 2007; implemented by CGAL).
 struct HandledCage {
   std::vector<Vec3> vertices;
-  std::size_t free_components = 0;  ///< no vertex held: they stay where they are
-  int iterations = 0;               ///< that were done
-  double residual = 0;              ///< the farthest that a vertex went in the last one, in diagonals of the cage
-  double energy = 0;                ///< what is left of it: 0 where the motion is rigid; of a cage of diagonal 1
+  std::size_t free_components = 0;  ///< connected components without a constrained vertex; they do not move
+  int iterations = 0;               ///< number of iterations done
+  double residual = 0;              ///< largest motion of a vertex in the last iteration, over the cage's diagonal
+  double energy = 0;                ///< remaining energy for a cage of diagonal 1; 0 if the motion is rigid
 };
 
-/// Iterations stop at this residual.
+/// Iterations stop when HandledCage::residual reaches this.
 inline constexpr double handles_residual = 1e-6;
 
-/// Starts from the rigid motion that fits the held vertices of each component best (Kabsch 1976), which is the answer
-/// where they moved rigidly, whatever the angle; then up to `iterations` local and global steps. What is held where it
-/// was moves nothing, bit for bit. Throws Error when nothing is held, and when the mesh cannot be solved for.
+/// Deforms a cage with some vertices constrained. Starts from the rigid motion that best fits the constrained vertices
+/// of each component (Kabsch 1976). If they moved rigidly, by whatever angle, that is the result; otherwise up to
+/// `iterations` local and global steps follow. Components whose constrained vertices did not move keep their bits.
+/// Throws Error if no vertex of a face is constrained, two parts of the cage meet in a single vertex, or the system
+/// cannot be solved.
 HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVertex>& held, int iterations,
                                  const Progress& progress = {});
 

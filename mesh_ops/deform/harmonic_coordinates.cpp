@@ -14,11 +14,11 @@ namespace rebake {
 
 namespace {
 
-// A weight for every cage point at every node that cells inside use, kept; and what the solver takes beside them.
+// Limits in bytes: stored weights (one per cage vertex and grid node), and memory of the solver.
 constexpr double most_bytes = 2e9, most_solver_bytes = 8e9;
-constexpr double solver_bytes = 450;  // a node, for eight functions at a time
+constexpr double solver_bytes = 450;  // bytes per node, for eight functions together
 
-// Weights are linear on every face and harmonic inside.
+// Each weight is the harmonic function that is 1 at one cage vertex, 0 at the others, and linear on every face.
 class Harmonic final : public Coordinates {
  public:
   Harmonic(const Cage& cage, int resolution, const Progress& progress)
@@ -51,7 +51,7 @@ class Harmonic final : public Coordinates {
       for (std::size_t node = 0; node < values.size(); ++node)
         std::copy_n(values[node].data(), lanes, &values_[node * rows() + first]);
       if (first == 0) {
-        // All groups of points take the same time.
+        // All groups of cage vertices take the same time.
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
         const std::size_t groups = (rows() - lanes + grid_lanes - 1) / grid_lanes;
         const double rest = took.count() * static_cast<double>(groups);
@@ -96,8 +96,8 @@ class Harmonic final : public Coordinates {
   }
 
  private:
-  // Where cells are far larger than the cage is thick, few nodes lie inside, and weights there are made of what lies
-  // outside: they leave 0 … 1 by any amount.
+  // Throws FieldError if cells are far larger than the cage is thick. Few nodes would then lie inside, and weights
+  // would be extrapolated from outer nodes, far beyond 0 … 1.
   static void check_fineness(const Cage& local, int resolution, double step) {
     double area = 0;
     for (const Face& face : local.faces)
@@ -105,7 +105,7 @@ class Harmonic final : public Coordinates {
                   .cross(local.vertices[face[2]] - local.vertices[face[0]])
                   .norm() /
               2;
-    const double thickness = 2 * volume(local) / area;  // of a flat box; half that of a rod
+    const double thickness = 2 * volume(local) / area;  // thickness of a flat box; half the thickness of a rod
     constexpr double least = 0.5;
     if (thickness >= least * step) return;
     const double wanted = std::ceil(resolution * least * step / thickness);
@@ -131,7 +131,7 @@ class Harmonic final : public Coordinates {
 
   CageFrame frame_;
   std::unique_ptr<DirichletGrid> grid_;
-  std::vector<double> values_;  ///< a row of weights a node
+  std::vector<double> values_;  ///< [node][row]
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Mean value coordinates of many points at once: the forms of plane_local.h, without branches, as loops over lanes that
-// the compiler turns into vectors, with gradients worked out by hand. What all faces of an edge share is computed once.
-// Faces that rounding decides about are left to plane_local.h.
+// Mean value coordinates of batches of points: the forms of plane_local.h without branches, as loops over lanes that
+// the compiler vectorises, with gradients derived by hand. Terms of an edge are computed once for all its faces. Cases
+// in which rounding decides are left to plane_local.h.
 #include "mesh_ops/deform/mean_value_batch.h"
 
 #include <math.h>
@@ -17,21 +17,22 @@ namespace rebake {
 namespace {
 
 constexpr int lanes = static_cast<int>(batch_lanes);
-// Below this distance (local units) from a face, and below this share of the distance from an edge's nearer end where a
-// point lies beyond it and beside its line, the face is left out.
+// The batch leaves out faces nearer to the point than this (local units).
 constexpr double near_distance = 2e-6;
+// It also leaves out faces with an edge if the point lies beyond the edge's ends, and nearer to its line than this
+// share of the distance from the nearer end.
 constexpr double near_line = 1e-4;
-// Where the angle of an edge has a series: see plane_local::EdgeSeries.
+// Ratio below which the angle of an edge is a series: see plane_local::EdgeSeries.
 constexpr double series_ratio = 1.0 / 7;
-// Where the point's projection lies beside the triangle by this many times its height, the sum over the edges cancels;
-// the other form takes over. It would hold nearer too, but costs three more arctangents.
+// Ratio of the projection's distance beside a triangle to the point's height. Above it, the sum over the edges cancels
+// and the other form takes over. That form also holds nearer, but costs three more arctangents.
 constexpr double grazing_ratio = 16;
-// Keeps divisions by zero out of lanes whose result is not used: it is multiplied by zero.
+// Prevents division by zero in lanes whose result is multiplied by zero.
 constexpr double tiny = 1e-60;
 
-// One edge's part of the form that holds beside a triangle, by distance a ≥ 0 of the projection from the edge's line,
-// squared height, and the edge's ends: (φ − a θ / c) / h², φ and θ the angles under which projection and point see the
-// edge; and its derivatives.
+// One edge's part of the form for points beside a triangle: (φ − a θ / c) / h², and its derivatives. φ and θ are the
+// angles that the edge subtends at the projection and at the point. a ≥ 0 and c are the distances of the projection and
+// of the point from the edge's line. `square` is h². `begin` and `end` are the edge's ends along its line.
 struct Part {
   double v, by_a, by_square, by_ends;
 };
@@ -39,7 +40,7 @@ REBAKE_INLINE double part_value(double a, double square, double c, double begin,
   const double both = c + a;
   const double upper = square * end / (both * (a * c + end * end + tiny)),
                lower = square * begin / (both * (a * c + begin * begin + tiny));
-  // Both are small here: one arctangent of their difference.
+  // Both angles are small here, so one arctangent of the difference is enough.
   return theta / (c * both) + elementary::atan2(upper - lower, 1 + upper * lower) / square;
 }
 REBAKE_INLINE Part part(double a, double square, double c, double begin, double end, double theta) {
@@ -55,11 +56,11 @@ REBAKE_INLINE Part part(double a, double square, double c, double begin, double 
           -(v + a / (2 * cc) * (by_c - theta / c)) / square, a * (end_a * end_c - begin_a * begin_c)};
 }
 
-// On an edge's line, beyond its ends, a part is 0 and its slope is not.
+// The sign of a, 1 for 0: on an edge's line, beyond its ends, a part is 0 but its slope is not.
 REBAKE_INLINE double sign_of(double a) { return a < 0 ? -1.0 : 1.0; }
 REBAKE_INLINE double least(double a, double b) { return a < b ? a : b; }
 REBAKE_INLINE double greatest(double a, double b) { return a > b ? a : b; }
-// 1 where the point lies beyond the edge's ends and beside its line.
+// 1 if the point lies beyond the edge's ends and near its line, else 0.
 REBAKE_INLINE double beside_line(double a, double square, double begin, double end) {
   const double nearer = least(fabs(begin), fabs(end));
   return begin * end > 0 && a * a + square < near_line * near_line * nearer * nearer ? 1.0 : 0.0;
@@ -70,10 +71,9 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
                   double* slopes, BatchNear* near) {
   constexpr int row = (gradients ? 4 : 1) * lanes;
   const double *px = points, *py = points + lanes, *pz = points + 2 * lanes;
-  double* const angles = workspace;                     // θ / c of each edge, then its gradient: rows of lanes
-  double* const sums = angles + cage.edge_count * row;  // weights before they are normalised, likewise
-  double* const sizes =
-      sums + cage.vertex_count * row;  // of all terms that the weights are summed from: a row of lanes
+  double* const angles = workspace;                      // per edge: θ / c, then its gradient; rows of lanes
+  double* const sums = angles + cage.edge_count * row;   // per vertex: unnormalised weight and gradient
+  double* const sizes = sums + cage.vertex_count * row;  // sums of the magnitudes of all terms: a row of lanes
   for (std::size_t i = 0; i < cage.vertex_count * row; ++i) sums[i] = start != nullptr ? start[i] : 0;
   for (int lane = 0; lane < lanes; ++lane) sizes[lane] = 0;
 
@@ -87,7 +87,7 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
     for (int lane = 0; lane < lanes; ++lane) {
       const double ex = fx - px[lane], ey = fy - py[lane], ez = fz - pz[lane];
       const double begin = tx * ex + ty * ey + tz * ez, end = begin + length;
-      // The distance from the line as a cross product: no difference of squares.
+      // The distance from the line as a cross product avoids a difference of squares.
       const double cx = ey * tz - ez * ty, cy = ez * tx - ex * tz, cz = ex * ty - ey * tx;
       const double cc = cx * cx + cy * cy + cz * cz + tiny, c = sqrt(cc);
       const double theta = elementary::atan2(c * length, cc + begin * end);
@@ -97,15 +97,15 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
         const double first_end = 1 / (cc + begin * begin), second_end = 1 / (cc + end * end);
         // ∇θ = ∂θ/∂c ∇c + ∂θ/∂begin ∇begin, where ∇c = −(e − begin t) / c and ∇begin = −t.
         const double closed = -(begin * first_end - end * second_end - value) * by_c * by_c;
-        // −2 d(θ/c)/dc² by the series, where the closed form is 0 / 0: Σ (−1)ⁿ⁺¹ 2n βₙ c²ⁿ⁻² / (2n + 1).
+        // −2 d(θ/c)/dc² by its series, used if the closed form is 0 / 0: Σ (−1)ⁿ⁺¹ 2n βₙ c²ⁿ⁻² / (2n + 1).
         const double nearer = least(fabs(begin), fabs(end));
-        // A product of numbers where a condition would become a branch, and the loop no vectors.
+        // A product of numbers, since a condition would become a branch and prevent vectorisation.
         const double beyond =
             (begin * end > 0 ? 1.0 : 0.0) * (cc < series_ratio * series_ratio * nearer * nearer ? 1.0 : 0.0);
         const double u = 1 / (beyond * begin + (1 - beyond)), v = 1 / (beyond * end + (1 - beyond));
         const double uu = u * u, vv = v * v, odd = v * (u + v);
         double powers = uu + odd, v_power = vv, term = length * u * v, series = 0;
-        // Written out: a loop within would keep the one over lanes from becoming vectors.
+        // Unrolled by hand: an inner loop would prevent vectorisation of the loop over lanes.
         const auto add = [&](double share) __attribute__((always_inline)) {
           series += term * powers * share;
           powers = powers * uu + v_power * odd;
@@ -180,18 +180,18 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
       const double lambda0 = out * by_height;
       const double lambda2 = -((1 - lambda0) * along + lambda0 * (along + apex)) * by_length;
       const double lambda1 = 1 - lambda0 - lambda2;
-      // ∇λ · Σ ν θ / c; edge 0's normal is `outward` itself.
+      // ∇λ · Σ ν θ / c. The normal of edge 0 is `outward` itself.
       const double gt = k1 * nt1 + k2 * nt2, go = k0 + k1 * no1 + k2 * no2;
       const double slope0 = -go * by_height, slope2 = (gt - slope0 * apex) * by_length;
       const double slope1 = -(slope0 + slope2);
       const double part0 = lambda0 * whole - 0.5 * slope0, part1 = lambda1 * whole - 0.5 * slope1,
                    part2 = lambda2 * whole - 0.5 * slope2;
-      // In its plane, and beside it, a face has value 0, but a gradient.
+      // In its own plane, beside it, a face has value 0 but a gradient.
       const double below = height <= 1e-15 ? 0.0 : h;
       w0[lane] += kept > 0 ? below * part0 : 0.0;
       w1[lane] += kept > 0 ? below * part1 : 0.0;
       w2[lane] += kept > 0 ? below * part2 : 0.0;
-      // The same sums with all terms positive: what roundings are shares of.
+      // The same sums with all terms positive: rounding errors are relative to these.
       const double along1 = fabs(k1 * nt1) + fabs(k2 * nt2), across1 = fabs(k0) + fabs(k1 * no1) + fabs(k2 * no2);
       const double whole_size = (fabs(out * k0) + fabs(a1 * k1) + fabs(a2 * k2)) * half;
       const double slope0_size = across1 * by_height, slope2_size = (along1 + slope0_size * fabs(apex)) * by_length;

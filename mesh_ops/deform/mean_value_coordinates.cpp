@@ -8,11 +8,11 @@ namespace {
 
 namespace pl = plane_local;
 
-// Terms so many times as large as their sum leave ten digits at least. Beyond, all faces are weighed with 50: outside
-// thin cages and beside sharp edges, where points are few and time is long (a tenth of a millisecond a face). Farther
-// than this many diagonals weights are no use to anybody, and are left as double makes them.
+// If the terms are at most this many times as large as their sum, ten digits remain. Otherwise all faces are evaluated
+// with 50 digits: outside thin cages and beside sharp edges, where points are few, since it takes a tenth of a
+// millisecond per face. Beyond `exact_within` diagonals, weights are of no use and stay as double gives them.
 constexpr double most_cancelled = 1e5, exact_within = 10;
-// Beside a face points are few: there all digits are kept.
+// The same limit for points near a face. They are few, so all digits are preserved.
 constexpr double most_cancelled_near = 8;
 
 class MeanValue final : public Coordinates {
@@ -66,7 +66,7 @@ class MeanValue final : public Coordinates {
     std::array<double, 3 * batch_lanes> local;
     std::array<Vec3, batch_lanes> places;
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
-      // What is no number has no weights, and must not decide about the other lanes.
+      // A point that is not finite has no weights and must not influence other lanes.
       places[lane] = frame_.to_local(points[lane]).allFinite() ? points[lane] : frame_.center;
       const Vec3 p = frame_.to_local(places[lane]);
       for (std::size_t axis = 0; axis < 3; ++axis) local[axis * batch_lanes + lane] = p[static_cast<int>(axis)];
@@ -134,7 +134,7 @@ class MeanValue final : public Coordinates {
         exact.assign(rows(), pl::constant<T>(0));
         add_near_faces<T>(frame_, pl::local_point(p, T()), wide_place(frame_, places[lane]), all_faces_, exact);
       } else if (far_out) {
-        // Done.
+        // mean_value_weights() has already set `exact`.
       } else if (again[lane] != 0 || !near[lane].empty()) {
         exact.resize(rows());
         for (std::size_t v = 0; v < rows(); ++v) {
@@ -182,7 +182,7 @@ class MeanValue final : public Coordinates {
     for (std::size_t k = 0; k < 3; ++k) {
       size += std::abs(value_of(terms[k]));
       double* sum = sums + face.vertices[k] * (pl::has_gradient<T> ? 4 : 1) * batch_lanes;
-      // In its plane a face has value 0, but a gradient.
+      // In its own plane a face has value 0 but a gradient.
       if (!in_plane) sum[0] += value_of(terms[k]);
       if constexpr (pl::has_gradient<T>) {
         sum[batch_lanes] += terms[k].x;
@@ -195,8 +195,8 @@ class MeanValue final : public Coordinates {
 
   CageFrame frame_;
   std::vector<const FaceFrame*> all_faces_;
-  std::vector<const FaceFrame*> needles_;  ///< weighed one by one
-  std::vector<const FaceFrame*> batched_;  ///< the others
+  std::vector<const FaceFrame*> needles_;  ///< thin faces (is_needle), evaluated one by one
+  std::vector<const FaceFrame*> batched_;  ///< faces that the batch evaluates
   std::vector<double> vertices_, edge_frames_, face_frames_;
   std::vector<std::uint32_t> edges_, faces_;
   BatchCage batch_;

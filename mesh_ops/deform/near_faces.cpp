@@ -12,13 +12,14 @@ namespace {
 
 namespace pl = plane_local;
 
-// Farther from all faces than this, double tells inside from outside and leaves eight digits of a gradient.
+// If all faces are farther than this, double separates inside from outside and preserves eight digits of a gradient.
 constexpr double wide_green_distance = 1e-8;
 // Nearer to a face than this, the weights are those of the surface: they change by less than rounding.
 constexpr double on_surface = 1e-30;
-// Gradients on the surface are taken this far inside: thin cages are thicker, and 50 digits hold what cancels there.
+// Gradients on the surface are taken this far inside: thin cages are thicker, and 50 digits compensate the
+// cancellation.
 constexpr double depth_inside = 1e-20;
-// Faces that contain a point known to 50 digits are no farther from it than this.
+// A face counts as containing a 50-digit point if it is no farther from it than this.
 constexpr double wide_rounding = 1e-40;
 
 template <class T>
@@ -54,7 +55,7 @@ WidePoint nearest_of_edge(const WideFace& face, const pl::Seen<Wide>& s, std::si
   return moved(a, along, Wide(-s.begin[k] / face.frame.lengths[k]));
 }
 
-// The point of the surface that `point` counts as, when it lies within snap_distance: the nearest corner, else the
+// The point of the surface that `point` is taken for if it lies within snap_distance: the nearest corner, else the
 // nearest point of an edge, else of a face.
 std::optional<WidePoint> snapped(const std::vector<WideFace>& faces, const WidePoint& point) {
   constexpr std::size_t corner = 0, edge = 1, face_interior = 2, kinds = 3;
@@ -82,7 +83,7 @@ std::optional<WidePoint> snapped(const std::vector<WideFace>& faces, const WideP
   return std::nullopt;
 }
 
-// The angle of the face at a point of it: at a corner that of the corner, else 1.
+// The angle of the face at a point of it: the angle of the corner at a corner, else 1.
 double angle_at(const WideFace& face, const pl::Seen<Wide>& s) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (value_of(s.r[k]) > wide_rounding) continue;
@@ -95,8 +96,8 @@ double angle_at(const WideFace& face, const pl::Seen<Wide>& s) {
   return 1;
 }
 
-// Beside a point that lies on the surface, inside; nothing for another. The direction is the normal weighted by the
-// angles of the faces that meet, which points outwards at every corner (Bærentzen, Aanæs 2005).
+// For a point on the surface, a point just inside; otherwise nothing. The direction is the angle-weighted normal of the
+// faces that meet, which points outwards at every corner (Bærentzen, Aanæs 2005).
 std::optional<WidePoint> place_inside(const std::vector<WideFace>& faces, const WidePoint& point) {
   const std::optional<WidePoint> on = snapped(faces, point);
   if (!on) return std::nullopt;
@@ -109,7 +110,7 @@ std::optional<WidePoint> place_inside(const std::vector<WideFace>& faces, const 
   return length > 0 ? moved(*on, normal, Wide(-depth_inside / length)) : *on;
 }
 
-// Where gradients are taken.
+// The point where gradients are taken: just inside for points on the surface.
 WidePoint gradient_place(const std::vector<WideFace>& faces, const WidePoint& point) {
   return place_inside(faces, point).value_or(point);
 }
@@ -155,7 +156,7 @@ std::vector<WideDual> near_faces::wide_gradients(const CageFrame& cage, const Wi
 
 namespace {
 
-// The near faces where double is not enough; else none.
+// The near faces with 50 digits; empty if double is enough.
 std::vector<WideFace> faces_beyond_double(const CageFrame& cage, const WidePoint& exact,
                                           std::span<const FaceFrame* const> near) {
   const pl::Point<double> local{static_cast<double>(exact[0]), static_cast<double>(exact[1]),

@@ -8,62 +8,63 @@
 #include "mesh_ops/deform/wide_frame.h"
 
 // Weights of points on and beside the cage. There a face's term grows without bound while the normalised weights stay
-// smooth, and near a sharp edge the terms of both faces hang on heights that double cannot resolve. So the faces near a
-// point are evaluated with 50 digits, unless a single face is near and the point lies over it: that case has a smooth
-// form.
+// smooth. Near a sharp edge, the terms of both faces depend on heights that double cannot resolve. So the faces near a
+// point are evaluated with 50 digits. The exception is a point over a single near face, which has a smooth form.
 
 namespace rebake {
 
 using WidePoint = std::array<Wide, 3>;
 
-/// Faces nearer than this are evaluated apart from the others. Local units: the cage's diagonal is 1 to 2 of them, so
-/// this covers 1e-6 diagonals of any cage.
+/// Faces nearer than this (local units) are evaluated separately. The diagonal of a cage is 1 to 2 local units, so this
+/// covers 1e-6 diagonals of any cage.
 inline constexpr double near_distance = 2e-6;
 
-/// Sums over the other faces as large as this (local units) belong to faces on the far side of a thin part. There the
-/// weights change so fast across the part that the point's height over the near face needs more than double.
+/// If the sums over the other faces are as large as this (local units), they come from faces on the far side of a thin
+/// part. Weights then change so fast across the part that the height over the near face needs more than double.
 inline constexpr double large_others = 64;
 
 using WideDual = DualOf<Wide>;
 
-/// Turns `weights`, the sums over all faces but the `near` ones (one per vertex), into normalised mean value weights.
-/// Gradients on the surface are one-sided limits from inside. Returns what the weights were divided by, with its sign:
-/// rounding of the sums given is in the weights divided by as much. Infinite on the surface. `exact`: the point before
-/// it was rounded to the frame.
+/// Adds the `near` faces to `weights`, the sums over all other faces (one per vertex), and normalises them to mean
+/// value weights. Gradients on the surface are one-sided limits from inside. Returns the divisor of the normalisation
+/// with its sign, infinite on the surface: rounding errors of the given sums divided by it are in the weights. `exact`:
+/// the point in local units, before it was rounded to double.
 template <class T>
 double add_near_faces(const CageFrame& cage, const plane_local::Point<T>& local, const WidePoint& exact,
                       std::span<const FaceFrame* const> near, std::vector<T>& weights);
 
-/// Green's terms of the near faces (times 4π), one per near face. Sum them before rounding to double: terms of faces
-/// that share an edge cancel.
+/// Green's terms of the near faces (times 4π), one per near face. Sum them before rounding to double, since terms of
+/// faces that share an edge cancel.
 struct WideGreen {
-  std::vector<plane_local::GreenTerms<Wide>> terms;  ///< empty where double is enough
-  double sum = 0;                                    ///< of all corners, over 4π
-  /// The same inside of the point beside it if it lies on the surface, where `sum` depends on how many faces meet.
+  std::vector<plane_local::GreenTerms<Wide>> terms;  ///< empty if double is enough
+  double sum = 0;                                    ///< sum over all corners, divided by 4π
+  /// The sum at a point just inside, if the point lies on the surface; there `sum` depends on the number of faces that
+  /// meet. Otherwise equal to `sum`.
   double sum_inside = 0;
 };
 WideGreen wide_green(const CageFrame& cage, const WidePoint& exact, std::span<const FaceFrame* const> near);
-/// The same terms with gradients, at the point or at their limit from inside when it lies on the surface.
+/// Terms with gradients, at the point, or at the limit from inside if it lies on the surface.
 std::vector<plane_local::GreenTerms<WideDual>> wide_green_gradients(const CageFrame& cage, const WidePoint& exact,
                                                                     std::span<const FaceFrame* const> near);
 
-// For add_near_faces alone.
+// Helpers of add_near_faces().
 namespace near_faces {
 
-/// Normalised weights from `sums`, the sums over all other faces; `divisor` as add_near_faces() returns it.
+/// Normalised weights from `sums`, the sums over all other faces. Sets `divisor` as add_near_faces() returns it.
 std::vector<Wide> wide_values(const CageFrame& cage, const WidePoint& point, std::span<const FaceFrame* const> near,
                               std::vector<Wide> sums, double& divisor);
-/// The same with gradients; the values are those of the place where gradients are taken.
+/// Weights with gradients. Values and gradients belong to the point where gradients are taken.
 std::vector<WideDual> wide_gradients(const CageFrame& cage, const WidePoint& point,
                                      std::span<const FaceFrame* const> near, std::vector<WideDual> sums);
 
+/// Whether the point is over the face: its projection is farther inside every edge than the point's height.
 template <class T>
 bool is_over(const plane_local::Seen<T>& s) {
   const double height = std::abs(value_of(s.h));
   return value_of(s.a[0]) > height && value_of(s.a[1]) > height && value_of(s.a[2]) > height;
 }
 
-// Returns the divisor.
+// Divides the weights by their sum. Returns the sum.
 template <class T>
 double normalise(std::vector<T>& weights) {
   T total = plane_local::constant<T>(0);
@@ -72,7 +73,7 @@ double normalise(std::vector<T>& weights) {
   return value_of(total);
 }
 
-// The one face that the point is over, or on. Returns what add_near_faces() does.
+// Adds the single face that the point is over or on. Returns the same as add_near_faces().
 template <class T>
 double add_face_below(const FaceFrame& face, plane_local::Seen<T> s, std::vector<T>& weights) {
   // A height within rounding is 0 for the weights; their gradients keep its derivative.

@@ -9,10 +9,10 @@
 #include "mesh_ops/deform/cage_frame.h"
 #include "mesh_ops/deform/dual.h"
 
-// Integrals over one triangle, in its own plane: no chord of unit vectors, no determinant, no absolute epsilon. T is
-// double, float, or Dual for gradients. A point is given in the cage frame. Angles and distances follow the usual
-// derivations (Ju et al. 2005 for mean values, Urago 2000 and Lipman et al. 2008 for Green's), arranged so that nothing
-// cancels near faces, edges, vertices and planes.
+// Integrals over one triangle, in its own plane: no chords of unit vectors, no determinants, no absolute epsilon. T is
+// double, float, or Dual for gradients. Points are in the cage frame. Angles and distances follow the usual derivations
+// (Ju et al. 2005 for mean values, Urago 2000 and Lipman et al. 2008 for Green's), arranged so that nothing cancels
+// near faces, edges, vertices and planes.
 
 namespace rebake::plane_local {
 
@@ -29,7 +29,7 @@ inline constexpr bool has_gradient = !std::is_same_v<T, typename RealOf<T>::type
 template <class T>
 inline const double epsilon = static_cast<double>(std::numeric_limits<typename RealOf<T>::type>::epsilon());
 
-/// Far below the square of any height that rounding leaves.
+/// A lower bound for squared heights, far below the square of any height that rounding produces.
 template <class T>
 inline const double least_square = std::max(static_cast<double>(std::numeric_limits<typename RealOf<T>::type>::min()),
                                             1e-300) *
@@ -53,19 +53,20 @@ Point<DualOf<R>> local_point(const Vec3& p, const DualOf<R>& /*tag*/) {
   return {DualOf<R>(p.x(), 1, 0, 0), DualOf<R>(p.y(), 0, 1, 0), DualOf<R>(p.z(), 0, 0, 1)};
 }
 
-/// A triangle as seen from a point: e = corner − point, in the plane and across it.
+/// Position of a triangle relative to a point, from e = corner − point, by components in the plane and across it. Edge
+/// k lies opposite corner k.
 template <class T>
 struct Seen {
-  std::array<T, 3> along, out;  ///< of each corner, along the tangent and outward
-  std::array<T, 3> r;           ///< its distance
-  T h;                          ///< the point's height below the plane: positive inside the cage
-  std::array<T, 3> a;           ///< distance of the point's projection from each edge's line, positive inside
-  std::array<T, 3> c;           ///< distance of the point itself from it
-  std::array<T, 3> begin, end;  ///< the edge's ends along its line, from the point's projection
-  double far;                   ///< the largest r
+  std::array<T, 3> along, out;  ///< components of e of each corner along tangent and outward
+  std::array<T, 3> r;           ///< distance of each corner from the point
+  T h;                          ///< height of the point below the plane: positive inside the cage
+  std::array<T, 3> a;           ///< signed distance of the point's projection from each edge's line, positive inside
+  std::array<T, 3> c;           ///< distance of the point itself from each edge's line
+  std::array<T, 3> begin, end;  ///< positions of each edge's ends along its line, from the point's projection
+  double far;                   ///< largest distance of a corner from the point
 };
 
-/// `offsets`: corner − point.
+/// `offsets`: corner − point, per corner.
 template <class T, class R>
 Seen<T> seen(const FaceFrameOf<R>& face, const std::array<Point<T>, 3>& offsets) {
   Seen<T> s;
@@ -91,7 +92,7 @@ Seen<T> seen(const FaceFrameOf<R>& face, const std::array<Point<T>, 3>& offsets)
     const T et = constant<T>(face.edge_t[k]), eo = constant<T>(face.edge_o[k]);
     s.a[k] = s.along[m] * nt + s.out[m] * no;
     s.c[k] = real::sqrt(s.a[k] * s.a[k] + s.h * s.h);
-    // On an edge's line what is divided by c has a limit, which this reaches.
+    // On an edge's line, quotients by c have a limit; this value of c reaches it.
     if (value_of(s.c[k]) == 0) s.c[k] = constant<T>(std::sqrt(least_square<T>));
     s.begin[k] = s.along[i] * et + s.out[i] * eo;
     s.end[k] = s.along[j] * et + s.out[j] * eo;
@@ -149,8 +150,8 @@ double distance_of(const Seen<T>& s) {
   return std::max(std::abs(value_of(s.h)), distance_in_plane(s));
 }
 
-/// Points nearer than this (local units) lie on the surface, as far as rounding can tell. The same for every face of a
-/// cage and for weights and gradients alike: faces that disagree about a point lose it.
+/// Points nearer to the surface than this (local units) count as on it, which is as far as rounding can tell. The same
+/// for every face of a cage and for weights and gradients: if faces disagreed about a point, it would be lost.
 template <class T>
 inline const double surface_tolerance = 8 * epsilon<T>;
 
@@ -164,9 +165,10 @@ Place place(const Seen<T>& s) {
   return std::abs(value_of(s.h)) <= 4 * epsilon<T> * s.far ? Place::in_plane : Place::off_plane;
 }
 
-/// What an edge's part needs where the point's projection lies beyond an end of the edge, near its line. There the
-/// angle θ under which the point sees the edge, over its distance c from the line, is the series Σ (−1)ⁿ βₙ c²ⁿ / (2n +
-/// 1), βₙ = begin⁻²ⁿ⁻¹ − end⁻²ⁿ⁻¹, and what its closed form loses by 0 / 0 need not be computed.
+/// Terms of an edge for a point whose projection lies beyond an end of the edge, near its line. There the closed form
+/// is 0 / 0. The angle θ that the edge subtends at the point, divided by the distance c from the line, is a series:
+///
+///     θ / c = Σ (−1)ⁿ βₙ c²ⁿ / (2n + 1), βₙ = begin⁻²ⁿ⁻¹ − end⁻²ⁿ⁻¹
 template <class T>
 struct EdgeSeries {
   T quotient;  ///< θ / c
@@ -179,15 +181,16 @@ bool is_near_edge_line(const Seen<T>& s, std::size_t k) {
 }
 template <class T, class R>
 EdgeSeries<T> edge_series(const FaceFrameOf<R>& face, const Seen<T>& s, std::size_t k) {
-  // In units of the nearer end's distance, so that no power overflows.
+  // In units of the distance from the nearer end, so that no power overflows.
   const T unit = constant<T>(1 / std::min(std::abs(value_of(s.begin[k])), std::abs(value_of(s.end[k]))));
   const T a = s.a[k] * unit, h = s.h * unit, aa = a * a, cc = aa + h * h;
   const T u = constant<T>(1) / (s.begin[k] * unit), v = constant<T>(1) / (s.end[k] * unit);
   // βₙ = (u − v) Σ_j uʲ v²ⁿ⁻ʲ, whose terms have one sign.
   const T difference = constant<T>(face.lengths[k]) * unit * u * v;
   const T uu = u * u, vv = v * v;
-  T sum = constant<T>(1), v_power = constant<T>(1);                                  // Σ_j uʲ v²ⁿ⁻ʲ and v²ⁿ
-  T cc_power = constant<T>(1), aa_power = constant<T>(1), divided = constant<T>(0);  // of c²ⁿ between the two
+  T sum = constant<T>(1), v_power = constant<T>(1);  // Σ_j uʲ v²ⁿ⁻ʲ and v²ⁿ
+  // Powers of c² and a², and the divided difference of c²ⁿ between c² = a² + h² and a².
+  T cc_power = constant<T>(1), aa_power = constant<T>(1), divided = constant<T>(0);
   EdgeSeries<T> series{difference, constant<T>(0)};
   const int terms = static_cast<int>(std::ceil(-std::log2(epsilon<T>) / std::log2(49.0))) + 1;
   for (int n = 1; n <= terms; ++n) {
@@ -205,7 +208,7 @@ EdgeSeries<T> edge_series(const FaceFrameOf<R>& face, const Seen<T>& s, std::siz
   return series;
 }
 
-/// h ∫ λᵢ / r⁴ dA for a point that is not on the triangle.
+/// h ∫ λᵢ / r⁴ dA per corner by closed form, for a point that is not on the triangle.
 template <class T, class R>
 std::array<T, 3> mean_value(const FaceFrameOf<R>& face, const Seen<T>& s) {
   std::array<T, 3> angle, q;
@@ -223,7 +226,7 @@ std::array<T, 3> mean_value(const FaceFrameOf<R>& face, const Seen<T>& s) {
     q[k] = angle[k] / s.c[k];
   }
   T square = s.h * s.h;
-  // In the plane the second form has a limit, which this reaches.
+  // In the plane the second form has a limit; this height reaches it.
   if (value_of(square) < least_square<T>) square = constant<T>(least_square<T>);
   T whole = constant<T>(0);
   if (distance_in_plane(s) < 8 * std::abs(value_of(s.h))) {
@@ -254,8 +257,8 @@ std::array<T, 3> mean_value(const FaceFrameOf<R>& face, const Seen<T>& s) {
   return result;
 }
 
-/// A face that the point lies over, or on: h ∫ λᵢ / r⁴ dA is λᵢ / width + restᵢ, where width vanishes with the height
-/// and all three are smooth through the face.
+/// The term of a face that the point lies over or on: h ∫ λᵢ / r⁴ dA = λᵢ / width + restᵢ. The width vanishes with the
+/// height, and all three are smooth across the face.
 template <class T>
 struct OverFace {
   std::array<T, 3> lambda, rest;
@@ -275,7 +278,7 @@ OverFace<T> over_face(const FaceFrameOf<R>& face, const Seen<T>& s) {
   return result;
 }
 
-/// Green's coordinates of one face, times 4π: ∫ λᵢ h / r³ dA for each corner and ∫ 1 / r dA.
+/// Green's coordinates of one face, times 4π: ∫ λᵢ h / r³ dA per corner and ∫ 1 / r dA.
 template <class T>
 struct GreenTerms {
   std::array<T, 3> corners;
@@ -295,7 +298,7 @@ GreenTerms<T> green(const FaceFrameOf<R>& face, const Seen<T>& s) {
       std::swap(near, far);
     }
     const T low = value_of(begin) < 0 ? T(s.c[k] * s.c[k] / (near - begin)) : T(begin + near);
-    // On the edge itself the integral diverges, but what it is multiplied by vanishes.
+    // On the edge itself the integral diverges, but its factor vanishes.
     logs[k] = value_of(low) > 0 ? real::log(T((end + far) / low)) : constant<T>(0);
     sum += s.a[k] * logs[k];
   }
@@ -317,7 +320,7 @@ GreenTerms<T> green(const FaceFrameOf<R>& face, const Seen<T>& s) {
                real::atan2(T(s.a[k] * s.begin[k]), T(square + h * s.r[(k + 1) % 3]));
     }
     if (below) angle = -angle;
-    // Nothing is seen edge on; on the face itself, half of all that is around.
+    // The solid angle is 0 in the plane beside the triangle, and half of the full angle (2π) on the triangle.
     if (value_of(s.h) == 0 && !(value_of(s.a[0]) > 0 && value_of(s.a[1]) > 0 && value_of(s.a[2]) > 0))
       angle = angle - constant<T>(value_of(angle));
   }

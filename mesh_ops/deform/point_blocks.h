@@ -10,13 +10,14 @@
 
 #include "mesh_ops/deform/coordinates.h"
 
-// Many points are weighed in blocks of batch_lanes.
+// Weights of many points, in blocks of batch_lanes.
 
 namespace rebake {
 
+/// Number of blocks of batch_lanes points.
 inline std::size_t blocks_of(std::size_t points) { return (points + batch_lanes - 1) / batch_lanes; }
 
-/// The points of one block; the last is repeated where the block is not full.
+/// The points of one block; the last point is repeated to fill it.
 inline std::array<Vec3, batch_lanes> block_points(const std::vector<Vec3>& points,
                                                   const std::vector<std::uint32_t>& order, std::size_t block) {
   std::array<Vec3, batch_lanes> result;
@@ -25,7 +26,8 @@ inline std::array<Vec3, batch_lanes> block_points(const std::vector<Vec3>& point
   return result;
 }
 
-/// Calls visit(block, weights, gradients, outside) for every block, on all threads.
+/// Calls visit(block, weights, gradients, outside) for every block, in parallel. Layouts as in Coordinates::weigh();
+/// `gradients` is empty if not requested.
 template <class Visit>
 void for_blocks(const Coordinates& coordinates, const std::vector<Vec3>& points,
                 const std::vector<std::uint32_t>& order, bool gradients, const Progress& progress, Visit visit) {
@@ -44,7 +46,7 @@ void for_blocks(const Coordinates& coordinates, const std::vector<Vec3>& points,
   });
 }
 
-/// Rows that move, and how far: x, y, z of each.
+/// Rows with a motion other than zero, and their motions (x, y, z per row).
 struct MovingRows {
   std::vector<std::uint32_t> rows;
   std::vector<float> motions;

@@ -9,8 +9,8 @@
 #include "mesh_ops/deform/coordinates.h"
 #include "mesh_ops/deform/near_faces.h"
 
-// The weights of one point in any number type, for the files that instantiate them: point_weights.cpp, and
-// editor/studies/number_types.cpp what only studies compare with.
+// Weights of one point in any number type. Only files that instantiate them include this: point_weights.cpp, and
+// editor/studies/number_types.cpp for the types that only studies use.
 
 namespace rebake {
 
@@ -28,7 +28,7 @@ double mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<
       continue;
     }
     const bool in_plane = plane_local::place(s) == plane_local::Place::in_plane;
-    // Of a face's value rounding must not decide where it is 0; its gradient is not.
+    // In its own plane a face has value exactly 0, whatever rounding gives; its gradient is not 0.
     if (in_plane && !plane_local::has_gradient<T>) continue;
     auto terms = plane_local::mean_value_terms(face, s, far_out);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -43,7 +43,7 @@ double mean_value_weights(const CageFrame& cage, const Vec3& local, std::vector<
   return any_near ? 0 : size / std::abs(sum);
 }
 
-/// The nearest point of a face to what `s` sees, as barycentric coordinates.
+/// Barycentric coordinates of the point of a face that is nearest to the point of `s`.
 template <class T>
 std::array<T, 3> nearest_coordinates(const FaceFrame& face, const plane_local::Seen<T>& s) {
   const bool inside = value_of(s.a[0]) >= 0 && value_of(s.a[1]) >= 0 && value_of(s.a[2]) >= 0;
@@ -65,7 +65,7 @@ std::array<T, 3> nearest_coordinates(const FaceFrame& face, const plane_local::S
   return result;
 }
 
-/// Adds the near faces' values to φ and ψ, summed per vertex before they are rounded.
+/// Adds the near faces' terms to φ and ψ, summed per vertex before rounding.
 template <class T>
 void add_wide_values(const CageFrame& cage, const std::vector<std::size_t>& near_numbers,
                      const std::vector<plane_local::GreenTerms<Wide>>& terms, std::vector<T>& phi,
@@ -80,7 +80,7 @@ void add_wide_values(const CageFrame& cage, const std::vector<std::size_t>& near
   for (std::size_t v = 0; v < phi.size(); ++v) phi[v] += plane_local::constant<T>(Wide(of_vertices[v] * share));
 }
 
-/// Adds the gradients of the near faces' terms to φ and ψ, summed per vertex before they are rounded.
+/// Adds the gradients of the near faces' terms to φ and ψ, summed per vertex before rounding.
 inline void add_wide_gradients(const CageFrame& cage, const std::vector<std::size_t>& near_numbers,
                                const std::vector<plane_local::GreenTerms<WideDual>>& terms, std::vector<Dual>& phi,
                                std::vector<Dual>& psi) {
@@ -123,7 +123,7 @@ bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_co
   for (std::size_t f = 0; f < cage.faces.size(); ++f) {
     const FaceFrame& face = cage.faces[f];
     plane_local::Seen<T> s = plane_local::seen(cage, face, x);
-    // Rounding must not decide which side of its own face a point lies on.
+    // Rounding must not decide on which side of its own face a point lies.
     if (plane_local::place(s) == plane_local::Place::on_face) s.h = s.h - plane_local::constant<T>(value_of(s.h));
     const auto terms = plane_local::green_terms(face, s);
     if (plane_local::distance_of(s) < near_distance) {
@@ -138,8 +138,8 @@ bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_co
       nearest_face = f;
     }
   }
-  // Outside the sum is 0, inside 1; between them only on the surface. Where parts of the cage overlap it is wound
-  // around more than once.
+  // The sum is 0 outside and 1 inside, with other values only on the surface. If parts of the cage overlap, the winding
+  // number is above 1.
   double inside = value_of(sum), winding = 0;
   bool wide = false;
   if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Dual>) {
@@ -169,7 +169,7 @@ bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_co
   const FaceFrame& face = cage.faces[nearest_face];
   auto lambda = nearest_coordinates(face, plane_local::seen(cage, face, x));
   T missing = plane_local::constant<T>(1) - sum;
-  // Gradients of wide terms are those of a place inside, where nothing is missing.
+  // Gradients of 50-digit terms belong to a point inside, where the weights already sum to 1.
   if (wide) {
     missing = plane_local::constant<T>(value_of(missing));
     for (T& share_of_corner : lambda) share_of_corner = plane_local::constant<T>(value_of(share_of_corner));

@@ -1,4 +1,4 @@
-// What dragging spends its time on: bound by reading weights, as long as the sums stay in vector registers.
+// The inner loop of dragging. It is limited by memory bandwidth (reading weights) if the sums stay in vector registers.
 #include "mesh_ops/deform/row_sums.h"
 
 #ifndef REBAKE_ROW_SUMS_NAME

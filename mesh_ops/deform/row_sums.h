@@ -7,15 +7,18 @@
 
 namespace rebake {
 
-/// Rows of weights times motions: sums[to][axis][lane] = Σ over `count` rows of motions[row][to] · the row's
-/// numbers[axis][lane], for `axes` (1 or 3) rows of batch_lanes floats each. `rows` says which rows of the block.
+/// Weighted sums of motions over `count` rows of a block, per lane:
+///
+///     sums[to][axis][lane] = Σ_k motions[k][to] · block[rows[k]][axis][lane]
+///
+/// `axes` is 1 (for weights) or 3 (for gradients). Each [lane] row has batch_lanes floats.
 using RowSums = void (*)(const float* block, const std::uint32_t* rows, const float* motions, std::size_t count,
                          std::size_t axes, float* sums);
 
-/// The implementation for this machine's processor.
+/// The fastest implementation that this processor can run.
 RowSums row_sums();
 
-// One source, compiled once for each kind of processor.
+// One source file, compiled once per processor level.
 void row_sums_baseline(const float* block, const std::uint32_t* rows, const float* motions, std::size_t count,
                        std::size_t axes, float* sums);
 #ifdef REBAKE_WIDE_VECTORS

@@ -12,9 +12,9 @@ namespace rebake {
 
 namespace {
 
-constexpr double cells = 32;        // of the part's diagonal: what lies in the same or the next touches
-constexpr double elongated = 1.5;   // ratio of spreads from which a part has a direction
-constexpr double near_foot = 0.15;  // share of the length over which the width is taken
+constexpr double cells = 32;        // cells per diagonal of the part; points in the same or adjacent cells touch
+constexpr double elongated = 1.5;   // ratio of standard deviations above which a part is elongated
+constexpr double near_foot = 0.15;  // share of the length over which the width is measured
 
 struct Mean {
   Vec3 sum{0, 0, 0};
@@ -52,7 +52,7 @@ std::vector<WeightedPoint> contacts_of(const std::vector<WeightedPoint>& part, c
   return contacts;
 }
 
-// The part's middle at steps along the line, each from what lies nearer than a step.
+// Centres of the part at equal steps along the line, each from the points within a step (linear weights).
 std::vector<Vec3> curve_of(const std::vector<WeightedPoint>& part, const Spine& spine) {
   constexpr std::size_t steps = 8;
   std::vector<Mean> near(steps + 1);
@@ -68,11 +68,11 @@ std::vector<Vec3> curve_of(const std::vector<WeightedPoint>& part, const Spine& 
   for (const Mean& one : near)
     if (one.weight > 0) middles.push_back(one.value());
   if (middles.size() < 3) return {spine.foot, spine.foot + spine.length * spine.along};
-  // Single leaves do not count.
+  // Smoothing, so that outliers such as single leaves have little effect.
   std::vector<Vec3> curve = middles;
   for (std::size_t k = 1; k + 1 < middles.size(); ++k)
     curve[k] = (middles[k - 1] + 2 * middles[k] + middles[k + 1]) / 4;
-  // On to the part's ends.
+  // Extends the curve to the ends of the part.
   const auto along = [&](const Vec3& p) { return (p - spine.foot).dot(spine.along); };
   const auto extend = [&](Vec3& end, const Vec3& before, double to) {
     const double step = along(end) - along(before);
@@ -107,7 +107,7 @@ std::optional<Spine> spine_of(const std::vector<WeightedPoint>& part, const std:
   const bool round = !(std::sqrt(axes.eigenvalues()[2]) > elongated * std::sqrt(std::max(0.0, axes.eigenvalues()[1])));
   if (round && contact && (middle - *contact).norm() > 0.05 * box.diagonal().norm())
     spine.along = (middle - *contact).normalized();
-  // Away from the rest, else upwards.
+  // Points away from the rest, or upwards if nothing touches.
   const double side = contact ? (middle - *contact).dot(spine.along) : spine.along.y();
   if (side < 0) spine.along = -spine.along;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -120,7 +120,7 @@ std::optional<Spine> spine_of(const std::vector<WeightedPoint>& part, const std:
   spine.length = high - low;
   if (!(spine.length > 0)) return std::nullopt;
   if (contact) {
-    // But for the outermost twentieth at either end, by weight.
+    // The range from the 5th to the 95th percentile of contacts, by weight.
     std::vector<std::pair<double, double>> along;
     for (const WeightedPoint& point : contacts)
       along.emplace_back((point.at - spine.foot).dot(spine.along) / spine.length, point.weight);

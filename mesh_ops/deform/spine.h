@@ -7,29 +7,28 @@
 
 namespace rebake {
 
-/// A point that stands for some surface.
+/// A sample point of a surface.
 struct WeightedPoint {
   Vec3 at;
-  double weight = 1;  ///< e.g. its area
+  double weight = 1;  ///< relative weight, such as its area
 };
 
-/// The line along which a part is bent.
+/// The line along which a part of an object is bent.
 struct Spine {
-  Vec3 foot{0, 0, 0};   ///< where the part hangs on the rest
-  Vec3 along{0, 1, 0};  ///< of length 1, away from there
-  double length = 0;    ///< to the part's far end
-  double width = 0;     ///< of the part near its foot: twice the mean distance from the line
-  /// Over which share of the length the rest touches the part: near 0 for a branch that hangs at its stem, near 1 where
-  /// some of the part was not taken.
+  Vec3 foot{0, 0, 0};   ///< end of the line at which the part is attached to the rest
+  Vec3 along{0, 1, 0};  ///< unit vector from the foot to the far end
+  double length = 0;    ///< distance from the foot to the part's far end
+  double width = 0;     ///< width of the part near its foot: twice the mean distance from the line
+  /// Share of the length over which the rest touches the part, 0 … 1: near 0 for a branch attached at its base, near 1
+  /// if only a piece of an object was selected.
   double touched = 0;
-  /// Through the middle of the part, from its foot to its far end; for a straight part the line itself. Two points or
-  /// more.
+  /// Centre line of the part from foot to far end, two points or more; a straight line for straight parts.
   std::vector<Vec3> curve;
 };
 
-/// The spine of `part`: the direction in which it is longest, or where it has none, that from where it touches `rest`
-/// to its middle. Its foot is at the end where `rest` is nearer; without a rest that touches, at the lower end. Nothing
-/// for parts without extent. Takes time in proportion to the number of points.
+/// The spine of `part`, along its direction of largest variance. A round part uses the direction from its contact with
+/// `rest` to its centre. The foot is at the end nearer to the contact, or at the lower end (−y) if nothing touches.
+/// Empty for parts without extent. Time is linear in the number of points.
 std::optional<Spine> spine_of(const std::vector<WeightedPoint>& part, const std::vector<WeightedPoint>& rest);
 
 }  // namespace rebake

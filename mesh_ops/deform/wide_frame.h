@@ -6,13 +6,13 @@
 
 namespace rebake {
 
-/// 50 decimal digits, for the few terms that cancel beyond what double holds.
+/// Number with 50 decimal digits, for the few terms that lose all digits to cancellation in double.
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
-/// A point of the cage's space in the cage's frame.
+/// Local coordinates (CageFrame) of a point in the space of the cage.
 std::array<Wide, 3> wide_place(const CageFrame& cage, const Vec3& point);
 
-/// A face of the cage in the cage's frame.
+/// A face in local coordinates: its frame and corner positions.
 struct WideFace {
   FaceFrameOf<Wide> frame;
   std::array<std::array<Wide, 3>, 3> corners;

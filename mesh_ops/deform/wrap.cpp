@@ -20,13 +20,13 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-// How much work a wrap will be, as a coarser one tells. Nothing known: 0.
+// Expected number of points of a wrap, extrapolated from a coarser one; 0 if unknown. `words` is the progress text.
 struct Expected {
   double points = 0;
   std::string words = "wrap";
 };
 
-// Called by CGAL as it carves; throwing ends that.
+// Visitor of CGAL's carving: reports progress. Cancelling throws out of it.
 struct Watch : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
   Watch(const Progress& to, const Expected& work) : progress(&to), expected(&work) {}
 
@@ -44,7 +44,7 @@ struct Watch : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
 };
 
 struct Triangles {
-  std::vector<Kernel::Point_3> points;  // in a box of diagonal 1: CGAL's constructions are not made for 1e±300
+  std::vector<Kernel::Point_3> points;  // scaled to a box of diagonal 1, since CGAL's constructions fail at 1e±300
   std::vector<std::vector<std::size_t>> faces;
 };
 
@@ -55,8 +55,8 @@ Mesh wrapped(const Triangles& of, double coarseness, const Progress& progress, c
   return mesh;
 }
 
-// From a wrap four times as coarse. Points grow with the square of the fineness, and time a little faster (measured on
-// the ficus and the mic: by 5.3 to 6 where coarseness halves from 0.05 on).
+// Extrapolates from a wrap four times as coarse. The number of points grows with the square of the fineness, and time a
+// little faster (measured on two scenes: by 5.3 to 6 per halved coarseness, from 0.05 on).
 Expected expected_of(const Triangles& of, double coarseness, const Progress& progress) {
   constexpr double coarser = 4, time_power = 2.4;
   const auto start = std::chrono::steady_clock::now();
@@ -87,12 +87,12 @@ Cage wrap(const TriangleList& triangles, double coarseness, const Progress& prog
     const Vec3 q = p.allFinite() ? Vec3((p - center) / diagonal) : Vec3(0, 0, 0);
     points.emplace_back(q.x(), q.y(), q.z());
   }
-  // CGAL wants triangles with an area; those without lie on others' edges, or show nothing.
+  // CGAL needs triangles with an area. Others lie on edges of neighbours or are invisible.
   std::erase_if(faces, [&](const std::vector<std::size_t>& f) {
     return CGAL::collinear(points[f[0]], points[f[1]], points[f[2]]);
   });
   if (faces.empty()) throw Error("no triangle has an area: there is nothing to put a cage around; use a lattice");
-  // Coarser ones take a second at most.
+  // Only finer wraps take more than a second and need an estimate.
   constexpr double estimated_below = 0.02;
   const Expected expected = coarseness < estimated_below ? expected_of(given, coarseness, progress) : Expected{};
   progress.at(expected.words, 0);

@@ -35,7 +35,7 @@ struct SetParts {
   SourceFile feat1;
 };
 
-// How far behind a missing number files are looked for: a gap would silently drop them.
+// Number of files after a missing one that are checked, since a gap would silently drop them.
 constexpr std::size_t gap = 64;
 
 bool has_geometry(const fs::path& folder, std::size_t set) {
@@ -43,7 +43,7 @@ bool has_geometry(const fs::path& folder, std::size_t set) {
          fs::exists(folder / geometry_name(Layout::chunked, set, 0));
 }
 
-// The chunks of a set, in order; none for a set in one file.
+// Names of the chunk files of a set, in order; empty for a set in one file.
 std::vector<std::string> chunk_files(const fs::path& folder, std::size_t set) {
   std::vector<std::string> names;
   while (fs::exists(folder / geometry_name(Layout::chunked, set, names.size())))
@@ -55,7 +55,7 @@ std::vector<std::string> chunk_files(const fs::path& folder, std::size_t set) {
   return names;
 }
 
-// The files of a set's geometry: the whole one first, where there is one, then its chunks.
+// Names of the geometry files of a set: the whole file first, if it exists, then chunks.
 std::vector<std::string> geometry_files(const fs::path& folder, bool unsplit, std::size_t set, int set_count) {
   const std::string whole = geometry_name(unsplit ? Layout::unsplit : Layout::split, set, 0);
   std::vector<std::string> names;
@@ -67,12 +67,13 @@ std::vector<std::string> geometry_files(const fs::path& folder, bool unsplit, st
                                               geometry_name(Layout::chunked, set, 0), set_count));
 }
 
-// What exports put into a chunk that has no triangle (write_baked_folder): one triangle whose corners are one vertex.
+// Whether a chunk is the placeholder that exports write for an empty chunk (write_baked_folder): one triangle whose
+// corners are the same vertex.
 bool is_placeholder(const ObjMesh& chunk) {
   return chunk.positions.size() == 1 && chunk.faces.size() == 1 && chunk.faces[0] == Face{0, 0, 0};
 }
 
-// A whole file beside chunks: both hold one mesh if they have as many triangles.
+// Resolves a set with both a whole file and chunks: they are the same mesh if they have equally many triangles.
 void settle_whole_and_chunks(SetParts& parts, std::vector<std::string>& assumptions) {
   const std::string& whole = parts.geometry.front().name;
   if (parts.geometry.size() < 2 || whole.find('_') != std::string::npos) return;
@@ -88,7 +89,7 @@ void settle_whole_and_chunks(SetParts& parts, std::vector<std::string>& assumpti
   } else {
     assumptions.push_back(fmt::format("{} has {} triangles and {} … have {}: all are read", whole,
                                       parts.chunks.front().faces.size(), first, in_chunks));
-    // No export copies such a mixture.
+    // Exports must not copy these files unchanged.
     parts.geometry.clear();
   }
 }
@@ -159,7 +160,7 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
     throw FileError(folder / "mlp.json", "\"obj_num\" is missing, and there is no shape.obj as in an unsplit folder");
   const int said = mlp.obj_num.value_or(1);
   std::vector<std::string> assumptions;
-  // None: reading says which file is missing.
+  // If no set is found, reading reports the missing file.
   const int found = unsplit ? 1 : static_cast<int>(found_texture_sets(folder, static_cast<std::size_t>(said)));
   const int set_count = found > 0 ? found : said;
   if (!unsplit && found > 0 && has_geometry(folder, static_cast<std::size_t>(found) + (found < said ? 0 : 1)))
@@ -180,7 +181,7 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
   };
   std::vector<Job> jobs;
   bool chunked = false;
-  // Images first: they take longest, and the rest then fills the gaps.
+  // Images first: they take longest, and the other jobs then fill the gaps.
   for (std::size_t i = 0; i < sets.size(); ++i) jobs.push_back({i, 0, true, {}});
   for (std::size_t i = 0; i < sets.size(); ++i) {
     const auto names = geometry_files(folder, unsplit, i, set_count);
@@ -205,7 +206,7 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
             FileBytes feat0(folder / name0), feat1(folder / name1);
             parts.feat0 = source_of(name0, feat0.view());
             parts.feat1 = source_of(name1, feat1.view());
-            // As texels fill memory, the files leave it.
+            // Releases the memory of a file's bytes as they are decoded.
             parts.texels = std::make_shared<const FeatureTexture>(
                 read_feature_pngs(feat0.view(), folder / name0, feat1.view(), folder / name1, code,
                                   [&](int image, std::size_t count) { (image == 0 ? feat0 : feat1).release(count); }));
@@ -247,7 +248,7 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
     read_turns(read_file(turns), turns, object->sets);
   else if (const fs::path text = folder / "turns.json"; fs::exists(text))
     read_turns_json(read_file(text), text, object->sets);
-  // Exports replace folders whole: half of one and half of another would be taken for a scene.
+  // Exports replace whole folders. Half of the old and half of the new folder would be taken for a scene.
   if (identity() != before) throw FileError(folder, "was replaced while it was read; open it again");
   return object;
 }

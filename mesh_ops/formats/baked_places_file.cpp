@@ -24,7 +24,7 @@ const Displacements* displacements_of(const Soup& soup) {
 }
 const Bodies* bodies_of(const Soup& soup) { return soup.face_attributes().find<std::uint16_t>(BakedObject::body); }
 
-// What moved farther than a float can say is said to be at its end; zero is neutral, whatever its sign.
+// Clamps to the range of finite floats; NaN and −0 become 0, which is neutral.
 float finite(float value) {
   constexpr float most = std::numeric_limits<float>::max();
   return std::isnan(value) ? 0 : std::clamp(value, -most, most) + 0.0F;

@@ -9,16 +9,17 @@
 
 namespace rebake {
 
-/// Where triangles were when their light was baked, and on which body of their object: baked.bin, kept beside a
-/// folder's own files. A side file (side_file.h) "rebakebp" of version 1: of each texture set with such values the
-/// displacements of vertices (3 f32) as corners have them, and runs of faces of one body: how many, and the body's
-/// number, both numbers of 7 bits a byte.
+/// Encodes baked.bin, a sidecar file (side_file.h) beside a folder's own files: the vertex displacements since light
+/// was baked (Soup::displacement), and the body that each face belongs to (BakedObject::body). Mark "rebakebp",
+/// version 1. Per texture set with such values: displacements (3 f32 per vertex) as corner_values(), then runs of faces
+/// of the same body. A run is two put_short() numbers: face count and body number.
 std::string write_baked_places(const std::vector<TextureSet>& sets);
 
-/// Whether there is anything to be written.
+/// Whether any set has displacements or body numbers.
 bool any_baked_places(const std::vector<TextureSet>& sets);
 
-/// Attaches them to the sets of an object read from the same folder, which has `bodies` bodies. Throws FileError.
+/// Decodes baked.bin into attributes of the sets of an object, which must have been read from the same folder and has
+/// `bodies` bodies. Throws FileError.
 void read_baked_places(std::string_view bytes, const std::filesystem::path& name, std::size_t bodies,
                        std::vector<TextureSet>& sets);
 

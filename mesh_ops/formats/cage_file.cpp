@@ -29,7 +29,7 @@ std::string format_of(const std::filesystem::path& path) {
   return ending;
 }
 
-// OpenMesh believes a header's counts and makes room for them.
+// Checks the counts of a header, since OpenMesh allocates memory for them unchecked.
 void check_counts(const std::filesystem::path& path, const std::string& format, const std::string& bytes) {
   std::istringstream text(bytes.substr(0, 4096));
   const auto check = [&](double count, const char* what) {
@@ -65,7 +65,7 @@ Cage read_cage(const std::filesystem::path& path) {
   std::istringstream text(bytes);
   Mesh mesh;
   OpenMesh::IO::Options options;
-  // OpenMesh leaves out, without a word that could be passed on, the faces that make a mesh non-manifold.
+  // OpenMesh drops faces that make a mesh non-manifold and reports that only to its error stream.
   std::ostringstream complaints;
   omerr().connect(complaints);
   omerr().disconnect(std::cerr);

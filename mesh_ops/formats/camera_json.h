@@ -6,8 +6,8 @@
 
 namespace rebake {
 
-/// {"eye", "target", "up", "fov", "ortho_height", "near", "far"}. What is left out has its usual value; planes are left
-/// open (see with_planes). Throws FieldError.
+/// {"eye", "target", "up", "fov", "ortho_height", "near", "far"}. Missing members get default values; missing planes
+/// are fitted to the scene later (see with_planes). Throws FieldError.
 nlohmann::json camera_json(const Camera& camera);
 Camera read_camera_json(const nlohmann::json& value);
 

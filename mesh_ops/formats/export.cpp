@@ -21,7 +21,7 @@ bool same_turn(const Soup& soup, std::size_t face, const Turn& turn) {
   return soup.rotations() == nullptr ? turn.is_identity() : (*soup.rotations())[soup.faces()[face][0]] == turn;
 }
 
-// Of an object without bent faces.
+// The distinct rotations of the faces of an object without bent faces.
 std::vector<Turn> distinct_turns(const BakedObject& object) {
   std::vector<Turn> turns;
   for (const TextureSet& set : object.sets)
@@ -34,7 +34,7 @@ std::vector<Turn> distinct_turns(const BakedObject& object) {
   return turns;
 }
 
-// What bent faces are shown with: the commonest turn of the others, else their own mean.
+// Rotation for bent faces: the most common rotation of the other faces, or the mean of the bent ones.
 Mat3 stand_in(const BakedObject& object, const TurnGroups& groups) {
   const TurnGroups::Group* commonest = nullptr;
   for (std::uint32_t g = 0; g < groups.groups.size(); ++g)
@@ -49,7 +49,8 @@ Mat3 stand_in(const BakedObject& object, const TurnGroups& groups) {
   return local_rotation(sum).rotation;
 }
 
-// Triangles of one turn, in world space and without turns. The arrays are shared where nothing changes.
+// The object's triangles with rotation `turn` (or all), in world space and without rotations. Unchanged arrays are
+// shared.
 std::vector<TextureSet> world_sets(const BakedObject& object, const Turn& turn, bool all, const Affine& to_world) {
   std::vector<TextureSet> sets;
   for (const TextureSet& set : object.sets) {
@@ -121,7 +122,7 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
     for (const Turn& turn : turns) {
       std::vector<TextureSet> sets = world_sets(object, turn, turns.size() == 1, placed.to_world);
       const Mat3 whole = node_turn * turn.matrix();
-      // Fold into the axes of a group that is there already, where the weights then agree.
+      // Folds into the axes of an existing group, whose weights then may be equal.
       const auto folded_into = [&](Axes axes) {
         if (whole.isIdentity(0) && axes == object.axes) return object.decoder;
         return std::make_shared<const Decoder>(fold_turn(*object.decoder, whole, object.axes, axes));

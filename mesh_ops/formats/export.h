@@ -11,36 +11,41 @@
 
 namespace rebake {
 
+/// Options of writing a scene.
 struct ExportOptions {
-  std::optional<Layout> layout;                 ///< nothing: as the objects were read
-  SourceGuard sources;                          ///< where nothing may be written
-  std::optional<int> page_side = std::nullopt;  ///< texels a side of new textures, 1 to 16384; nothing: as read
+  std::optional<Layout> layout;  ///< layout of the files; empty: as the objects were read
+  SourceGuard sources;           ///< files and folders that must not be overwritten
+  /// Largest side of new textures in texels, 1 … 16384; empty: largest_page_side(). Rebake scenes ignore it.
+  std::optional<int> page_side = std::nullopt;
 };
 
+/// Result of writing a scene.
 struct ExportReport {
-  bool keeps_everything = false;  ///< what is read back is the scene
-  bool one_folder = true;         ///< MobileNeRF: a plain folder; else scene.json with `folders` folders
+  bool keeps_everything = false;  ///< whether reading the result gives the same scene
+  bool one_folder = true;         ///< MobileNeRF format: whether it is one plain folder, without scene.json
   std::size_t folders = 1;
-  std::vector<std::string> notes;  ///< what the result cannot hold, was converted or dropped
+  std::vector<std::string> notes;  ///< sentences for the user: data that was dropped, converted or cannot be stored
 };
 
-/// The objects of a scene merged as far as the format stays exact: positions in world space, rotations folded into
-/// decoder weights. Nodes whose folded decoders are equal share an object; triangles turned apart from their object go
-/// with those of the same turn. There must be no bent triangle (see without_bends).
-/// `reordered`, where given, says whether objects are drawn in another order now.
+/// Merges the visible objects of a scene as far as the format stays exact: positions in world space, rotations folded
+/// into decoder weights. Nodes whose folded decoders are equal share an object. Triangles that edits rotated relative
+/// to their object are grouped by rotation. No triangle may be bent (see without_bends). `layout`: for all objects;
+/// empty: each keeps its own, and only objects of the same layout merge. Sets `reordered`, if not null, to whether
+/// objects are drawn in another order than before.
 std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout, bool* reordered = nullptr);
 
-/// The scene as far as the published format can show it: triangles whose corners are turned differently (bent) get the
-/// turn that most of their object has, or their mean where all are bent. Adds the names of objects that have such to
-/// `bent`, where given. Turns of whole triangles stay, equal ones made the same bit for bit.
+/// Makes a scene that the published format can represent. Bent triangles, whose corners have different rotations, get
+/// the most common rotation of their object, or the mean if all are bent. Whole triangles keep their rotations; nearly
+/// equal ones become equal bit for bit. Appends the names of nodes with bent triangles to `bent`, if not null.
 Scene without_bends(const Scene& scene, std::vector<std::string>* bent = nullptr);
 
-/// Writes the scene in the published format: one folder where that is exact, else scene.json with as few folders as
-/// stay exact. Replaces the target whole or not at all. Throws FileError, and EditError for an empty scene.
+/// Writes the scene in the published format: one folder if that is exact, otherwise scene.json with as few folders as
+/// stay exact. Replaces the target folder atomically. Throws FileError, and EditError for a scene without visible
+/// triangles.
 ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options,
                           const Progress& progress = {});
 
-/// Throws as export_scene does where a folder could not be written, and writes nothing.
+/// Throws the FileError that export_scene() would throw for an unsuitable target folder; writes nothing.
 void check_can_export(const std::filesystem::path& folder, const SourceGuard& sources);
 
 }  // namespace rebake

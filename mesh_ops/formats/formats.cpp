@@ -20,7 +20,7 @@ Scene read_mobilenerf(const fs::path& folder, Axes axes, const Progress& progres
   return with_added({}, node, NodeId::none, 0);
 }
 
-Scene read_rebake(const fs::path& folder, Axes /*said there*/, const Progress& progress) {
+Scene read_rebake(const fs::path& folder, Axes /*stated in scene.json*/, const Progress& progress) {
   return read_scene_folder(folder, progress);
 }
 
@@ -33,7 +33,7 @@ ExportReport write_rebake(const Scene& scene, const fs::path& folder, const Expo
   return report;
 }
 
-// The first that recognises a folder reads it.
+// The first format that recognises a folder reads it.
 constexpr Format table[] = {
     {"rebake", "Rebake scene", [](const fs::path& folder) { return fs::exists(folder / "scene.json"); }, read_rebake,
      write_rebake},
@@ -61,7 +61,7 @@ const Format& format_named(const std::string& name) {
 }
 
 Scene read_any(const fs::path& path, Axes axes, const Progress& progress) {
-  // scene.json itself may be named in place of its folder.
+  // A path to scene.json stands for its folder.
   const fs::path folder =
       path.filename() == "scene.json" ? (path.has_parent_path() ? path.parent_path() : fs::path(".")) : path;
   if (!fs::exists(folder)) throw FileError(folder, "does not exist");

@@ -9,7 +9,7 @@ namespace rebake {
 
 namespace {
 
-// The end of the string that begins with the quote at `at`: the byte behind its closing quote, or the text's end.
+// End of the string that begins with the quote at `at`: the byte after its closing quote, or the text's end.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   for (++at; at < text.size(); ++at) {
     if (text[at] == '\\')
@@ -25,7 +25,7 @@ std::size_t skip_space(std::string_view text, std::size_t at) {
   return found == std::string_view::npos ? text.size() : found;
 }
 
-// The end of the value that begins at `at`: of a number or word the next delimiter.
+// End of the value that begins at `at`; for a number or word, the next delimiter.
 std::size_t end_of_value(std::string_view text, std::size_t at) {
   std::size_t depth = 0;
   while (at < text.size()) {
@@ -60,7 +60,7 @@ std::map<std::string, std::string> json_members(std::string_view text) {
     if (at >= text.size() || text[at] != '"') return members;
     const std::size_t key_end = end_of_string(text, at);
     const std::string key(text.substr(at + 1, key_end - at - 2));
-    at = skip_space(text, key_end) + 1;  // behind the colon
+    at = skip_space(text, key_end) + 1;  // the byte after the colon
     at = skip_space(text, at);
     const std::size_t end = end_of_value(text, at);
     members[key] = text.substr(at, end - at);

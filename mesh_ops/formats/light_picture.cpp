@@ -21,9 +21,9 @@ namespace {
 using std::numbers::pi;
 
 constexpr int largest_width = 32768;
-constexpr int kept_width = 2048;  // finer than a sun is wide
+constexpr int kept_width = 2048;  // wider images are reduced; pixels stay smaller than a sun
 
-// Radiances over all directions, by rows from the top.
+// Equirectangular radiance map, in rows from the top.
 struct Panorama {
   int width = 0, height = 0;
   std::vector<Eigen::Vector3f> pixels;
@@ -32,7 +32,7 @@ struct Panorama {
     return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
   }
   const Eigen::Vector3f& at(int x, int y) const { return const_cast<Panorama&>(*this).at(x, y); }
-  // Of a row's pixels, in steradians.
+  // Solid angle of a pixel in row y, in steradians.
   double solid_angle(int y) const {
     return 2 * pi / width * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height));
   }
@@ -49,10 +49,10 @@ struct Panorama {
 };
 
 double luminance(const Eigen::Vector3f& c) {
-  return static_cast<double>(0.2126F * c[0] + 0.7152F * c[1] + 0.0722F * c[2]);  // of BT.709's primaries
+  return static_cast<double>(0.2126F * c[0] + 0.7152F * c[1] + 0.0722F * c[2]);  // BT.709 weights
 }
 
-// Reads it part by part, averaging blocks of pixels of what is wider than is kept.
+// Reads the image in strips of rows, and averages blocks of pixels if it is wider than kept_width.
 Panorama read_panorama(const fs::path& path) {
   const auto input = open_picture(path);
   const PictureLayout& layout = input->layout();
@@ -68,7 +68,8 @@ Panorama read_panorama(const fs::path& path) {
   if (layout.width > largest_width)
     throw FileError(path, fmt::format("is {} pixels wide; at most {} can be read", layout.width, largest_width));
   const std::string& colors = layout.color_space;
-  // Whole numbers are display colours unless they say otherwise, others radiances.
+  // Integer channels are display colours unless marked linear; floating-point channels are radiances unless marked
+  // sRGB.
   const bool display = layout.floating
                            ? colors == "sRGB"
                            : colors.find("inear") == std::string::npos && colors.find("lin_") == std::string::npos;
@@ -92,7 +93,7 @@ Panorama read_panorama(const fs::path& path) {
                                    static_cast<std::size_t>(channels)];
         Eigen::Vector3f color(pixel[0], pixel[channels >= 3 ? 1 : 0], pixel[channels >= 3 ? 2 : 0]);
         for (float& c : color) {
-          if (!(c > 0)) c = 0;  // below 0 and no number
+          if (!(c > 0)) c = 0;  // negative or NaN
           c = std::min(c, 1e6F);
           if (display) c = static_cast<float>(to_linear(static_cast<double>(c)));
         }
@@ -102,7 +103,7 @@ Panorama read_panorama(const fs::path& path) {
   return result;
 }
 
-// What is within `reach` radians of a direction, with its pixels' solid angles.
+// Visits the pixels within `reach` radians of a direction: visit(color, direction, solid angle).
 template <class Visit>
 void for_each_near(Panorama& panorama, const Vec3& middle, double reach, Visit visit) {
   const double row = std::acos(std::clamp(middle.y(), -1.0, 1.0)) / pi * panorama.height,
@@ -115,14 +116,15 @@ void for_each_near(Panorama& panorama, const Vec3& middle, double reach, Visit v
         visit(panorama.at(x, y), d, panorama.solid_angle(y));
 }
 
-// Takes what is very bright out of the picture, as a disk that sends as much.
+// Replaces very bright spots by suns: disks with the same irradiance.
 std::vector<Sun> suns_of(Panorama& panorama) {
   constexpr std::size_t most = 4;
   constexpr int most_tried = 64;
-  constexpr double outshines = 30, left = 10, reach = 0.1;  // of the mean; of the mean; radians
-  constexpr double worth = 0.005;                           // of all light: what sends less is as well left where it is
+  // Outshines, left: relative to the mean luminance. Reach: radians.
+  constexpr double outshines = 30, left = 10, reach = 0.1;
+  constexpr double worth = 0.005;  // share of all light below which a spot stays in the sky
   std::vector<Sun> suns;
-  // By luminance; 0 where it was looked at and stays.
+  // Luminance per pixel; 0 for pixels that were already examined.
   std::vector<float> bright;
   double all = 0;
   for (int y = 0; y < panorama.height; ++y)
@@ -134,7 +136,7 @@ std::vector<Sun> suns_of(Panorama& panorama) {
     const auto brightest = std::max_element(bright.begin(), bright.end());
     const auto number = static_cast<int>(brightest - bright.begin());
     const Vec3 middle = panorama.direction(number % panorama.width, number / panorama.width);
-    // What the sun itself adds must not hide it.
+    // The mean excludes the spot itself, which could hide it.
     double near = 0;
     for_each_near(panorama, middle, reach,
                   [&](const Eigen::Vector3f& c, const Vec3&, double angle) { near += angle * luminance(c); });
@@ -159,7 +161,7 @@ std::vector<Sun> suns_of(Panorama& panorama) {
       c *= static_cast<float>(left * mean / luminance(c));
     });
     if (!kept) continue;
-    // An even disk's points lie, squared, half its radius squared off its middle.
+    // The mean squared distance of a uniform disk's points from its centre is half its squared radius.
     sun.radius = std::clamp(std::sqrt(2 * spread / sent), 0.002, reach);
     all -= sent;
     suns.push_back(sun);

@@ -6,11 +6,12 @@
 
 namespace rebake {
 
-/// Reads the light of an equirectangular picture of all directions (2 : 1; OpenEXR, Radiance HDR, PNG, JPEG, TIFF,
-/// WebP): its middle lies towards −z, its right quarter towards +x, its upper edge at +y. Alpha is passed over. Whole
-/// numbers that do not say they are linear are display colours (IEC 61966-2-1). The sky keeps 64² directions; what is
-/// thirty times as bright as the rest within a few degrees and sends 1/200 of all light becomes a sun, at most four,
-/// since rays would miss it. Throws FileError.
+/// Reads an environment map: an equirectangular image (2 : 1; OpenEXR, Radiance HDR, PNG, JPEG, TIFF, WebP). Its centre
+/// lies towards −z, its right quarter towards +x, its upper edge at +y. Alpha is ignored. Integer channels are display
+/// colours (IEC 61966-2-1) unless the file calls them linear; floating-point channels are linear unless marked sRGB.
+/// The sky becomes an octahedral map of 64² texels. Up to four bright spots (radius up to 0.1 radians) become suns,
+/// since rays would miss them. A spot must be thirty times as bright as the mean outside it and send at least 1/200 of
+/// all light. Throws FileError.
 LightPicture read_light_picture(const std::filesystem::path& path);
 
 }  // namespace rebake

@@ -41,7 +41,7 @@ Eigen::VectorXd read_bias(const json& root, const char* key, const std::filesyst
   return bias;
 }
 
-// "16×11" for rows of one length, else what is known.
+// Shape of a matrix for messages: "16×11", or a description if rows differ or it is no matrix.
 std::string shape_of(const json& values) {
   if (!values.is_array()) return "no list";
   if (values.empty() || !values[0].is_array()) return fmt::format("a list of {}", values.size());
@@ -87,7 +87,7 @@ bool is_layer_key(const std::string& key) {
          (key.substr(digits) == "_weights" || key.substr(digits) == "_bias");
 }
 
-// The word at a byte of the text: a number that JSON does not have, or the byte itself.
+// The word or number around a byte of the text, such as NaN; empty for punctuation.
 std::string word_at(std::string_view text, std::size_t byte) {
   constexpr std::string_view letters = "+-.0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
   std::size_t begin = std::min(byte, text.size()), end = begin;
@@ -100,7 +100,7 @@ json parsed(std::string_view text, const std::filesystem::path& name) {
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {
-    // Its byte is counted from 1, and lies in or behind the word.
+    // The error's byte counts from 1, and lies in or after the word.
     const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
     const std::string word = word_at(text, byte), place = json_place(text, byte);
     for (const char* other : {"NaN", "nan", "Infinity", "-Infinity", "inf", "-inf"})

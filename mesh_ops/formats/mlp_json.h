@@ -10,18 +10,19 @@
 
 namespace rebake {
 
+/// Contents of mlp.json.
 struct MlpFile {
   Decoder decoder;
-  std::optional<int> obj_num;  ///< number of texture sets; absent in unsplit folders
-  std::map<std::string, std::string> others =
-      {};  ///< members that the format does not know: key → JSON as it was spelt
+  std::optional<int> obj_num;  ///< number of texture sets; empty for unsplit folders
+  /// Unknown members of the file: key → JSON text as spelt.
+  std::map<std::string, std::string> others = {};
 };
 
-/// Reads mlp.json. Throws FileError for missing keys, wrong sizes, more than three layers and numbers that are not
-/// finite, naming key, row and column.
+/// Reads mlp.json. Throws FileError, naming key, row and column, for missing keys, wrong shapes, more than three layers
+/// and numbers that are not finite as 32-bit floats.
 MlpFile read_mlp_json(std::string_view text, const std::filesystem::path& name);
 
-/// Writes it with the digits that a round trip needs; other members as they were spelt.
+/// Writes mlp.json with the digits that a round trip of doubles needs; other members as spelt.
 std::string write_mlp_json(const MlpFile& file);
 
 }  // namespace rebake

@@ -70,7 +70,7 @@ class Parser {
     } else if (key == "l" || key == "p") {
       fail("lines and points have no texels; only faces can be read");
     }
-    // Normals, groups, materials and other statements carry nothing that this format uses.
+    // Normals, groups, materials and other statements have no meaning in this format.
   }
 
   double number() {
@@ -81,7 +81,7 @@ class Parser {
     const auto [stop, error] = std::from_chars(at_, line_end_, value);
     if (error == std::errc::invalid_argument || (stop != line_end_ && *stop != ' ' && *stop != '\t'))
       fail(fmt::format("\"{}\" is not a number", word_at(at_)));
-    // Too small to be told from 0 is 0.
+    // Numbers that underflow become 0.
     if (error == std::errc::result_out_of_range) value = std::strtod(std::string(at_, stop).c_str(), nullptr);
     if (!std::isfinite(value)) fail(fmt::format("\"{}\" is not a finite number", word_at(at_)));
     at_ = stop;
@@ -92,7 +92,7 @@ class Parser {
     const char* stop = from;
     while (stop != line_end_ && *stop != ' ' && *stop != '\t' && stop - from < 40) ++stop;
     std::string word(from, stop);
-    // Binary files should not garble the terminal.
+    // Control characters of binary files must not garble the terminal.
     std::replace_if(
         word.begin(), word.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
     return word;
@@ -197,8 +197,8 @@ class Parser {
   std::vector<Vec2> uvs_;
   std::vector<Corner> corners_;
   std::uint32_t highest_index_ = 0;
-  std::vector<std::size_t> face_lines_;  // for messages: the line of each face,
-  std::vector<std::size_t> face_ends_;   // and where its corners end
+  std::vector<std::size_t> face_lines_;  // line of each face, for messages
+  std::vector<std::size_t> face_ends_;   // end of each face in corners_
 };
 
 void append(std::string& out, double value) {
@@ -221,7 +221,7 @@ ObjMesh read_obj(std::string_view text, const std::filesystem::path& name) { ret
 
 std::string write_obj(const std::vector<Vec3>& positions, const std::vector<Vec2>& uvs, const std::vector<Face>& faces,
                       std::size_t first_face, std::size_t last_face) {
-  // Number the vertices that are used in their old order.
+  // Numbers the used vertices in their old order.
   std::vector<std::uint32_t> number(positions.size(), unused);
   for (std::size_t f = first_face; f < last_face; ++f)
     for (const std::uint32_t vertex : faces[f]) number[vertex] = 0;
@@ -254,8 +254,8 @@ std::string write_obj(const std::vector<Vec3>& positions, const std::vector<Vec2
     }
     written = end;
   };
-  // The exporter writes a quad's vertices right before its one or two faces. Faces that keep to that order keep it
-  // here, so an untouched quad is written byte for byte as it was read.
+  // The published exporter writes a quad's vertices just before its one or two faces. Faces in that order are written
+  // the same way, so an unchanged quad keeps its bytes.
   for (std::size_t f = first_face; f < last_face;) {
     std::uint32_t end = 0;
     std::size_t last = f;

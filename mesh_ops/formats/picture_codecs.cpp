@@ -22,10 +22,10 @@ bool known_extension(const std::filesystem::path& path) {
   return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-// Where a format marks its end, whether that is there.
+// Whether a PNG or JPEG contains its end marker; true for other formats.
 bool has_its_end(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) {
-    // Chunks: length, name, data, checksum.
+    // PNG chunks: length, name, data, checksum.
     for (std::size_t at = 8; at + 12 <= bytes.size();) {
       if (bytes.substr(at + 4, 4) == "IEND") return true;
       std::size_t length = 0;
@@ -35,12 +35,12 @@ bool has_its_end(std::string_view bytes) {
     return false;
   }
   if (bytes.starts_with("\xff\xd8\xff")) {
-    // Segments say how long they are, thumbnails within them too, up to the first scan; scans hold no markers of
-    // others.
+    // JPEG segments up to the first scan state their length, which includes thumbnails in them. Scans contain no
+    // markers of other images.
     const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
     for (std::size_t at = 2; at + 4 <= bytes.size() && byte(at) == 0xff;) {
       if (byte(at + 1) == 0xda) return bytes.find("\xff\xd9", at) != std::string_view::npos;
-      // Bytes of 255 may fill the room before a marker.
+      // Bytes of 255 may pad the space before a marker.
       at += byte(at + 1) == 0xff ? 1U : 2U + (byte(at + 2) << 8U | byte(at + 3));
     }
     return false;
@@ -64,7 +64,7 @@ const PictureCodecs& picture_codecs(const std::filesystem::path& picture) {
 
 std::string picture_problem(const std::string& error, const std::filesystem::path& path) {
   std::string text = error.substr(0, error.find('\n'));
-  // What comes before the path says what the rest of the message does, if there is a rest.
+  // Text before the path repeats the rest of the message, if there is a rest.
   const std::string quoted = '"' + path.string() + '"';
   if (const std::size_t at = text.find(quoted); at != std::string::npos) {
     const bool rest = text.find_first_not_of(" .)", at + quoted.size()) != std::string::npos;

@@ -6,24 +6,24 @@
 #include <string>
 #include <string_view>
 
-// Pictures as others write them, by OpenImageIO. With it come 250 libraries, which take 0.3 s to load where the rest of
-// the program takes 0.02: so it lives in a module, loaded when the first such picture is read.
+// Decoding of general image files by OpenImageIO. It is in a separate module, loaded when the first such image is read:
+// its 250 libraries take ten times as long to load as the rest of the program.
 
 namespace rebake {
 
-/// What a picture's file says of its pixels.
+/// Size and pixel format of an image file.
 struct PictureLayout {
   int width = 0, height = 0, channels = 0;
-  /// Of the picture that these pixels are a part of.
+  /// Size of the whole image, of which the file may hold only a part.
   int whole_width = 0, whole_height = 0;
-  bool part = false;
-  bool floating = false;    ///< channels are floating-point numbers
-  std::string type;         ///< of a channel, such as "uint8"
-  std::string color_space;  ///< as the file or its format says; may be empty
-  int rows_at_once = 1;     ///< whose multiples may be read: the height of a tile
+  bool part = false;        ///< whether the file holds only a part of the image
+  bool floating = false;    ///< whether channels are floating-point numbers
+  std::string type;         ///< data type of a channel, such as "uint8"
+  std::string color_space;  ///< colour space according to the file or its format; may be empty
+  int rows_at_once = 1;     ///< height of a tile, or 1: read() needs multiples of this
 };
 
-/// Reads rows of a picture.
+/// Reads the rows of an open image file.
 class PictureReader {
  public:
   explicit PictureReader(PictureLayout layout) : layout_(std::move(layout)) {}
@@ -33,27 +33,28 @@ class PictureReader {
 
   const PictureLayout& layout() const { return layout_; }
 
-  /// The first `channels` channels of `count` rows from `first` on, whole numbers as 0…255 or as 0…1. False where the
-  /// file is damaged.
+  /// Reads the first `channels` channels of `count` rows from row `first` on, interleaved. Integer channels are
+  /// converted to 0 … 255 or 0 … 1. `first` must be a multiple of rows_at_once, and so must `count`, except at the last
+  /// row. Returns false if the file is damaged; error() then gives the reason.
   virtual bool read(int first, int count, int channels, std::uint8_t* to) = 0;
   virtual bool read(int first, int count, int channels, float* to) = 0;
-  /// What was wrong.
+  /// Message of the last failed read().
   virtual std::string error() const = 0;
 
  private:
   PictureLayout layout_;
 };
 
-/// What the module gives. Where a picture cannot be opened, null, and `error` says why.
+/// Interface of the module. If an image cannot be opened, functions return null and set `error` to the reason.
 class PictureCodecs {
  public:
   virtual ~PictureCodecs() = default;
   PictureCodecs(const PictureCodecs&) = delete;
   PictureCodecs& operator=(const PictureCodecs&) = delete;
 
-  /// Colours are not multiplied by alpha where the format does not store them so.
+  /// Opens an image file of any known format. Colours are not premultiplied by alpha unless the format stores them so.
   virtual std::unique_ptr<PictureReader> open(const std::filesystem::path& path, std::string& error) const = 0;
-  /// A PNG's bytes, which have to stay. `name` is for messages.
+  /// Opens a PNG in memory; `bytes` must outlive the reader. `name` is for messages.
   virtual std::unique_ptr<PictureReader> open_png(std::string_view bytes, const std::string& name,
                                                   std::string& error) const = 0;
 
@@ -61,15 +62,15 @@ class PictureCodecs {
   PictureCodecs() = default;
 };
 
-/// Loads the module, to read a picture. Throws FileError, of that picture, where the module is not there.
+/// Loads the module on the first call. Throws FileError, for the file `picture`, if the module is missing.
 const PictureCodecs& picture_codecs(const std::filesystem::path& picture);
-/// Opens a picture of any format. Throws FileError, also for PNGs and JPEGs that end before their end is marked: JPEG
-/// readers make up what is missing.
+/// Opens an image file of any known format. Throws FileError, also for PNGs and JPEGs without their end marker, since
+/// JPEG readers invent the missing part.
 std::unique_ptr<PictureReader> open_picture(const std::filesystem::path& path);
-/// What codecs say of a file, on one line, without its path.
+/// Shortens an error message of a codec to one line without the path.
 std::string picture_problem(const std::string& error, const std::filesystem::path& path);
 
-/// The module's function that gives them.
+/// Type of the module's exported function, which returns its codecs.
 using GivePictureCodecs = const PictureCodecs* (*)();
 inline constexpr const char* picture_codecs_symbol = "rebake_picture_codecs";
 

@@ -7,8 +7,8 @@ namespace rebake {
 
 namespace {
 
-// Four channels of two rows: each pixel waits for the one to its left, so rows are taken side by side, each a pixel
-// behind the one above it, which is what its own pixels need.
+// Wavefront order: a pixel depends on its left, upper and upper-left neighbours, so each of four rows is processed one
+// pixel behind the row above. A vector has the four channels of two rows.
 using Lanes = std::int16_t __attribute__((vector_size(16)));
 using Bytes = std::uint8_t __attribute__((vector_size(8)));
 
@@ -27,7 +27,7 @@ std::uint32_t pixel(const std::uint8_t* at) {
 
 Lanes magnitude(Lanes v) { return v < 0 ? -v : v; }
 
-// Which prediction each row takes, as masks.
+// Prediction modes of two rows, as lane masks.
 struct Filters {
   Lanes sub{}, up{}, average{}, paeth{};
 
@@ -37,7 +37,7 @@ struct Filters {
       for (int c = 0; c < 4; ++c) (*mask)[row * 4 + c] = -1;
   }
 
-  // `left`, `above` and `corner` are the neighbours' channels.
+  // Adds the prediction to filtered bytes. `left`, `above` and `corner`: channels of the neighbouring pixels.
   Lanes undo(Lanes filtered, Lanes left, Lanes above, Lanes corner) const {
     const Lanes to_left = magnitude(above - corner), to_above = magnitude(left - corner),
                 to_corner = magnitude(left + above - corner - corner);
@@ -49,10 +49,10 @@ struct Filters {
 };
 
 struct Wave {
-  Filters first, second;  // of rows 0 and 1, and of 2 and 3
+  Filters first, second;  // filters of rows 0 and 1, and of rows 2 and 3
   Lanes left[2]{}, above[2]{};
 
-  // The next pixel of row 0, whose upper neighbour is given, the one before it of row 1, and so on.
+  // Processes the next pixel of row 0 (below `upper`), the pixel before it in row 1, and so on.
   void step(const std::uint32_t filtered[4], std::uint32_t upper) {
     const Lanes corner[2] = {above[0], above[1]};
     const Lanes top = load(upper, 0);

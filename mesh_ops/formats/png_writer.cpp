@@ -14,10 +14,10 @@ namespace rebake {
 struct PngEncoder::State {
   Sink sink;
   int width = 0, height = 0, channels = 0, compression = 0;
-  int rows = 0;  ///< written so far
+  int rows = 0;  ///< number of rows written so far
   png_structp png = nullptr;
   png_infop info = nullptr;
-  std::string waiting;  ///< for the sink: libpng writes a few kilobytes at a time
+  std::string waiting;  ///< buffer for the sink, since libpng writes a few kilobytes at a time
   std::exception_ptr thrown;
 
   ~State() { png_destroy_write_struct(&png, &info); }
@@ -40,17 +40,18 @@ void append(png_structp png, png_bytep bytes, std::size_t count) {
     state.waiting.append(reinterpret_cast<const char*>(bytes), count);
     if (state.waiting.size() >= most_waiting) state.flush();
   } catch (...) {
-    state.thrown = std::current_exception();  // no exception passes through libpng
+    state.thrown = std::current_exception();  // exceptions must not pass through libpng
   }
   if (state.thrown) png_error(png, "not written");
 }
 
-// libpng leaves by longjmp: nothing in these three has a destructor. They return false then.
+// libpng reports errors by longjmp, so nothing in these three functions may have a destructor. They return false on an
+// error.
 bool begin(State& state) {
   if (setjmp(png_jmpbuf(state.png)) != 0) return false;
   png_set_write_fn(state.png, &state, append, nullptr);
   png_set_compression_level(state.png, state.compression);
-  // As OpenImageIO writes PNGs, to the byte: earlier exports were written by it.
+  // Gives the same bytes as OpenImageIO, which wrote earlier exports.
   png_set_compression_strategy(state.png, Z_DEFAULT_STRATEGY);
   png_set_IHDR(state.png, state.info, static_cast<png_uint_32>(state.width), static_cast<png_uint_32>(state.height), 8,
                state.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,

@@ -9,22 +9,24 @@
 
 namespace rebake {
 
-/// Encodes a PNG of 8 bits a channel, some rows at a time: 3 channels (RGB) or 4 (RGBA). No colour chunks, since
-/// browsers would alter bytes by them.
+/// Encodes a PNG with 8 bits per channel, RGB or RGBA, incrementally by rows. Writes no colour-space chunks, since
+/// browsers would convert pixels by them.
 class PngEncoder {
  public:
-  /// Takes the next bytes of the file. What it throws passes through.
+  /// Receives the next bytes of the file. Its exceptions pass through the encoder.
   using Sink = std::function<void(std::string_view bytes)>;
 
-  /// `compression` is zlib's level, 1 to 9. Throws std::bad_alloc.
+  /// `channels`: 3 (RGB) or 4 (RGBA). `compression`: zlib level, 1 … 9. Throws std::invalid_argument for other channels
+  /// or an empty image, and std::bad_alloc.
   PngEncoder(int width, int height, int channels, int compression, Sink sink);
   ~PngEncoder();
   PngEncoder(const PngEncoder&) = delete;
   PngEncoder& operator=(const PngEncoder&) = delete;
 
-  /// The next rows, from the top: a whole number of them, width × channels bytes each.
+  /// Encodes the next rows, from the top: a whole number of rows of width × channels bytes. Throws
+  /// std::invalid_argument for other sizes.
   void write_rows(std::span<const std::uint8_t> pixels);
-  /// To be called after the last row.
+  /// Completes the file. Call it after the last row.
   void finish();
 
   struct State;
@@ -33,7 +35,7 @@ class PngEncoder {
   std::unique_ptr<State> state_;
 };
 
-/// A whole PNG. Throws std::bad_alloc.
+/// Encodes a whole PNG. Throws like PngEncoder.
 std::string encode_png(int width, int height, int channels, std::span<const std::uint8_t> pixels, int compression);
 
 }  // namespace rebake

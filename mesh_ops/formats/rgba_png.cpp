@@ -27,12 +27,13 @@ struct Chunk {
   std::string_view kind, data;
 };
 
-// The chunks of a PNG, one after the other.
+// Iterates over the chunks of a PNG.
 class Chunks {
  public:
   Chunks(std::string_view bytes, const std::filesystem::path& name) : bytes_(bytes), name_(name) {}
 
-  // Nothing at the file's end.
+  // The next chunk; empty at the end of the file. Throws FileError for truncated chunks and for wrong checksums of
+  // critical ones.
   std::optional<Chunk> next() {
     if (at_ == bytes_.size()) return std::nullopt;
     const std::string_view rest = bytes_.substr(at_);
@@ -41,7 +42,7 @@ class Chunks {
     const std::size_t size = big_endian(rest);
     const std::string_view counted = rest.substr(4, 4 + size);
     const auto* first = reinterpret_cast<const unsigned char*>(counted.data());
-    // Readers may pass over damage to what no picture needs.
+    // Checksums of ancillary chunks are not checked, since no pixel depends on them.
     const bool needed = critical(counted);
     if (needed && crc32_gzip_refl(0, first, counted.size()) != big_endian(rest.substr(8 + size)))
       throw FileError(name_,
@@ -100,7 +101,7 @@ class RgbaPng : public RgbaRows {
     while (inflate_.avail_out > 0) inflate_some();
   }
 
-  // To the checksum behind the last row. More rows than there should be are passed over.
+  // Inflates up to the checksum after the last row. Data beyond the last row is ignored.
   void finish() {
     std::uint8_t more = 0;
     inflate_.next_out = &more;
@@ -130,7 +131,7 @@ class RgbaPng : public RgbaRows {
   inflate_state inflate_;
 };
 
-// Throws FileError for a header that the PNG specification does not allow, which other readers report on their own.
+// Throws FileError for a header that the PNG specification does not allow.
 void check_header(const std::optional<Chunk>& chunk, const std::filesystem::path& name) {
   if (!chunk || chunk->kind != "IHDR")
     throw FileError(name, "is damaged: its first chunk is not a header (IHDR); copy it again");
@@ -155,7 +156,7 @@ std::unique_ptr<RgbaRows> open_rgba_png(std::string_view bytes, const std::files
   if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) return nullptr;
   Chunks chunks(bytes, name);
   std::optional<Chunk> chunk = chunks.next();
-  // 8 bits, RGBA, deflate, adaptive filters, not interlaced.
+  // Bit depth 8, RGBA, deflate, adaptive filters, not interlaced.
   check_header(chunk, name);
   if (chunk->data.substr(8) != std::string_view("\x08\x06\0\0\0", 5)) return nullptr;
   const std::uint32_t width = big_endian(chunk->data), height = big_endian(chunk->data.substr(4));

@@ -7,10 +7,10 @@
 
 namespace rebake {
 
-/// Pixels a side that feature images may have.
+/// Largest side of feature images, in pixels.
 constexpr int largest_png_side = 16384;
 
-/// Rows of an image of 8-bit RGBA, decoded from its top on.
+/// Sequential decoder of an 8-bit RGBA image, from the top row on.
 class RgbaRows {
  public:
   virtual ~RgbaRows() = default;
@@ -20,12 +20,11 @@ class RgbaRows {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Decodes the next `count` rows, at most as many as are left. Throws FileError where the file is truncated or
-  /// damaged.
+  /// Decodes the next `count` rows, or all that are left. Throws FileError if the file is truncated or damaged.
   virtual void read(int count) = 0;
-  /// The 4·width() bytes of one of the rows just read.
+  /// The 4·width() bytes of row `k` of the rows just decoded.
   virtual const std::uint8_t* row(int k) const = 0;
-  /// How many of the file's first bytes are not read again.
+  /// Number of bytes at the beginning of the file that will not be read again.
   virtual std::size_t bytes_passed() const { return 0; }
 
  protected:
@@ -35,10 +34,10 @@ class RgbaRows {
   int width_, height_;
 };
 
-/// A PNG of 8-bit RGBA without interlacing, of at most largest_png_side² pixels, as feature textures are; null for
-/// other files. ISA-L inflates it and filters are undone for four rows at once: a 4080² image takes 0.1 s where libpng
-/// takes 0.38. Bytes are kept, whatever colour chunks say. `bytes` and `name` have to stay. Throws FileError as reading
-/// does.
+/// Opens a non-interlaced 8-bit RGBA PNG of at most largest_png_side² pixels, the format of feature textures; returns
+/// null for other files. ISA-L inflates it and filters are reversed for four rows together, about four times as fast as
+/// libpng. Colour-space chunks are ignored. `bytes` and `name` must outlive the result. Throws FileError for damaged
+/// files.
 std::unique_ptr<RgbaRows> open_rgba_png(std::string_view bytes, const std::filesystem::path& name);
 
 }  // namespace rebake

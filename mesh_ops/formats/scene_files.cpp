@@ -20,17 +20,17 @@ using nlohmann::json;
 
 namespace {
 
-// What Rebake keeps beside a folder's own files.
+// Files that Rebake adds to a MobileNeRF folder.
 constexpr std::array<std::string_view, 3> side_names{"turns.bin", "turns.json", "baked.bin"};
 
-// Takes digits off the front, as many as there are.
+// Removes leading digits. Returns their number.
 std::size_t skip_digits(std::string_view& text) {
   const std::size_t count = std::min(text.find_first_not_of("0123456789"), text.size());
   text.remove_prefix(count);
   return count;
 }
 
-// The object folders that a folder's own scene.json names; none where there is no such file.
+// The object folders that scene.json in a folder names; empty if there is no such file.
 std::set<std::string> named_folders(const fs::path& folder) {
   std::set<std::string> names;
   if (!fs::exists(folder / "scene.json")) return names;
@@ -49,7 +49,7 @@ std::set<std::string> named_folders(const fs::path& folder) {
   return names;
 }
 
-// The files of one MobileNeRF folder, whichever of its names are there.
+// Adds the existing files of one MobileNeRF folder.
 void add_baked_files(const fs::path& root, const fs::path& folder, std::vector<fs::path>& files) {
   const auto add = [&](const std::string& name) {
     if (!fs::exists(root / folder / name)) return false;
@@ -60,7 +60,7 @@ void add_baked_files(const fs::path& root, const fs::path& folder, std::vector<f
   for (const std::string_view name : side_names) add(std::string(name));
   const json mlp = json::parse(read_file(root / folder / "mlp.json"), nullptr, false);
   const bool unsplit = !mlp.is_object() || !mlp.contains("obj_num");
-  // As they are read: all that are found, whatever mlp.json says.
+  // All sets that reading would find, whatever mlp.json says.
   const std::size_t said = !unsplit && mlp.at("obj_num").is_number() && mlp.at("obj_num") > 0
                                ? static_cast<std::size_t>(std::min(mlp.at("obj_num").get<double>(), 1e6))
                                : 1;
@@ -135,7 +135,7 @@ void refuse_foreign_content(const fs::path& folder) {
                     fmt::format("holds \"{}\", which is not part of the scene there; choose a new or empty folder",
                                 path.lexically_relative(folder).string()));
   };
-  // Names alone do not make a scene.
+  // The files must also have the contents of a scene, not only the names.
   const bool is_scene = fs::exists(folder / "scene.json"), is_baked = fs::exists(folder / "mlp.json");
   if (is_scene && !parses_with(folder / "scene.json", "rebake_scene")) refuse(folder / "scene.json");
   if (is_baked && !parses_with(folder / "mlp.json", "0_weights")) refuse(folder / "mlp.json");

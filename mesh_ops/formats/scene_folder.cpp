@@ -25,8 +25,8 @@ using nlohmann::json;
 namespace {
 
 constexpr int scene_version = 1;
-constexpr std::size_t longest_folder_name = 200;  // file systems take 255 bytes, with a number too
-constexpr std::size_t most_bodies = 65536;        // as many as a face's number of one can say
+constexpr std::size_t longest_folder_name = 200;  // file systems allow 255 bytes; a number is appended
+constexpr std::size_t most_bodies = 65536;        // range of the body number of a face (16 bits)
 
 json affine_json(const Affine& affine) {
   json rows = json::array();
@@ -59,7 +59,7 @@ json node_json(const Node& node, const std::map<const BakedObject*, std::string>
   return out;
 }
 
-// Words for SceneLight::Source.
+// Names of SceneLight::Source in scene.json.
 constexpr std::array<const char*, 4> source_words{"estimated", "uniform", "sky", "picture"};
 
 json color_json(const Vec3& color) { return {color.x(), color.y(), color.z()}; }
@@ -68,7 +68,7 @@ json sun_json(const Sun& sun) {
   return {{"direction", color_json(sun.direction)}, {"radius", sun.radius}, {"irradiance", color_json(sun.irradiance)}};
 }
 
-// Its light itself, so that the scene needs no file beside it.
+// Stores the environment map itself, so that the scene needs no other file.
 json picture_json(const LightPicture& picture, double turn) {
   json out{
       {"path", picture.path},      {"content", picture.content}, {"turn", turn}, {"side", picture.light.sky.side()},
@@ -97,7 +97,7 @@ json light_json(const SceneLight& light) {
   return out;
 }
 
-// Numbers out of range become ones that are in it: a damaged file's light is a look, not the work.
+// Clamps numbers to their range: light affects only the look, so a damaged value is no reason to reject the file.
 Vec3 read_color(const json& list) {
   Vec3 result;
   for (std::size_t c = 0; c < 3; ++c)
@@ -108,7 +108,7 @@ Vec3 read_color(const json& list) {
 Vec3 read_normal(const json& list) {
   Vec3 normal;
   for (std::size_t c = 0; c < 3; ++c) normal[static_cast<Eigen::Index>(c)] = list.at(c).get<double>();
-  // A unit vector keeps its bits.
+  // Unit vectors keep their bits.
   if (std::abs(normal.squaredNorm() - 1) > 1e-12) normal.stableNormalize();
   if (!(normal.squaredNorm() > 0.5)) throw FieldError("normal", "must be a vector with a direction");
   return normal;
@@ -149,7 +149,7 @@ LightPicture read_picture(const json& value) {
     throw FieldError("light", fmt::format("has a picture with more than {} suns", most_suns));
   for (const json& sun : value.at("suns")) {
     picture.light.suns.push_back(read_sun(sun));
-    // One of length 1 keeps its bits.
+    // Unit vectors keep their bits.
     Vec3& direction = picture.light.suns.back().direction;
     if (std::abs(direction.squaredNorm() - 1) > 1e-12) direction.stableNormalize();
   }
@@ -161,7 +161,7 @@ SceneLight read_light(const json& value) {
   light.self = value.at("self").get<bool>();
   light.cast = value.at("cast").get<bool>();
   light.removed = value.at("removed").get<bool>();
-  // Before there were any, what was asked for as a whole included them.
+  // Older files lack "highlights"; it is then on if all other light effects are.
   light.highlights = light.self && value.value("highlights", light.cast && light.removed);
   light.match = value.at("match").get<bool>();
   light.budget = std::clamp(value.at("budget").get<double>(), 0.0, 1.0);
@@ -286,7 +286,7 @@ class SceneReader {
     return known;
   }
 
-  // What stands in equal files is held once: light sees by that which texels are still what was baked.
+  // Shares arrays and textures of equal files, since lighting recognises unchanged texels by identity.
   std::shared_ptr<const BakedObject> shared(BakedObject object) {
     auto origin = std::make_shared<Origin>(*object.origin);
     const auto words = [](const SourceFile& file) { return fmt::format("{} {:016x}\n", file.size, file.hash); };
@@ -314,10 +314,10 @@ class SceneReader {
   fs::path folder_;
   fs::path name_;
   const Progress& progress_;
-  std::map<std::string, std::shared_ptr<const BakedObject>> objects_;    ///< by folder and axes
-  std::map<std::string, std::shared_ptr<const BakedObject>> edited_;     ///< those with bodies, by all that is said
-  std::map<std::string, std::shared_ptr<const FeatureTexture>> texels_;  ///< by their files
-  std::map<std::string, Soup> soups_;
+  std::map<std::string, std::shared_ptr<const BakedObject>> objects_;  ///< unedited objects, by folder and axes
+  std::map<std::string, std::shared_ptr<const BakedObject>> edited_;  ///< objects with bodies, by members of their node
+  std::map<std::string, std::shared_ptr<const FeatureTexture>> texels_;  ///< textures, by size and hash of their files
+  std::map<std::string, Soup> soups_;                                    ///< triangles, by size and hash of their files
 };
 
 }  // namespace
@@ -363,7 +363,7 @@ std::vector<std::string> save_scene_folder(const Scene& scene, const fs::path& f
   std::map<const BakedObject*, std::string> folder_of;
   std::vector<std::shared_ptr<const BakedObject>> written;
   AtomicFolder out(folder, guard, refuse_foreign_content);
-  // What light was baked on is of use only where light follows edits.
+  // Bodies are of use only if light follows edits.
   const bool keeps_bodies = scene.light != nullptr;
   const auto write = [&](const std::shared_ptr<const BakedObject>& object, const std::string& name) {
     taken.push_back(folder_name(name, taken));
@@ -380,7 +380,7 @@ std::vector<std::string> save_scene_folder(const Scene& scene, const fs::path& f
     if (!placed.node->object || !keeps_bodies) continue;
     for (const BakedBody& body : placed.node->object->bodies) {
       if (folder_of.contains(body.object.get())) continue;
-      // What parts were separated of is one body in several copies, and may stand in the scene itself.
+      // Separated parts refer to copies of the same body, which may also be a node of the scene itself.
       const auto same = std::find_if(written.begin(), written.end(), [&](const auto& other) {
         return other->bodies.empty() && other->decoder == body.object->decoder && other->axes == body.object->axes &&
                same_body({body.object, Affine::Identity()}, {other, Affine::Identity()});

@@ -8,20 +8,21 @@
 
 namespace rebake {
 
-/// Reads scene.json and the object folders it names. Throws FileError.
+/// Reads scene.json and the object folders that it names. Throws FileError.
 Scene read_scene_folder(const std::filesystem::path& folder, const Progress& progress = {});
 
-/// Writes every node as it is: scene.json, and one MobileNeRF folder for each distinct object. Replaces the folder
-/// whole or not at all. Where light follows edits, what objects were when their light was baked is written too, as
-/// folders of their own. Returns sentences for people. Throws FileError.
+/// Writes a scene without conversion: scene.json, and one MobileNeRF folder per distinct object. Replaces the folder
+/// atomically. If the scene's light follows edits, the bodies on which light was baked are written too, as folders of
+/// their own. Returns sentences for the user about data that was left out. Throws FileError.
 std::vector<std::string> save_scene_folder(const Scene& scene, const std::filesystem::path& folder,
                                            const SourceGuard& guard, const Progress& progress = {});
 
-/// The text of scene.json; `folder_of` names each object's folder, and with `with_bodies` each body's.
+/// The text of scene.json. `folder_of`: folder name per object, and with `with_bodies` also per body.
 std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of,
                              bool with_bodies = false);
 
-/// `name` as a folder name: letters, digits, dot, dash and underscore, at most 200, different from all in `taken`.
+/// Makes a folder name from `name`: letters, digits, dot, dash and underscore, at most 200 characters plus a number
+/// that makes it different from all in `taken`.
 std::string folder_name(const std::string& name, const std::vector<std::string>& taken);
 
 }  // namespace rebake

@@ -11,17 +11,20 @@
 
 namespace rebake {
 
-/// Files beside a folder's own, of what these have no place for. Numbers are little-endian:
+/// Builds a sidecar file: a file of Rebake beside the files of a MobileNeRF folder, with values that those cannot hold.
+/// Numbers are little-endian:
 ///
-///     8 letters that name the kind, u32 version, u64 XXH64 of all that follows, u32 number of texture sets with such
-///     values, and of each, by number: u32 number of the set, u32 of its faces, and what the kind says
+///     8 letters that name the kind, u32 version, u64 XXH64 of the remaining bytes, u32 number of sets with values;
+///     per such set, in ascending order: u32 set number, u32 number of its faces, data of the kind
 ///
-/// Faces are numbered as the folder's files list them: writing chunks renumbers vertices, but never faces.
+/// Faces are numbered as in the folder's files, since writing chunks renumbers vertices but not faces.
 class SideFile {
  public:
+  /// `mark`: 8 letters.
   SideFile(std::string_view mark, std::uint32_t version) : mark_(mark), version_(version) {}
-  /// `written` is of this texture set. Sets come by number.
+  /// Appends the data `written` of a texture set. Call it in ascending order of sets.
   void add(std::uint32_t set, std::size_t faces, std::string_view written);
+  /// The whole file.
   std::string bytes() const;
 
  private:
@@ -31,16 +34,18 @@ class SideFile {
   std::string body_;
 };
 
-/// Numbers from the front of a side file's bytes. Throws FileError that names the file where they end too early.
+/// Reads numbers from the front of the bytes of a sidecar file. Throws FileError naming the file if they end too early.
 class SideReader {
  public:
   SideReader(std::string_view bytes, std::filesystem::path name) : bytes_(bytes), name_(std::move(name)) {}
 
+  /// The next `count` bytes.
   std::string_view take(std::size_t count);
+  /// A number of 4 bytes.
   std::uint32_t take_word();
-  /// 7 bits a byte, the lowest first (LEB128).
+  /// A number in LEB128: 7 bits per byte, lowest bits first.
   std::uint64_t take_short();
-  /// The end of these bytes is here.
+  /// Whether all bytes were read.
   bool done() const { return bytes_.empty(); }
   std::string_view rest() const { return bytes_; }
   const std::filesystem::path& name() const { return name_; }
@@ -50,27 +55,32 @@ class SideReader {
   std::filesystem::path name_;
 };
 
+/// Appends a number of 4 bytes.
 void put_word(std::string& out, std::uint32_t number);
+/// Appends a number in LEB128.
 void put_short(std::string& out, std::uint64_t number);
 
-/// Checks the head of a side file; `kind` is for messages ("turns"). `read_set` reads what the kind says of a texture
-/// set, and throws DamagedSet. Throws FileError.
+/// Checks the header of a sidecar file and calls `read_set` for each texture set in it; `read_set` may throw
+/// DamagedSet. `kind` is for messages ("turns"). Throws FileError.
 void read_side_file(std::string_view bytes, const std::filesystem::path& name, std::string_view mark,
                     std::uint32_t version, std::string_view kind, std::vector<TextureSet>& sets,
                     const std::function<void(SideReader&, TextureSet&)>& read_set);
 
-/// What a texture set's part of a side file contradicts.
+/// Thrown if the data of a texture set contradicts its mesh. `what` completes the message "set 3: …".
 struct DamagedSet {
   std::string what;
 };
 
-/// Values of vertices, `size` bytes each in `values`, as the corners of faces have them: u32 number of different ones,
-/// u32 bytes of the faces' part; the values, in the order in which corners first have them; the faces' part: 2n: n
-/// faces of neutral corners, 2n + 1: n that have others, and of each corner of these 0 for the next of the values, or
-/// how many before it. Throws Error where that takes more than 4 GB.
+/// Encodes values per vertex (`size` bytes each in `values`) by the corners of faces:
+///
+///     u32 number of distinct values, u32 bytes of the runs; the values in order of first use; the runs of faces
+///
+/// Runs are put_short() numbers. 2n: n faces whose corners all have the `neutral` value. 2n + 1: n other faces,
+/// followed by one number per corner: 0 for the next new value, or k for the k-th last of the values so far. Throws
+/// Error if the runs exceed 4 GB.
 std::string corner_values(const std::vector<Face>& faces, std::string_view values, std::size_t size,
                           std::string_view neutral);
-/// The values of `vertices` vertices, as they were written. Throws FileError, DamagedSet.
+/// Decodes values of `vertices` vertices, `size` bytes each. Throws FileError, DamagedSet.
 std::string read_corner_values(SideReader& reader, const std::vector<Face>& faces, std::size_t vertices,
                                std::size_t size, std::string_view neutral);
 

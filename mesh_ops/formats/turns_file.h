@@ -9,12 +9,12 @@
 
 namespace rebake {
 
-/// How triangles were turned apart from their object: turns.bin, kept beside a folder's own files, which have no place
-/// for it. A side file (side_file.h) "rebaketn" of version 1: of each texture set the turns (Turn::bytes) as corners
-/// have them.
+/// Encodes turns.bin, a sidecar file (side_file.h) beside a folder's own files: the rotations of vertices relative to
+/// their object (Soup::rotation). Mark "rebaketn", version 1. Per texture set with rotations: Turn::bytes() per vertex,
+/// as corner_values().
 std::string write_turns(const std::vector<TextureSet>& sets);
 
-/// Attaches turns to the sets of an object read from the same folder. Throws FileError.
+/// Decodes turns.bin into the sets of an object read from the same folder. Throws FileError.
 void read_turns(std::string_view bytes, const std::filesystem::path& name, std::vector<TextureSet>& sets);
 
 }  // namespace rebake

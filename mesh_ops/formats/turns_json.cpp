@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// A number that fits: converting any other is undefined.
+// Reads an index. Converting a negative or fractional number would be undefined.
 std::size_t whole_number(const json& value, const std::filesystem::path& name) {
   if (!value.is_number_unsigned()) throw FileError(name, "set and face numbers must be whole and not negative");
   return value.get<std::size_t>();

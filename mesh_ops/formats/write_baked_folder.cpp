@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The source set whose texels (and, with `geometry`, triangles) a set still has.
+// The source set whose texels (and with `geometry` also triangles) a set still has; null if none.
 const Origin::Set* source_set(const BakedObject& object, const TextureSet& set, bool geometry) {
   if (!object.origin) return nullptr;
   for (const Origin::Set& source : object.origin->sets) {
@@ -38,7 +38,8 @@ const Origin::Set* source_set(const BakedObject& object, const TextureSet& set, 
   return nullptr;
 }
 
-// Copies a file that was read before when its bytes are still the same. False, with nothing of use written, when not.
+// Copies a source file if its bytes have not changed since it was read. Returns false if they have; the output is then
+// useless.
 bool copy_unchanged(AtomicFolder& out, const fs::path& to, const Origin& origin, const SourceFile& file) {
   try {
     ContentHash hash;
@@ -47,29 +48,29 @@ bool copy_unchanged(AtomicFolder& out, const fs::path& to, const Origin& origin,
       read_in_pieces(origin.folder / file.name, [&](std::string_view piece) {
         hash.add(piece);
         size += piece.size();
-        // No more than it had: it may be a file that grows.
+        // Never appends more than the former size, since the file may be growing.
         if (size <= file.size) append(piece);
       });
     });
     return size == file.size && hash.value() == file.hash;
   } catch (const FileError&) {
-    // Moved or removed since: what is in memory is written instead. A full disk is reported by that.
+    // The file was moved or removed, so its contents are written from memory. That also reports a full disk.
     return false;
   }
 }
 
-// The bytes of a file that was read before, when they are still the same.
+// The bytes of a source file, if they have not changed since it was read.
 std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFile& file) {
   try {
     std::string bytes = read_file(origin.folder / file.name);
     if (bytes.size() == file.size && content_hash(bytes) == file.hash) return bytes;
   } catch (const FileError&) {
-    // Moved or removed since: what is in memory is written instead.
+    // The file was moved or removed, so its contents are written from memory.
   }
   return std::nullopt;
 }
 
-// A count for people: exact below a million.
+// Text of a count: exact below a million.
 std::string counted(std::uint64_t count) {
   return count < 1'000'000 ? fmt::format("{}", count) : fmt::format("{:.2f} million", static_cast<double>(count) / 1e6);
 }
@@ -87,10 +88,10 @@ std::uint64_t area_of(const std::vector<PackedPage>& sets) {
   return area;
 }
 
-// What is written: untouched sets as they were read, edited ones laid out again when that saves texels.
+// The textures to write: unchanged sets as they were read, edited ones repacked if that saves texels.
 struct Fitted {
   std::vector<PackedPage> pages;
-  // The object's sets that the first pages are.
+  // The object's sets in the first pages, which are not repacked.
   std::vector<TextureSet> kept;
 };
 Fitted fitted(const BakedObject& object, Layout layout, bool all_texels, std::optional<int> page_side,
@@ -110,7 +111,7 @@ Fitted fitted(const BakedObject& object, Layout layout, bool all_texels, std::op
       throw Error(fmt::format("the texels do not fit into one texture of {}²: use --layout split", largest));
     return {std::move(pages), {}};
   }
-  // Sets that lost triangles give up the texels that nobody uses; sets as they were read are left alone.
+  // Sets that lost triangles lose their unused texels; unchanged sets are not repacked.
   Fitted result;
   std::vector<TextureSet> edited;
   bool must_pack = false;
@@ -148,8 +149,8 @@ Fitted fitted(const BakedObject& object, Layout layout, bool all_texels, std::op
   return result;
 }
 
-// Chunk viewers and the Unity importer fail on an empty chunk: it gets one triangle whose corners are one vertex, which
-// renders nothing. read_baked_folder drops it again.
+// Chunk viewers and the Unity importer fail on an empty chunk, so it gets one triangle whose corners are the same
+// vertex, which renders nothing. read_baked_folder() removes it.
 std::string placeholder_chunk(const Soup& soup) {
   const std::uint32_t vertex = soup.faces().front()[0];
   return write_obj({soup.positions()[vertex]}, {soup.uvs()[vertex]}, {Face{0, 0, 0}}, 0, 1);
@@ -167,7 +168,7 @@ std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
   return texts;
 }
 
-// Writes a set's triangles: as the files of `source` hold them, where it is not null and they are still the same.
+// Writes a set's triangles: copies the files of `source` if it is not null and they have not changed.
 void write_geometry(AtomicFolder& out, const fs::path& folder, Layout layout, std::size_t set, const Soup& soup,
                     const Origin* origin, const Origin::Set* source) {
   if (source != nullptr) {
@@ -186,7 +187,7 @@ void write_geometry(AtomicFolder& out, const fs::path& folder, Layout layout, st
   for (std::size_t j = 0; j < texts.size(); ++j) out.write(folder / geometry_name(layout, set, j), texts[j]);
 }
 
-// Writes a set's feature images, likewise.
+// Writes a set's feature images: copies the files of `source` if it is not null and they have not changed.
 void write_texels(AtomicFolder& out, const fs::path& folder, Layout layout, std::size_t set, const TexelRows& texels,
                   const Origin* origin, const Origin::Set* source) {
   const fs::path names[] = {folder / feature_name(layout, set, 0), folder / feature_name(layout, set, 1)};
@@ -247,7 +248,7 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
     mlp = write_mlp_json(file);
   }
   out.write(folder / "mlp.json", *mlp);
-  std::vector<TextureSet> sets;  // of triangles alone
+  std::vector<TextureSet> sets;  // sets without textures
   for (const PackedPage& page : fit.pages) sets.push_back({page.soup, nullptr});
   if (object.any_rotations()) out.write(folder / "turns.bin", write_turns(sets));
   if (baked_places && any_baked_places(object.sets)) out.write(folder / "baked.bin", write_baked_places(sets));

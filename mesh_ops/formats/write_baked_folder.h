@@ -12,17 +12,18 @@
 
 namespace rebake {
 
-/// The side in texels that new textures may have: the one that the layout's viewers usually take, or that of the
-/// largest texture of `objects`, which their viewers took already.
+/// Largest side of new textures, in texels: the usual limit of the layout's viewers, or the side of the largest texture
+/// of `objects`, which their viewers already accept.
 int largest_page_side(Layout layout, std::span<const BakedObject* const> objects);
 
-/// Writes one object below `folder` (relative, may be empty) of an atomic folder: in object space, in `layout`. What is
-/// still as it was read is copied and hash-checked, whatever its size; edited sets drop texels that nobody uses, into
-/// textures of at most `page_side` texels a side (left out: largest_page_side). A given `page_side` also lays sets out
-/// again that are larger. Turned triangles are kept
-/// in turns.bin, and with `baked_places` where triangles were when their light was baked in baked.bin: only Rebake
-/// reads these; then texels that nobody uses are kept, since light has it by texels what was erased. Appends sentences
-/// for people to `notes`.
+/// Writes one object, in object space and in `layout`, below `folder` (relative, may be empty) of an atomic folder.
+/// Unchanged parts are copied from the source files after checking their hashes, whatever their size. Edited sets are
+/// repacked without unused texels if that saves texels, into textures of at most `page_side` texels per side (default:
+/// largest_page_side()). A given `page_side` also repacks larger sets.
+/// Rotations of triangles are written to turns.bin. With `baked_places`, baked.bin gets the positions on which light
+/// was baked; unused texels then stay, since lighting finds erased triangles by their texels. Only Rebake reads
+/// these two files. Appends sentences for the user to `notes`. Throws Error if the object has no triangles, or if an
+/// unsplit folder needs more than one texture.
 void write_baked_folder(AtomicFolder& out, const std::filesystem::path& folder, const BakedObject& object,
                         Layout layout, std::vector<std::string>& notes, const Progress& progress = {},
                         bool baked_places = false, std::optional<int> page_side = std::nullopt);

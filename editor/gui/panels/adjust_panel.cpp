@@ -19,7 +19,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A field of an edit that can be changed after it was done.
+/// A field of an edit that can be adjusted after the edit.
 struct Adjustable {
   enum class Kind { number, length, degrees, factor, point, factors, turn };
   const char* field;
@@ -28,7 +28,7 @@ struct Adjustable {
 };
 using Kind = Adjustable::Kind;
 
-// By the edit's op; what is not here cannot be adjusted.
+// Adjustable fields by the edit's op. Edits without an entry cannot be adjusted.
 const std::map<std::string, std::vector<Adjustable>>& adjustable_edits() {
   static const std::vector<Adjustable> limits = {
       {"from", "Begins", Kind::length}, {"to", "Ends", Kind::length}, {"falloff", "Soft border", Kind::length}};
@@ -57,7 +57,7 @@ Vec3 point_of(const json& value, double otherwise) {
   return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
 
-// The numbers of a field, which are changed in `object`.
+// Draws number fields for a field and writes changes to `object`. `unit`: change of a length per pixel of drag.
 ui::Changed draw_values(const Adjustable& field, json& object, double unit) {
   const json held = object.contains(field.field) ? object.at(field.field) : json();
   if (field.kind == Kind::point || field.kind == Kind::factors || field.kind == Kind::turn) {
@@ -105,7 +105,7 @@ ui::Changed draw_values(const Adjustable& field, json& object, double unit) {
   return changed;
 }
 
-// A field drawn, and changed in `object`.
+// Draws a labelled field and writes changes to `object`.
 ui::Changed draw_field(const Adjustable& field, json& object, double unit) {
   ui::label(field.label);
   const announce::Part part(field.label);
@@ -144,7 +144,7 @@ void AdjustPanel::draw(Desk& desk, const ImVec2& corner, const ImVec2& room) {
   ui::section(ui::shortened(title, px(230)).c_str(), was_small_ ? opened_small_ : desk.settings.adjust_open);
   ui::tip(title, "F9", "The fields of the last step: change them, and it is done again with these.");
   ui::Changed changed = ui::Changed::nothing;
-  // In a small picture its title only: a click opens it.
+  // In a small viewport only the title is shown, until a click opens the panel.
   const bool small = room.x < px(560) || room.y < px(330);
   if (small && !std::exchange(was_small_, small)) opened_small_ = false;
   was_small_ = small;
@@ -177,7 +177,6 @@ void AdjustPanel::draw(Desk& desk, const ImVec2& corner, const ImVec2& room) {
   }
 }
 
-// All edits of the last step with the fields as they are now.
 std::vector<Edit> AdjustPanel::changed_edits(const Snapshot& now, std::size_t edits) const {
   std::vector<Edit> list;
   for (std::size_t k = now.done.size() - edits; k < now.done.size(); ++k) {

@@ -14,20 +14,20 @@ namespace rebake {
 
 namespace {
 
-/// A measured choice, and what choosing it means.
+/// A measured render setting: a number of samples or a share of the resolution.
 struct Choice {
   std::string name;
   double ms, decibels, largest, fastest, slowest;
-  Vec2 worst;        ///< where the largest error is, by shares of the picture's size
-  int samples = 0;   ///< a pixel; 0: this is a share of the resolution
-  double share = 1;  ///< of the resolution, each way
+  Vec2 worst;        ///< position of the largest error, as shares of the image size
+  int samples = 0;   ///< per pixel; 0: the setting is a share of the resolution
+  double share = 1;  ///< share of the resolution, each way
 };
 
-// The studies' rows say "4 samples" and "50 %".
+// Parses the rows of the studies `samples` ("4 samples") and `resolution` ("50 %, 1 sample").
 std::vector<Choice> choices_of(const Jobs::Costs& costs) {
   std::vector<Choice> list;
   for (const StudyTable::Row& row : costs.rows) {
-    // "50 %, 1 sample": what all have in common is not said at each point.
+    // The name ends at the comma, since all resolutions have 1 sample.
     Choice choice{row.choice.substr(0, row.choice.find(',')),
                   row.values.at(0),
                   row.values.at(1),
@@ -40,14 +40,14 @@ std::vector<Choice> choices_of(const Jobs::Costs& costs) {
       choice.share = number / 100;
     else
       choice.samples = static_cast<int>(number);
-    // The reference itself has no finite figure.
+    // Other rows cannot be plotted.
     if (std::isfinite(choice.decibels) && choice.ms > 0) list.push_back(choice);
   }
   return list;
 }
 
-// Accuracy upright, time lying, by its logarithm; a click on a point takes it.
-// `same`: of the view that is shown.
+// Plots PSNR in dB (vertical) over frame time in ms (horizontal, logarithmic). A click on a point applies its setting.
+// `same`: the measurement is of the current view.
 void draw_chart(const std::vector<Choice>& choices, ViewState& view, bool same, const ImVec2& size) {
   const announce::Part part("chart");
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -99,7 +99,7 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, bool same, 
     list.AddPolyline(line.data(), static_cast<int>(line.size()),
                      color32(samples ? theme().accent_text : theme().muted, 0.6F), 0, px(2));
   }
-  // Of several under the pointer the nearest.
+  // The point nearest to the pointer, within 10 pixels.
   const Choice* nearest = nullptr;
   float least = px(10);
   for (const Choice& choice : choices) {
@@ -115,7 +115,7 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, bool same, 
         choice.samples > 0 ? choice.samples == view.samples : std::abs(choice.share - view.moving_share) < 0.01;
     const bool hot = nearest == &choice;
     announce::point(choice.name, p);
-    // From the fastest run to the slowest.
+    // Error bar from the fastest to the slowest run.
     const ImU32 ink = color32(choice.samples > 0 ? theme().accent_text : theme().muted);
     const ImVec2 first = place(choice.fastest, choice.decibels), last_run = place(choice.slowest, choice.decibels);
     list.AddLine(first, last_run, ink, px(1.5F));
@@ -123,7 +123,7 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, bool same, 
       list.AddLine({end.x, end.y - px(4)}, {end.x, end.y + px(4)}, ink, px(1.5F));
     list.AddCircleFilled(p, px(hot || now ? 7 : 5), color32(now ? theme().accent : theme().panel));
     list.AddCircle(p, px(hot || now ? 7 : 5), ink, 0, px(2));
-    // Shares below their points, samples above: they lie close together.
+    // Resolutions are labelled below their points and samples above, since the points are close together.
     const float name_width = ImGui::CalcTextSize(choice.name.c_str()).x;
     const bool fits = p.x + px(9) + name_width < at.x + size.x;
     list.AddText({fits ? p.x + px(9) : p.x - px(9) - name_width, p.y + (choice.samples > 0 ? -px(18) : px(3))},

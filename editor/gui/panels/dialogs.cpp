@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// In the middle, wherever it stood before.
+// Opens a modal dialog at the centre of the window. If this returns true, the caller must call ImGui::EndPopup().
 bool begin_question(const char* title) {
   if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -37,7 +37,7 @@ bool begin_question(const char* title) {
   return true;
 }
 
-// Answers stand at the right, as wide as each other.
+// Answer buttons are right-aligned and equally wide.
 ImVec2 answer_size() { return {px(110), 0}; }
 void answers_right(int count) {
   const float all =
@@ -253,7 +253,7 @@ bool Dialogs::escape(Desk& desk) {
   return true;
 }
 
-// One at a time, the most urgent first.
+// Draws only the most urgent dialog.
 void Dialogs::draw(Desk& desk, Thumbnails& thumbnails) {
   if (std::exchange(closes_, false)) ImGui::ClosePopupsOverWindow(nullptr, false);
   if (desk.asking.quitting)

@@ -4,17 +4,18 @@
 
 namespace rebake {
 
-/// Asks before work is lost, and for paths: one question at a time, the most urgent first.
+/// Modal dialogs: unsaved changes, recovery of journals, missing sources, and file paths. Only the most urgent one is
+/// open.
 class Dialogs {
  public:
   void draw(Desk& desk, Thumbnails& thumbnails);
-  /// Answers the question that is open with "not now"; false when none is.
+  /// Cancels the open dialog; returns false if none is open.
   bool escape(Desk& desk);
-  /// Closes what Dear ImGui has open, with the next frame.
+  /// Closes all Dear ImGui popups in the next frame.
   void close_popups() { closes_ = true; }
-  /// Whether another program's answer is waited for.
+  /// Whether the desktop's own file dialog is open, which runs in another process.
   bool waits() const { return files_.waits(); }
-  /// True once the window may close.
+  /// Whether the window may close: nothing was unsaved, or the user has decided.
   bool may_quit() const { return may_quit_; }
 
  private:
@@ -25,9 +26,9 @@ class Dialogs {
   void draw_replacing(Desk& desk);
   void draw_relinking(Project& project);
   FileDialog files_;
-  std::optional<LostWork> chosen_;      ///< to be recovered
-  std::optional<LostWork> discarding_;  ///< the work that a question asks about
-  bool may_quit_ = false, closes_ = false;
+  std::optional<LostWork> chosen_;          ///< journal that the user chose to recover
+  std::optional<LostWork> discarding_;      ///< journal that the user is asked about discarding
+  bool may_quit_ = false, closes_ = false;  ///< see may_quit(); see close_popups()
 };
 
 }  // namespace rebake

@@ -66,8 +66,8 @@ void EditForm::begin(const Desk& desk) {
   }
 }
 
-// The edits that the fields describe as JSON: one, or one per node of the scope if the form has a node field in which
-// nothing was chosen. Throws EditError if the scope holds nothing for the edit.
+// One edit per node of the scope if the form has a node field without a choice, otherwise one edit. Throws EditError if
+// the scope has no node for the edit.
 std::vector<json> EditForm::lines(const Desk& desk) const {
   json line = values_;
   line["op"] = op_;
@@ -83,7 +83,7 @@ std::vector<json> EditForm::lines(const Desk& desk) const {
   };
   if (desk.active.empty()) {
     if (!node->required && (!deforms || selection)) return {line};
-    // Nothing is picked, and the edit is for one node: the first visible object.
+    // Nothing is picked, but the edit needs a node: use the first visible object.
     for (const PlacedNode& placed : placed_nodes(desk.scene()))
       if (placed.visible && placed.node->object) return {with_node(placed.node->id)};
     throw EditError("the scene has no visible object");
@@ -98,7 +98,7 @@ std::vector<json> EditForm::lines(const Desk& desk) const {
   return result;
 }
 
-// Has the worker make what the fields say, to be seen before it is applied; half-typed fields wait.
+// Requests a preview of the edits. If a field is invalid, shows its error and waits.
 void EditForm::show(Desk& desk) {
   if (desk.jobs.worker.busy()) return;
   try {
@@ -111,7 +111,7 @@ void EditForm::show(Desk& desk) {
     previewed_on_ = desk.scene().roots;
     std::vector<Edit> edits;
     for (const json& line : wanted) edits.push_back(read_edit(line, desk.scene()));
-    // Only what changes the picture: an import would be read twice.
+    // Imports have no preview: their files would be read twice.
     if (edits.front().is<Import>()) return;
     desk.show_preview(std::move(edits));
     problem_.clear();
@@ -121,7 +121,7 @@ void EditForm::show(Desk& desk) {
   }
 }
 
-// The number of triangles that a way to select takes, as soon as its preview is there.
+// For selecting edits: draws the number of triangles that would be selected, counted in the preview.
 void EditForm::draw_count(const Desk& desk) const {
   if (!type_named(op_)->selects || !previews_ || !problem_.empty()) return;
   const bool there = desk.preview && desk.preview->of == desk.scene().roots;
@@ -134,7 +134,7 @@ void EditForm::draw_count(const Desk& desk) const {
 
 void EditForm::draw(Desk& desk, float right) {
   if (desk.asking.form.empty()) {
-    // What was applied is shown until it is done.
+    // Show the preview until the applied edit is done.
     if (!op_.empty() && desk.at_rest()) desk.drop_preview();
     op_.clear();
     return;
@@ -142,9 +142,9 @@ void EditForm::draw(Desk& desk, float right) {
   if (op_ != desk.asking.form) begin(desk);
   bool open = true;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  // Over the picture's corner: the outline, which chooses the scope, stays free.
+  // At the viewport's top right corner, so that it does not cover the outliner, which sets the scope.
   ImGui::SetNextWindowPos({right - px(10), px(40)}, ImGuiCond_Appearing, {1, 0});
-  // As high as what it says, so that no button is cut off.
+  // The height follows the content, so that no button is cut off.
   ImGui::SetNextWindowSizeConstraints({px(440), 0}, {px(440), screen.y - px(60)});
   std::string title = op_;
   std::replace(title.begin(), title.end(), '_', ' ');
@@ -197,7 +197,7 @@ void EditForm::draw(Desk& desk, float right) {
                   ? json(static_cast<std::int64_t>(*number))
                   : json(*number);
         } else {
-          // Read when it is applied, so that what is half typed is no error yet.
+          // Text that is not JSON stays a string; read_edit() reports the error.
           const json read = json::parse(text, nullptr, false);
           values_[name] = read.is_discarded() ? json(text) : read;
         }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-// Exact at quarter turns, where people want zeros.
+// Sine of an angle in degrees; exact at multiples of 90°.
 double sine(double degrees) {
   const double turned = std::remainder(degrees, 360);
   return std::remainder(turned, 180) == 0 ? 0
@@ -33,7 +33,7 @@ Mat3 about(int axis, double degrees) {
 Mat3 rotation_of(const Vec3& degrees) { return about(2, degrees.z()) * about(1, degrees.y()) * about(0, degrees.x()); }
 
 Vec3 euler_degrees(const Mat3& r) {
-  // Of the first column (cy cz, cy sz, −sy): its length in the plane tells how near Y is to ±90.
+  // The first column is (cy cz, cy sz, −sy). The length of its x and y is |cos Y|, which is near 0 in gimbal lock.
   const double level = std::hypot(r(0, 0), r(1, 0));
   const double y = std::atan2(-r(2, 0), level);
   Vec3 angles(0, y, 0);

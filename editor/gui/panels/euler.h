@@ -4,10 +4,10 @@
 
 namespace rebake {
 
-// A rotation as people type it: degrees about X, then Y, then Z of the world, which is Blender's order XYZ.
+// Euler angles in degrees about the world's X, then Y, then Z axis (Blender's order XYZ).
 
 Mat3 rotation_of(const Vec3& degrees);
-/// Angles in (−180, 180], that about Y in [−90, 90]. Where Y is ±90, X and Z turn about the same axis: all is in X.
+/// Angles in (−180, 180]; Y in [−90, 90]. In gimbal lock (Y = ±90) Z is 0, and X has the rest of the rotation.
 Vec3 euler_degrees(const Mat3& rotation);
 
 }  // namespace rebake

@@ -32,9 +32,9 @@ struct Question {
   PathQuestion kind;
   const char* title;
   const char* hint;
-  const char* action;           ///< of its primary button
-  const char* ending;           ///< that a file's name gets where it has none
-  const char* listed = ending;  ///< endings of the files that are shown
+  const char* action;           ///< label of the primary button
+  const char* ending;           ///< extension added to names without it; empty for folders and for reading
+  const char* listed = ending;  ///< extensions of the listed files, separated by spaces
 };
 constexpr Question questions[] = {
     {PathQuestion::open, "Open", "A baked scene, a scene folder, or a project (.rebake).", "Open", "", ".rebake"},
@@ -60,7 +60,7 @@ bool reads(PathQuestion asked) {
   return asked == PathQuestion::open || asked == PathQuestion::run_script || asked == PathQuestion::light_picture;
 }
 
-// What is wrong with a path before anything is tried, empty for nothing.
+// Checks a path before it is used. Returns an error message; empty if the path is usable.
 std::string problem_with(const fs::path& path, PathQuestion asked) {
   const bool writes = !reads(asked);
   std::error_code error;
@@ -98,7 +98,7 @@ std::vector<Bookmark> bookmarks(const Settings& settings) {
   return list;
 }
 
-// What the format cannot keep of this scene.
+// Lines of text about everything that an export of this scene loses.
 std::vector<std::string> losses(const Scene& scene, bool plain) {
   std::vector<std::string> lines;
   std::size_t objects = 0, hidden = 0, turned = 0;
@@ -150,7 +150,7 @@ void FileDialog::begin(const Desk& desk) {
   path_ = kept ? desk.project.path.string() : (start / "").string();
   problem_.clear();
   if (kept || reads(asked_) || desk.scene().roots.empty()) return;
-  // A name to begin with.
+  // Suggest a name.
   const std::string title = desk.scene().roots.front()->name;
   const std::string ending = question_of(asked_).ending;
   if (asked_ == PathQuestion::export_folder) path_ += title + "-edited";
@@ -212,7 +212,7 @@ void FileDialog::carry_out(Desk& desk, const fs::path& path) {
   }
 }
 
-// To the left of the answers, the dialog that people know from elsewhere.
+// Buttons left of the answers that open the desktop's own file dialog.
 void FileDialog::draw_desktop_buttons(const Desk& desk, const std::string& ending) {
   if (!DesktopFileDialog::there()) return;
   using Kind = DesktopFileDialog::Kind;
@@ -259,7 +259,7 @@ void FileDialog::take_answer(Desk& desk) {
   }
 }
 
-// Tab completes, the arrows walk through the list.
+// Keys in the path field: Tab completes the name, the up and down keys step through the list.
 int FileDialog::on_key(ImGuiInputTextCallbackData* data) {
   auto& self = *static_cast<FileDialog*>(data->UserData);
   const fs::path typed(data->Buf);
@@ -283,7 +283,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   }
   const Question& question = question_of(desk.asking.path);
   if (asked_ != desk.asking.path) begin(desk);
-  // Another question may have closed it meanwhile.
+  // Another dialog may have closed the popup.
   if (!ImGui::IsPopupOpen("###path")) ImGui::OpenPopup("###path");
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const ImVec2 size{std::min(px(760), screen.x - px(20)), std::min(px(520), screen.y - px(20))};
@@ -313,10 +313,10 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   if (list_.chosen().size() > 1 && !list_.chosen().contains(path_)) list_.choose_none();
   const fs::path typed(path_);
   std::error_code error;
-  const fs::path folder = typed.parent_path();  // of "a/b/" that is "a/b"
+  const fs::path folder = typed.parent_path();  // "a/b" for "a/b/"
   const bool pictures = film || desk.asking.path == PathQuestion::screenshot;
   const std::string ending = film && video_ ? ".mp4" : question.ending;
-  // With all of it picked there is nothing to choose.
+  // If all top-level nodes are picked, the option would change nothing.
   const bool offers_picked = (pictures || desk.asking.path == PathQuestion::export_folder) && !desk.active.empty() &&
                              desk.active_tops().size() < desk.scene().roots.size();
   only_picked_ = only_picked_ && offers_picked;
@@ -343,7 +343,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   ImGui::SameLine();
   ImGui::BeginChild("entries", {0, high}, true);
   list_.look_at(folder, ending.empty() ? question.listed : ending);
-  // What is typed to be written is a new name, not one that is looked for.
+  // Filter only when reading: a path to be written is usually a new name.
   list_.filter(reads(desk.asking.path) ? typed.filename().string() : "");
   if (const FolderList::Taken taken = list_.draw(thumbnails, opens, opens); !taken.path.empty()) {
     path_ = taken.path.string();
@@ -419,7 +419,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   if (done) {
     problem_of_ = path_;
     problem_ = problem_with(path, desk.asking.path);
-    // Before it is asked whether to replace something.
+    // Check for protected sources before asking whether to replace a file.
     if (problem_.empty() && writes) try {
         const bool file = !ending.empty();
         file ? desk.now->sources.check_file(path) : desk.now->sources.check_folder(path);

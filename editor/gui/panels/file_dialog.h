@@ -14,36 +14,40 @@
 
 namespace rebake {
 
-/// Asks for a path; says what an export can and cannot keep.
+/// File dialog to open, save, export and render. For exports it lists the properties of the scene that would be lost.
 class FileDialog {
  public:
-  /// Where one is asked for.
+  /// Draws the dialog if `desk.asking.path` requests one, and performs the action when the user confirms.
   void draw(Desk& desk, Thumbnails& thumbnails);
 
-  /// Goes back from comparing plain folders to the path; false where nobody compares.
+  /// Closes the comparison of plain folders; returns false if it is not open.
   bool leaves_comparing(Desk& desk) { return preview_.leave(desk); }
-  /// Whether another program's answer is waited for.
+  /// Whether the desktop's own file dialog is open, which runs in another process.
   bool waits() const { return desktop_ != nullptr; }
 
  private:
+  /// Resets the dialog for a new question.
   void begin(const Desk& desk);
+  /// The picked nodes if only those are exported or rendered; otherwise empty, for all.
   std::vector<NodeRef> wanted_nodes(const Desk& desk) const;
   void draw_desktop_buttons(const Desk& desk, const std::string& ending);
+  /// Takes the answer of the desktop's dialog, if it has one.
   void take_answer(Desk& desk);
   static int on_key(ImGuiInputTextCallbackData* data);
+  /// Performs the action of the question. Throws Error.
   void carry_out(Desk& desk, const std::filesystem::path& path);
   std::string path_;
-  PathQuestion asked_ = PathQuestion::none;
+  PathQuestion asked_ = PathQuestion::none;  ///< question that the fields below are for
   FolderList list_;
-  std::unique_ptr<DesktopFileDialog> desktop_;  ///< while it is open
-  std::string problem_, problem_of_;            ///< what is wrong with which path
-  bool refocuses_ = false;                      ///< the path takes the keyboard again
-  std::filesystem::path replacing_;             ///< is there already: asked for once
-  bool only_picked_ = false;                    ///< of an export, or in pictures
-  int width_ = 0, height_ = 0;                  ///< of pictures, in pixels
-  int pictures_ = 36;                           ///< of a film
-  bool video_ = false;
-  bool plain_ = false;  ///< of an export: one folder for all
+  std::unique_ptr<DesktopFileDialog> desktop_;  ///< the desktop's dialog while it is open, else null
+  std::string problem_, problem_of_;            ///< error message, and the path that it is about
+  bool refocuses_ = false;                      ///< the path field takes the keyboard focus in the next frame
+  std::filesystem::path replacing_;             ///< existing path for which the user was asked about replacing it
+  bool only_picked_ = false;                    ///< export or render only the picked nodes
+  int width_ = 0, height_ = 0;                  ///< size of rendered images, pixels
+  int pictures_ = 36;                           ///< number of images of a turntable or camera path
+  bool video_ = false;                          ///< write a video instead of images
+  bool plain_ = false;                          ///< export everything as one plain folder
   PlainPreview preview_;
 };
 

@@ -30,7 +30,7 @@ bool holds_scene(const fs::path& folder) {
   try {
     return std::any_of(known.begin(), known.end(), [&](const Format& format) { return format.recognises(folder); });
   } catch (const fs::filesystem_error&) {
-    return false;  // it may not be looked into
+    return false;  // no permission to read it
   }
 }
 
@@ -120,7 +120,7 @@ FolderList::Taken FolderList::draw(Thumbnails& thumbnails, bool opens, bool seve
     } else if (io.KeyCtrl) {
       chosen_.insert(entry->path);
     } else {
-      // From the one clicked before, where it is still shown; folders without a scene are passed over.
+      // Shift: choose the range from the last clicked entry, if it is still shown. Skip folders that are not scenes.
       const bool from_last =
           std::any_of(shown_.begin(), shown_.end(), [&](const Entry* e) { return e->path == last_; });
       bool within = false;

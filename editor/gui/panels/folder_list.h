@@ -9,7 +9,7 @@
 
 namespace rebake {
 
-/// What lies in a folder, to choose from: scenes, folders, and files of some endings.
+/// Widget that lists a folder's scenes, subfolders and files with given extensions, for the user to choose from.
 class FolderList {
  public:
   struct Entry {
@@ -17,20 +17,23 @@ class FolderList {
     bool is_folder = false, is_scene = false;
   };
 
-  /// Reads the folder, where it is another one or `again`. `endings` of files, such as ".png .jpg".
+  /// Reads the folder if it or `endings` has changed, or if `again` is set. `endings`: extensions of the listed files,
+  /// separated by spaces, e.g. ".png .jpg".
   void look_at(const std::filesystem::path& folder, const std::string& endings, bool again = false);
-  /// Shows only what holds the text in its name, whatever the case; all where nothing does, or one has that very name.
+  /// Shows only entries whose name contains the text, ignoring case. Shows all if no name does, or if one equals it.
   void filter(const std::string& name);
 
+  /// Result of one frame of draw().
   struct Taken {
-    std::filesystem::path path;  ///< clicked; empty for nothing
-    bool at_once = false;        ///< twice
+    std::filesystem::path path;  ///< clicked entry; empty if none; ends with / if the folder is to be entered
+    bool at_once = false;        ///< it was double-clicked
   };
-  /// `several`: with Ctrl and Shift more than one is chosen.
+  /// Draws the list. `opens`: a click chooses a scene folder instead of entering it. `several`: Ctrl and Shift choose
+  /// more than one entry.
   Taken draw(Thumbnails& thumbnails, bool opens, bool several);
-  /// What the arrow keys come to, from the chosen one; nothing in an empty list.
+  /// Moves the choice by `by` entries (arrow keys) and returns its path; empty if the list is empty.
   std::filesystem::path step(int by);
-  /// The name as far as it can be completed from what there is.
+  /// Completes a name to the longest common prefix of the entries that start with it, ignoring case.
   std::string completed(const std::string& name) const;
 
   const std::set<std::filesystem::path>& chosen() const { return chosen_; }
@@ -42,11 +45,11 @@ class FolderList {
   std::vector<Entry> entries_;
   std::vector<const Entry*> shown_;
   std::set<std::filesystem::path> chosen_;
-  std::filesystem::path last_;  ///< clicked or stepped to: where Shift begins
-  bool scrolls_ = false;        ///< to it
+  std::filesystem::path last_;  ///< entry clicked or stepped to last: one end of a Shift range
+  bool scrolls_ = false;        ///< scroll to `last_` in the next frame
 };
 
-/// Whether some format knows the folder.
+/// Whether the folder is a scene in a known format.
 bool holds_scene(const std::filesystem::path& folder);
 
 }  // namespace rebake

@@ -26,7 +26,7 @@ LightEdit edit_for(const SceneLight& light, bool on) {
   return edit;
 }
 
-// A white matte ball in a light, seen from the front, in display colours over the panel's ground.
+// Renders a white diffuse ball in a light, seen from the front, on the panel's background; display colours.
 Image ball_in(const Light& light, const Rgb& ground) {
   constexpr int side = 96;
   Image image{side, side, std::vector<std::uint8_t>(std::size_t{side} * side * 3)};
@@ -43,7 +43,7 @@ Image ball_in(const Light& light, const Rgb& ground) {
     for (const Sun& sun : light.suns) sum += std::max(0.0, n.dot(sun.direction)) * sun.irradiance;
     return sum;
   };
-  // As bright as fits: only its shape and tint are known.
+  // Normalise the brightness, since only the light's shape and tint are known.
   double most = 1e-9;
   for (const Vec3& d : directions) most = std::max(most, lit(d).maxCoeff());
   const double behind[3] = {ground.r / 255.0, ground.g / 255.0, ground.b / 255.0};
@@ -120,11 +120,11 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
         Wanted{"Highlights", "What bent surfaces mirror stays with the light.", &SceneLight::highlights},
         Wanted{"One light", "All objects stand in one light.", &SceneLight::match}}) {
     const bool highlights = effect.wanted == &SceneLight::highlights;
-    // They follow from how triangles moved, as shadows on itself do.
+    // Highlights need the effect on the object itself: both follow from the motion of its triangles.
     if (highlights && !light.self) continue;
     bool wanted = light.*effect.wanted;
     ui::flow(px(100));
-    // The last one stays: without any, it is the light that is switched off.
+    // The last effect cannot be switched off. "Follows edits" switches off all of them.
     const bool only = wanted && !highlights && light.self + light.cast + light.removed + light.match == 1;
     if (ui::toggle(effect.name, wanted) && !only) {
       SceneLight changed = light;

@@ -19,7 +19,7 @@ namespace rebake {
 
 namespace {
 
-// 12345 as 12.3k, to be read at a glance.
+// A count in short form: 12345 as 12.3k.
 std::string rounded(double value) {
   if (value < 1000) return fmt::format("{:.0f}", value);
   if (value < 1e6) return fmt::format("{:.{}f}k", value / 1e3, value < 1e5 ? 1 : 0);
@@ -80,7 +80,7 @@ void OutlinePanel::draw_name(Desk& desk, const Node& node) {
   ImGui::SetNextItemWidth(-1);
   ImGui::InputText("##name", &name_, ImGuiInputTextFlags_AutoSelectAll);
   if (!ImGui::IsItemDeactivated()) return;
-  // However the field is left; Esc has put the old name back.
+  // Rename whenever the field loses focus; Esc has restored the old name.
   renaming_ = NodeId::none;
   if (name_ == node.name || name_.empty()) return;
   Rename rename;
@@ -208,7 +208,7 @@ void OutlinePanel::draw(Desk& desk) {
     }
     if (!inside_folded.contains(id)) draw_node(desk, placed, depth);
   }
-  // Below the last node: out of every group, and nothing picked.
+  // Area below the last node: a click clears the picked nodes, a drop moves a node to the top level.
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   if (ImGui::Selectable("##below", false, ImGuiSelectableFlags_SpanAllColumns, {0, px(40)})) desk.active.clear();

@@ -20,7 +20,7 @@ std::string plain(std::string text) {
   return text;
 }
 
-// "All fields: Select picture…"
+// Title of the form of an edit, e.g. "All fields: Select picture…".
 std::string words_of(const std::string& op) {
   std::string words = op;
   std::replace(words.begin(), words.end(), '_', ' ');
@@ -30,9 +30,9 @@ std::string words_of(const std::string& op) {
 
 struct Entry {
   std::string title, keys, help;
-  const Command* command = nullptr;  ///< null: the form of the edit `op`, or
-  const Camera* view = nullptr;      ///< a stored view
-  std::string op = {};               ///< of the edit
+  const Command* command = nullptr;  ///< command to run; null for other entries
+  const Camera* view = nullptr;      ///< stored view to look from; null for other entries
+  std::string op = {};               ///< edit whose form to open; empty for other entries
 };
 
 std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
@@ -43,7 +43,7 @@ std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
     all.push_back({words_of(type->op), "", type->help, nullptr, nullptr, type->op});
   for (const auto& [name, camera] : desk.scene().views)
     all.push_back({"Stored view: " + name, "", "", nullptr, &camera});
-  // All words, in any order; edits are written with underscores.
+  // Entries must contain all words, in any order. Underscores count as spaces.
   const std::string wanted = plain(filter);
   std::erase_if(all, [&](const Entry& entry) {
     const std::string text = plain(entry.title + " " + entry.help);
@@ -52,12 +52,13 @@ std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
       if (text.find(word) == std::string::npos) return true;
     return false;
   });
-  // Those whose name holds it come before those whose help does.
+  // Matches in the title come before matches in the help.
   std::stable_partition(all.begin(), all.end(),
                         [&](const Entry& entry) { return plain(entry.title).find(wanted) != std::string::npos; });
   std::stable_partition(all.begin(), all.end(), [&](const Entry& entry) {
     const std::size_t colon = entry.title.find(": ");
-    // A menu's name counts too: "select" lists that menu before the edits that are called so.
+    // Titles that start with the filter come first, with or without the menu: "select" lists the Select menu before the
+    // edits of that name.
     return plain(entry.title).starts_with(wanted) ||
            (colon != std::string::npos && plain(entry.title.substr(colon + 2)).starts_with(wanted));
   });
@@ -118,7 +119,7 @@ void PalettePanel::draw(Desk& desk) {
     break;
   }
   ImGui::EndChild();
-  // A click beside it closes it.
+  // A click outside closes the palette.
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) &&
       !ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows | ImGuiHoveredFlags_AllowWhenBlockedByActiveItem))
     desk.asking.palette = false;

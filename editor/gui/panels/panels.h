@@ -15,9 +15,9 @@
 
 namespace rebake {
 
-// What stands around the viewport. Each draws itself into the present Dear ImGui window.
+// Panels and overlays of the window. Each draws into the current Dear ImGui window.
 
-/// The tree of nodes: visibility, lock, names, order, and what each holds.
+/// Outliner: the tree of nodes with name, order, triangle count, visibility and lock.
 class OutlinePanel {
  public:
   void draw(Desk& desk);
@@ -26,51 +26,52 @@ class OutlinePanel {
   void draw_node(Desk& desk, const PlacedNode& placed, int depth);
   void draw_name(Desk& desk, const Node& node);
   void pick(Desk& desk, NodeId id);
-  std::set<NodeId> folded_;
-  NodeId renaming_ = NodeId::none, shift_from_ = NodeId::none;
-  std::string name_;
+  std::set<NodeId> folded_;                                     ///< collapsed groups
+  NodeId renaming_ = NodeId::none, shift_from_ = NodeId::none;  ///< node being renamed; one end of a Shift range
+  std::string name_;                                            ///< typed name
   bool focus_name_ = false;
 };
 
-/// Place, turn and size of the active nodes, by numbers.
+/// Number fields for position, rotation and scale of the picked nodes.
 class PropertiesPanel {
  public:
   void draw(Desk& desk);
 
  private:
+  /// Draws three number fields; returns their change in this frame.
   ui::Changed row(const char* name, Vec3& value, const char* format, double step);
   void draw_one(Desk& desk, const PlacedNode& placed);
   void draw_several(Desk& desk);
-  std::set<NodeId> of_;  ///< what the numbers say
-  Vec3 position_{0, 0, 0}, angles_{0, 0, 0}, scale_{1, 1, 1};
-  bool dragging_ = false;    ///< a number: they are not those of the document
-  std::size_t said_at_ = 0;  ///< steps of history when the problem was said
+  std::set<NodeId> of_;                                        ///< nodes that the numbers belong to
+  Vec3 position_{0, 0, 0}, angles_{0, 0, 0}, scale_{1, 1, 1};  ///< scene units, Euler angles in degrees, factors
+  bool dragging_ = false;    ///< a number is being dragged, so the numbers differ from the document
+  std::size_t said_at_ = 0;  ///< number of history steps when `problem_` was set
   std::string problem_;
 };
 
-/// All steps, done and undone; a click goes there.
+/// List of all history steps, done and undone. A click undoes or redoes up to a step.
 class HistoryPanel {
  public:
   void draw(Desk& desk);
 
  private:
-  std::shared_ptr<const Snapshot> of_;  ///< what was drawn last
+  std::shared_ptr<const Snapshot> of_;  ///< snapshot drawn last
 };
 
-/// Stored views with pictures: a click looks from there.
+/// Stored views as thumbnails. A click moves the camera there.
 class ViewsPanel {
  public:
-  /// `drawn`: the scene as pictures show it.
+  /// `drawn`: the scene with the viewport's background, for thumbnails.
   void draw(Desk& desk, const Scene& drawn, Thumbnails& thumbnails);
 
  private:
   void draw_card(Desk& desk, const Scene& drawn, Thumbnails& thumbnails, const std::string& name);
   void draw_name(Desk& desk, const std::string& name, float width);
-  std::string renaming_, name_;  ///< the view, and what is typed
+  std::string renaming_, name_;  ///< view being renamed, and the typed name
   bool focus_name_ = false;
 };
 
-/// What light does: which effects follow edits, where it comes from, and what each cost.
+/// Light settings: the effects that follow edits, the source of the light, and the decision about each effect.
 class LightPanel {
  public:
   void draw(Desk& desk);
@@ -78,62 +79,65 @@ class LightPanel {
  private:
   void draw_settings(Desk& desk, const SceneLight& light, bool on);
   void draw_ball(const Lighting& lighting);
-  std::optional<PictureTexture> ball_;
+  std::optional<PictureTexture> ball_;  ///< image of a ball in the light `ball_of_`
   std::shared_ptr<const Light> ball_of_;
-  SceneLight last_;           ///< what it was while it was on
-  Vec3 sun_{0.5, 0.8, 0.45};  ///< while it is dragged
-  double budget_ = 1, turn_ = 0;
-  bool dragging_ = false;
+  SceneLight last_;               ///< settings when light last followed edits
+  Vec3 sun_{0.5, 0.8, 0.45};      ///< edited direction towards the sun
+  double budget_ = 1, turn_ = 0;  ///< edited error budget in 1/255, and rotation of the light image in degrees
+  bool dragging_ = false;         ///< a number is being dragged, so the numbers differ from the document
 };
 
-/// The edits as script lines, to be copied or saved, and a line to type one.
+/// All edits as script lines, to copy or save, and a field to run a typed line.
 class ScriptPanel {
  public:
   void draw(Desk& desk);
 
  private:
-  std::string line_, problem_;
-  std::shared_ptr<const Snapshot> of_;  ///< what the lines say
+  std::string line_, problem_;          ///< typed line, and its error message
+  std::shared_ptr<const Snapshot> of_;  ///< snapshot that the lines belong to
   std::vector<std::string> lines_;
 };
 
-/// What the last picture cost: passes, why each ran or not, memory.
+/// Cost of the last frame: times, passes with the reason why each ran or not, and GPU memory.
 struct FrameReport {
   FrameTimes times;
   std::vector<PlannedPass> passes;
   std::uint64_t gpu_bytes = 0;
   std::string device;
-  double scale = 1;  ///< of the picture's resolution
-  int samples = 4;
-  double pictures_a_second = 0;  ///< while the view last moved
+  double scale = 1;              ///< share of the full resolution, each way
+  int samples = 4;               ///< per pixel
+  double pictures_a_second = 0;  ///< frame rate while the view last moved
 };
+/// Draws the cost panel: samples per pixel, target frame rate, measured error over time, and the frame report.
+/// `each_pass`: option to time each pass.
 void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameReport& report, bool& each_pass);
 
-/// The fields of the last step, which change it until the next is done.
+/// Fields of the last step, as Blender's "Adjust Last Operation": changing one applies the step again.
 class AdjustPanel {
  public:
-  /// Above `corner`, to its right, over a picture of that size.
+  /// Draws with the lower left corner at `corner` (window pixels), over a viewport of size `room` (pixels).
   void draw(Desk& desk, const ImVec2& corner, const ImVec2& room);
 
  private:
+  /// The last `edits` edits with the changed fields.
   std::vector<Edit> changed_edits(const Snapshot& now, std::size_t edits) const;
-  std::optional<Edit> of_;  ///< the edit that the fields were taken from
-  nlohmann::json object_;
-  bool changing_ = false;                          ///< a field is being dragged: the document does not hold it yet
-  bool was_small_ = false, opened_small_ = false;  ///< little room, and opened all the same
+  std::optional<Edit> of_;                         ///< edit that the fields were read from
+  nlohmann::json object_;                          ///< its fields with changes
+  bool changing_ = false;                          ///< a field is being dragged, so the document has the old value
+  bool was_small_ = false, opened_small_ = false;  ///< the viewport is too small for the fields; they are open anyway
 };
 
-/// The latest messages, above `corner` and to its left.
+/// Draws the latest messages as toasts, stacked upwards from their lower right `corner` (window pixels).
 void draw_toasts(Messages& messages, const ImVec2& corner);
-/// All keys, where they are asked for.
+/// Draws the sheet of keys and mouse actions if `desk.asking.keys` is set.
 void draw_keys_sheet(Desk& desk);
-/// What to begin with, while nothing is open.
+/// Draws the start page (open, recent, samples) centred at `middle` (window pixels) while the scene is empty.
 void draw_start(Desk& desk, Thumbnails& thumbnails, const ImVec2& middle);
 
-/// What was said, newest last.
+/// Draws the message log, newest last.
 void draw_log(const Messages& messages);
 
-/// All commands and edits by name.
+/// Command palette: searches all commands, edits and stored views by name.
 class PalettePanel {
  public:
   void draw(Desk& desk);
@@ -143,23 +147,26 @@ class PalettePanel {
   bool was_open_ = false;
 };
 
-/// The fields of one edit, made from the table of edits.
+/// Form for all fields of one edit, generated from the edit's field table, with a live preview.
 class EditForm {
  public:
-  /// `right`: where the panels at the right begin, in pixels.
+  /// `right`: left border of the panels at the right, in window pixels.
   void draw(Desk& desk, float right);
 
  private:
+  /// Resets the form for the edit `desk.asking.form`.
   void begin(const Desk& desk);
+  /// The edits that the fields describe: one, or one per picked node. Throws EditError.
   std::vector<nlohmann::json> lines(const Desk& desk) const;
+  /// Requests a preview if the fields or the scene have changed.
   void show(Desk& desk);
   void draw_count(const Desk& desk) const;
   bool previews_ = true;
-  std::string previewed_;              ///< the lines whose result is shown, or being made
-  std::vector<NodePtr> previewed_on_;  ///< the scene that it was made of
-  std::string op_, problem_;
-  nlohmann::json values_;
-  std::map<std::string, std::string> texts_;  ///< of fields that are typed as JSON
+  std::string previewed_;                     ///< JSON of the edits that the preview shows or is computing
+  std::vector<NodePtr> previewed_on_;         ///< root nodes of the scene that the preview started from
+  std::string op_, problem_;                  ///< op of the edit; error message
+  nlohmann::json values_;                     ///< fields that are set
+  std::map<std::string, std::string> texts_;  ///< typed texts of fields with a text box, by field name
 };
 
 }  // namespace rebake

@@ -17,17 +17,17 @@
 
 namespace rebake {
 
-// Filled by the worker's jobs, one after the other, and read by the window when they are done.
+// Results of the worker's jobs. The window reads them once the first job is done.
 struct PlainPreview::Measured {
   Scene scene;
   View view;
   std::optional<PlainParts> parts;
-  bool exact = false;  ///< there is nothing to fit
+  bool exact = false;  ///< one decoder reproduces all texels, so nothing is fitted
   std::vector<NodeRef> nodes;
   struct Row {
     FuseTrial trial;
     std::optional<Image> picture;
-    double psnr_db = 0, frame_ms = 0;  ///< of that picture
+    double psnr_db = 0, frame_ms = 0;  ///< PSNR of `picture` against `reference`; median frame time
   };
   std::vector<Row> rows;
   std::size_t chosen = 0;
@@ -38,9 +38,9 @@ struct PlainPreview::Measured {
 namespace {
 
 constexpr const char* failed = "It was stopped, or could not be done: the messages say why.";
-constexpr int timed_frames = 5;  // the median counts
+constexpr int timed_frames = 5;  // frames per row; the median is shown
 
-// Fewer texels and steps than an export takes: a few seconds, whatever the scene.
+// Fewer texels and training steps than an export, for a measurement of a few seconds on any scene.
 FuseOptions quick_options(const Scene& scene) {
   FuseOptions options;
   options.layout = common_layout(scene);
@@ -78,7 +78,7 @@ void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
         measured->reference = renderer.render(measured->scene, measured->view, {}, &lighting);
         measured->reference_ms = median_frame_ms(renderer, measured->scene, measured->view, timed_frames, &lighting);
         measured->exact = measured->parts->composition.exact();
-        session.drop_renderer();  // a second copy of the scene on the GPU
+        session.drop_renderer();  // frees a second copy of the scene on the GPU
         if (measured->exact) return;
         const FusePlan& plan = measured->parts->make_plan(options, session.progress);
         for (const FuseCandidate& candidate : plan.candidates) measured->rows.push_back({candidate.trial, {}, 0, 0});
@@ -98,7 +98,7 @@ void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
       });
 }
 
-// A guess of all texels is soon made, and shows what the rest would refine.
+// Fits texels with one Gauss–Newton iteration: quick, and an export only refines the result.
 void PlainPreview::show(Desk& desk, std::size_t row) {
   row_ = row;
   const auto measured = measured_;
@@ -107,7 +107,7 @@ void PlainPreview::show(Desk& desk, std::size_t row) {
     shown_ = row;
     return;
   }
-  // The window reads the rows meanwhile: what is new waits for it.
+  // The window reads `rows` while the job runs, so the job fills a copy.
   auto seen = std::make_shared<Measured::Row>(measured->rows[row]);
   working_ = true;
   desk.jobs.worker.start(
@@ -154,7 +154,7 @@ void PlainPreview::draw_table(Desk& desk) {
     const std::string name = words_of(row.trial.way);
     if (ImGui::Selectable(name.c_str(), row_ == k, ImGuiSelectableFlags_SpanAllColumns) && row_ != k) show(desk, k);
     announce::item(fmt::format("way {}", k));
-    // Of the one that is shown there is nothing to say that would be worth covering the others for.
+    // No tooltip on the selected row: it would only cover the others.
     if (row_ != k)
       ui::tip(name, "",
               k == measured_->chosen ? "What an export takes by itself. Click to compare it." : "Click to compare it.");

@@ -10,34 +10,38 @@
 
 namespace rebake {
 
-/// Before a plain folder is written: what each way to make it would cost and show, beside the exact picture.
+/// Dialog before the export of one plain folder: compares possible decoders by PSNR, frame time, export time, and an
+/// image beside the exact one.
 class PlainPreview {
  public:
-  /// Measures on a sample of the texels, of these nodes (empty: all) as they are looked at now.
+  /// Opens the dialog and measures on a sample of the texels, in the current view. `nodes`: nodes to export; empty for
+  /// all.
   void begin(Desk& desk, std::vector<NodeRef> nodes);
-  /// Draws the dialog where it is open; true once another choice was made.
+  /// Draws the dialog if it is open; returns true in the frame in which the user confirms a choice.
   bool draw(Desk& desk);
-  /// Closes the dialog with the next frame; false where it is not open.
+  /// Closes the dialog in the next frame and cancels its job; returns false if it is not open.
   bool leave(Desk& desk);
-  /// Nothing is chosen any more.
+  /// Resets the choice to automatic.
   void forget() { choice_ = {}; }
   const Project::PlainChoice& choice() const { return choice_; }
-  /// What was chosen, for people.
+  /// The choice as text.
   std::string words() const;
 
  private:
   struct Measured;
+  /// Selects a row and renders its image if there is none yet.
   void show(Desk& desk, std::size_t row);
   void draw_table(Desk& desk);
+  /// Draws the two images with a draggable divider.
   void draw_wipe(float width);
 
-  bool open_ = false, working_ = false;  ///< working: a job of its own waits or runs
-  std::vector<NodeRef> nodes_;
-  std::shared_ptr<Measured> measured_;  ///< null until the worker is done
-  std::shared_ptr<bool> wanted_;        ///< false once nobody waits for the answer any more
-  std::size_t row_ = 0, shown_ = 0;     ///< looked at, and of which the picture is
+  bool open_ = false, working_ = false;  ///< the dialog is open; its job is queued or running
+  std::vector<NodeRef> nodes_;           ///< nodes to export; empty for all
+  std::shared_ptr<Measured> measured_;   ///< null until the first job is done
+  std::shared_ptr<bool> wanted_;         ///< shared with the jobs; false once the dialog is closed: results are dropped
+  std::size_t row_ = 0, shown_ = 0;      ///< selected row, and row whose image is shown
   std::optional<PictureTexture> exact_, plain_;
-  float split_ = 0.5F;  ///< of the picture: exact at its left
+  float split_ = 0.5F;  ///< divider as a share of the image width; the exact image is at the left
   Project::PlainChoice choice_;
   std::string problem_;
 };

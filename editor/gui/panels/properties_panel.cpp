@@ -16,7 +16,7 @@ namespace rebake {
 
 namespace {
 
-// What rounding left of nothing is shown as nothing.
+// Sets components within rounding error of 0 to 0. `size`: typical magnitude of the values.
 Vec3 shown(const Vec3& value, double size) {
   Vec3 result = value;
   for (int k = 0; k < 3; ++k)
@@ -43,7 +43,6 @@ std::string rows_of(const Desk& desk) {
 
 }  // namespace
 
-// Three numbers of a row; what the last frame did to them.
 ui::Changed PropertiesPanel::row(const char* name, Vec3& value, const char* format, double step) {
   ImGui::PushID(name);
   ui::label(name);
@@ -155,7 +154,7 @@ void PropertiesPanel::draw(Desk& desk) {
   const auto placed = find_placed(desk.scene(), *desk.active.begin());
   if (!placed) return;
   if (of_ != desk.active) dragging_ = false;
-  // What was wrong is no news after the next step.
+  // Clear an error message after the next step.
   if (of_ != desk.active || said_at_ != desk.now->steps_done) problem_.clear();
   of_ = desk.active;
   said_at_ = desk.now->steps_done;

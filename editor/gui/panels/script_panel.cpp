@@ -50,7 +50,7 @@ void ScriptPanel::draw(Desk& desk) {
     of_ = desk.now;
     lines_.clear();
     for (const Edit& edit : desk.now->done) {
-      // Regions drawn by hand are long.
+      // Shorten long lines, such as regions drawn by hand.
       std::string text = to_json(edit).dump();
       constexpr std::size_t longest = 300;
       if (text.size() > longest) text = text.substr(0, longest) + " ...";

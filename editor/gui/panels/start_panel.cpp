@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What was opened before has a picture, where one is kept.
+// Draws a recent path as a card with its thumbnail, or with an icon if `picture` is 0.
 void card(Desk& desk, unsigned picture, const std::string& path, const ImVec2& size) {
   const std::string name = fs::path(path).filename().string();
   ImGui::PushID(path.c_str());

@@ -19,7 +19,7 @@ namespace {
 
 void look_from(Desk& desk, const std::string& name) { desk.view.camera = desk.scene().views.at(name); }
 
-// Whatever its planes: those follow the scene.
+// Whether the camera shows the stored view. Near and far planes do not count, since they follow the scene.
 bool looks_from(const Camera& camera, const Camera& stored) {
   if (camera.orthographic() != stored.orthographic() || camera.target != stored.target) return false;
   const double away = (stored.eye - stored.target).norm();

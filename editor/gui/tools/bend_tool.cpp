@@ -22,9 +22,10 @@ namespace rebake {
 namespace {
 
 constexpr float bend_grab_pixels = 11;
-constexpr double interleaved = 0.4;  // share of the length from which the rest lies among what is bent
+constexpr double interleaved = 0.4;  // Spine::touched from which unselected triangles lie among the selected ones
 
-// Of the triangles that show something, a point each; the selected ones, and the rest of their objects.
+// Spine of the selected opaque triangles, each represented by its centroid, weighted by area. The rest of their objects
+// is passed too, to find where the selection is attached.
 Spine spine_of_targets(const Scene& scene, const std::vector<DeformTarget>& targets) {
   std::vector<WeightedPoint> part, rest;
   for (const DeformTarget& target : targets) {
@@ -43,7 +44,7 @@ Spine spine_of_targets(const Scene& scene, const std::vector<DeformTarget>& targ
   return spine_of(part, rest).value_or(Spine{});
 }
 
-// What an edit does to space, where it was made along that spine; nothing for others.
+// Closed forms of an edit that was made along this spine; empty for other edits.
 std::vector<ClosedForm> forms_along(const Edit& edit, const Spine& spine) {
   ClosedForm form;
   const DeformAxis* axis = nullptr;
@@ -89,7 +90,6 @@ BendTool::Found BendTool::present(const Desk& desk) const {
   return found;
 }
 
-// Whether the document's last step was made along the spine that is held.
 bool BendTool::made_last(const Desk& desk) const {
   const std::optional<Bent> here = bent(desk);
   return here && !desk.now->done.empty() && !forms_along(desk.now->done.back(), here->spine).empty();
@@ -99,7 +99,7 @@ void BendTool::find_spine(Desk& desk) {
   const Found now = present(desk);
   if (now == found_for_) return;
   found_for_ = now;
-  // A second bend goes on from the first's axis and limits.
+  // A second edit keeps the axis and limits of the first.
   if (made_last(desk)) return;
   found_.reset();
   from_ = 0;
@@ -108,7 +108,7 @@ void BendTool::find_spine(Desk& desk) {
   const std::vector<DeformTarget> targets = desk.deform_targets();
   if (targets.empty()) return;
   if (axis_ > 0 || !targets.front().selection) {
-    // Objects stand.
+    // Whole objects usually stand upright: use Y by default.
     const int axis = axis_ > 0 ? axis_ - 1 : 1;
     const Box box = desk.deform_bounds(targets);
     if (box.isEmpty() || !(box.sizes()[axis] > 0)) return;
@@ -127,7 +127,8 @@ void BendTool::find_spine(Desk& desk) {
       [this, found, now] {
         if (now != found_for_ || !(found->length > 0)) return;
         found_ = found;
-        // As wide as the stem: no rip at the border. Among triangles that were not taken it would hold all of it.
+        // A falloff as wide as the stem avoids a rip at the border. With unselected triangles in between, it would hold
+        // everything in place.
         falloff_ = found->touched < interleaved ? found->width : 0;
       });
 }
@@ -145,13 +146,12 @@ std::optional<BendTool::Bent> BendTool::bent(const Desk& desk) const {
   return bent;
 }
 
-// Where a point of the spine is after what was done along it last.
 Vec3 BendTool::shown(const Desk& desk, const Bent& bent, const Vec3& point) {
   const std::vector<Edit>& done = desk.now->done;
   std::size_t first = done.size();
   while (first > 0 && !forms_along(done[first - 1], bent.spine).empty()) --first;
   Vec3 result = point;
-  // Several nodes are bent by an edit each, all alike.
+  // Each step has one edit per target, all with the same form: apply it once per step.
   for (std::size_t k = first; k < done.size(); k += bent.targets.size())
     result = deform(forms_along(done[k], bent.spine), result).point;
   return result;
@@ -159,7 +159,7 @@ Vec3 BendTool::shown(const Desk& desk, const Bent& bent, const Vec3& point) {
 
 Vec3 BendTool::Bent::at(double share) const {
   if (!curved) return spine.foot + share * spine.length * spine.along;
-  // Beyond the ends it goes on straight.
+  // Beyond its ends the curve is extrapolated linearly.
   const auto pieces = static_cast<double>(spine.curve.size() - 1);
   const double piece = std::clamp(std::floor(share * pieces), 0.0, pieces - 1);
   const auto k = static_cast<std::size_t>(piece);
@@ -212,7 +212,7 @@ std::vector<Edit> BendTool::edits(const Desk& desk, const Lens& lens) const {
   switch (kind_) {
     case Kind::bend: {
       Bend bend;
-      // The tip lies half the bend's angle off, as seen from its foot; it goes where the pointer goes on the screen.
+      // Seen from the foot, the tip moves by half the bend's angle. It follows the pointer on the screen.
       const double angle = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
       const Vec3 away = -lens.towards_eye(bent.at(0.5));
       const Vec3 side = away.cross(bent.spine.along);
@@ -275,7 +275,7 @@ void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     }
     return;
   }
-  // A limit goes to where the pointer is nearest to the spine on the screen.
+  // The limit is the pointer's projection onto the spine's chord on the screen.
   const auto foot = lens.pixel(held_bent_->at(0)), top = lens.pixel(held_bent_->at(1));
   if (foot && top && (*top - *foot).squaredNorm() > 1) {
     const double share = std::clamp((now_ - *foot).dot(*top - *foot) / (*top - *foot).squaredNorm(), 0.0, 1.0);
@@ -327,7 +327,7 @@ void BendTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, 
 void BendTool::add_guides(const Desk& desk, Guides& guides) const {
   const std::optional<Bent> here = held_ != Handle::none ? held_bent_ : bent(desk);
   if (!here) return;
-  // A line of pieces, for it may be bent.
+  // A polyline, since the spine may be curved.
   constexpr int pieces = 24;
   for (int k = 0; k < pieces; ++k) {
     const auto at = [&](int piece) { return shown(desk, *here, here->at(from_ + (to_ - from_) * piece / pieces)); };
@@ -335,7 +335,8 @@ void BendTool::add_guides(const Desk& desk, Guides& guides) const {
   }
   guides.lines.push_back(
       {shown(desk, *here, here->at(to_)), shown(desk, *here, here->tip()), Color(1, 0.5, 0.8), 1, 0.6});
-  // What is held by the soft border; where there is too much of it, a ring as wide where it begins.
+  // Shade the soft border. During drags, or with too many triangles, draw a ring of its width at the lower limit
+  // instead.
   if (!(falloff_ > 0)) return;
   if (held_ == Handle::none && !desk.preview) guides.triangles = shade_.of(desk, here->targets, falloff_);
   if (guides.triangles) return;

@@ -22,10 +22,11 @@ namespace rebake {
 namespace {
 
 constexpr float cage_grab_pixels = 10;
-// Points times faces that a preview moves with their gradients before anything is shown: about 0.1 s.
+// Limit of points × cage faces up to which a preview includes rotations from the start (about 0.1 s).
 constexpr double most_exact = 2e6;
 
-// For each point the one at the other side of the middle, itself in the middle; none for -1.
+// Per point: index of its mirror image across the centre of their box along `axis`, or −1. Points on the mirror plane
+// are their own image.
 std::vector<std::int32_t> partners(const std::vector<Vec3>& points, int axis) {
   Box box;
   for (const Vec3& p : points) box.extend(p);
@@ -42,17 +43,17 @@ std::vector<std::int32_t> partners(const std::vector<Vec3>& points, int axis) {
 
 }  // namespace
 
-/// A cage with everything bound to it, for previews.
+/// A cage and the points bound to it, for previews.
 struct CageTool::Bound {
-  CageDeform edit;  ///< without moves
-  Scene scene;      ///< that the cage was made in
+  CageDeform edit;  ///< settings of the cage, without moves
+  Scene scene;      ///< scene in which the cage was made
   Cage cage;
-  DeformSet set;
+  DeformSet set;  ///< deformed triangles
   std::shared_ptr<const Coordinates> coordinates;
-  std::vector<std::vector<Vec3>> places;               ///< that move, of each node of the set
-  std::vector<std::unique_ptr<CageBinding>> bindings;  ///< one a node of the set
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-  std::array<std::vector<std::int32_t>, 3> partners;  ///< along x, y, z
+  std::vector<std::vector<Vec3>> places;               ///< per node of the set: positions that move, world space
+  std::vector<std::unique_ptr<CageBinding>> bindings;  ///< per node of the set
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  ///< vertex pairs, lower index first
+  std::array<std::vector<std::int32_t>, 3> partners;  ///< mirror images of vertices along x, y, z, see partners()
 };
 
 CageTool::CageTool() = default;
@@ -67,7 +68,7 @@ void CageTool::make(Desk& desk) {
   CageDeform edit = edit_;
   edit.target = targets.front();
   edit.target.falloff = edit_.target.falloff;
-  if (targets.size() > 1) edit.target.node.reset();  // one cage around all that is selected
+  if (targets.size() > 1) edit.target.node.reset();  // one cage around all selected triangles
   edit.cage = {};
   if (wraps_)
     edit.cage.wrap = static_cast<double>(coarseness_);
@@ -112,7 +113,7 @@ void CageTool::make(Desk& desk) {
 }
 
 CageDeform CageTool::edit_for(const Points& points) const {
-  // Points that moved alike are one move.
+  // Points with equal motion share one move.
   std::map<std::array<double, 3>, NumberRanges> groups;
   for (std::size_t v = 0; v < points.size(); ++v) {
     const Vec3 motion = points[v] - bound_->cage.vertices[v];
@@ -142,7 +143,7 @@ void CageTool::commit(Desk& desk) {
   const CageDeform edit = edit_for(moved_);
   const auto done = [this] { ++at_; };
   const auto failed = [this] {
-    // What was not done is not there to be undone.
+    // Drop the step that was not made.
     steps_.resize(at_ + 1);
     moved_ = steps_[at_];
   };
@@ -155,8 +156,8 @@ void CageTool::commit(Desk& desk) {
   }
 }
 
-// Follows undo, redo and edits by others: the cage is shown while the document's last edit is one of its releases, or
-// the document holds the scene that it was made in.
+// Follows undo, redo and other edits. The cage is shown while the document's last edit is one of its releases, or while
+// the scene is the one in which it was made.
 void CageTool::follow(Desk& desk) {
   if (!bound_ || !desk.at_rest()) return;
   asleep_ = false;
@@ -166,10 +167,10 @@ void CageTool::follow(Desk& desk) {
   }
   const CageDeform* last = desk.now->done.empty() ? nullptr : desk.now->done.back().as<CageDeform>();
   if (last != nullptr)
-    // Its border may have been adjusted since.
+    // The adjust panel may have changed the falloff.
     edit_.target.falloff = last->target.falloff;
   if (last != nullptr) {
-    // Several releases can leave the points alike: the nearest one is meant.
+    // Several steps can have equal points: prefer the one nearest to the current step.
     std::vector<std::size_t> nearest;
     for (std::size_t k = 1; k < steps_.size(); ++k) nearest.push_back(k);
     const auto away = [this](std::size_t k) { return k > at_ ? k - at_ : at_ - k; };
@@ -190,7 +191,8 @@ void CageTool::unbind() {
 }
 
 void CageTool::preview(Desk& desk) {
-  // As the edit does it, colours turned too; where that takes long, what moves is shown first.
+  // The preview computes positions and rotations as the edit does. If that takes long, one with positions only is shown
+  // first.
   const auto made = [bound = bound_, points = moved_, falloff = edit_.target.falloff](bool exact) {
     return [bound, points, falloff, exact](const Progress& progress) {
       Scene scene = bound->scene;
@@ -227,7 +229,7 @@ std::vector<std::uint8_t> CageTool::in_front(const Lens& lens) const {
   return front;
 }
 
-// Of those at the front, before those behind.
+// Front-facing points take precedence over back-facing ones.
 int CageTool::point_at(const Desk& desk, const Lens& lens, const Vec2& at) const {
   const std::vector<std::uint8_t> front = in_front(lens);
   for (const std::uint8_t side : {1, 0}) {
@@ -294,10 +296,10 @@ std::function<Vec3(const Vec3&)> CageTool::motion(const Lens& lens, const Pointe
   const Vec3 middle = picked.center();
   const auto pixel = lens.pixel(middle);
   const Vec2 a = from_ - pixel.value_or(from_), b = pointer.at - pixel.value_or(from_);
-  if (!(a.norm() > 1)) return [](const Vec3& p) { return p; };  // held in the very middle
+  if (!(a.norm() > 1)) return [](const Vec3& p) { return p; };  // grabbed at the centre: angle undefined
   if (grip_ == Grip::scale)
     return [middle, factor = b.norm() / a.norm()](const Vec3& p) { return Vec3(middle + factor * (p - middle)); };
-  // On the screen y points down.
+  // Screen angles are clockwise, since y points down.
   const double angle = -std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
   const Mat3 turn =
       Eigen::AngleAxisd(pointer.control ? std::round(angle * 12 / std::numbers::pi) * std::numbers::pi / 12 : angle,
@@ -325,7 +327,7 @@ void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
     if (share > 0) moved[v] = before_[v] + share * (moves(before_[v]) - before_[v]);
   }
   if (symmetric_ > 0) {
-    // The side that follows the pointer more leads; what is in the middle stays there.
+    // The side with the larger share of the motion is mirrored to the other. Points on the mirror plane stay on it.
     const std::vector<std::int32_t>& partner = bound_->partners[static_cast<std::size_t>(symmetric_ - 1)];
     const std::vector<Vec3> led = moved;
     const int axis = symmetric_ - 1;
@@ -334,7 +336,7 @@ void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
       p[axis] = 2 * middle - p[axis];
       return p;
     };
-    // Whether a point lies at the side that is held.
+    // Whether a point is on the same side as the dragged one.
     const auto leads = [&](std::size_t v) {
       return (before_[v][axis] > middle) == (before_[static_cast<std::size_t>(held_)][axis] > middle);
     };

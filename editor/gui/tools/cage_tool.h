@@ -8,8 +8,8 @@
 
 namespace rebake {
 
-/// Makes a cage around the selected triangles (or a node) and drags its points. Every release is a step of the
-/// document's history: the first an edit, each later one a revision of it (Document::revise).
+/// Deforms the selected triangles, or a node, by dragging the points of a cage around them. Each release is a step of
+/// the document's history: the first an edit, each later one a revision of it (Document::revise).
 class CageTool final : public ViewTool {
  public:
   CageTool();
@@ -26,39 +26,49 @@ class CageTool final : public ViewTool {
  private:
   struct Bound;
   using Points = std::vector<Vec3>;
+  /// Builds a cage and binds the target to it, on the worker.
   void make(Desk& desk);
+  /// The edit that moves the cage's points to `points`.
   CageDeform edit_for(const Points& points) const;
+  /// Makes or revises the edit.
   void commit(Desk& desk);
+  /// Synchronises the cage with the document.
   void follow(Desk& desk);
+  /// Requests a preview.
   void preview(Desk& desk);
+  /// Moves the points in one frame of a drag.
   void drag(Desk& desk, const Lens& lens, const Pointer& pointer);
-  /// What the drag makes of a point that is picked.
+  /// The drag's transform of selected points: maps a position at the start of the drag to the current one (world
+  /// space).
   std::function<Vec3(const Vec3&)> motion(const Lens& lens, const Pointer& pointer) const;
+  /// Selects the points in the box or lasso.
   void pick_inside(const Desk& desk, const Lens& lens);
-  /// Whether a cage point looks towards the eye.
+  /// Per cage point: 1 if its normal faces the eye.
   std::vector<std::uint8_t> in_front(const Lens& lens) const;
+  /// Removes the cage; its edit stays.
   void unbind();
   bool shown() const { return bound_ && !asleep_; }
+  /// Index of the cage point near a viewport pixel; −1 if there is none.
   int point_at(const Desk& desk, const Lens& lens, const Vec2& at) const;
 
-  CageDeform edit_;  ///< what the options say
-  bool wraps_ = false;
+  CageDeform edit_;     ///< options for the next cage
+  bool wraps_ = false;  ///< the next cage is a wrap, not a lattice
   enum class Grip { move, turn, scale };
-  Grip grip_ = Grip::move;  ///< what dragging does to the picked points
-  int symmetric_ = 0;       ///< 0: no; 1 to 3: both sides of the cage's middle along x, y, z
-  int cells_[3] = {2, 2, 2};
-  float coarseness_ = 0.1F, softness_ = 0;
-  std::shared_ptr<const Bound> bound_;  ///< null before a cage was made
-  bool asleep_ = false;                 ///< the document holds none of the cage's steps now; redo may return to them
-  std::vector<Points> steps_;           ///< the cage's points at rest, and after each release
-  std::size_t at_ = 0;                  ///< which of them the document holds
-  Points moved_, before_;               ///< cage points now, and when the drag began
-  std::vector<std::uint8_t> picked_;
-  bool dragging_ = false, boxing_ = false;  ///< points are dragged; a box or a line is drawn to pick some
-  bool lassoes_ = false;                    ///< a line
-  std::vector<Vec2> line_;
-  int held_ = -1;
-  Vec2 from_{0, 0}, to_{0, 0};
+  Grip grip_ = Grip::move;                  ///< transform that a drag applies to the selected points
+  int symmetric_ = 0;                       ///< 0: off; 1, 2, 3: mirror drags across the cage's centre along x, y, z
+  int cells_[3] = {2, 2, 2};                ///< lattice cells along x, y, z
+  float coarseness_ = 0.1F, softness_ = 0;  ///< wrap coarseness; soft-selection radius / cage diagonal
+  std::shared_ptr<const Bound> bound_;      ///< null until a cage is made
+  bool asleep_ = false;               ///< hidden: the document has none of the cage's steps; redo may return to one
+  std::vector<Points> steps_;         ///< cage points at rest, and after each release
+  std::size_t at_ = 0;                ///< index into steps_ of the state that the document has
+  Points moved_, before_;             ///< current cage points, and those at the start of the drag
+  std::vector<std::uint8_t> picked_;  ///< per cage point: 1 if selected
+  bool dragging_ = false, boxing_ = false;  ///< points are being dragged; a box or lasso is being drawn
+  bool lassoes_ = false;                    ///< the region is a lasso, not a box
+  std::vector<Vec2> line_;                  ///< the lasso, viewport pixels
+  int held_ = -1;                           ///< index of the dragged point; −1: none
+  Vec2 from_{0, 0}, to_{0, 0};              ///< start of the drag, or corners of the box; viewport pixels
 };
 
 }  // namespace rebake

@@ -8,7 +8,8 @@ namespace rebake {
 
 namespace {
 
-// By recursive descent: sum = product {± product}, product = factor {*/ factor}, factor = ± factor | (sum) | number.
+// Recursive descent parser of the grammar
+// sum = product {± product}, product = factor {*/ factor}, factor = ± factor | (sum) | pi | number.
 class Reader {
  public:
   explicit Reader(std::string_view text) : rest_(text) {}

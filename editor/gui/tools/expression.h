@@ -5,8 +5,8 @@
 
 namespace rebake {
 
-/// The value of what people type into a number's field: numbers, + − * /, parentheses and pi, e.g. "90/4 + 1". Nothing
-/// when it is no expression, or its value is not finite.
+/// Evaluates an arithmetic expression of numbers, + − * /, parentheses and pi, e.g. "90/4 + 1". Returns nothing for a
+/// syntax error or a value that is not finite.
 std::optional<double> evaluated(std::string_view text);
 
 }  // namespace rebake

@@ -12,13 +12,14 @@ namespace rebake {
 
 namespace {
 
-constexpr std::size_t most_triangles = 100000;  // of the objects: it looks at all of them for the border
+// Limit for all triangles of objects with a selection, since the search for the border visits all of them.
+constexpr std::size_t most_triangles = 100000;
 
 void add(const PlacedNode& placed, const TriangleSet& flags, double falloff, std::vector<Guides::Triangle>& triangles) {
   const BakedObject& object = *placed.node->object;
   const auto corners = corners_of(object);
   const FlaggedPlaces places = flagged_places(object, *corners, placed.to_world, flags);
-  // What a motion of all of it comes to at each place is that place's share.
+  // Translate everything by `size` along x: a place's motion divided by `size` is its falloff weight.
   const double size = transformed(object.bounds(), placed.to_world).diagonal().norm();
   if (!(size > 0) || !std::isfinite(size)) return;
   const DeformedPlaces moved =
@@ -71,7 +72,7 @@ Guides::Triangles FalloffShade::of(const Desk& desk, const std::vector<DeformTar
     }
     made_ = std::move(triangles);
   } catch (const Error&) {
-    // What cannot be deformed is said when it is to be.
+    // The deformation itself will report the error.
   }
   return made_;
 }

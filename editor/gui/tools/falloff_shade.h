@@ -5,18 +5,18 @@
 
 namespace rebake {
 
-/// Colours on the triangles that are to be deformed, by how much of it each corner takes: strong where it is held.
+/// Overlay that shows a deformation's falloff on the selected triangles: the less a corner will move, the more opaque.
 class FalloffShade {
  public:
-  /// Of the present scene; null without a falloff, and for more triangles than can be shaded at once. What was made
-  /// last is kept.
+  /// Triangles of the overlay for the current scene. Null without a falloff, for whole objects, and if objects with a
+  /// selection have more than 100,000 triangles. Caches the last result.
   Guides::Triangles of(const Desk& desk, const std::vector<DeformTarget>& targets, double falloff);
 
  private:
   std::vector<NodePtr> roots_;
   std::vector<NodeRef> nodes_;
-  double falloff_ = 0;
-  Guides::Triangles made_;
+  double falloff_ = 0;      ///< scene units
+  Guides::Triangles made_;  ///< cached result for the inputs above
 };
 
 }  // namespace rebake

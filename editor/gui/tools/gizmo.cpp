@@ -30,7 +30,7 @@ double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
   return (a + t * along - p).norm();
 }
 
-// A handle's line on the screen: an axis, or for turning a circle about it.
+// Outline of a handle in viewport pixels: a line along the axis, or for rotation a circle around it.
 std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, double reach, const Lens& lens,
                           int number) {
   std::vector<Vec2> points;
@@ -40,7 +40,7 @@ std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, do
   if (kind == ToolKind::turn) {
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
     constexpr int corners = 48;
-    const double radius = number < 3 ? reach : 1.2 * reach;  // the ring about the line of sight is outermost
+    const double radius = number < 3 ? reach : 1.2 * reach;  // the ring around the view direction is outermost
     for (int k = 0; k <= corners; ++k) {
       const double angle = 2 * std::numbers::pi * k / corners;
       add(pivot + radius * (std::cos(angle) * u + std::sin(angle) * v));
@@ -52,14 +52,14 @@ std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, do
   return points;
 }
 
-// Corners of the handle of a plane: a square between its two axes.
-constexpr double square_from = 0.28, square_to = 0.46;  // of the handles' length
+// Corners of a plane's handle in world space: a square between its two axes.
+constexpr double square_from = 0.28, square_to = 0.46;  // shares of the handles' length
 std::array<Vec3, 4> square(const Vec3& pivot, const Vec3& u, const Vec3& v, double reach) {
   const double a = square_from * reach, b = square_to * reach;
   return {pivot + a * u + a * v, pivot + b * u + a * v, pivot + b * u + b * v, pivot + a * u + b * v};
 }
 
-// A plane seen edge on cannot be dragged in.
+// Minimum |cos| between a plane's normal and the view direction: a plane seen edge-on cannot be dragged in.
 constexpr double least_tilt = 0.15;
 
 }  // namespace
@@ -144,13 +144,13 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
     const Vec3 axis = at_.axis(held_);
     const Vec2 a = from_ - *middle, b = now_ - *middle;
     double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-    // On the screen y points down; seen from behind the turn goes the other way.
+    // Screen angles are clockwise, since y points down: negate them for an axis that points at the eye.
     if (axis.dot(lens.towards_eye(at_.pivot)) > 0) angle = -angle;
     result = angle * 180 / std::numbers::pi * fine;
     return pointer.control ? std::round(result / 15) * 15 : result;
   }
   if (by_key_ && kind_ == ToolKind::scale) {
-    // How much farther from the middle the pointer is than it was.
+    // Ratio of the pointer's distances from the pivot, now and at the start, minus 1.
     result = (now_ - *middle).norm() / std::max((from_ - *middle).norm(), 1.0) - 1;
   } else if (held_ == all) {
     result = kind_ == ToolKind::scale ? (now_.x() - from_.x()) / static_cast<double>(px(handle_pixels)) : 1;
@@ -159,7 +159,7 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
     if (!end) return 0;
     const Vec2 along = *end - *middle;
     const double length = along.norm();
-    // An axis towards the eye has no direction on the screen.
+    // An axis along the view direction has no direction on the screen.
     if (length < 1) return 0;
     const double pixels = (now_ - from_).dot(along) / length;
     result = kind_ == ToolKind::scale ? pixels / static_cast<double>(px(handle_pixels))
@@ -167,7 +167,7 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
   }
   result *= fine;
   if (!pointer.control) return result;
-  // Steps of the power of ten below the handle's length.
+  // Snap to a power of ten, the largest that is at most the handles' length.
   const double step = kind_ == ToolKind::scale ? 0.1 : std::pow(10, std::floor(std::log10(reach(lens, at_.pivot))));
   return std::round(result / step) * step;
 }
@@ -182,7 +182,7 @@ Vec3 Gizmo::motion_in_plane(const Lens& lens, bool orthographic, const Pointer& 
     return Vec3(ray.origin + t * ray.direction);
   };
   const auto from = meets(from_), to = meets(now_);
-  // Beyond the horizon it stays where it was.
+  // Beyond the plane's horizon the motion stays as it is.
   if (!from || !to) return in_plane_;
   Vec3 along = at_.axes.transpose() * (*to - *from) * (pointer.shift ? 0.1 : 1);
   const double step = std::pow(10, std::floor(std::log10(reach(lens, at_.pivot))));
@@ -208,7 +208,7 @@ std::vector<Edit> Gizmo::edits(const Lens& lens) const {
       transform.scale.value = Vec3::Constant(1 + amount_);
     else
       transform.scale.value[held_] = 1 + amount_;
-    // Axes serve a scale as well turned round; a mirrored node's would be no turn.
+    // The axes of a mirrored node are not a rotation. Negated ones are, and scale the same.
     transform.scale_axes = Rotation(Eigen::Quaterniond(at_.axes.determinant() < 0 ? Mat3(-at_.axes) : at_.axes));
   } else if (held_ == all) {
     transform.translate = onto_ ? Vec3(*onto_ - foot_) : Vec3(amount_ * lens.motion(at_.pivot, now_ - from_));
@@ -243,7 +243,7 @@ std::optional<Vec3> Gizmo::surface(const Desk& desk, const Lens& lens, const Vec
   Scene others = desk.scene();
   for (const NodeId id : at_.nodes) others = with_changed(others, id, [](Node& node) { node.visible = false; });
   if (const std::optional<Picked> picked = pick(others, lens, at, false)) return picked->world;
-  // Else the ground.
+  // Otherwise the ground plane.
   const ViewRay ray = lens.ray(at);
   const Ground& ground = desk.scene().ground;
   const double t = -ground.above(ray.origin) / ground.normal.dot(ray.direction);
@@ -288,7 +288,7 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     copies_ = pointer.alt && kind_ == ToolKind::move && !at_.triangles;
     return;
   }
-  // A view turned meanwhile changes what the same way of the pointer means.
+  // If the view changes during the drag, the same pointer motion means another amount.
   const bool moved = now_ != pointer.at || std::exchange(constrained_, false) || !(camera_ == desk.view.camera);
   camera_ = desk.view.camera;
   now_ = pointer.at;
@@ -314,14 +314,14 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
 
 void Gizmo::constrain(int axis, bool across) {
   if (across) {
-    // One seen edge on cannot be dragged in.
+    // A plane seen edge-on cannot be dragged in.
     if (std::abs(at_.axes.col(axis).dot(at_.towards_eye)) < least_tilt) return;
     typed_.clear();
     held_ = plane + axis;
     constrained_ = true;
     return;
   }
-  // As in Blender: along the world's, then the local one, then free again.
+  // As in Blender: world axis, then local axis, then unconstrained.
   axis_presses_ = held_ == axis ? (axis_presses_ + 1) % 3 : 1;
   held_ = axis_presses_ == 0 ? all : axis;
   at_.axes = axis_presses_ == 2 ? at_.local : Mat3::Identity();
@@ -338,7 +338,7 @@ bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
     entered_ = true;
     return true;
   }
-  // A move in the view's plane has no one number.
+  // A move in a plane is not a single number.
   if ((held_ == all && kind_ == ToolKind::move) || moves_in_plane()) return false;
   return typed_.key(press);
 }

@@ -15,7 +15,7 @@ namespace rebake {
 
 namespace {
 
-// The plane at another height along the same normal.
+// Edit that moves the plane to another height along its normal.
 GroundEdit at_height(const Ground& ground, double height) {
   GroundEdit edit;
   if (ground.normal == Vec3::UnitY()) {

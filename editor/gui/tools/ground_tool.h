@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Sets the scene's ground plane: through three clicked surface points, at a height, at the foot of the scene, or
+/// Sets the scene's ground plane: through three clicked surface points, at a height, at the lowest visible point, or
 /// fitted to the selected triangles.
 class GroundTool final : public ViewTool {
  public:
@@ -15,11 +15,12 @@ class GroundTool final : public ViewTool {
   void cancel(Desk& desk) override;
 
  private:
+  /// Adds a clicked point (world space); the third one makes the edit.
   void add(Desk& desk, const Vec3& point);
 
-  std::vector<Vec3> points_;  ///< clicked so far, at most two
+  std::vector<Vec3> points_;  ///< clicked so far, at most two; world space
   Click click_;
-  double height_ = 0;      ///< in the height field
+  double height_ = 0;      ///< value of the height field, scene units
   bool dragging_ = false;  ///< the height field is being dragged
 };
 

@@ -15,10 +15,10 @@ namespace rebake {
 namespace {
 
 constexpr float pin_grab_pixels = 11;
-// A pin takes the cage's points this many times the cage's coarseness around it, so that it takes some.
+// Radius within which a pin moves cage points, in units of the cage's coarseness: large enough to contain some.
 constexpr double reach_of_coarseness = 1.3;
 
-// World corners of a triangle, in the object's numbering.
+// World corners of a triangle, by its index in the object.
 std::array<Vec3, 3> corners_of(const PlacedNode& placed, std::size_t triangle) {
   for (const TextureSet& set : placed.node->object->sets) {
     if (triangle < set.soup.triangle_count()) {
@@ -32,7 +32,7 @@ std::array<Vec3, 3> corners_of(const PlacedNode& placed, std::size_t triangle) {
   return {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 }
 
-// The point of triangle `b` that lies as `point` does in triangle `a`.
+// The point of triangle `b` with the barycentric coordinates that `point` has in triangle `a`.
 Vec3 same_point(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, const Vec3& point) {
   if (a == b) return point;
   const Vec3 u = a[1] - a[0], v = a[2] - a[0], normal = u.cross(v), to = point - a[0];
@@ -43,7 +43,6 @@ Vec3 same_point(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, cons
 
 }  // namespace
 
-// Nothing while no pin is pulled.
 std::optional<HandlesDeform> HandlesTool::edit_for(const Pins& pins) const {
   HandlesDeform edit;
   edit.target = target_;
@@ -51,7 +50,7 @@ std::optional<HandlesDeform> HandlesTool::edit_for(const Pins& pins) const {
   for (const Pin& pin : pins) {
     CageMove move;
     move.sphere = SphereRegion{pin.at, reach_};
-    move.nearest = true;  // a wrap has few points where it is flat
+    move.nearest = true;  // a wrap has few points in flat regions
     move.translate = pin.motion();
     (pin.motion().isZero(0) ? edit.fixed : edit.moves).push_back(move);
   }
@@ -59,7 +58,6 @@ std::optional<HandlesDeform> HandlesTool::edit_for(const Pins& pins) const {
   return edit;
 }
 
-// Pins begin on the scene as it is.
 void HandlesTool::begin(Desk& desk) {
   end();
   const std::vector<DeformTarget> targets = desk.deform_targets();
@@ -100,15 +98,15 @@ void HandlesTool::add(Desk& desk, const Lens& lens, const Vec2& at, bool holds) 
                                               : "That is not what bends (" + desk.scope_words() + ").");
           return;
         }
-        // The same point of the same triangle, before it was bent.
+        // The same point of the same triangle before the deformation.
         const Vec3 was =
             same_point(corners_of(*now, (*picked)->triangle), corners_of(*rest, (*picked)->triangle), (*picked)->world);
         pins_.push_back({was, (*picked)->world, holds});
       });
 }
 
-// Follows undo, redo and edits by others: pins are shown while the document's last edit is one of their releases, or
-// the document holds the scene that they were set in.
+// Follows undo, redo and other edits. Pins are shown while the document's last edit is one of their releases, or while
+// it has the scene in which they were set.
 void HandlesTool::follow(Desk& desk) {
   if (!from_ || !desk.at_rest() || busy()) return;
   asleep_ = false;
@@ -149,7 +147,7 @@ void HandlesTool::commit(Desk& desk) {
       for (Pin& pin : pins_) pin.moved = pin.at;
   };
   if (!wanted) {
-    if (std::exchange(at_, 0) > 0) desk.undo(desk.now->revised_steps);  // no pin pulls any more
+    if (std::exchange(at_, 0) > 0) desk.undo(desk.now->revised_steps);  // no pin has moved
   } else if (at_ == 0) {
     desk.edits({*wanted}, done, failed);
   } else {
@@ -201,7 +199,7 @@ void HandlesTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) 
 
 void HandlesTool::take_away(Desk& desk, std::size_t pin) {
   pins_.erase(pins_.begin() + static_cast<std::ptrdiff_t>(pin));
-  if (at_ == 0) return;  // it did nothing yet
+  if (at_ == 0) return;  // the document has no edit of the pins yet
   show(desk);
   commit(desk);
 }
@@ -222,7 +220,7 @@ void HandlesTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& po
     if (const auto rest = lens.pixel(pins_[k].at); rest && !pins_[k].motion().isZero(0))
       list.AddLine(on_screen(*rest, origin), at, color, px(1.5F));
     list.AddCircleFilled(at, px(8), IM_COL32(0, 0, 0, 170));
-    // What holds is square, what pulls is round: not by colour alone.
+    // Fixed pins are square and dragged ones round, so that they differ not only in colour.
     if (pins_[k].holds)
       list.AddRectFilled({at.x - px(5), at.y - px(5)}, {at.x + px(5), at.y + px(5)}, color);
     else

@@ -5,8 +5,8 @@
 
 namespace rebake {
 
-/// Points on the surface that are held or pulled, with what lies between as rigid as possible. Every release is a
-/// step of the document's history: the first an edit, each later one a revision of it (Document::revise).
+/// As-rigid-as-possible deformation by pins on the surface, which are fixed or dragged. Each release is a step of the
+/// document's history: the first an edit, each later one a revision of it (Document::revise).
 class HandlesTool final : public ViewTool {
  public:
   void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
@@ -20,34 +20,41 @@ class HandlesTool final : public ViewTool {
 
  private:
   struct Pin {
-    Vec3 at;     ///< on the surface, as it was
-    Vec3 moved;  ///< where it is pulled to
-    bool holds;  ///< it stays where it is
+    Vec3 at;     ///< point of the undeformed surface, world space
+    Vec3 moved;  ///< target position, world space
+    bool holds;  ///< set as a fixed pin, and not dragged since
     Vec3 motion() const { return moved - at; }
   };
   using Pins = std::vector<Pin>;
+  /// The edit of these pins; nothing if none has moved.
   std::optional<HandlesDeform> edit_for(const Pins& pins) const;
+  /// Starts a new set of pins on the current scene.
   void begin(Desk& desk);
+  /// Adds a pin on the surface at a viewport pixel, if the target is there. Runs on the worker.
   void add(Desk& desk, const Lens& lens, const Vec2& at, bool holds);
+  /// Synchronises the pins with the document.
   void follow(Desk& desk);
+  /// Requests a preview.
   void show(Desk& desk);
+  /// Makes or revises the edit.
   void commit(Desk& desk);
   void take_away(Desk& desk, std::size_t pin);
+  /// Removes all pins; their edit stays.
   void end();
   bool shown() const { return from_ && !asleep_; }
   int pin_at(const Lens& lens, const Vec2& at) const;
 
-  bool holds_ = true;  ///< what a click makes
+  bool holds_ = true;  ///< a click sets a fixed pin, otherwise one to drag; Shift inverts it
   float coarseness_ = 0.08F;
-  Pins pins_, before_;         ///< now, and when the drag began
-  std::vector<Pins> steps_;    ///< at rest, and after each release
-  std::size_t at_ = 0;         ///< which of them the document holds
-  std::optional<Scene> from_;  ///< that the pins were set in; the edit is made of it
-  DeformTarget target_;
-  bool asleep_ = false;  ///< the document holds none of the pins' steps now; redo may return to them
-  double reach_ = 0;     ///< radius around a pin within which the cage goes with it
-  int held_ = -1;
-  Vec2 pressed_at_{0, 0};
+  Pins pins_, before_;         ///< current pins, and those at the start of the drag
+  std::vector<Pins> steps_;    ///< pins after each release; [0] is empty: no deformation
+  std::size_t at_ = 0;         ///< index into steps_ of the state that the document has
+  std::optional<Scene> from_;  ///< scene in which the pins were set; the edit applies to it
+  DeformTarget target_;        ///< deformed triangles
+  bool asleep_ = false;        ///< pins are hidden: the document has none of their steps; redo may return to one
+  double reach_ = 0;           ///< a pin moves the cage points within this radius, scene units
+  int held_ = -1;              ///< index of the dragged pin; −1: none
+  Vec2 pressed_at_{0, 0};      ///< viewport pixel where the drag began
 };
 
 }  // namespace rebake

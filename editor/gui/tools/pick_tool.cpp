@@ -42,7 +42,7 @@ void take(Desk& desk, const std::optional<Picked>& picked, const Pointer& pointe
 
 void PickTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   if (!click_.ends(pointer)) return;
-  // On the worker: what was not looked through yet takes its time.
+  // On the worker's thread, since the first ray into an object builds its ray tree.
   auto picked = std::make_shared<std::optional<Picked>>();
   desk.jobs.worker.start(
       "pick", [picked, lens, at = pointer.at](Session& session) { *picked = pick(session.scene(), lens, at); },

@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// A click picks a node; with flood it selects triangles whose colour is like that under the pointer.
+/// Picks the clicked node; in flood mode, selects triangles of a colour similar to the clicked one.
 class PickTool final : public ViewTool {
  public:
   explicit PickTool(bool floods) : floods_(floods) {}

@@ -14,8 +14,8 @@ namespace rebake {
 
 namespace {
 
-constexpr double least_step = 2;      // pixels between points of a freehand line
-constexpr double closing_reach = 10;  // pixels from a polygon's first corner that close it
+constexpr double least_step = 2;      // minimum distance between points of a freehand line, pixels
+constexpr double closing_reach = 10;  // a click this near to a polygon's first corner closes it, pixels
 
 PictureFields picture_of(const Desk& desk) {
   PictureFields picture;
@@ -41,7 +41,7 @@ void RegionTool::pointer(Desk& desk, const Lens& /*lens*/, const Pointer& pointe
     points_.resize(1);
     points_.push_back(pointer.at);
   } else {
-    // A slow frame cuts no corners.
+    // Uses all positions since the last frame, so that slow frames do not cut corners.
     for (const Vec2& at : pointer.way)
       if (!pointer.pressed && (points_.back() - at).norm() >= least_step) points_.push_back(at);
   }
@@ -96,7 +96,7 @@ void RegionTool::draw(const Desk& desk, const Lens& /*lens*/, const Pointer& poi
     for (const Vec2& p : points_) line.push_back(on_screen(p, origin));
     if (kind_ == ToolKind::polygon) line.push_back(on_screen(pointer.at, origin));
   }
-  // Light over dark shows on any picture.
+  // A light line over a dark one is visible on any image.
   list.AddPolyline(line.data(), static_cast<int>(line.size()), dark, ImDrawFlags_Closed, 3);
   list.AddPolyline(line.data(), static_cast<int>(line.size()), light, ImDrawFlags_Closed, 1);
 }

@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Selects (or erases) in a region of the picture: rectangle, lasso, polygon, brush.
+/// Selects triangles, or erases texels, in a region of the viewport: a rectangle, lasso, polygon or brush stroke.
 class RegionTool final : public ViewTool {
  public:
   explicit RegionTool(ToolKind kind) : kind_(kind) {}
@@ -19,11 +19,12 @@ class RegionTool final : public ViewTool {
 
  private:
   bool paints() const { return kind_ == ToolKind::brush || kind_ == ToolKind::erase; }
+  /// Makes the edit from the points.
   void finish(Desk& desk);
 
   ToolKind kind_;
-  std::vector<Vec2> points_;
-  SelectMode mode_ = SelectMode::set;  ///< by the modifiers when it began
+  std::vector<Vec2> points_;           ///< viewport pixels: two corners of the rectangle, or the line drawn so far
+  SelectMode mode_ = SelectMode::set;  ///< from the modifier keys at the start
 };
 
 }  // namespace rebake

@@ -16,21 +16,21 @@
 
 namespace rebake {
 
-/// The pointer over the viewport, in its pixels.
+/// State of the mouse over the viewport in one frame. Positions are in viewport pixels (x right, y down).
 struct Pointer {
   Vec2 at{0, 0};
-  std::vector<Vec2> way;                                 ///< where it was since the last frame, up to `at`
-  bool inside = false;                                   ///< over the viewport, nothing above it
-  bool pressed = false, down = false, released = false;  ///< left button: just now, held, just now
-  bool double_clicked = false;
-  bool let_go = false;  ///< right button, just now
+  std::vector<Vec2> way;                                 ///< positions that it passed since the last frame, in order
+  bool inside = false;                                   ///< over the viewport, and no window or popup covers it
+  bool pressed = false, down = false, released = false;  ///< left button: pressed this frame, held, released this frame
+  bool double_clicked = false;                           ///< left button, this frame
+  bool let_go = false;                                   ///< the right button cancelled the tool's drag this frame
   bool shift = false, control = false, alt = false;
 };
 
-/// Tells clicks from drags.
+/// Recognises clicks of the left button, as opposed to drags. Call ends() in every frame.
 class Click {
  public:
-  /// Whether a click inside the viewport ends in this frame: the pointer moved by at most 4 pixels since the press.
+  /// Whether a click that began inside the viewport ends in this frame, at most 4 pixels from where it began.
   bool ends(const Pointer& pointer) {
     constexpr double reach = 4;
     if (pointer.pressed && pointer.inside) pressed_at_ = pointer.at;
@@ -42,44 +42,48 @@ class Click {
   std::optional<Vec2> pressed_at_;
 };
 
-/// What the left button does in the viewport. A drag is a preview; release makes one edit.
+/// Base class of the viewport's tools, which handle the left mouse button. A drag shows a preview; its release makes
+/// one edit.
 class ViewTool {
  public:
   virtual ~ViewTool() = default;
+  /// Handles the pointer in one frame.
   virtual void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) = 0;
-  /// Draws over the picture, whose top left corner is at `origin`.
+  /// Draws 2D handles over the viewport, whose top left corner is at `origin` (window pixels).
   virtual void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
                     const ImVec2& origin) const = 0;
-  /// Lines and triangles in the world.
+  /// Adds lines and triangles in world space.
   virtual void add_guides(const Desk& /*desk*/, Guides& /*guides*/) const {}
-  /// Takes a key before commands do; true when it was for this tool.
+  /// Handles a key press before commands see it; returns true if the tool used it.
   virtual bool key(Desk& /*desk*/, const KeyPress& /*press*/) { return false; }
-  /// Options and help, in the tool bar's panel.
+  /// Draws the tool's options and help into the tool bar.
   virtual void options(Desk& desk) = 0;
-  /// Whether it wants the scene as it is now: it waits for what is being done.
+  /// Whether pointer() needs the current scene. If so, it is not called while the worker is busy, except during a drag.
   virtual bool wants_scene() const { return true; }
-  /// Whether a press there with Alt held is for the tool; else it turns the view.
+  /// Whether a press with Alt at this pixel is for the tool; otherwise it orbits the view.
   virtual bool takes_alt(const Desk& /*desk*/, const Lens& /*lens*/, const Vec2& /*at*/) const { return false; }
-  /// True while something is held that Escape would let go of.
+  /// Whether a drag or an unfinished shape is in progress, which Escape cancels.
   virtual bool busy() const { return false; }
+  /// Cancels the drag or shape in progress; without one, resets the tool. Edits stay.
   virtual void cancel(Desk& desk) = 0;
-  /// Another tool is taken: what was done stays.
+  /// Called when another tool becomes active. Edits stay.
   virtual void leave(Desk& desk) { cancel(desk); }
 };
 
-/// All of them, as tools.cpp lists them. They hold nothing of the GPU.
+/// All tools by kind; the table is in tools.cpp. Tools own no GPU objects.
 using Tools = std::map<ToolKind, std::unique_ptr<ViewTool>>;
 Tools make_tools();
 
-/// How a tool is shown in the tool bar. Its name, key and help are those of the command that takes it.
+/// A button of the tool bar. Its name, key and help are those of the command that activates the tool.
 struct ToolButton {
-  const char* icon;
-  const char* command;
+  const char* icon;     ///< character of the icon font
+  const char* command;  ///< title in command_table
   ToolKind kind;
-  bool begins_group = false;
+  bool begins_group = false;  ///< separated from the button before it
 };
 std::span<const ToolButton> tool_buttons();
 
+/// Window position of a viewport pixel; `origin` is the viewport's top left corner.
 inline ImVec2 on_screen(const Vec2& pixel, const ImVec2& origin) {
   return {origin.x + static_cast<float>(pixel.x()), origin.y + static_cast<float>(pixel.y())};
 }
@@ -95,7 +99,7 @@ inline bool inside_polygon(const std::vector<Vec2>& corners, const Vec2& p) {
   return inside;
 }
 
-/// A line of text that can be read over any picture.
+/// Draws a line of text on a dark background, readable over any image.
 inline void draw_label(ImDrawList& list, const ImVec2& at, const std::string& text) {
   if (text.empty()) return;
   list.AddRectFilled({at.x - px(7), at.y - px(4)},
@@ -104,7 +108,7 @@ inline void draw_label(ImDrawList& list, const ImVec2& at, const std::string& te
   list.AddText(at, IM_COL32(255, 255, 255, 255), text.c_str());
 }
 
-/// How modifiers join a new selection to the present one.
+/// How a new selection combines with the existing one: Shift adds, Ctrl removes, both intersect, none replaces it.
 inline SelectMode select_mode(const Pointer& pointer) {
   if (pointer.shift && pointer.control) return SelectMode::intersect;
   return pointer.shift ? SelectMode::add : pointer.control ? SelectMode::remove : SelectMode::set;

@@ -5,6 +5,7 @@
 
 namespace rebake {
 
+/// Tools of the viewport. `flood` selects by colour, `volume` by a box or sphere, `turn` rotates.
 enum class ToolKind {
   pick,
   rectangle,
@@ -23,18 +24,19 @@ enum class ToolKind {
   ground
 };
 
-/// Which tool is in hand, and how tools behave.
+/// The active tool, and options that tools share.
 struct ToolState {
   ToolKind kind = ToolKind::pick;
-  std::optional<ToolKind> drag_begins;  ///< takes hold of its target at once, without a button
-  std::optional<ToolKind> before;       ///< to come back to after such a drag
-  /// Whether the tool in hand takes what is seen only, not what lies behind it.
+  std::optional<ToolKind> drag_begins;  ///< tool whose drag begins in the next frame without a button (Blender's keys)
+  std::optional<ToolKind> before;       ///< tool to return to after such a drag
+  /// Whether the active tool affects only visible triangles or points, not occluded ones.
   bool& visible_only() { return takes_seen.try_emplace(kind, at_first()).first->second; }
   bool visible_only() const { return takes_seen.contains(kind) ? takes_seen.at(kind) : at_first(); }
-  bool at_first() const { return kind != ToolKind::cage; }  ///< a cage is held all around
-  std::map<ToolKind, bool> takes_seen;                      ///< of tools where it was changed
-  bool local_axes = false;
-  bool snaps = false;  ///< what is moved freely is put onto the surface under the pointer
+  /// Default of visible_only(). Cages are edited from all sides.
+  bool at_first() const { return kind != ToolKind::cage; }
+  std::map<ToolKind, bool> takes_seen;  ///< visible_only() of tools for which it was changed
+  bool local_axes = false;              ///< gizmos use the node's axes, not the world's
+  bool snaps = false;                   ///< a freely moved node is placed on the surface under the pointer
 };
 
 }  // namespace rebake

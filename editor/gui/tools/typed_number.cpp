@@ -26,7 +26,7 @@ bool TypedNumber::key(const KeyPress& press) {
   } else {
     return false;
   }
-  // Half an expression leaves what was there.
+  // An incomplete expression keeps the previous value.
   if (text_.empty())
     value_.reset();
   else if (const std::optional<double> read = evaluated(text_))

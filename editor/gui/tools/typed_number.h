@@ -7,13 +7,13 @@
 
 namespace rebake {
 
-/// A number that is typed while something is dragged; it counts in place of the pointer's way. Takes digits, a point,
-/// signs, * and /, e.g. "1/4".
+/// A number typed during a drag, which overrides the pointer's motion. Accepts digits, '.', '-', '*' and '/', e.g.
+/// "1/4".
 class TypedNumber {
  public:
-  /// True when the key was for the number.
+  /// Handles a key press; returns true if it edits the number.
   bool key(const KeyPress& press);
-  /// The last value that what was typed came to; nothing before there is one.
+  /// Value of the text, or of its last complete expression; empty if there is none yet or the text is deleted.
   std::optional<double> value() const { return value_; }
   const std::string& text() const { return text_; }
   void clear() { *this = {}; }

@@ -25,7 +25,6 @@ Vec3 outwards(int side) {
 
 }  // namespace
 
-// Over the middle of what is looked at.
 void VolumeTool::place(const Desk& desk) {
   const Box box = desk.focus();
   if (box.isEmpty()) return;
@@ -68,7 +67,7 @@ void VolumeTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     const Vec3 axis = outwards(held_), at = handle(held_);
     const double step = static_cast<double>(px(50)) * lens.unit(at);
     const auto here = lens.pixel(at), there = lens.pixel(at + step * axis);
-    // A side that is dragged towards the eye has no way on the screen.
+    // An axis along the view direction has no direction on the screen: the volume stays as it is.
     if (here && there && (*there - *here).norm() > 1) {
       const Vec2 along = *there - *here;
       const double moved = way.dot(along) / along.squaredNorm() * step;
@@ -77,7 +76,7 @@ void VolumeTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
         volume_.half.setConstant(std::max(least, before_.half.x() + moved));
       } else {
         const int k = held_ / 2;
-        volume_.half[k] = std::max(least, before_.half[k] + moved / 2);  // the other side stays
+        volume_.half[k] = std::max(least, before_.half[k] + moved / 2);  // the opposite side stays
         volume_.center[k] += (volume_.half[k] - before_.half[k]) * axis[k];
       }
     } else {

@@ -4,7 +4,8 @@
 
 namespace rebake {
 
-/// Selects what lies in a box or a ball that is dragged by its middle and its sides.
+/// Selects the triangles in a box or sphere, which is moved by a handle at its centre and resized by handles on its
+/// sides.
 class VolumeTool final : public ViewTool {
  public:
   void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
@@ -18,19 +19,22 @@ class VolumeTool final : public ViewTool {
   void cancel(Desk& desk) override;
 
  private:
-  static constexpr int none = -1, middle = 6;  ///< 0 to 5: the sides at +x, −x, +y, …
+  static constexpr int none = -1, middle = 6;  ///< handles; 0 … 5 are the sides +x, −x, +y, −y, +z, −z
   struct Volume {
-    Vec3 center{0, 0, 0}, half{0, 0, 0};  ///< in the world; half of zero: not placed yet
+    Vec3 center{0, 0, 0}, half{0, 0, 0};  ///< world space; half extents of zero: not placed yet
   };
+  /// Centres the volume on the picked nodes, or on the scene, at half the size of their box.
   void place(const Desk& desk);
+  /// World position of a handle.
   Vec3 handle(int number) const;
+  /// The handle nearest to a viewport pixel, or `none` out of reach.
   int handle_at(const Lens& lens, const Vec2& at) const;
   void select(Desk& desk, SelectMode mode) const;
 
   bool ball_ = false;
-  Volume volume_, before_;  ///< now, and when the drag began
-  int held_ = none;
-  Vec2 from_{0, 0};
+  Volume volume_, before_;  ///< current volume, and that at the start of the drag
+  int held_ = none;         ///< dragged handle
+  Vec2 from_{0, 0};         ///< viewport pixel where the drag began
 };
 
 }  // namespace rebake

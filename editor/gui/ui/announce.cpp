@@ -20,7 +20,7 @@ struct Told {
   std::string written;
 };
 
-// The window's thread only.
+// For the window's thread only.
 Told& told() {
   static Told one = [] {
     Told made;
@@ -70,7 +70,7 @@ void frame(const nlohmann::json& state) {
   for (std::size_t sent = 0; sent < text.size();) {
     const ssize_t more = ::write(told().pipe, text.data() + sent, text.size() - sent);
     if (more < 0 && errno != EINTR) {
-      told().pipe = -1;  // nobody listens any more
+      told().pipe = -1;  // the reader has closed the pipe
       return;
     }
     if (more > 0) sent += static_cast<std::size_t>(more);

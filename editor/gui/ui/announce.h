@@ -7,17 +7,18 @@
 
 namespace rebake {
 
-/// Tells other programs what the window shows, so that they need not guess from pixels or clocks: with REBAKE_ANNOUNCE
-/// set to a named pipe, a line of JSON is written there for every frame that differs from the one before
-/// (tests/gui/README.md). Without it, nothing here does anything.
+/// Reports the window's state to test programs (tests/gui/README.md). If the environment variable REBAKE_ANNOUNCE names
+/// a named pipe, one line of JSON is written to it for every frame that differs from the previous one. Otherwise all
+/// functions here do nothing.
 namespace announce {
 
+/// Whether reports are written.
 bool on();
-/// Where something can be clicked: the last item of Dear ImGui. Names are those of the present parts, then `name`.
+/// Reports the rectangle of the last Dear ImGui item, if visible, as "part/part/name" in window pixels.
 void item(const std::string& name);
-/// The same for a point of the picture, in the window's pixels.
+/// Reports a point in window pixels, as item() does, with size 0.
 void point(const std::string& name, const ImVec2& at);
-/// A part of the window: what is announced while this lives begins with its name and a slash.
+/// RAII prefix: while an instance exists, reported names start with its name and a slash.
 class Part {
  public:
   explicit Part(const std::string& name);
@@ -25,7 +26,7 @@ class Part {
   Part(const Part&) = delete;
   Part& operator=(const Part&) = delete;
 };
-/// Writes what was announced since the last call, joined with `state`, where it differs from the last.
+/// Writes `state` and the items reported since the previous call, unless the line equals the previous one.
 void frame(const nlohmann::json& state);
 
 }  // namespace announce

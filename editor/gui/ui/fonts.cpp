@@ -13,14 +13,14 @@ namespace {
 
 Fonts loaded;
 
-// The first of the files that is there, else null.
+// The first of the files that exists; null if none does.
 const char* first_of(std::initializer_list<const char*> files) {
   for (const char* file : files)
     if (std::filesystem::exists(file)) return file;
   return nullptr;
 }
 
-// Latin, punctuation, arrows and mathematical signs.
+// Unicode ranges of the text fonts: Latin, punctuation, arrows and mathematical operators.
 constexpr ImWchar letters[] = {0x20, 0x17F, 0x2010, 0x2026, 0x2190, 0x2193, 0x2200, 0x22FF, 0};
 constexpr ImWchar signs[] = {0xF001, 0xF66F, 0};
 constexpr const char* icon_file =
@@ -42,7 +42,7 @@ ImFont* add(const char* file, float size, float scale, bool with_icons) {
   if (with_icons) {
     ImFontConfig config;
     config.MergeMode = true;
-    config.GlyphOffset = {0, 0.12F * size * scale};  // signs stand on the line, letters' middle is higher
+    config.GlyphOffset = {0, 0.12F * size * scale};  // centres icons on the letters
     atlas.AddFontFromFileTTF(icon_file, size * scale, &config, signs);
   }
   return font;

@@ -4,17 +4,17 @@ struct ImFont;
 
 namespace rebake {
 
-/// The window's fonts: Inter, with the signs of icons.h among its letters; where Debian's packages are not there, what
-/// there is.
+/// The window's fonts: Inter, else Noto Sans, DejaVu Sans or Dear ImGui's default font. The text font also has the
+/// icons of icons.h.
 struct Fonts {
   ImFont* text = nullptr;
   ImFont* heading = nullptr;
-  ImFont* icons = nullptr;  ///< larger signs, for buttons of tools
-  bool have_icons = false;  ///< else buttons show words
+  ImFont* icons = nullptr;  ///< large icons for tool buttons
+  bool have_icons = false;  ///< false: the icon font is not installed, and buttons show words
 };
 const Fonts& fonts();
-/// Into the present Dear ImGui context, in place of those that were there. `scale`: pixels of the screen a pixel of a
-/// plain one.
+/// Loads the fonts into the current Dear ImGui context and replaces earlier ones. `scale`: framebuffer pixels per
+/// logical pixel.
 void load_fonts(float scale);
 
 }  // namespace rebake

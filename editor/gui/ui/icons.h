@@ -2,7 +2,7 @@
 
 namespace rebake::icons {
 
-// Signs of the Material Design Icons font (Debian: fonts-materialdesignicons-webfont 1.6), by the font's own names.
+// UTF-8 code points of the Material Design Icons font (Debian: fonts-materialdesignicons-webfont 1.6), by icon name.
 constexpr const char* cursor_default = "\xEF\x86\xB4";
 constexpr const char* selection = "\xEF\x92\x89";
 constexpr const char* vector_selection = "\xEF\x95\xA2";

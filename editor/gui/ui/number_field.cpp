@@ -19,20 +19,20 @@ namespace rebake::ui {
 
 namespace {
 
-// One field at a time is typed in or dragged; the window's thread only.
+// State of the one field that is typed in or dragged. For the window's thread only.
 struct Editing {
-  ImGuiID typed = 0;         ///< the field that is typed in
-  int seen = 0;              ///< the frame in which it was drawn last
-  bool begins = false;       ///< its text takes the keyboard with this frame
-  bool next = false;         ///< Tab was pressed: the next field drawn is typed in
-  std::string text, before;  ///< now, and as it was
-  ImGuiID dragged = 0;
-  double from = 0;  ///< the dragged value when its drag began
+  ImGuiID typed = 0;         ///< the field with an open text box; 0: none
+  int seen = 0;              ///< number of the last frame that drew the field `typed`
+  bool begins = false;       ///< the text box gets the keyboard focus in this frame
+  bool next = false;         ///< Tab was pressed: the next field drawn opens its text box
+  std::string text, before;  ///< current text, and the text when the box was opened
+  ImGuiID dragged = 0;       ///< the field under drag; 0: none
+  double from = 0;           ///< value at the start of the drag
   bool moved = false, cancelled = false;
 };
 Editing editing;
 
-// Up to the first byte that is not ASCII: "30°" is typed as "30".
+// The text up to the first non-ASCII byte: "30°" is edited as "30".
 std::string without_unit(const std::string& text) {
   return text.substr(0,
                      std::size_t(std::find_if(text.begin(), text.end(), [](char c) { return c < 0; }) - text.begin()));
@@ -41,7 +41,7 @@ std::string without_unit(const std::string& text) {
 Changed typed_field(double& value, float width) {
   if (editing.begins) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(width);
-  // Tab would stay among fields of text, of which there is one.
+  // Dear ImGui's own Tab order only has text boxes, and at most one is open. So Tab is handled here.
   const auto tabbed = [](ImGuiInputTextCallbackData*) {
     editing.next = true;
     return 0;
@@ -62,7 +62,7 @@ Changed typed_field(double& value, float width) {
   return Changed::finished;
 }
 
-// As many digits as there is room for.
+// The value with as many significant digits (at most 6) as fit into the width, and its unit.
 std::string fitting(const std::string& text, double value, float width) {
   const std::string unit = text.substr(without_unit(text).size());
   const float room = width - 2 * ImGui::GetStyle().FramePadding.x;
@@ -77,7 +77,7 @@ std::string fitting(const std::string& text, double value, float width) {
 bool cancel_drag() { return editing.dragged != 0 && (editing.cancelled = true); }
 
 bool takes_text() {
-  // A field that is not drawn any more is typed in no more.
+  // A field that is no longer drawn loses its text box.
   if (editing.typed != 0 && ImGui::GetFrameCount() > editing.seen + 1) editing.typed = 0;
   const ImGuiContext& context = *ImGui::GetCurrentContext();
   const bool in_text = context.ActiveId != 0 && context.ActiveId == context.InputTextState.ID;
@@ -124,7 +124,7 @@ Changed number_field(const char* id, double& value, const char* format, double s
     if (editing.moved) {
       const double fine = ImGui::GetIO().KeyShift ? 0.1 : 1;
       const double wanted = editing.from + fine * step * static_cast<double>(way);
-      // To whole steps, so that what is dragged can be read.
+      // Snaps to whole steps, for readable numbers. Shift: ten times finer, without snapping.
       const double rounded = ImGui::GetIO().KeyShift ? wanted : std::round(wanted / step) * step;
       if (rounded != value) {
         value = rounded;

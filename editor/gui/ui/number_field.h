@@ -2,22 +2,23 @@
 
 namespace rebake::ui {
 
-/// What happened to a number in this frame.
+/// Event of a number field in this frame.
 enum class Changed {
   nothing,
-  dragged,   ///< it is being dragged, and changed
-  finished,  ///< a drag ended, or a value was typed
-  failed,    ///< what was typed is no number
-  cancelled  ///< a drag was let go of: it is as it was before
+  dragged,   ///< the value changed during a drag
+  finished,  ///< a drag ended, or a new value was typed
+  failed,    ///< the typed text is not a valid expression; the value is unchanged
+  cancelled  ///< a drag was cancelled; the value is as before the drag
 };
 
-/// A number that is dragged to the side, or clicked to be typed as an expression; Tab goes on to the next. `format` is
-/// fmt's; a pixel of drag adds `step`. `id` is announced.
+/// A number that is dragged horizontally, or clicked and typed as an expression (expression.h). Tab moves to the next
+/// field. `format`: a format string of fmt, may end with a unit; `step`: change per pixel of drag; `width`: in pixels.
+/// `id` is the announced name.
 Changed number_field(const char* id, double& value, const char* format, double step, float width);
 
-/// Whether what is typed goes into a field, from the click on that is to open it.
+/// Whether a text box has the keyboard, or will have it in the next frame.
 bool takes_text();
-/// Lets go of a number that is being dragged; false when none is.
+/// Cancels the current drag of a number; false if there is none.
 bool cancel_drag();
 
 }  // namespace rebake::ui

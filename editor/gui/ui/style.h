@@ -6,11 +6,11 @@
 
 namespace rebake {
 
-/// Gives Dear ImGui a theme's colours and distances. `scale`: pixels of the screen a pixel of a plain one.
+/// Sets Dear ImGui's colours and spacing. `scale`: framebuffer pixels per logical pixel. `theme` must outlive its use.
 void set_style(const Theme& theme, float scale);
-/// What set_style() was given last.
+/// The theme of the last set_style().
 const Theme& theme();
-/// A distance of a plain screen, in pixels of this one.
+/// Converts logical pixels to framebuffer pixels, by the scale of the last set_style().
 float px(float plain);
 
 inline ImVec4 color(Rgb c, float opacity = 1) {

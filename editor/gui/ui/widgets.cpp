@@ -16,7 +16,7 @@ std::string announced(const char* label) {
   return hidden;
 }
 
-// Colours of a button that is chosen, for as long as it lives.
+// RAII: while an instance exists, buttons have the colours of a selected or primary button.
 class Chosen {
  public:
   explicit Chosen(bool chosen) : chosen_(chosen) {
@@ -106,7 +106,7 @@ bool quiet_icon(const char* icon, const char* name, bool chosen, bool on_accent)
 }
 
 bool toggle(const char* label, bool& value) {
-  // A box that is not checked is told from its ground by its edge.
+  // The border makes an unchecked box visible on the panel.
   ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, px(1));
   ImGui::PushStyleColor(ImGuiCol_Border, color(theme().muted));
   const bool changed = ImGui::Checkbox(label, &value);
@@ -194,7 +194,7 @@ std::string shortened(const std::string& text, float width) {
   if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
   std::string result = text;
   while (!result.empty() && ImGui::CalcTextSize((result + "…").c_str()).x > width) {
-    // Whole characters: continuing bytes go with the first.
+    // Removes one whole UTF-8 character.
     while (!result.empty() && (result.back() & 0xC0) == 0x80) result.pop_back();
     if (!result.empty()) result.pop_back();
   }

@@ -7,8 +7,9 @@ struct ImVec2;
 
 namespace rebake {
 
-/// The axes below the picture's upper right `corner`, whose knobs turn the camera. `over`: the pointer may take one.
-/// True while it is on one.
+/// Draws the navigation gizmo (six axis knobs) inside the viewport's upper right `corner`. A click on a knob makes the
+/// camera look along that axis. `over`: the pointer is over the viewport and no drag is active. True if it hovers a
+/// knob.
 bool draw_axes(Desk& desk, ImDrawList& list, const ImVec2& corner, bool over);
 
 }  // namespace rebake

@@ -10,7 +10,7 @@ void add_grid(const Desk& desk, std::vector<Guides::Line>& lines) {
   const double step = std::pow(10, std::floor(std::log10(size)));
   const Ground& ground = desk.shown().ground;
   const Mat3 frame = ground_frame(ground);
-  // Square corners lie on multiples of the step, as near to the scene as they can.
+  // Grid corners lie on multiples of the step; the centre of the grid is the one nearest to the scene's centre.
   const Vec3 middle = box.isEmpty() ? Vec3::Zero() : Vec3(frame.transpose() * box.center() / step);
   const auto at = [&](double x, double z) -> Vec3 {
     return frame * Vec3(std::round(middle.x()) * step + x, ground.height, std::round(middle.z()) * step + z);

@@ -7,7 +7,8 @@
 
 namespace rebake {
 
-/// Lines on the scene's ground plane, in squares of the power of ten that fits the scene.
+/// Appends a grid of 20 × 20 squares on the scene's ground plane, around the scene. A square's side is the largest
+/// power of ten that is at most the scene's diagonal. The ground's x axis is red, its z axis blue.
 void add_grid(const Desk& desk, std::vector<Guides::Line>& lines);
 
 }  // namespace rebake

@@ -7,7 +7,8 @@ struct ImVec2;
 
 namespace rebake {
 
-/// What the picture's colours mean where they are not the scene's, and where it is cut, in its upper left corner.
+/// Draws a legend at the viewport's upper left corner `origin`: the meaning of the colours of an inspection mode, or
+/// the distance of the cut. Draws nothing in the normal mode without a cut.
 void draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin);
 
 }  // namespace rebake

@@ -6,38 +6,41 @@
 
 namespace rebake {
 
-/// Between world points and a viewport's pixels (x right, y down, from its top left corner).
+/// Maps between world points and pixels of a viewport (x right, y down, origin at its top left corner).
 class Lens {
  public:
+  /// `width`, `height`: size of the viewport in pixels.
   Lens(const Camera& camera, int width, int height);
-  /// Nothing behind a perspective camera's eye.
+  /// Projects a world point; nothing if it lies behind a perspective camera's eye.
   std::optional<Vec2> pixel(const Vec3& world) const;
+  /// The view ray through a pixel.
   ViewRay ray(const Vec2& pixel) const;
-  /// From a world point to where it is looked at from, of length 1.
+  /// Unit vector from a world point towards the eye.
   Vec3 towards_eye(const Vec3& world) const;
-  /// What a way on the screen is in the world, at a world point's depth.
+  /// World displacement, parallel to the image plane, that moves `world` by this many pixels.
   Vec3 motion(const Vec3& world, const Vec2& pixels) const;
-  /// Nothing nearer than this is seen, along the line of sight.
+  /// Distance of the near clipping plane along the line of sight, in scene units.
   double near_plane() const { return camera_.near_plane; }
-  /// Along the line of sight.
+  /// Depth of a world point along the line of sight, in scene units.
   double depth(const Vec3& world) const;
-  /// Scene units that a pixel spans at a world point's depth.
+  /// Size of a pixel at a world point's depth, in scene units; 0 behind a perspective camera's eye.
   double unit(const Vec3& world) const;
 
  private:
   Camera camera_;
-  Mat3 rows_;
-  double height_;  ///< pixels
-  Vec2 middle_;
+  Mat3 rows_;      ///< world_to_camera()
+  double height_;  ///< of the viewport, in pixels
+  Vec2 middle_;    ///< centre of the viewport, in pixels
 };
 
-/// What the pointer is over: the nearest opaque triangle of a visible node. With `waits` false, nodes that were not
-/// looked through yet (up to a second for a million triangles) are passed over.
+/// A hit of picking: the nearest opaque triangle under a pixel.
 struct Picked {
   NodeId node;
-  std::uint32_t triangle;
-  Vec3 world;
+  std::uint32_t triangle;  ///< index in the node's object
+  Vec3 world;              ///< the hit point
 };
+/// Casts a ray through a pixel into all visible nodes, from the near plane on; nothing if it hits none. If `waits` is
+/// false, nodes without a cached ray tree are skipped, because building one is slow.
 std::optional<Picked> pick(const Scene& scene, const Lens& lens, const Vec2& pixel, bool waits = true);
 
 }  // namespace rebake

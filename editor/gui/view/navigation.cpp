@@ -18,7 +18,8 @@ Camera flown_to(const Camera& camera, const Vec3& target) {
   return result;
 }
 
-// A camera that looks exactly from above or below, as one that turns on from there: a hair aside, with the world's up.
+// Prepares a camera for orbiting: one that looks exactly up or down is tilted by closest_to_pole and gets the world's y
+// axis as up vector. Others stay as they are.
 Camera upright(const Camera& camera) {
   const Vec3 world_up(0, 1, 0);
   const Vec3 back = camera.eye - camera.target;
@@ -33,14 +34,14 @@ Camera upright(const Camera& camera) {
   return result;
 }
 
-// `direction` turned about the camera's up and then towards or away from it.
+// `direction` rotated about the camera's up axis and then towards that axis, by angles in radians.
 Vec3 turned(const Camera& camera, const Vec3& direction, double about_up, double towards_up) {
   const Vec3 up = camera.up.normalized();
   const Vec3 level = Eigen::AngleAxisd(about_up, up) * direction;
   const double angle = std::acos(std::clamp(level.normalized().dot(up), -1.0, 1.0));
   const double wanted = std::clamp(angle - towards_up, closest_to_pole, std::numbers::pi - closest_to_pole);
   Vec3 side = up.cross(level);
-  if (!(side.norm() > 1e-9 * level.norm())) side = up.unitOrthogonal();  // along the axis every side is as good
+  if (!(side.norm() > 1e-9 * level.norm())) side = up.unitOrthogonal();  // parallel to `up`: any axis will do
   return Eigen::AngleAxisd(wanted - angle, side.normalized()) * level;
 }
 
@@ -72,7 +73,7 @@ Camera zoomed(const Camera& camera, const Vec3& towards, double factor) {
   result.eye = towards + (camera.eye - towards) * factor;
   result.target = towards + (camera.target - towards) * factor;
   result.ortho_height *= factor;
-  // Nearer than numbers tell points apart there is nothing to see.
+  // Below this distance, double precision cannot separate eye and target.
   const double least = std::max(1e-12 * result.target.norm(), std::numeric_limits<double>::min());
   const bool sound = (result.eye - result.target).norm() > least &&
                      (!camera.orthographic() || (result.ortho_height > least && std::isfinite(result.ortho_height)));
@@ -81,7 +82,7 @@ Camera zoomed(const Camera& camera, const Vec3& towards, double factor) {
 
 Camera framed(const Camera& camera, const Box& box, double aspect) {
   if (box.isEmpty()) return camera;
-  // A single point is looked at from where the camera is.
+  // A single point only becomes the target.
   const double radius = box.diagonal().norm() / 2;
   if (!(radius > 1e-12 * box.center().norm())) return flown_to(camera, box.center());
   const double half = std::atan(std::tan(camera.fov_degrees * std::numbers::pi / 360) * std::min(1.0, aspect));
@@ -102,7 +103,7 @@ Camera flown(const Camera& camera, double right, double up, double forward) {
 }
 
 Camera centred(const Camera& camera, const Vec3& point) {
-  // The eye goes sideways only, so that nothing grows.
+  // The depth of the point does not change.
   const Vec3 back = (camera.eye - camera.target).normalized();
   const double depth = (camera.eye - point).dot(back);
   if (!(depth > 0)) return camera;
@@ -118,16 +119,16 @@ Camera along_axis(const Camera& camera, const Vec3& axis) {
   const Vec3 direction = axis.normalized();
   if (std::abs(axis.normalized().y()) < 1 - 1e-6) result.up = upright(camera).up;
   const Vec3 up = upright(camera).up.normalized();
-  // Exactly along the up direction, another one points up in the picture (upright() takes it back).
+  // Exactly along the up axis another up vector is needed; upright() reverts it when the camera orbits on.
   if (std::abs(direction.dot(up)) > 1 - 1e-6) {
     Vec3 level = upright(camera).eye - camera.target;
     level -= level.dot(up) * up;
-    // The nearest level axis keeps pictures upright.
+    // The horizontal world axis nearest to the current direction keeps the picture upright.
     int largest = 0;
     level.cwiseAbs().maxCoeff(&largest);
     Vec3 snapped(0, 0, 0);
     snapped[largest] = level[largest] < 0 ? -1 : 1;
-    if (!(level.norm() > 0)) return camera;  // it looks along it already
+    if (!(level.norm() > 0)) return camera;  // it already looks along this axis
     result.up = direction.dot(up) > 0 ? Vec3(-snapped) : snapped;
   }
   result.eye = camera.target + direction * distance;
@@ -148,7 +149,7 @@ Camera projected_otherwise(const Camera& camera) {
 
 std::vector<Camera> turntable(const Camera& camera, int count) {
   std::vector<Camera> cameras;
-  constexpr int half_turn = 1000;  // pixels
+  constexpr int half_turn = 1000;  // pixels per 180°
   for (int k = 0; k < count; ++k) cameras.push_back(orbited(camera, 2.0 * half_turn * k / count, 0, half_turn));
   return cameras;
 }
@@ -160,7 +161,7 @@ std::vector<Camera> camera_path(const std::vector<Camera>& through, int count) {
     const double at = count > 1 ? static_cast<double>(k) * last / (count - 1) : 0;
     const int from = std::min(static_cast<int>(at), std::max(0, last - 1));
     const double t = at - from;
-    // Catmull and Rom's spline; beyond the ends it stands still.
+    // Catmull-Rom spline; the end points are repeated.
     const double weights[] = {(-t + 2 * t * t - t * t * t) / 2, (2 - 5 * t * t + 3 * t * t * t) / 2,
                               (t + 4 * t * t - 3 * t * t * t) / 2, (-t * t + t * t * t) / 2};
     Camera camera = through[static_cast<std::size_t>(std::lround(at))];
@@ -178,7 +179,7 @@ std::vector<Camera> camera_path(const std::vector<Camera>& through, int count) {
       parallel = parallel && one.orthographic();
       if (one.orthographic()) height += weights[i] * std::log(one.ortho_height);
     }
-    // Between opposite views there is no one way: it jumps.
+    // Between opposite directions no interpolation is defined: the nearest given camera is used.
     if (direction.norm() > 1e-6) {
       camera.target = target;
       camera.eye = target + std::exp(distance) * direction.normalized();
@@ -196,17 +197,17 @@ Camera with_depth_for(const Camera& camera, const Box& box) {
   if (camera.orthographic() && !box.isEmpty()) {
     const Vec3 back = (camera.eye - camera.target).normalized();
     const double before = back.dot(box.center() - camera.target) + box.diagonal().norm();
-    // How far it stands changes nothing but what depths can be told apart.
+    // The distance of an orthographic camera only affects the precision of depths.
     const double distance = std::max(before, 0.01 * box.diagonal().norm());
     const double now = (camera.eye - camera.target).norm();
-    // A camera that stands there stays, bit for bit: a picture of it is not drawn again.
+    // A camera already at this distance must not change by a bit, or the picture would be drawn again.
     if (distance > 0 && std::abs(distance - now) > 1e-9 * distance) result.eye = camera.target + distance * back;
   }
   const double target = (result.target - result.eye).norm();
   double farthest = 2 * target;
   if (!box.isEmpty()) farthest = std::max(farthest, (box.center() - result.eye).norm() + box.diagonal().norm());
   result.far_plane = farthest * 2;
-  // Float depth is reversed: what a small near plane costs is nothing.
+  // With reversed floating-point depth, a small near plane costs no precision.
   result.near_plane = std::min(target / 100, farthest / 1000);
   return result;
 }

@@ -6,33 +6,37 @@
 
 namespace rebake {
 
-// How a viewport's camera moves. Pure; all keep the camera sound. Pixels are of a viewport `height` pixels high, y
-// down.
+// Camera navigation. Pure functions; from a valid camera they return a valid one. Drags are in pixels, x right and y
+// down, of a viewport that is `height` pixels high.
 
-/// Turns about the target; a viewport's height of pixels is half a turn. Never over the poles.
+/// Orbits around the target: `height` pixels are 180°. Stops 0.01 rad before the poles of the up axis.
 Camera orbited(const Camera& camera, double right_pixels, double down_pixels, int height);
-/// Moves eye and target so that what lies at the target's depth follows the pointer.
+/// Pans: moves eye and target so that points at the target's depth follow the pointer.
 Camera panned(const Camera& camera, double right_pixels, double down_pixels, int height);
-/// Moves towards a world point (away from it for factors above 1), which stays where it is in the picture.
+/// Zooms to a world point: scales the distances of eye and target from it (and the orthographic height) by `factor`.
+/// The point keeps its place in the picture. Returns `camera` if double precision does not suffice for the result.
 Camera zoomed(const Camera& camera, const Vec3& towards, double factor);
-/// Looks at all of a box, from where it looks now.
+/// Frames a box without changing the view direction. `aspect`: width / height of the viewport. An empty box changes
+/// nothing; a box of size 0 only moves the camera.
 Camera framed(const Camera& camera, const Box& box, double aspect);
-/// Turns about a point from now on; what is seen stays where it is but for a shift that brings the point to the middle.
+/// Makes a point the target, for orbiting around it. The camera moves sideways only, so the picture is shifted but not
+/// scaled. A point behind the eye changes nothing.
 Camera centred(const Camera& camera, const Vec3& point);
-/// Moves eye and target together, along the camera's own axes, in scene units.
+/// Translates eye and target along the camera's axes, in scene units.
 Camera flown(const Camera& camera, double right, double up, double forward);
-/// Turns the line of sight about the eye.
+/// Rotates the view direction around the eye (first-person look): `height` pixels are 90°.
 Camera looked(const Camera& camera, double right_pixels, double down_pixels, int height);
-/// Looks along an axis of the world at the target, from the same distance. `axis` points from the target to the eye.
+/// Looks at the target along a world axis, from the same distance. `axis` points from the target to the eye.
 Camera along_axis(const Camera& camera, const Vec3& axis);
-/// Orthographic where it was perspective and the reverse, with the target as large as before.
+/// Toggles between perspective and orthographic projection; objects at the target keep their size in the picture.
 Camera projected_otherwise(const Camera& camera);
-/// So many cameras on a smooth way through the given ones, from the first to the last: each is passed, and what lies
-/// between turns about what is looked at. Of one camera, all are that.
+/// `count` cameras on a Catmull-Rom spline through the given ones (at least one), from the first to the last. Targets,
+/// directions to the eye, logarithms of distances, and fields of view are interpolated.
 std::vector<Camera> camera_path(const std::vector<Camera>& through, int count);
-/// So many cameras once around the target.
+/// `count` cameras that orbit once around the target.
 std::vector<Camera> turntable(const Camera& camera, int count);
-/// Near and far planes that hold the box, whatever lies around it; an orthographic camera stands before the box.
+/// Sets near and far planes that enclose the box. Moves an orthographic camera along its view direction to a place in
+/// front of the box, which does not change the picture.
 Camera with_depth_for(const Camera& camera, const Box& box);
 
 }  // namespace rebake

@@ -42,7 +42,7 @@ void Thumbnails::draw_one(Renderer& renderer, const Scene& scene) {
   try {
     picture.emplace(renderer.render(scene, view));
   } catch (const Error&) {
-    // The main picture says what is wrong.
+    // The viewport reports the same error.
   }
   views_.insert_or_assign(name, OfView{found->second, scene.roots, scene.background, std::move(picture)});
 }
@@ -62,7 +62,7 @@ unsigned Thumbnails::of_picture(const fs::path& file) {
     if (fs::is_regular_file(file, unknown)) try {
         found->second.emplace(read_image(file));
       } catch (const Error&) {
-        fs::remove(file, unknown);  // damaged: made anew when the scene is opened again
+        fs::remove(file, unknown);  // damaged: written again when the scene is opened next time
       }
   }
   return found->second ? found->second->name() : 0;

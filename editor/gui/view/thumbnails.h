@@ -11,28 +11,29 @@
 
 namespace rebake {
 
-/// Small pictures of stored views, and of what was opened before.
+/// Thumbnails of stored views (drawn on request) and of recent files (cached on disk as PNG).
 class Thumbnails {
  public:
   static constexpr int width = 192, height = 120;
 
-  /// A texture of what a stored view of the scene, as it is drawn, shows; 0 while there is none yet. One that is out of
-  /// date is shown until draw_one() has made it anew.
+  /// OpenGL texture of a stored view of the scene; 0 if it is not drawn yet. A missing or outdated thumbnail is
+  /// requested from draw_one(); the outdated one is returned until then.
   unsigned of_view(const Scene& scene, const std::string& name);
-  /// Of no view any more.
+  /// Frees the thumbnails of all views.
   void forget_views();
-  /// A texture of what was seen of a file or folder last; 0 where nothing is kept of it.
+  /// OpenGL texture of the cached thumbnail of a file or folder; 0 if there is none.
   unsigned of_file(const std::string& path);
 
-  /// A texture of a PNG; 0 if it is not there or damaged.
+  /// OpenGL texture of a PNG file; 0 if it is missing. A damaged file is deleted.
   unsigned of_picture(const std::filesystem::path& png);
 
-  /// Whether draw_one() has something to do.
+  /// Whether a thumbnail is requested.
   bool wants() const { return wanted_.has_value(); }
-  /// Draws what was asked for last. The renderer's picture is another one then. A view that cannot be drawn has no
-  /// picture.
+  /// Draws the thumbnail that was requested last; call only if wants(). Replaces the renderer's current picture. A view
+  /// that cannot be drawn gets no thumbnail.
   void draw_one(Renderer& renderer, const Scene& scene);
-  /// Keeps a picture of what is seen of a file or folder, and no longer those of what is not among `recent`.
+  /// Caches `seen` as the thumbnail of a file or folder on disk, and deletes those of all others that are not in
+  /// `recent`. Throws FileError or std::filesystem::filesystem_error.
   void keep(const std::string& path, const std::vector<std::string>& recent, const Image& seen);
 
  private:
@@ -40,11 +41,11 @@ class Thumbnails {
     Camera camera;
     std::vector<NodePtr> roots;
     Color background;
-    std::optional<PictureTexture> picture;  ///< none where it could not be drawn
+    std::optional<PictureTexture> picture;  ///< none if the view could not be drawn
   };
   std::map<std::string, OfView> views_;
-  std::map<std::filesystem::path, std::optional<PictureTexture>> files_;  ///< by their PNG
-  std::optional<std::string> wanted_;                                     ///< a view's name
+  std::map<std::filesystem::path, std::optional<PictureTexture>> files_;  ///< by path of the PNG
+  std::optional<std::string> wanted_;                                     ///< name of the requested view
 };
 
 }  // namespace rebake

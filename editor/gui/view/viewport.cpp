@@ -24,10 +24,11 @@ namespace rebake {
 
 namespace {
 
-constexpr auto settle_time = std::chrono::milliseconds(200);  // after the last move the picture is drawn in full
-constexpr double upload_ms = 6;                               // of a frame, while a scene goes to the GPU
+// Time without a change after which the picture is drawn at full quality.
+constexpr auto settle_time = std::chrono::milliseconds(200);
+constexpr double upload_ms = 6;  // per frame, while a scene is uploaded
 
-// The scene before the quiet background that people look at it on, unless they want its own.
+// The scene with the theme's background, unless the settings ask for the scene's own.
 Scene on_ground(const Scene& scene, const Desk& desk) {
   Scene result = scene;
   const Rgb ground = theme().viewport;
@@ -42,6 +43,7 @@ bool same_view(const View& a, const View& b) {
   return a.camera == b.camera && a.width == b.width && a.height == b.height && a.samples == b.samples;
 }
 
+// Whether two cameras differ at most in their near and far planes.
 bool from_one_place(const Camera& a, Camera b) {
   b.near_plane = a.near_plane;
   b.far_plane = a.far_plane;
@@ -81,7 +83,7 @@ double Viewport::next_frame_in(const Desk& desk) const {
   if (desk.jobs.film && desk.jobs.film->waits()) return 0.1;
   if (arrival_) return 0;
   if (desk.jobs.film || desk.view.flying || (thumbnails_.wants() && !moving() && desk.at_rest())) return 0;
-  // A quick picture is followed by one in full.
+  // A reduced picture is followed by one at full quality.
   if (!moving())
     return made_ && (made_->view.width != made_->shown_width || made_->view.samples != desk.view.samples) ? 0 : -1;
   return std::chrono::duration<double>(settle_time).count();
@@ -101,7 +103,7 @@ void Viewport::make_ahead(const Desk& desk) {
     const View view{made_->view.camera, desk.view.width, desk.view.height, desk.view.samples};
     if (renderer_.make_ahead(made_->scene, view, {}, made_->lighting.get())) return;
   } catch (const std::exception&) {
-    // The frame that wants it says what is wrong.
+    // The frame that needs the program reports the error.
   }
   ahead_of_ = made_;
 }
@@ -122,7 +124,7 @@ void Viewport::fly(Desk& desk) {
   const bool parallel = desk.view.camera.orthographic();
   desk.view.camera =
       flown(desk.view.camera, right * speed * seconds, up * speed * seconds, parallel ? 0 : forward * speed * seconds);
-  // Where nothing grows by coming nearer, forward enlarges.
+  // In an orthographic view, moving forward has no visible effect, so it zooms.
   if (parallel) desk.view.camera = zoomed(desk.view.camera, desk.view.camera.target, std::exp(-2 * forward * seconds));
 }
 
@@ -145,14 +147,14 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
       const double size = desk.focus().isEmpty() ? 1 : desk.focus().diagonal().norm();
       desk.view.cut = std::max(1e-6 * size, desk.view.cut + 0.02 * size * static_cast<double>(io.MouseWheel));
     } else if (io.MouseWheel != 0) {
-      // Towards what lies under the pointer; beside everything, towards the target's depth there.
+      // Zooms to the surface under the pointer, else to the point under the pointer at the target's depth.
       const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false);
       const ViewRay ray = lens.ray(pointer.at);
       const Vec3 at = picked ? picked->world : Vec3(ray.origin + ray.direction * lens.depth(desk.view.camera.target));
       desk.view.camera = zoomed(desk.view.camera, at, std::pow(0.85, static_cast<double>(io.MouseWheel)));
     }
   }
-  // Without a way it is a click.
+  // A right click without a drag opens the context menu.
   if (panning_ && ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
       (right_pressed_at_ - pointer.at).norm() < static_cast<double>(px(4)))
     desk.asking.context = true;
@@ -167,7 +169,8 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
     desk.view.camera = panned(desk.view.camera, dx, dy, desk.view.height);
 }
 
-// Of all that is drawn. An orthographic camera stands before it; for a perspective one the scene does.
+// Bounds for the camera's planes: the scene, and for an orthographic camera, which is placed in front of them, also
+// preview and guides.
 Box Viewport::drawn_bounds(const Desk& desk) const {
   Box box = world_bounds(desk.scene());
   if (!desk.view.camera.orthographic()) return box;
@@ -183,7 +186,7 @@ Guides Viewport::guides(const Desk& desk) const {
   result.inspect = desk.view.inspect;
   result.channel = desk.view.channel;
   if (desk.settings.grid) add_grid(desk, result.lines);
-  // Of nodes, while tools work on those.
+  // Picked nodes are outlined while the tool works on whole nodes.
   const bool nodes =
       desk.tools.kind == ToolKind::pick ||
       ((desk.tools.kind == ToolKind::move || desk.tools.kind == ToolKind::turn || desk.tools.kind == ToolKind::scale) &&
@@ -194,8 +197,8 @@ Guides Viewport::guides(const Desk& desk) const {
   return result;
 }
 
-// What was there before is shown until all of a scene is on the GPU. Not while something is dragged, which changes
-// little; nor where steps follow each other so fast that none would be seen.
+// Uploads a part of a new scene; true while it is incomplete and the previous one must be shown. Not used for previews
+// of drags, which change little, nor for steps in such quick succession that none of them would be visible.
 bool Viewport::arrives(const Desk& desk, const Scene& scene) {
   const bool other = made_ && !desk.preview && made_->scene.roots != scene.roots;
   if (other && arrival_ && arrival_->roots != scene.roots && Clock::now() - arrival_->began < settle_time) {
@@ -227,7 +230,7 @@ void Viewport::picture(Desk& desk) {
   const std::shared_ptr<const Lighting> lighting =
       scene.light && !desk.view.as_baked ? desk.relighter.latest() : nullptr;
   Made wanted{scene, lighting, view, guides(desk), each_pass_, desk.view.wipe, desk.view.width, desk.view.height};
-  // In full as it is, or as soon as in a hurry.
+  // Whether full quality is cheap: nothing has changed, or only the changed pixels would be drawn.
   const auto stays_full = [&] {
     return made_ && same_view(made_->view, view) &&
            ((same_scene(made_->scene, scene) && made_->lighting == lighting && made_->guides == wanted.guides) ||
@@ -256,7 +259,7 @@ void Viewport::picture(Desk& desk) {
     if (!quick) keep_picture(desk);
     return;
   }
-  // Whether it can be drawn or not: what cannot is said once.
+  // Set before drawing, so that an error is reported only once.
   made_ = wanted;
   texture_ = 0;
   const Renderer::Shown shown =
@@ -264,9 +267,9 @@ void Viewport::picture(Desk& desk) {
   if (!arrival_) renderer_.forget_arrival();
   const double ms = shown.times.frame_ms;
   if (view.width == desk.view.width && view.samples == desk.view.samples && !shown.kept) full_ms_ = ms;
-  // The time goes with the pixels, as far as it goes with anything that can be chosen here.
+  // Assumes that the duration is proportional to the number of pixels.
   if (quick) moving_scale_ = std::clamp(scale * std::sqrt(wanted_picture_ms / ms), 0.35, 1.0);
-  // Of pictures that follow each other in one movement.
+  // Smoothed frame rate of the current movement.
   const Clock::time_point now = Clock::now();
   const double since = std::chrono::duration<double>(now - drawn_at_).count();
   drawn_at_ = now;
@@ -276,7 +279,7 @@ void Viewport::picture(Desk& desk) {
   if (!desk.view.wipe) {
     before_.reset();
   } else if (!arrival_) {
-    // A renderer of its own keeps what the scene was on the GPU, as long as it is compared with.
+    // A second renderer holds the imported scene on the GPU during the comparison.
     if (!before_) before_ = std::make_unique<Renderer>(window_context_());
     Guides before;
     before.inspect = desk.view.inspect;
@@ -289,7 +292,7 @@ void Viewport::picture(Desk& desk) {
   if (!quick) keep_picture(desk);
 }
 
-// For the dialog that offers lost work: after a step, but not more often than every few seconds.
+// Writes the thumbnail that the recovery dialog shows: after each step, but at most every two seconds.
 void Viewport::keep_journal_picture(const Desk& desk) {
   constexpr std::chrono::seconds least_time{2};
   if (desk.now->journal.empty() || desk.scene().roots.empty()) return;
@@ -307,8 +310,8 @@ void Viewport::keep_journal_picture(const Desk& desk) {
   }
 }
 
-// Of what was just opened or saved, for the list of recent files: the first picture of it in full, whether the scene
-// rests yet or not. A quick driver has drawn it before it rests, and does not draw it again then.
+// Writes the thumbnail of the file that was just opened or saved, for the list of recent files. Uses the first picture
+// at full quality, even if the view still moves: a fast driver does not draw it again when the view rests.
 void Viewport::keep_picture(const Desk& desk) {
   if (desk.view.flying || desk.preview || arrival_ || texture_ == 0) return;
   keep_journal_picture(desk);
@@ -323,7 +326,7 @@ void Viewport::keep_picture(const Desk& desk) {
   try {
     thumbnails_.keep(of, desk.settings.recent, renderer_.shown_image());
   } catch (const std::exception&) {
-    // Without a place to keep it the list has no pictures; nothing else is missing.
+    // Without a writable cache the list has no thumbnails; nothing else depends on them.
   }
 }
 
@@ -333,7 +336,7 @@ void Viewport::frame_took(double ms) {
   rest_ms_ = rest_ms_ > 0 ? 0.7 * rest_ms_ + 0.3 * rest : rest;
 }
 
-// The line between before and after, which the pointer moves. True while it does, or is about to.
+// Draws the before/after line, which the pointer can drag. True if the pointer drags or hovers it.
 bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer) {
   const double grab = static_cast<double>(px(8));
   const double at = desk.view.wipe_at * desk.view.width;
@@ -352,6 +355,7 @@ bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, con
   return hot || wiping_;
 }
 
+// Writes a requested screenshot, or the next picture of a film.
 void Viewport::write_pictures(Desk& desk) {
   const auto written = [&](const Camera& camera, int width, int height, const std::filesystem::path& path) {
     made_.reset();
@@ -387,7 +391,7 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
   desk.view.width = std::max(16, static_cast<int>(size.x));
   desk.view.height = std::max(16, static_cast<int>(size.y));
   if (desk.tools.drag_begins && *desk.tools.drag_begins != desk.tools.kind) {
-    // Another tool was taken before the drag could begin.
+    // Another tool was chosen before the requested drag could begin.
     desk.tools.drag_begins.reset();
     desk.tools.before.reset();
   }
@@ -413,7 +417,7 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
   pointer.down = io.MouseDown[0];
   pointer.released = ImGui::IsMouseReleased(ImGuiMouseButton_Left);
   pointer.double_clicked = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
-  // In the midst of a drag the right button lets go of it, as Escape does.
+  // The right button cancels a drag, as Escape does.
   pointer.let_go = tool(desk).busy() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
   if (pointer.let_go) tool(desk).cancel(desk);
   pointer.shift = io.KeyShift;
@@ -441,7 +445,7 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
     desk.messages.fail(error.what());
   }
   if (desk.view.flying) fly(desk);
-  // What edits select through this camera is what is drawn through it.
+  // These planes are also those that edits use to select through this camera.
   desk.view.camera = with_depth_for(desk.view.camera, drawn_bounds(desk));
   if (desk.view.cut > 0)
     desk.view.camera.near_plane =
@@ -452,12 +456,12 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
       tool(desk).pointer(desk, lens, pointer);
     else if (pointer.pressed && pointer.inside)
       desk.messages.say("Something is still being done: click again when it is, or press Esc to stop it.");
-    last_tool_ = desk.tools.kind;  // a drag that a key began ends with the tool before it, and what it did stays
+    last_tool_ = desk.tools.kind;  // after a drag that a key began, the previous tool returns without ViewTool::leave()
   } catch (const std::exception& error) {
     desk.messages.fail(error.what());
     tool(desk).cancel(desk);
   }
-  // What changes is shown soon, and in full when it rests.
+  // Changes are drawn at reduced quality first, and at full quality after settle_time.
   if (!(desk.view.camera == last_camera_) || (made_ && made_->scene.roots != desk.shown().roots)) {
     last_camera_ = desk.view.camera;
     moved_at_ = Clock::now();

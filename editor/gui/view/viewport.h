@@ -9,43 +9,47 @@
 
 namespace rebake {
 
-/// The picture with what is drawn over it, the pointer in it, and the camera that it moves.
+/// The 3D viewport: draws the scene and its overlays, passes the pointer to the current tool, and navigates the camera.
+/// While camera or scene change, resolution and samples are reduced to reach ViewState::target_rate.
 class Viewport {
  public:
-  /// `window_context` makes contexts for further renderers, in the same window.
+  /// `window_context` returns the window's OpenGL context for a second renderer (before/after comparison). The
+  /// references must outlive the viewport.
   Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_ptr<gl::Context>()> window_context);
   ~Viewport();
 
-  /// Draws into the present Dear ImGui window, over all of its content. `moves`: where the pointer went since the last
-  /// frame, in the window's pixels.
+  /// Draws into the current Dear ImGui window and fills it. `moves`: pointer positions since the last frame, in window
+  /// pixels.
   void draw(Desk& desk, const std::vector<std::array<double, 2>>& moves);
-  /// Takes a key before commands do; true when it was for the tool in hand.
+  /// Offers a key to the current tool before commands get it; true if the tool used it.
   bool key(Desk& desk, const KeyPress& press);
-  /// Lets go of what the tool holds; false when it holds nothing.
+  /// Cancels flying, a drag that a key has requested, or the current tool's drag; false if there is none.
   bool cancel(Desk& desk);
   ViewTool& tool(const Desk& desk) { return *tools_.at(desk.tools.kind); }
 
-  /// Seconds until there is something to draw without any event; negative for never.
+  /// Seconds until a new frame is needed without any event; negative: never.
   double next_frame_in(const Desk& desk) const;
-  /// Whether no program is missing that other views of what is shown would want.
+  /// Whether all shader programs that other views of the current scene may need are compiled.
   bool all_made() const;
-  /// Whether some may be, and nothing moves.
+  /// Whether some of these may be missing and the view rests, so that make_ahead() is useful.
   bool wants_ahead() const;
-  /// Makes one of them, where nothing else is to be done.
+  /// Compiles one missing shader program. To be called when the window is idle.
   void make_ahead(const Desk& desk);
-  /// How long the whole frame took of the window in which the last picture was drawn.
+  /// To be called with the duration of each window frame; ignored unless the frame drew a new picture.
   void frame_took(double ms);
-  /// How much of the scene is on the GPU, from 0 to 1; until it is all there the one before is shown.
+  /// Uploaded share of a new scene's GPU data, 0 … 1. Below 1, the previous scene is shown.
   double arrived() const { return arrival_ ? arrival_->there : 1; }
+  /// Times, passes and memory of the last picture.
   const FrameReport& report() const { return report_; }
+  /// Whether each render pass is timed separately, which slows the frame down.
   bool& each_pass() { return each_pass_; }
   Thumbnails& thumbnails() { return thumbnails_; }
-  /// The scene before the background that it is drawn on.
+  /// The document's scene, with the background that the viewport shows.
   static Scene drawn(const Desk& desk);
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// What the shown picture was made of.
+  /// Inputs of the picture that was drawn last. It is drawn again only if they change.
   struct Made {
     Scene scene;
     std::shared_ptr<const Lighting> lighting;
@@ -54,12 +58,12 @@ class Viewport {
     bool each_pass = false, wipe = false;
     int shown_width = 0, shown_height = 0;
   };
-  /// A scene that goes to the GPU while the picture is of another one.
+  /// A scene that is being uploaded to the GPU while the previous one is shown.
   struct Arrival {
     std::vector<NodePtr> roots;
-    bool stays;  ///< the picture as it was: the camera went along with the scene, as when one is opened
+    bool stays;  ///< the camera changed with the scene, e.g. on opening one: the old picture is not redrawn
     Clock::time_point began;
-    double there = 0;
+    double there = 0;  ///< uploaded share, 0 … 1
   };
   bool arrives(const Desk& desk, const Scene& scene);
   void navigate(Desk& desk, const Lens& lens, const Pointer& pointer);
@@ -75,29 +79,29 @@ class Viewport {
 
   Vec2 right_pressed_at_{0, 0};
   Renderer& renderer_;
-  std::unique_ptr<Renderer> before_;  ///< of the scene as imported; null while it is not compared with
+  std::unique_ptr<Renderer> before_;  ///< renderer of the imported scene; null unless ViewState::wipe
   Tools& tools_;
   Clock::time_point moved_at_{}, flown_at_{}, drawn_at_{};
   std::optional<Arrival> arrival_;
-  double full_ms_ = 0;       ///< of a picture at full quality
-  double rest_ms_ = 0;       ///< of a frame beside its picture
-  double moving_scale_ = 1;  ///< of the resolution while the camera moves
+  double full_ms_ = 0;       ///< duration of the last picture at full quality
+  double rest_ms_ = 0;       ///< smoothed duration of a window frame without its picture
+  double moving_scale_ = 1;  ///< resolution per axis while the view moves, relative to full
   std::function<std::unique_ptr<gl::Context>()> window_context_;
   Camera last_camera_;
   FrameReport report_;
   std::optional<Made> made_;
-  std::optional<Made> ahead_of_;  ///< a picture of which no program is missing from other views
-  unsigned before_texture_ = 0;
-  ToolKind last_tool_ = ToolKind::pick;
-  unsigned texture_ = 0;
+  std::optional<Made> ahead_of_;         ///< picture for whose scene make_ahead() has compiled all programs
+  unsigned before_texture_ = 0;          ///< OpenGL texture of the imported scene's picture
+  ToolKind last_tool_ = ToolKind::pick;  ///< tool of the previous frame
+  unsigned texture_ = 0;                 ///< OpenGL texture of the picture; 0: it could not be drawn
   Thumbnails thumbnails_;
-  std::string kept_of_;               ///< what a picture is kept of,
-  std::size_t kept_step_ = 0;         ///< and after how many steps it looked so
-  std::filesystem::path journal_of_;  ///< the journal that a thumbnail was written for last,
-  std::size_t journal_step_ = 0;      ///< after how many steps,
-  Clock::time_point journal_at_;      ///< and when
+  std::string kept_of_;               ///< file or folder of the last thumbnail in the list of recent files
+  std::size_t kept_step_ = 0;         ///< number of steps of history at that thumbnail
+  std::filesystem::path journal_of_;  ///< journal of the last recovery thumbnail
+  std::size_t journal_step_ = 0;      ///< number of steps of history at the last recovery thumbnail
+  Clock::time_point journal_at_;      ///< time of the last recovery thumbnail
   bool each_pass_ = false;
-  bool drew_ = false;  ///< a picture in this frame
+  bool drew_ = false;  ///< a new picture was drawn in this frame
   bool orbiting_ = false, panning_ = false, wiping_ = false;
 };
 

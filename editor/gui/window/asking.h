@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// A file or folder that a dialog asks for.
+/// Purpose of the file dialog that is open.
 enum class PathQuestion {
   none,
   open,
@@ -16,13 +16,15 @@ enum class PathQuestion {
   camera_path,
   save_script,
   run_script,
-  light_picture
+  light_picture  ///< environment map for the scene's light
 };
 
-/// What the window asks people just now.
+/// Which dialogs and popups are open.
 struct Asking {
   PathQuestion path = PathQuestion::none;
-  std::string form;  ///< the edit whose form is open, empty for none
+  std::string form;  ///< `op` of the edit whose form is open; empty for none
+  /// Open popups: the command palette, the question about unsaved work on quitting, the sheet of keys. `context`: the
+  /// context menu is to be opened in this frame.
   bool palette = false, quitting = false, keys = false, context = false;
 };
 

@@ -65,7 +65,7 @@ std::optional<int> ChildProcess::ended() {
   const pid_t ended = ::waitpid(process_, &status, WNOHANG);
   if (ended == 0 || (ended < 0 && errno == EINTR)) return std::nullopt;
   read();
-  // Where this program was started so that it is not told of its children, nothing more can be known.
+  // If this program was started with SIGCHLD ignored, the exit status is not available: success is assumed.
   if (ended < 0)
     status_ = 0;
   else

@@ -43,7 +43,7 @@ template <ToolKind kind>
 void take(Desk& desk) {
   desk.tools.kind = kind;
 }
-// Blender's keys begin a drag, and come back to the tool that was in hand.
+// In the Blender keymap, the key of a tool also begins a drag, after which the previous tool returns.
 template <ToolKind kind>
 void grab(Desk& desk) {
   if (desk.settings.blender_keys && has_either(desk)) {
@@ -84,7 +84,7 @@ void each_active(Desk& desk) {
 
 void drop(Desk& desk) { desk.edits_that_change(for_each_active<Drop>(desk)); }
 
-// Sets the ground at the scene's foot, or fits it to the selection.
+// Sets the ground plane to the scene's lowest point, or fits it to the selection.
 template <bool GroundEdit::*from>
 void set_ground(Desk& desk) {
   GroundEdit edit;
@@ -97,7 +97,7 @@ void show_discarded(Desk& desk) {
   if (desk.project.recoverable.empty()) desk.messages.say("The trash is empty.");
 }
 
-// In Blender's keymap the copies, which are picked then, are moved at once.
+// The copies are picked; in the Blender keymap, a drag moves them at once.
 void duplicate(Desk& desk) {
   desk.edits(for_each_active<Duplicate>(desk), [&desk] {
     if (desk.settings.blender_keys) grab<ToolKind::move>(desk);
@@ -172,7 +172,7 @@ void look_along(Desk& desk) {
 void project_otherwise(Desk& desk) { desk.view.camera = projected_otherwise(desk.view.camera); }
 
 void toggle_cut(Desk& desk) {
-  // Through the middle of what is looked at.
+  // The cutting plane starts at the camera's target.
   desk.view.cut = desk.view.cut > 0 ? 0 : (desk.view.camera.eye - desk.view.camera.target).norm();
 }
 
@@ -221,7 +221,7 @@ void store_view(Desk& desk, const std::string& name) {
   StoreView edit;
   edit.name = name;
   edit.camera = desk.view.camera;
-  edit.camera.near_plane = edit.camera.far_plane = 0;  // to fit what the scene becomes
+  edit.camera.near_plane = edit.camera.far_plane = 0;  // 0: fitted to the scene when the view is used
   for (int number = 1; edit.name.empty(); ++number)
     if (std::string free = "view " + std::to_string(number); !desk.scene().views.contains(free)) edit.name = free;
   desk.edit(edit);
@@ -428,7 +428,7 @@ std::optional<KeyPress> parse_key(const std::string& text) {
     press.key = found->second;
   } else if (rest.size() == 1 && ((rest[0] >= 'A' && rest[0] <= 'Z') || (rest[0] >= '0' && rest[0] <= '9') ||
                                   rest[0] == '[' || rest[0] == ']')) {
-    press.key = static_cast<unsigned char>(rest[0]);  // GLFW's numbers of these are ASCII
+    press.key = static_cast<unsigned char>(rest[0]);  // GLFW's key codes of these characters are ASCII
   } else if (rest.size() == 4 && rest.starts_with("KP_") && rest[3] >= '0' && rest[3] <= '9') {
     press.key = GLFW_KEY_KP_0 + (rest[3] - '0');
   } else if (rest.size() >= 2 && rest.size() <= 3 && rest[0] == 'F' &&

@@ -8,41 +8,42 @@
 
 namespace rebake {
 
-/// Something that a key, a menu or the palette does.
+/// A command of the window, started by key, menu or command palette.
 struct Command {
-  const char* menu;  ///< in which it stands; empty: the palette only
+  const char* menu;  ///< title of its menu; empty: only in the command palette
   const char* title;
-  const char* keys;          ///< alternatives, separated by spaces, e.g. "Ctrl+Shift+Z"; empty for none
-  const char* blender_keys;  ///< in the keymap that follows Blender
-  const char* help;          ///< a sentence; empty where the title says it all
+  const char* keys;          ///< alternative keys separated by spaces, e.g. "Ctrl+Shift+Z Ctrl+Y"; empty for none
+  const char* blender_keys;  ///< the same in the keymap that follows Blender
+  const char* help;          ///< tooltip: one sentence; may be empty
   bool (*enabled)(const Desk& desk);
   void (*run)(Desk& desk);
-  bool (*checked)(const Desk& desk) = nullptr;  ///< whether what it turns on and off is on; null for others
-  bool repeats = false;                         ///< while its key is held
+  bool (*checked)(const Desk& desk) = nullptr;  ///< state of a toggle; null for other commands
+  bool repeats = false;                         ///< runs repeatedly while its key is held
 
+  /// Keys in the current keymap.
   const char* keys_of(const Desk& desk) const { return desk.settings.blender_keys ? blender_keys : keys; }
-  /// The first of them.
+  /// First key in the current keymap; empty for none.
   std::string key_of(const Desk& desk) const {
     const std::string all = keys_of(desk);
     return all.substr(0, all.find(' '));
   }
 };
 
-/// All of them, in the order of the menus.
+/// All commands, in menu order.
 const std::vector<Command>& command_table();
 
-/// A key with its modifiers as people write it, e.g. "Ctrl+Shift+A", "[", "KP_1". Nothing when it is no such text.
+/// Parses a key with modifiers, e.g. "Ctrl+Shift+A", "[", "KP_1"; nothing if the text is not valid.
 std::optional<KeyPress> parse_key(const std::string& text);
 
-/// The command of that title. It must be there.
+/// The command with this title. Throws std::invalid_argument if there is none.
 const Command& command_named(const std::string& title);
-/// Its first key, for tooltips; empty for none.
+/// First key of a command in the current keymap, for tooltips; empty for none.
 std::string command_key(const std::string& title, const Desk& desk);
 
-/// Keeps the present camera with the scene: under that name, or under a new one.
+/// Stores the current camera as a view of the scene, under `name` or, if empty, the first free name "view N".
 void store_view(Desk& desk, const std::string& name = "");
 
-/// The command that a key starts now, null for none.
+/// The command that a key starts in the current keymap; null for none.
 const Command* command_for(const KeyPress& press, const Desk& desk);
 
 }  // namespace rebake

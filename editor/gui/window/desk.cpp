@@ -24,7 +24,7 @@ namespace rebake {
 
 namespace {
 
-// What a preview makes, once it has; null where it was dropped, or failed. Throws Cancelled.
+// Waits for the result of a preview; null if it failed or was dropped. Throws Cancelled.
 std::shared_ptr<const CarriedOut> waited_for(const std::shared_future<std::shared_ptr<const CarriedOut>>& made,
                                              const Progress& progress) {
   constexpr std::chrono::milliseconds look{20};
@@ -32,7 +32,7 @@ std::shared_ptr<const CarriedOut> waited_for(const std::shared_future<std::share
   try {
     return made.get();
   } catch (const std::future_error&) {
-    return nullptr;  // another was asked for before it was begun
+    return nullptr;  // a newer request replaced it before it began
   }
 }
 
@@ -67,13 +67,13 @@ void Desk::update() {
         messages.say(std::move(message.text));
     }
   }
-  // Before the snapshot, which is then at least as new.
+  // Taken before the snapshot, so that the snapshot is at least as new.
   const std::vector<std::function<void()>> finished = jobs.worker.take_finished();
   const std::shared_ptr<const Snapshot> next = jobs.worker.snapshot();
   if (next != now) {
     const bool other = next->scene.roots != scene().roots;
     const bool made_more = next->done.size() > now->done.size() && makes_nodes(next->done.back()) && next->before_last;
-    // The status line tells of the last thing that was done.
+    // The status bar shows the title of a new or changed last step.
     const bool further = next->steps_done > now->steps_done;
     if (next->steps_done > 0 &&
         (further || (next->steps_done == now->steps_done && next->done.back().value() != now->done.back().value())))
@@ -104,7 +104,7 @@ void Desk::update() {
   if (std::optional<Preview> made = previews.take(); made && made->of == scene().roots) preview = std::move(made);
 }
 
-// What was just made is what people go on with.
+// Users usually go on with the nodes that were just created.
 void Desk::pick_new(const std::vector<PlacedNode>& before) {
   std::set<NodeId> old;
   for (const PlacedNode& placed : before) old.insert(placed.node->id);
@@ -141,7 +141,6 @@ std::optional<Desk::Asked> Desk::asked_for(const std::vector<Edit>& list) const 
   return std::nullopt;
 }
 
-// The preview that stood for a job; what was begun since goes on.
 void Desk::end_preview(std::size_t shown) {
   if (previews.requests() == shown)
     drop_preview();
@@ -161,7 +160,7 @@ void Desk::change(std::string title, Worker::Job job, std::function<void()> then
   at_rest_ = false;
   const auto ending = [this, shown = previews.requests()](std::function<void()> after) {
     return [this, shown, after = std::move(after)] {
-      end_preview(shown);  // what was not done is not shown either
+      end_preview(shown);  // also after a failure
       if (after) after();
     };
   };

@@ -28,9 +28,11 @@ namespace rebake {
 
 struct SelectPicture;
 
-/// What the window shows beside the document: panels, tools and commands act upon it, each on the part that it needs.
-/// What people make is in the document, which the worker owns; `now` is a copy.
+/// The window's state apart from the document, shared by panels, tools and commands. The worker owns the document;
+/// `now` is a snapshot of it. All changes of the document go through edit(), edits() and their variants, as jobs of the
+/// worker.
 struct Desk {
+  /// `wake` makes the window draw a frame; it is called from other threads.
   explicit Desk(Settings with, std::function<void()> wake);
   Desk(const Desk&) = delete;
   Desk& operator=(const Desk&) = delete;
@@ -43,27 +45,28 @@ struct Desk {
   Previews previews;
   Relighter relighter;
   Jobs jobs;
-  std::shared_ptr<const Snapshot> now;
+  std::shared_ptr<const Snapshot> now;  ///< latest snapshot of the document
   Project project;
-  std::string status;  ///< what was done last, in a sentence
+  std::string status;  ///< text of the status bar: a sentence about the last step
 
-  std::set<NodeId> active;  ///< picked nodes: what panels, gizmos and tools work on
-  /// Drawn in place of the scene that it was made of, while something is dragged or typed, and until the job that
-  /// carries it out has ended.
+  std::set<NodeId> active;  ///< picked nodes, on which panels, gizmos and tools work
+  /// Drawn instead of the document's scene during a drag or while a form is open, and until the job that applies the
+  /// edits has ended.
   std::optional<Preview> preview;
-  /// Has what edits would make of a scene (left out: the present one) shown in its place, as soon as it is made; before
-  /// that what `quick` makes, where there is one. Where these very edits are made then, nothing is carried out again.
+  /// Computes the result of edits on `from` (default: the current scene) in the background and shows it as the preview.
+  /// `quick` computes an approximation to show first. If the same edits are applied later, this result is reused.
   void show_preview(std::vector<Edit> list, std::optional<Scene> from = {}, Previews::Make quick = {});
+  /// Hides the preview and cancels its computation.
   void drop_preview();
-  /// What the viewport draws.
+  /// The scene that the viewport draws: the preview, if it belongs to the current scene.
   const Scene& shown() const { return preview && preview->of == scene().roots ? preview->scene : scene(); }
 
-  /// Takes in what the worker did.
+  /// Fetches snapshot, messages and finished callbacks from the worker, and the latest preview. Call once per frame.
   void update();
-  /// Whether `now` is what the document holds: nothing was being done when it was taken.
+  /// Whether no job was running or waiting when `now` was fetched, so that it equals the document.
   bool at_rest() const { return at_rest_; }
 
-  /// An edit of triangles, of the picked nodes only where there are some; for edits with a field `node`.
+  /// Applies an edit of triangles to each node of scope(), as one step. T has a field `node`.
   template <class T>
   void edit_scope(T wanted) {
     std::vector<Edit> list;
@@ -73,71 +76,76 @@ struct Desk {
     }
     edits(list);
   }
-  /// The picked nodes that hold something to select or deform, or one empty entry for all that is visible and not
-  /// locked, when none is picked. With `selected` those that hold selected triangles only.
+  /// Nodes that commands work on: visible, unlocked nodes with an object that are picked or inside picked groups. With
+  /// `selected`, only those with selected triangles. If nothing is picked: one empty entry, which stands for all
+  /// visible, unlocked nodes.
   std::vector<std::optional<NodeRef>> scope(bool selected = false) const;
-  /// "in kettle", "in 3 objects", "in all".
+  /// "in kettle", "in 3 picked", "in all".
   std::string scope_words() const;
 
+  /// As edits() with one edit.
   void edit(const Edit& edit);
-  /// All of them as one step of history, or none where one fails; `then` once they are done, `otherwise` when they
-  /// failed or were stopped.
+  /// Applies all edits as one step of history, or none if one fails. Asynchronous: update() calls `then` after success,
+  /// `otherwise` after failure or cancellation.
   void edits(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
-  /// Like edits(), but records nothing if no node changes; the status line then shows the reports.
+  /// As edits(), but records no step if no node changes; the status bar then shows the edits' reports.
   void edits_that_change(const std::vector<Edit>& list);
-  /// In place of the last step, which is taken back; where they fail it stays.
+  /// Replaces the last step by these edits. The last step stays if they fail.
   void adjust(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
-  /// In place of the last step, as a step of its own: undo returns to the last one.
+  /// As adjust(), but adds a new step: undo returns to the replaced one.
   void revise(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
   void undo(int steps = 1);
   void redo(int steps = 1);
   const Scene& scene() const { return now->scene; }
-  /// Active nodes that lie in no other active one.
+  /// Picked nodes without those inside other picked nodes.
   std::vector<NodeId> active_tops() const;
-  /// Of the active nodes, or of everything visible when none is.
+  /// World box of the picked nodes; of everything visible if nothing is picked.
   Box focus() const;
-  /// What deforming tools take, an edit each: selected triangles (of the picked nodes, where there are some), else the
-  /// first picked node, else the first that shows; empty in an empty scene.
+  /// Targets of deformation tools, one edit per target: the selected triangles in scope(), else the first visible,
+  /// unlocked node with an object that is picked (any such node if nothing is picked). Empty if there is none.
   std::vector<DeformTarget> deform_targets() const;
-  /// The nodes whose triangles those would move.
+  /// Nodes whose triangles deform_targets() would move.
   std::set<NodeId> deform_nodes() const;
-  /// World box of those.
+  /// World box of the targets' triangles.
   Box deform_bounds(const std::vector<DeformTarget>& targets) const;
-  /// Number of selected triangles in the scope: those that Delete and other commands change.
+  /// Number of selected triangles in scope(), which Delete and other commands change.
   std::size_t selected_triangles() const;
-  /// Nodes with selected triangles that commands leave alone: not picked, hidden or locked.
+  /// Nodes outside scope() that have selected triangles: not picked, hidden or locked.
   std::vector<NodeId> selected_out_of_scope() const;
   /// "313 selected in kettle, 9312 elsewhere"; empty if nothing is selected.
   std::string selected_words() const;
-  /// The last selecting, where it took in a picture what was seen only; else null.
+  /// The last selection edit, if it selected only visible triangles in a picture; else null.
   const SelectPicture* seen_last() const;
+  /// Frames the selected triangles, else the picked nodes, else everything visible.
   void frame_view();
 
  private:
-  /// Whether an edit wants selected triangles to be there.
+  /// Whether an edit needs selected triangles in its node.
   template <class T>
   static constexpr bool needs_selection = false;
-  /// A job that changes the document, for which the present preview stands until it has ended.
+  /// Starts a job that changes the document. The current preview is shown until the job has ended.
   void change(std::string title, Worker::Job job, std::function<void()> then, std::function<void()> otherwise);
   using Replace = void (Session::*)(const std::vector<Edit>&, const CarriedOut*);
   void replace_last(Replace how, const std::vector<Edit>& list, std::function<void()> then,
                     std::function<void()> otherwise);
+  /// Removes the preview of an ended job; `shown`: previews.requests() at the job's start. Newer requests go on.
   void end_preview(std::size_t shown);
-  /// Edits that a preview was asked for of, and what it makes of them; null where it made nothing.
+  /// A requested preview: its edits, and their result when computed. The result is null if the edits failed.
   struct Asked {
     std::vector<Edit> list;
     std::shared_future<std::shared_ptr<const CarriedOut>> made;
   };
-  /// Those edits as they were asked for last, else nothing.
+  /// The requested preview, if it has these edits.
   std::optional<Asked> asked_for(const std::vector<Edit>& list) const;
+  /// Picks the nodes that are not in `before`.
   void pick_new(const std::vector<PlacedNode>& before);
-  /// Titles of the steps that undoing (negative) or redoing so many passes.
+  /// Title of the step that undo (steps < 0) or redo reaches, or "N steps" for several.
   std::string title_of_steps(int steps) const;
-  std::optional<Asked> asked_;
+  std::optional<Asked> asked_;  ///< the last requested preview
   bool in_scope(const PlacedNode& placed) const;
-  std::map<NodeId, std::size_t> selected_;  ///< number of selected triangles, of nodes that have some
+  std::map<NodeId, std::size_t> selected_;  ///< number of selected triangles per node, without zeros
   bool at_rest_ = false;
-  bool fresh_ = true;  ///< nothing was shown yet: the first scene is framed
+  bool fresh_ = true;  ///< no scene was shown yet: the first one is to be framed
 };
 
 template <>

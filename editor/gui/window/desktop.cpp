@@ -21,7 +21,7 @@ bool desktop_is_dark() {
   std::array<char, 128> text{};
   const std::size_t size = std::fread(text.data(), 1, text.size() - 1, answer);
   ::pclose(answer);
-  // "(<<uint32 1>>,)": 1 is dark, 2 light, 0 no wish.
+  // "(<<uint32 1>>,)": 1 means dark, 2 light, 0 no preference.
   return std::string(text.data(), size).find("uint32 2") == std::string::npos;
 }
 

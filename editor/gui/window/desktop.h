@@ -10,19 +10,21 @@
 
 namespace rebake {
 
-/// Whether the desktop wants dark windows: what its portal says (org.freedesktop.appearance), else GTK_THEME; dark
-/// where nobody says anything. Asks another program, for at most half a second.
+/// Whether the desktop prefers dark windows: by the environment variable GTK_THEME if set, else by the desktop portal
+/// (org.freedesktop.appearance). Dark without an answer. Blocks for at most half a second.
 bool desktop_is_dark();
 
-/// The desktop's own file dialog, in a process beside this one: zenity's or kdialog's, whichever is installed.
+/// The desktop's file dialog in a child process: zenity, else kdialog.
 class DesktopFileDialog {
  public:
   enum class Kind { open_folders, open_file, save_file, save_folder };
+  /// Whether zenity or kdialog is installed.
   static bool there();
 
-  /// `ending` of the files that are shown, e.g. ".rebake"; empty for all. Throws Error where it cannot be started.
+  /// Opens the dialog. `start`: initial path; `ending`: extension of the files to list, e.g. ".rebake"; empty for all.
+  /// Throws Error if the program cannot be started.
   DesktopFileDialog(Kind kind, const std::string& title, const std::filesystem::path& start, const std::string& ending);
-  /// Nothing while it is open; then the paths that were chosen, none when it was cancelled.
+  /// Nothing while the dialog is open; then the chosen paths, empty if it was cancelled. Does not block.
   std::optional<std::vector<std::string>> answer();
 
  private:

@@ -28,12 +28,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Frames that Dear ImGui needs after an event until hovering, popups and focus have settled.
+// Number of frames after an event until hovering, popups and focus of Dear ImGui have settled.
 constexpr int frames_after_event = 4;
-// Seconds without an event before a program is made that another view may want.
+// Seconds without an event before a shader program for another view is compiled.
 constexpr double before_making_ahead = 0.3;
 
-/// The loop: events, keys, frames, and what lives on the GPU.
+/// Event loop of the editor. Handles keys, draws frames, and owns all GPU objects.
 class EditorWindow {
  public:
   explicit EditorWindow(const std::vector<std::string>& paths)
@@ -64,7 +64,7 @@ class EditorWindow {
       else if (rests)
         viewport().make_ahead(desk_);
       else if (desk_.jobs.worker.busy() || dialogs_.waits())
-        frames_ = std::max(frames_, 1);  // one that shows how far it is, and a pause
+        frames_ = std::max(frames_, 1);  // one frame to update the progress bar
       if (pause == 0) paused(waits);
       if (desk_.now != desk_.jobs.worker.snapshot()) frames_ = frames_after_event;
       frames_ = std::max(0, frames_ - 1);
@@ -85,7 +85,7 @@ class EditorWindow {
       }
       keep_settings();
     }
-    // The work is saved, or not wanted.
+    // The work is saved or discarded, so the journal is no longer needed.
     desk_.jobs.worker.cancel();
     desk_.jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
     while (desk_.jobs.worker.busy()) window().wait(0.02);
@@ -103,7 +103,7 @@ class EditorWindow {
         longest_pause_ms_, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count());
   }
 
-  /// What lives on the GPU, and ends with its context.
+  /// All GPU objects. They are destroyed together with their context.
   struct Graphics {
     Window window;
     Renderer renderer;
@@ -123,7 +123,7 @@ class EditorWindow {
     const auto prepare = [&renderer = graphics_->renderer](const Scene& scene) { renderer.prepare(scene); };
     desk_.jobs.worker.set_prepare(prepare);
     desk_.previews.set_prepare(prepare);
-    // Nothing may be thrown through the window system.
+    // Exceptions must not pass through GLFW's C code.
     window().on_key = [this](const KeyPress& press) {
       try {
         key(press);
@@ -140,13 +140,13 @@ class EditorWindow {
     };
   }
 
-  // The document is not touched: it lives in the worker. Nor are the tools.
+  // Recreates window and GPU objects. Document (owned by the worker) and tools are not affected.
   void restart_graphics() {
     desk_.jobs.restarts_graphics = false;
     desk_.jobs.worker.set_prepare(nullptr);
     desk_.previews.set_prepare(nullptr);
     graphics_.reset();
-    // A driver that was reset may need a while.
+    // A driver may need some time after a reset: retries for 10 s.
     constexpr int tries = 20;
     for (int k = 1; !graphics_; ++k) {
       try {
@@ -163,7 +163,7 @@ class EditorWindow {
     desk_.messages.say("The graphics were made anew; the work is as it was.");
   }
 
-  // On the disk once nothing is held any more, so that they are there however the editor ends.
+  // Writes changed settings when no button is held, so that they survive a crash.
   void keep_settings() {
     desk_.settings.window_width = static_cast<int>(window().width() / scale_);
     desk_.settings.window_height = static_cast<int>(window().height() / scale_);
@@ -181,19 +181,19 @@ class EditorWindow {
     const bool plain = !press.control && !press.alt;
     if (press.key == GLFW_KEY_ESCAPE) {
       const bool in_panel = !desk_.asking.palette && !desk_.asking.keys && desk_.asking.form.empty() && !asks();
-      // A field takes its own.
+      // A number field or text box handles Escape itself.
       if (in_panel && (ui::cancel_drag() || ui::takes_text())) return;
       escape();
       return;
     }
-    // The sheet of keys lies over all: what is not seen is not done.
+    // The sheet of keys covers the window: commands would run unseen.
     if (desk_.asking.keys && press.key != GLFW_KEY_F1) return;
-    // Text fields take what is typed; commands with Ctrl other than those of editing text go on working.
+    // Text boxes get all keys except Ctrl+S and Ctrl+P (or with Alt).
     if ((ui::takes_text() || desk_.asking.palette) && (plain || (press.key != GLFW_KEY_S && press.key != GLFW_KEY_P)))
       return;
     if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) return;
     if (viewport().key(desk_, press)) return;
-    if (viewport().tool(desk_).busy()) return;  // nothing else happens during a drag
+    if (viewport().tool(desk_).busy()) return;  // no commands during a drag
     const bool letter = press.key >= 'A' && press.key <= 'Z';
     if (desk_.view.flying && plain && letter &&
         std::string_view("WASDQE").find(static_cast<char>(press.key)) != std::string_view::npos)
@@ -206,7 +206,7 @@ class EditorWindow {
       desk_.messages.say(std::string(command->title) + ": there is nothing to do it with.");
   }
 
-  // Whether a dialog waits for an answer.
+  // Whether a dialog is open that needs an answer.
   bool asks() const {
     return desk_.asking.path != PathQuestion::none || desk_.asking.quitting || !desk_.project.recoverable.empty() ||
            desk_.project.relinking.has_value() || !desk_.project.to_open.empty();
@@ -215,7 +215,7 @@ class EditorWindow {
   void escape() {
     if (dialogs_.escape(desk_)) return;
     if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) {
-      dialogs_.close_popups();  // a menu or a list of choices
+      dialogs_.close_popups();  // a menu or a drop-down list
       return;
     }
     if (desk_.asking.palette || desk_.asking.keys) {
@@ -236,7 +236,7 @@ class EditorWindow {
     }
   }
 
-  // Colours, distances and fonts of the window, where they are not as they are wanted.
+  // Applies theme, scale and fonts if they have changed.
   void set_looks() {
     const Settings& settings = desk_.settings;
     const bool dark = settings.looks == Looks::dark || (settings.looks == Looks::system && system_dark_);
@@ -263,7 +263,7 @@ class EditorWindow {
     tell();
   }
 
-  // For other programs: what is true of the frame that was just drawn.
+  // Reports the state of the frame that was just drawn to test programs.
   void tell() {
     if (!announce::on()) return;
     nlohmann::json state;
@@ -313,31 +313,31 @@ class EditorWindow {
 
   fs::path settings_file_;
   std::string settings_problem_;
-  Settings kept_settings_;  ///< as they are on the disk
+  Settings kept_settings_;  ///< settings as last written to disk
   WindowSystem system_;
   Tools tools_;
   std::unique_ptr<Graphics> graphics_;
-  std::vector<LostWork> lost_;  ///< looked for before this editor's own journal is begun
+  std::vector<LostWork> lost_;  ///< found before this editor begins its own journal
   Desk desk_;
   WindowLayout layout_{desk_};
   Dialogs dialogs_;
-  double scale_ = 1;  ///< pixels of the screen a pixel of a plain one
+  double scale_ = 1;  ///< framebuffer pixels per logical pixel: the monitor's scale × Settings::text_scale
   struct WantedLooks {
     bool dark;
     double scale;
     bool operator==(const WantedLooks&) const = default;
   };
-  std::optional<WantedLooks> looks_of_;   ///< what is set
-  bool system_dark_ = desktop_is_dark();  ///< as the desktop was when the editor began
-  int frames_ = 0;                        ///< still to be drawn after the last event
-  double longest_pause_ms_ = 0;           ///< between two frames while there was something to draw, since the last key
+  std::optional<WantedLooks> looks_of_;   ///< theme and scale that are applied; empty: none yet
+  bool system_dark_ = desktop_is_dark();  ///< the desktop's preference at the start
+  int frames_ = 0;                        ///< number of frames still to be drawn after the last event
+  double longest_pause_ms_ = 0;           ///< longest time between two frames that were due, since the last key press
   std::string title_;
 };
 
 }  // namespace
 
 void run_editor(const std::vector<std::string>& paths) {
-  // An editor that is told to end does so at once: its journal keeps the work.
+  // SIGINT and SIGTERM end the editor at once; the journal holds the work.
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
   EditorWindow(paths).run();

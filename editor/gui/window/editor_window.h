@@ -5,8 +5,8 @@
 
 namespace rebake {
 
-/// Opens the editor on folders, scenes or a project, and returns when it is closed. Throws DeviceError where no window
-/// can be opened.
+/// Opens the editor window with baked folders, scenes or one project, and returns when the window is closed. Throws
+/// DeviceError if no window can be opened.
 void run_editor(const std::vector<std::string>& paths);
 
 }  // namespace rebake

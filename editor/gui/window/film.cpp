@@ -22,8 +22,8 @@ Film::Film(fs::path out, int width, int height, std::vector<Camera> cameras, con
       throw Error("a video needs the program ffmpeg, which is not installed; a folder gets pictures");
     pictures_ = cache_folder() / fmt::format("film-{}", ::getpid());
     std::error_code nothing;
-    fs::remove_all(pictures_, nothing);  // of an editor that was killed
-    // Sizes that video formats take are even.
+    fs::remove_all(pictures_, nothing);  // left by an editor with the same process id that was killed
+    // Video in yuv420p needs even sizes.
     width_ += width_ % 2;
     height_ += height_ % 2;
   }

@@ -12,35 +12,37 @@
 
 namespace rebake {
 
-/// Pictures along a way of the camera: in a folder as 000.png, 001.png, …, or a video that ffmpeg makes of them.
+/// Rendering job for a camera animation: a folder of pictures 000.png, 001.png, …, or a video that ffmpeg encodes from
+/// them.
 class Film {
  public:
-  static constexpr int rate = 25;  ///< pictures a second of a video
+  static constexpr int rate = 25;  ///< frames per second of a video
 
-  /// A video where `out` ends in .mp4, else a folder. Throws Error where it cannot be written there, and for a video
-  /// without ffmpeg.
+  /// A video if `out` ends in .mp4, else a folder. `width`, `height` in pixels, made even for a video. Throws Error if
+  /// `out` is protected by `sources` or cannot be created, or if a video is requested without ffmpeg.
   Film(std::filesystem::path out, int width, int height, std::vector<Camera> cameras, const SourceGuard& sources);
+  /// Stops ffmpeg and removes a video's pictures.
   ~Film();
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// "Picture 3 of 36", "Making the video".
+  /// Progress for the status bar: "Picture 3 of 36" or "Making the video".
   std::string doing() const;
-  /// Has the next picture written by `write`, or looks whether ffmpeg is done. What there is to say once all is, else
-  /// nothing. Throws Error.
+  /// Does one step: writes the next picture by `write`, or checks whether ffmpeg has ended. Returns a message when all
+  /// is done, else an empty string. Throws Error.
   std::string go_on(const std::function<void(const Camera&, const std::filesystem::path&)>& write,
                     const SourceGuard& sources);
-  /// Whether it only waits for ffmpeg.
+  /// Whether all pictures are written and ffmpeg is running.
   bool waits() const { return encoder_ != nullptr; }
-  /// What is there when it is stopped now.
+  /// Message for a job that is cancelled now: which pictures exist.
   std::string stopped() const;
 
  private:
   bool video() const { return !pictures_.empty() && pictures_ != out_; }
-  std::filesystem::path out_, pictures_;  ///< what people asked for; the folder of its pictures
+  std::filesystem::path out_, pictures_;  ///< requested output; folder of the pictures
   int width_, height_;
   std::vector<Camera> cameras_;
-  std::size_t next_ = 0;
+  std::size_t next_ = 0;  ///< index of the next picture
   std::unique_ptr<ChildProcess> encoder_;
 };
 

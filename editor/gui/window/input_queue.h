@@ -5,21 +5,21 @@
 
 namespace rebake {
 
-/// One thing that pointer or keyboard did, as GLFW tells it.
+/// A pointer or keyboard event of GLFW.
 struct InputEvent {
   enum class Kind { move, wheel, button, key, repeat, text };
   Kind kind;
-  int code = 0;       ///< button, key or character
-  int scancode = 0;   ///< of keys
-  bool down = false;  ///< pressed, not released
-  int modifiers = 0;
-  double x = 0, y = 0;  ///< where the pointer is, or how far the wheel turned
+  int code = 0;         ///< GLFW's button or key code, or a Unicode character
+  int scancode = 0;     ///< scancode of a key
+  bool down = false;    ///< true: pressed or repeated; false: released
+  int modifiers = 0;    ///< GLFW's modifier bits
+  double x = 0, y = 0;  ///< pointer position in window pixels, or offset of the wheel
 };
 
-/// How many of the waiting events one frame may see. Whoever looks at the state of buttons and keys once a frame, as
-/// Dear ImGui 1.86 does, misses a press and release that fall into one frame, puts a press where the pointer went
-/// later, and mixes keys with text. So a frame ends before a second change of a button or key, and before the pointer
-/// moves on from where the first happened or the wheel turned. What is held (repeats) never makes a frame wait.
+/// Number of queued events that one frame may process. Dear ImGui 1.86 samples buttons and keys once per frame: it
+/// misses a press and release within one frame, places a press at the pointer's last position, and mixes the order of
+/// keys and text. So a frame ends before a second press or release, and before a move that follows a press, release or
+/// wheel event. Key repeats never end a frame.
 inline std::size_t events_of_frame(const std::deque<InputEvent>& waiting) {
   using Kind = InputEvent::Kind;
   bool changed = false, turned = false;

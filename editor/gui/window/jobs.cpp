@@ -8,7 +8,7 @@ namespace rebake {
 
 void Jobs::measure_costs(const ViewState& view, const Scene& scene) {
   auto measured = std::make_shared<Costs>();
-  // The reference takes 64 samples a pixel, which drivers hold for so many pixels.
+  // The reference needs 64 samples per pixel; larger pictures may exceed the limits of drivers.
   constexpr double most_pixels = 1e6;
   const double scale = std::min(1.0, std::sqrt(most_pixels / (static_cast<double>(view.width) * view.height)));
   measured->view = {view.camera, std::max(1, static_cast<int>(view.width * scale)),
@@ -18,13 +18,13 @@ void Jobs::measure_costs(const ViewState& view, const Scene& scene) {
   worker.start(
       "measure",
       [measured](Session& session) {
-        constexpr int frames = 5;  // the median counts
+        constexpr int frames = 5;  // times are medians of 5
         const StudyInput input{[&session]() -> Renderer& { return session.renderer(); }, session.scene(),
                                measured->view, frames, session.progress};
         for (const auto study : {study_samples, study_resolution})
           for (StudyTable::Row& row : study(input).rows) measured->rows.push_back(std::move(row));
         measured->device = session.renderer().device();
-        session.drop_renderer();  // a second copy of the scene on the GPU
+        session.drop_renderer();  // frees a second copy of the scene on the GPU
       },
       [this, measured] { costs = measured; });
 }

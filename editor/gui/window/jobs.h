@@ -14,31 +14,31 @@
 
 namespace rebake {
 
-/// Long work: the worker's, and what the window itself carries out, a picture a frame.
+/// Long operations: the worker's jobs, and rendering jobs that the viewport runs with one picture per frame.
 struct Jobs {
   explicit Jobs(std::function<void()> wake) : worker(std::move(wake)) {}
 
   Worker worker;
-  bool restarts_graphics = false;
+  bool restarts_graphics = false;  ///< request to recreate all GPU objects
 
   struct Screenshot {
     std::filesystem::path path;
-    int width = 0, height = 0;  ///< pixels
+    int width = 0, height = 0;  ///< size in pixels
   };
-  std::optional<Screenshot> screenshot;
-  std::optional<Film> film;
-  std::vector<NodeRef> pictured;  ///< only these are in them; empty: all
+  std::optional<Screenshot> screenshot;  ///< screenshot to be written in the next frame
+  std::optional<Film> film;              ///< running animation job
+  std::vector<NodeRef> pictured;         ///< nodes that screenshots and films show; empty: all
 
-  /// What choices cost and how wrong each is, in one view of one scene.
+  /// Measured time and error of rendering choices, for one view of one scene.
   struct Costs {
     View view;
     std::vector<NodePtr> roots;
     Color background;
-    std::vector<StudyTable::Row> rows;  ///< as picture_table() has them
-    std::string device;
+    std::vector<StudyTable::Row> rows;  ///< values in the columns of picture_table()
+    std::string device;                 ///< name of the GPU
   };
-  std::shared_ptr<const Costs> costs;
-  /// Fills `costs` for what is looked at now.
+  std::shared_ptr<const Costs> costs;  ///< the last measurement; null before the first
+  /// Starts a job that measures samples per pixel and resolutions in this view and then sets `costs`.
   void measure_costs(const ViewState& view, const Scene& scene);
 };
 

@@ -21,7 +21,7 @@ namespace {
 
 fs::path trash_folder() { return journal_folder().parent_path() / "trash"; }
 
-// The name of what an edit imports, and of further imports of the same step.
+// Adds the names of the scenes that a journal entry imports, without duplicates.
 void add_sources(const json& entry, std::vector<std::string>& names) {
   const auto add = [&](const json& edit) {
     if (edit.value("op", "") != "import" || !edit.contains("path")) return;
@@ -39,7 +39,7 @@ std::string joined(const std::vector<std::string>& names) {
   return all.empty() ? "an empty scene" : all;
 }
 
-// What a folder holds; journals in use and empty ones left out.
+// Work in a folder, without journals that are in use or empty.
 std::vector<LostWork> work_in(const fs::path& folder, bool discarded) {
   std::vector<LostWork> found;
   std::error_code error;
@@ -57,7 +57,7 @@ std::vector<LostWork> work_in(const fs::path& folder, bool discarded) {
     try {
       const Journal::Contents contents = Journal::read(path);
       if (contents.entries.empty() && contents.damaged_line == 0) {
-        // Nothing was done there; a fresh one may be another editor's that is just starting.
+        // Deletes empty journals, but not new ones: another editor may just be starting.
         if (!unknown && fs::file_time_type::clock::now() - written > std::chrono::minutes(1)) fs::remove(path, unknown);
         continue;
       }
@@ -74,7 +74,7 @@ std::vector<LostWork> work_in(const fs::path& folder, bool discarded) {
   return found;
 }
 
-// Files of a folder for which `is_stale` holds.
+// Deletes the files of a folder for which `is_stale` returns true.
 template <class IsStale>
 void sweep(const fs::path& folder, IsStale is_stale) {
   std::vector<fs::path> stale;
@@ -84,7 +84,7 @@ void sweep(const fs::path& folder, IsStale is_stale) {
   for (const fs::path& path : stale) fs::remove(path, error);
 }
 
-// Discarded work that is old, counted from when it was discarded.
+// Deletes work that was discarded more than trash_days ago; discard() sets the file time.
 void empty_trash() {
   sweep(trash_folder(), [now = fs::file_time_type::clock::now()](const fs::path& path) {
     std::error_code unknown;
@@ -125,7 +125,7 @@ void discard(const LostWork& work) {
   if (Journal::in_use(work.journal))
     throw fs::filesystem_error("discard", work.journal, std::make_error_code(std::errc::device_or_resource_busy));
   fs::create_directories(trash_folder());
-  // The trash counts from here.
+  // The days in the trash are counted from this time.
   fs::last_write_time(work.journal, fs::file_time_type::clock::now());
   fs::rename(work.journal, trash_folder() / work.journal.filename());
 }

@@ -6,7 +6,8 @@
 
 namespace rebake {
 
-/// What was said to people: all of it in the log, the latest also over the picture for a while.
+/// Messages to the user. The log has all of them; recent ones are also shown over the viewport (toasts) for 5 s, errors
+/// until they are closed.
 class Messages {
  public:
   using Clock = std::chrono::steady_clock;
@@ -14,24 +15,25 @@ class Messages {
     std::string text;
     bool failed = false;
     Clock::time_point said;
-    bool read = false;  ///< people closed it
+    bool read = false;  ///< no longer shown over the viewport: closed, or only meant for the log
   };
 
+  /// Adds a message that is shown for 5 s.
   void say(std::string text) { add(std::move(text), false); }
-  /// To the log only.
+  /// Adds a message to the log only.
   void note(std::string text) {
     add(std::move(text), false);
     log_.back().read = true;
   }
-  /// What failed stays over the picture until it is closed.
+  /// Adds an error, which is shown until it is closed.
   void fail(std::string text) { add(std::move(text), true); }
   const std::vector<Line>& log() const { return log_; }
-  /// Lines that are to be seen over the picture, oldest first.
+  /// Indices in log() of the messages to show over the viewport: the latest four, oldest first.
   std::vector<std::size_t> shown() const;
   void close(std::size_t line) { log_[line].read = true; }
-  /// False when none that failed was to be seen.
+  /// Closes all errors; false if none was open.
   bool close_failures();
-  /// Seconds until what is shown changes by itself; negative for never.
+  /// Seconds until the next shown message expires; negative: never.
   double changes_in() const;
 
  private:

@@ -70,7 +70,7 @@ void Previews::make(std::unique_lock<std::mutex>& lock, const std::vector<NodePt
     const std::lock_guard ready(prepare_mutex_);
     if (prepare_) prepare_(made->scene);
   } catch (const std::exception&) {
-    // What cannot be done is said when it is to be done.
+    // Not reported: applying the edits fails with the same error.
   }
   lock.lock();
   if (made && !cancel_) made_ = std::move(made);

@@ -12,42 +12,43 @@
 
 namespace rebake {
 
-/// A scene that is drawn in place of the one it was made of.
+/// A scene that is drawn instead of the document's scene.
 struct Preview {
   Scene scene;
-  std::vector<NodePtr> of;  ///< the roots of the scene that it stands for
+  std::vector<NodePtr> of;  ///< roots of the scene that it was computed for
 };
 
-/// Makes previews off the window's thread. What is asked for last is made; what was asked for meanwhile is not.
+/// Computes previews on a background thread, latest wins: a request replaces one that has not started.
 class Previews {
  public:
   using Make = std::function<Scene(const Progress&)>;
-  /// `wake` is called, from another thread, when there is one to take.
+  /// `wake` is called from the background thread when a preview is ready.
   explicit Previews(std::function<void()> wake);
   ~Previews();
   Previews(const Previews&) = delete;
   Previews& operator=(const Previews&) = delete;
 
-  /// `make` may throw Error: there is no preview then, and what is shown stays. `exact` makes a better one of the same,
-  /// where there is one, while nothing else is asked for.
+  /// Requests a preview for the scene with roots `of`. If `make` throws, there is no new preview. If `exact` is set, it
+  /// then computes a better preview, until the next request cancels it.
   void request(std::vector<NodePtr> of, Make make, Make exact = {});
-  /// Called with every preview before it can be taken, on their thread; null for none.
+  /// `prepare` is called on the background thread with each scene before take() can return it; null for none.
   void set_prepare(std::function<void(const Scene&)> prepare);
-  /// What is being made is stopped where something later was asked for: nobody wants to see it any more.
+  /// Cancels the running computation if a newer request is waiting.
   void drop_stale();
-  /// Nothing is wanted any more; what is being made is stopped where it can be.
+  /// Discards all requests and results, and cancels the running computation.
   void drop();
-  /// How many were asked for so far.
+  /// Number of requests so far.
   std::size_t requests() const;
-  /// Whether one is being made or waits to be.
+  /// Whether a computation is running or waiting.
   bool busy() const;
-  /// The latest that is done, once.
+  /// Returns the latest result, once.
   std::optional<Preview> take();
 
  private:
   void loop();
   void make(std::unique_lock<std::mutex>& lock, const std::vector<NodePtr>& of, const Make& make);
 
+  /// A request().
   struct Wanted {
     std::vector<NodePtr> of;
     Make make, exact;
@@ -57,12 +58,12 @@ class Previews {
   std::function<void(const Scene&)> prepare_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<Wanted> wanted_;
-  std::optional<Preview> made_;
+  std::optional<Wanted> wanted_;  ///< the waiting request
+  std::optional<Preview> made_;   ///< the latest result, until take()
   std::size_t requests_ = 0;
-  bool running_ = false, refining_ = false, ending_ = false;
+  bool running_ = false, refining_ = false, ending_ = false;  ///< refining_: `exact` of a request is running
   std::atomic<bool> cancel_ = false;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // declared last because it uses the other members
 };
 
 }  // namespace rebake

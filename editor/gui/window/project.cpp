@@ -54,7 +54,7 @@ void Project::open(const std::vector<std::string>& paths, bool wanted) {
     worker_.start(
         "import",
         [import](Session& session) {
-          // The first object stands on the ground.
+          // The first import sets the ground plane at its lowest point.
           Import one = import;
           one.ground = session.scene().roots.empty();
           session.edit(one);
@@ -74,7 +74,7 @@ void Project::open_project(const fs::path& file, const Relinked& links) {
           session.document.discard_journal();
           session.document = std::move(opened);
         } catch (const SourcesGone& moved) {
-          *gone = moved.sources;  // asked for
+          *gone = moved.sources;  // the user is asked for new paths
         }
       },
       [this, file, links, gone] {
@@ -98,7 +98,7 @@ void Project::recover(const fs::path& journal, const Relinked& links, bool go_on
       [journal, links, gone, problem, go_on_without, keeps_present = unsaved()](Session& session) {
         Document::Recovered recovered = Document::recover(journal, links, session.progress);
         *gone = recovered.gone;
-        if (!gone->empty() && !go_on_without) return;  // asked for
+        if (!gone->empty() && !go_on_without) return;  // the user is asked for new paths
         if (!recovered.document.keeps_journal()) keep_journal(recovered.document);
         const fs::path present = session.document.journal_path();
         if (!keeps_present) session.document.discard_journal();
@@ -113,7 +113,7 @@ void Project::recover(const fs::path& journal, const Relinked& links, bool go_on
         if (recovered.torn) said += "; one more was being made when the editor ended: it is lost";
         session.say(said);
         if (recovered.lost.empty()) {
-          // The new journal holds it all.
+          // The new journal holds everything.
           if (recovered.journal) recovered.journal->discard();
           return;
         }
@@ -171,7 +171,7 @@ void Project::save(const fs::path& file) {
         for (const std::string& warning : *warnings) messages_.fail(warning);
         if (saved_then) std::exchange(saved_then, nullptr)();
       },
-      // What was to follow is not wanted any more: another save is another thing.
+      // After a failed save the follow-up is dropped, so that a later save does not trigger it.
       [this] { saved_then = nullptr; });
 }
 
@@ -195,7 +195,7 @@ void Project::export_to(const fs::path& folder, const std::vector<NodeRef>& node
       action.way = plain->way;
     }
     run(session, action);
-    session.drop_renderer();  // its copy of the scene on the GPU, where losses were measured
+    session.drop_renderer();  // frees the copy of the scene on the GPU that measured the loss
   });
 }
 

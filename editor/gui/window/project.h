@@ -16,56 +16,59 @@
 
 namespace rebake {
 
-/// What the document is on disk: where it came from, where it is saved, and what is to be got back.
+/// Files of the document: imports, project file, export, scripts, and recovery of lost work. Starts jobs of the worker;
+/// errors are shown as messages.
 class Project {
  public:
-  /// All of these outlive it. `opened` is called when another document is there.
+  /// The references must outlive this object. `opened` is called after a project has been opened.
   Project(Worker& worker, Settings& settings, Messages& messages, const std::shared_ptr<const Snapshot>& now,
           std::function<void()> opened)
       : worker_(worker), settings_(settings), messages_(messages), now_(now), opened_(std::move(opened)) {}
 
-  std::filesystem::path path;        ///< empty until it has been saved
-  std::vector<std::string> to_open;  ///< a project that waits for people's word
-  std::function<void()> saved_then;  ///< once the project is saved
-  Scene imported;                    ///< as it was before anything but imports was done, or as a project was opened
-  /// Shows a failure as messages do.
+  std::filesystem::path path;        ///< project file; empty until the document is saved or opened
+  std::vector<std::string> to_open;  ///< project to open after the question about unsaved work; empty for none
+  std::function<void()> saved_then;  ///< called once after the next successful save
+  Scene imported;                    ///< scene for comparison: after the imports, or as the project was opened
+  /// Shows an error message.
   void say_failed(const std::string& problem) { messages_.fail(problem); }
-  std::vector<LostWork> recoverable;  ///< what the recovery dialog lists; empty when it is closed
-  /// Sources that a project or journal wants, and that are not where they were.
+  std::vector<LostWork> recoverable;  ///< entries of the recovery dialog; empty: the dialog is closed
+  /// A question for the new paths of sources that a project or journal needs and that were moved, removed or changed.
   struct Relinking {
     struct Source {
-      std::filesystem::path path;
-      std::string trouble;
-      std::string now;  ///< where people say it is
+      std::filesystem::path path;  ///< path as imported
+      std::string trouble;         ///< description of the problem
+      std::string now;             ///< new path, as edited in the dialog
     };
-    std::filesystem::path wanted_by;
+    std::filesystem::path wanted_by;  ///< the project or journal
     std::vector<Source> sources;
-    Relinked known;  ///< what was said before
+    Relinked known;  ///< answers to earlier questions
   };
-  std::optional<Relinking> relinking;
+  std::optional<Relinking> relinking;  ///< the open question, if any
 
-  /// Keeps the work safe from the first edit on.
+  /// Starts a journal in journal_folder().
   void begin_journal();
-  /// Imports folders and scenes. A project, which must be the only path, takes the place of the document; with unsaved
-  /// work in it, people are asked first unless it is `wanted` so.
+  /// Imports folders and scenes. A project must be the only path and replaces the document. If there is unsaved work
+  /// and `wanted` is false, only sets `to_open`, so that a dialog asks first.
   void open(const std::vector<std::string>& paths, bool wanted = false);
-  /// Gets a journal's work back. Where sources are gone, people are asked for them first.
+  /// Replaces the document by the work of a journal; unsaved work in the document goes to the trash. If sources are
+  /// missing, sets `relinking` instead, unless `go_on_without`: then recovers as much as possible.
   void recover(const std::filesystem::path& journal, const Relinked& links = {}, bool go_on_without = false);
-  /// With what `relinking` says: opens or recovers again. Without them: as far as a journal goes.
+  /// Opens or recovers again with the answers in `relinking`, and closes the question. `go_on_without`: as for
+  /// recover().
   void relink(bool go_on_without);
   void save(const std::filesystem::path& file);
   void save_scene(const std::filesystem::path& folder);
-  /// How one plain folder is wanted, as ExportAction says.
+  /// Options of an export as one plain folder, as in ExportAction.
   struct PlainChoice {
     FuseWidth width;
     std::optional<FuseWay> way;
   };
-  /// Only `nodes`, where there are some; as one plain folder where that is wanted.
+  /// Exports `nodes`, or the whole scene if empty; as one plain folder if `plain` is set.
   void export_to(const std::filesystem::path& folder, const std::vector<NodeRef>& nodes = {},
                  const std::optional<PlainChoice>& plain = {});
   void save_script(const std::filesystem::path& file);
   void run_script(const std::filesystem::path& file);
-  /// Whether there is something that no file holds: neither the project nor the sources.
+  /// Whether the scene differs from the saved project, or from the imports if there is none.
   bool unsaved() const;
 
  private:
@@ -78,7 +81,7 @@ class Project {
   Messages& messages_;
   const std::shared_ptr<const Snapshot>& now_;
   std::function<void()> opened_;
-  std::optional<Scene> saved_;  ///< what the project holds
+  std::optional<Scene> saved_;  ///< scene in the project file; nothing without a project
 };
 
 }  // namespace rebake

@@ -22,7 +22,7 @@ Relighter::~Relighter() {
 }
 
 bool Relighter::same(const Wanted& a, const Wanted& b) const {
-  // What was asked for in full answers a rough question, and one about fewer nodes.
+  // A full request also answers a rough one, and one for a subset of its nodes.
   return a.scene.roots == b.scene.roots && a.scene.light == b.scene.light &&
          (b.rough || (!a.rough && std::includes(a.nodes.begin(), a.nodes.end(), b.nodes.begin(), b.nodes.end())));
 }
@@ -35,7 +35,7 @@ void Relighter::request(const Scene& scene, bool rough, std::set<NodeId> nodes) 
     asked_ = std::move(wanted);
     wanted_ = asked_;
     if (!scene.light) latest_ = nullptr;
-    // A quick answer to a drag is let finish: else a fast hand would never see one.
+    // During a drag a pass with few rays may finish; otherwise a fast drag would never show a result.
     if (running_ && (!rough || !quick_pass_)) cancel_ = true;
   }
   changed_.notify_all();
@@ -56,14 +56,14 @@ std::string Relighter::problem() const {
   return problem_;
 }
 
-// Shows light that turns along with what moved since it was worked out, where that is all that changed.
+// Publishes light that is rotated with the surfaces dragged since the last full result. False if that does not apply.
 bool Relighter::turn_along(const Scene& scene) {
   if (!start_) return false;
   std::optional<Lighting> turned;
   try {
     turned = turned_lighting(start_scene_, *start_, scene);
   } catch (const std::exception&) {
-    // Tracing it says what is wrong.
+    // The traced pass reports the error.
     return false;
   }
   if (!turned) return false;
@@ -85,7 +85,7 @@ void Relighter::loop() {
       continue;
     }
     running_ = true;
-    // The last is what was asked for; a rough one stands in for it while it is worth it.
+    // A full request with at least twice as many rays gets a quick pass first.
     constexpr int quick = 16;
     const int full = next.scene.light->rays;
     cancel_ = false;
@@ -93,7 +93,7 @@ void Relighter::loop() {
     const bool turned = turn_along(next.scene);
     lock.lock();
     if (turned) wake_();
-    // Asked for something else meanwhile: what was begun for this is not worth it.
+    // A newer request has arrived: skips the traced passes.
     if (wanted_ || ending_) {
       running_ = false;
       continue;
@@ -110,7 +110,7 @@ void Relighter::loop() {
       try {
         LightingOptions options;
         options.rays = rays;
-        // Rough ones are not worth a place on the disk.
+        // Only full results are cached on disk.
         const std::shared_ptr<Results> results = kept_results();
         options.results = results.get();
         options.keep_traced = rays == full;
@@ -123,11 +123,11 @@ void Relighter::loop() {
       }
       lock.lock();
       problem_ = problem;
-      // Switched off meanwhile: it must not come back.
       if (made && !next.rough && rays == full) {
         start_scene_ = next.scene;
         start_ = made;
       }
+      // Not published if light was switched off in the meantime.
       if (made && asked_ && asked_->scene.light) latest_ = std::move(made);
       if (!problem.empty()) latest_ = nullptr;
       if (wanted_ || ending_ || !problem.empty()) break;

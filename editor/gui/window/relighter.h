@@ -13,29 +13,30 @@
 
 namespace rebake {
 
-/// Works out what light does to the scene that is shown, off the window's thread: roughly at once, then better while
-/// nothing else is shown.
+/// Computes the light corrections (Lighting) of the shown scene on a background thread. Progressive: a result with few
+/// rays first, then one with all rays, unless a newer request cancels it.
 class Relighter {
  public:
-  /// `wake` is called, from another thread, when there is something to take.
+  /// `wake` is called from the background thread when latest() has changed.
   explicit Relighter(std::function<void()> wake);
   ~Relighter();
   Relighter(const Relighter&) = delete;
   Relighter& operator=(const Relighter&) = delete;
 
-  /// Wants the light of this scene; what was asked for before is stopped unless it is the same. `rough`: only the
-  /// first, quick answer, as while something is dragged: where just triangles of `nodes` move, their light turns along
-  /// (TurnedLight).
+  /// Requests the light of a scene and cancels an earlier, different request. `rough`: no full result, for drags.
+  /// `nodes`: nodes that may be dragged next. If only their triangles have moved since the last full result, their
+  /// light is rotated with the surface (TurnedLight) instead of traced.
   void request(const Scene& scene, bool rough, std::set<NodeId> nodes);
-  /// Null where light stays as it was baked. What was worked out last, maybe of a scene before: of triangles that are
-  /// still the same it holds roughly.
+  /// The latest result; null if the baked light is to be shown. May belong to an earlier scene and is then approximate.
+  /// Lighting::map_of() ignores it for texture sets whose UVs have changed.
   std::shared_ptr<const Lighting> latest() const;
-  /// Whether something better is being worked out.
+  /// Whether a request is running or waiting.
   bool busy() const;
-  /// Why there is none, in words for people; empty where there is.
+  /// Error message of the last request; empty if it succeeded.
   std::string problem() const;
 
  private:
+  /// A request().
   struct Wanted {
     Scene scene;
     bool rough;
@@ -48,14 +49,14 @@ class Relighter {
   std::function<void()> wake_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<Wanted> wanted_, asked_;  ///< to be done; asked for last
+  std::optional<Wanted> wanted_, asked_;  ///< the waiting request; the last request, waiting or not
   std::shared_ptr<const Lighting> latest_;
   std::string problem_;
-  Scene start_scene_;                      ///< of `start_`; the thread's own
-  std::shared_ptr<const Lighting> start_;  ///< worked out in full, and how it goes along; the thread's own
+  Scene start_scene_;                      ///< scene of `start_`; used by the background thread only
+  std::shared_ptr<const Lighting> start_;  ///< last full result, start of drags; used by the background thread only
   bool running_ = false, ending_ = false, quick_pass_ = false;
   std::atomic<bool> cancel_ = false;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // declared last because it uses the other members
 };
 
 }  // namespace rebake

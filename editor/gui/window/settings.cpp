@@ -22,12 +22,12 @@ NLOHMANN_JSON_SERIALIZE_ENUM(BottomTab, {{BottomTab::history, "history"},
 
 namespace {
 
-// Where there is no home, people still want to work.
+// Without a home folder, /tmp is used.
 fs::path folder_of_user(const char* variable, const char* below_home) {
   return user_folder(variable, below_home).value_or(fs::path("/tmp") / below_home);
 }
 
-// Calls visit(name, member) for all that is written.
+// Calls visit(name, member) for all fields.
 template <class Self, class Visit>
 void for_fields(Self& self, Visit visit) {
   visit("looks", self.looks);

@@ -6,45 +6,48 @@
 
 namespace rebake {
 
+/// Colour theme; `system` follows the desktop.
 enum class Looks { dark, light, system };
+/// Tab of the bottom panel.
 enum class BottomTab { history, views, light, script, cost, log };
 
-/// What the editor remembers of a person, as JSON in the user's configuration folder.
+/// User settings, stored as JSON in the configuration folder.
 struct Settings {
   Looks looks = Looks::dark;
-  double text_scale = 1;  ///< beside what the monitor asks for
-  bool scene_background = false;
-  bool adjust_open = true;  ///< the fields of the last step, over the picture
+  double text_scale = 1;          ///< 0.6 … 3, multiplied by the monitor's scale
+  bool scene_background = false;  ///< the viewport shows the scene's background, not the theme's
+  bool adjust_open = true;        ///< the panel with the fields of the last step is open
   bool bottom_open = false;
   BottomTab bottom_tab = BottomTab::history;
   bool outline_open = true, properties_open = true;
-  double outline_share = 0.5;  ///< of the side's height
-  bool blender_keys = false;
+  double outline_share = 0.5;  ///< share of the side bar's height, 0.15 … 0.85
+  bool blender_keys = false;   ///< uses the keymap that follows Blender
   bool grid = true;
-  double brush_radius = 20;  ///< pixels
-  double likeness = 0.1;     ///< distance of colours that still count as alike, 0 … 1
-  bool flood_everywhere = false;
-  double side_width = 320;  ///< pixels on a plain screen
-  double bottom_height = 240;
-  int window_width = 1280, window_height = 800;
-  std::string opened_from, written_to;  ///< folders of the last file dialogs
-  std::vector<std::string> recent;      ///< newest first
+  double brush_radius = 20;                      ///< pixels, 1 … 500
+  double likeness = 0.1;                         ///< colour tolerance of the flood tool, 0 … 1
+  bool flood_everywhere = false;                 ///< the flood tool also selects unconnected triangles
+  double side_width = 320;                       ///< logical pixels
+  double bottom_height = 240;                    ///< logical pixels
+  int window_width = 1280, window_height = 800;  ///< logical pixels
+  std::string opened_from, written_to;           ///< last folders of the dialogs for reading and for writing
+  std::vector<std::string> recent;               ///< up to 12 paths of opened or saved scenes, newest first
 
-  /// Puts a path first among the recent ones.
+  /// Moves or adds a path to the front of `recent`.
   void remember(const std::string& path);
   bool operator==(const Settings&) const = default;
 };
 
 /// $XDG_CONFIG_HOME/rebake, by default ~/.config/rebake.
 std::filesystem::path config_folder();
-/// What can be made anew: $XDG_CACHE_HOME/rebake, by default ~/.cache/rebake.
+/// Folder for files that can be generated again: $XDG_CACHE_HOME/rebake, by default ~/.cache/rebake.
 std::filesystem::path cache_folder();
-/// Where journals of open editors lie: $XDG_STATE_HOME/rebake/journals, by default ~/.local/state/rebake/journals.
+/// Folder of the journals: $XDG_STATE_HOME/rebake/journals, by default ~/.local/state/rebake/journals.
 std::filesystem::path journal_folder();
 
-/// Settings that cannot be read, or do not fit, are as at first; `problem` then says what is wrong with the file.
+/// Reads settings; numbers out of range are clamped. If the file is missing or invalid, returns the defaults; `problem`
+/// is set to a message if it is invalid.
 Settings read_settings(const std::filesystem::path& file, std::string& problem);
-/// Throws FileError.
+/// Writes settings atomically. Throws FileError.
 void write_settings(const Settings& settings, const std::filesystem::path& file);
 
 }  // namespace rebake

@@ -51,13 +51,13 @@ std::string together(const std::vector<std::string>& names) {
   return fmt::format("{} objects", names.size());
 }
 
-// What differs between two scenes. Counts are those of the nodes that changed.
+// Difference of two scenes. Counts are sums over the nodes that changed.
 struct Change {
-  std::vector<std::string> names;          ///< of nodes whose triangles or selection changed, and of removed nodes
-  std::vector<std::string> with_selected;  ///< of those that hold selected triangles afterwards
+  std::vector<std::string> names;  ///< names of nodes whose triangles or selection changed, and of removed nodes
+  std::vector<std::string> with_selected;  ///< names of changed nodes with selected triangles afterwards
   std::size_t selected_before = 0, selected_after = 0;
   std::size_t triangles_before = 0, triangles_after = 0;
-  std::vector<std::string> added;
+  std::vector<std::string> added;  ///< names of new nodes
 };
 Change change_between(const Scene& before, const Scene& after) {
   Change change;
@@ -82,8 +82,8 @@ Change change_between(const Scene& before, const Scene& after) {
   return change;
 }
 
-// Number of cage points that an edit moves elsewhere than `replaced` does; 0 if the edit names points otherwise than by
-// their numbers.
+// Number of cage points whose translation differs from that in `replaced` (if not null). 0 if an edit does not list its
+// points by number.
 std::size_t moved_points(const CageDeform& edit, const CageDeform* replaced) {
   std::map<std::uint64_t, Vec3> motions, known;
   const auto collect = [](const CageDeform& from, std::map<std::uint64_t, Vec3>& into) {
@@ -145,7 +145,7 @@ std::string verb_of(const Edit& edit) {
   return words + ":";
 }
 
-// Sentences of edits that speak of something beside nodes and triangles; empty for others.
+// Titles of edits that do not act on the triangles of nodes; empty for others.
 std::string special(const Edit& edit) {
   if (const auto* import = edit.as<Import>()) return "Imported " + folder_title(import->path);
   if (const auto* light = edit.as<LightEdit>(); light != nullptr && light->light_source() == "picture")

@@ -15,7 +15,7 @@ namespace rebake {
 
 namespace {
 
-std::string last_error = "unknown";  // GLFW tells it to a plain function only
+std::string last_error = "unknown";  // global because GLFW's error callback has no user pointer
 
 constexpr const char* without_window = "without a window there are: rebake run, render, export, batch";
 
@@ -32,7 +32,7 @@ class WindowContext final : public gl::Context {
 
 }  // namespace
 
-/// GLFW's callbacks, which carry a pointer to the window. Input waits for the frame that may see it.
+/// GLFW's callbacks. They find the Window by GLFW's user pointer and queue input for begin_frame().
 class Window::Callbacks {
  public:
   static void install(GLFWwindow* window) {
@@ -86,7 +86,7 @@ Window::Window(const WindowSystem& /*system*/, const std::string& title, int wid
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  // Where the driver can, it says when it was reset; else nobody would know why nothing is drawn any more.
+  // Asks the driver to report resets, if it can; without a report, drawing just stops.
   glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
@@ -102,7 +102,7 @@ Window::Window(const WindowSystem& /*system*/, const std::string& title, int wid
   Callbacks::install(window_);
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;  // the layout is kept in the settings
+  ImGui::GetIO().IniFilename = nullptr;  // Settings holds the layout
   ImGui_ImplGlfw_InitForOpenGL(window_, false);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
@@ -182,7 +182,7 @@ void Window::begin_frame() {
       case Kind::key:
       case Kind::repeat:
         if (event.kind == Kind::key) ++seen_.keys;
-        // Before Dear ImGui knows of it.
+        // Before Dear ImGui gets the key.
         if (event.down && on_key)
           on_key({event.code, (event.modifiers & GLFW_MOD_SHIFT) != 0, (event.modifiers & GLFW_MOD_CONTROL) != 0,
                   (event.modifiers & GLFW_MOD_ALT) != 0, event.kind == Kind::repeat});
@@ -192,7 +192,7 @@ void Window::begin_frame() {
   }
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  // It took both as they are now, not as they were at the event.
+  // Overrides the current state, which the backend has read, by the state at the last processed event.
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(pointer_x_), static_cast<float>(pointer_y_)};
   std::copy(buttons_.begin(), buttons_.end(), io.MouseDown);

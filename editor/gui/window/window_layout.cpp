@@ -27,7 +27,7 @@ void panel(const char* name, const ImVec2& at, const ImVec2& size, Content conte
                    ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
   if (padding.x >= 0) ImGui::PopStyleVar();
   content();
-  // Panels are told apart by a line, not by a frame around each.
+  // Separator lines instead of a frame around each panel.
   ImGui::GetWindowDrawList()->AddLine({at.x, at.y}, {at.x + size.x, at.y}, color32(theme().border));
   ImGui::GetWindowDrawList()->AddLine({at.x, at.y}, {at.x, at.y + size.y}, color32(theme().border));
   ImGui::End();
@@ -49,7 +49,7 @@ void splitter(const char* name, const ImVec2& at, const ImVec2& size, ImGuiMouse
   ImGui::PopStyleVar(2);
 }
 
-// No font here has a lasso: a loop of dashes with an end that hangs.
+// Draws a lasso icon over the last item, because the icon font has none: a dashed loop with a loose end.
 void draw_lasso(ImU32 color) {
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   const ImVec2 middle{(low.x + high.x) / 2, (low.y + high.y) / 2 - px(2)};
@@ -77,14 +77,14 @@ void WindowLayout::draw(Viewport& viewport, const std::vector<std::array<double,
     picture({0, 0}, screen);
   else
     lay_out(screen);
-  // What is not shown keeps no scene alive.
+  // Thumbnails hold the nodes of their scene, so they are freed when the panel is closed.
   if (!std::exchange(views_shown_, false)) viewport.thumbnails().forget_views();
   palette_.draw(desk_);
   form_.draw(desk_, desk_.view.alone ? screen.x : screen.x - side_width(screen));
   draw_keys_sheet(desk_);
 }
 
-// In a small window the picture comes first.
+// Width of the side panels in pixels, at most 40 % of the window.
 float WindowLayout::side_width(const ImVec2& screen) const {
   return std::min(static_cast<float>(desk_.settings.side_width) * px(1), 0.4F * screen.x);
 }
@@ -126,11 +126,11 @@ void WindowLayout::lay_out(const ImVec2& screen) {
              });
 }
 
-// The picture and what floats over it.
+// The viewport and the panels that float over it.
 void WindowLayout::picture(const ImVec2& at, const ImVec2& size) {
   panel(
       "picture", at, size, [&] { viewport_->draw(desk_, *moves_); }, {0, 0}, ImGuiWindowFlags_NoScrollbar);
-  desk_.view.marked.reset();  // until a panel points at something again
+  desk_.view.marked.reset();  // panels set it again in each frame
   draw_start(desk_, viewport_->thumbnails(), {at.x + size.x / 2, at.y + size.y / 2});
   if (!desk_.view.alone) adjust_.draw(desk_, {at.x, at.y + size.y}, size);
   draw_toasts(desk_.messages, {at.x + size.x, at.y + size.y});
@@ -158,7 +158,7 @@ void WindowLayout::sides(const ImVec2& at, const ImVec2& size) {
              });
 }
 
-// What the tool in hand works on.
+// Shows which nodes the current tool works on.
 void WindowLayout::scope() {
   const ToolKind kind = desk_.tools.kind;
   if (kind == ToolKind::pick || desk_.scene().roots.empty()) return;
@@ -203,7 +203,7 @@ void WindowLayout::menu() {
   menu_height_ = ImGui::GetWindowHeight();
   const announce::Part part("menu");
   for (const char* name : {"File", "Edit", "Select", "Tool", "View", "Window", "Help"}) {
-    // Below the bar, however small the window: it scrolls.
+    // In a small window a menu scrolls below the bar.
     ImGui::SetNextWindowSizeConstraints({0, 0}, {1e5F, ImGui::GetIO().DisplaySize.y - menu_height_ - px(4)});
     const bool open = ImGui::BeginMenu(name);
     announce::item(name);
@@ -239,7 +239,7 @@ void WindowLayout::tool_bar() {
     const Command& command = command_named(button.command);
     const bool taken = desk_.tools.kind == button.kind;
     if (ui::icon_button(button.icon, command.title, taken)) desk_.tools.kind = button.kind;
-    // In a small window it may lie outside.
+    // In a small window the button may be scrolled out of view.
     if (taken && std::exchange(shown_tool_, button.kind) != button.kind) ImGui::SetScrollHereY();
     if (button.kind == ToolKind::lasso) draw_lasso(color32(taken ? theme().on_accent : theme().text));
     ui::tip(command.title, command.key_of(desk_), command.help);
@@ -301,7 +301,7 @@ void WindowLayout::status() {
   } else {
     ImGui::TextDisabled("Middle button turns, wheel zooms. F1 shows all keys, Ctrl+P finds any command.");
   }
-  // What is selected, and how; and what can be opened below.
+  // On the right: the size of the selection, and buttons for the tabs of the bottom panel.
   std::string selected = desk_.selected_words();
   if (!selected.empty() && desk_.seen_last() != nullptr) selected += ", visible sides only";
   const float buttons = px(6 * 30);

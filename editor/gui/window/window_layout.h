@@ -9,11 +9,11 @@
 
 namespace rebake {
 
-/// Where everything in the window stands: menu, tools, the picture, panels beside and below it.
+/// Layout of the window: menu, tool bar, tool options, viewport, side and bottom panels, status bar.
 class WindowLayout {
  public:
   explicit WindowLayout(Desk& desk) : desk_(desk) {}
-  /// All but dialogs. `moves`: what the pointer did since the last frame.
+  /// Draws everything except dialogs. `moves`: pointer positions since the last frame, in window pixels.
   void draw(Viewport& viewport, const std::vector<std::array<double, 2>>& moves);
 
  private:
@@ -30,7 +30,7 @@ class WindowLayout {
   void status();
 
   Desk& desk_;
-  Viewport* viewport_ = nullptr;  ///< of this frame
+  Viewport* viewport_ = nullptr;  ///< argument of the current draw()
   const std::vector<std::array<double, 2>>* moves_ = nullptr;
   OutlinePanel outline_;
   PropertiesPanel properties_;
@@ -41,10 +41,10 @@ class WindowLayout {
   ScriptPanel script_;
   PalettePanel palette_;
   EditForm form_;
-  float options_height_ = 0;  ///< that the tool's options took in the last frame
-  float menu_height_ = 0;
-  bool views_shown_ = false;              ///< in this frame
-  ToolKind shown_tool_ = ToolKind::pick;  ///< that the tool bar was scrolled to
+  float options_height_ = 0;              ///< height of the tool options in the last frame, in pixels
+  float menu_height_ = 0;                 ///< height of the menu bar, in pixels
+  bool views_shown_ = false;              ///< the views panel was drawn in this frame
+  ToolKind shown_tool_ = ToolKind::pick;  ///< the tool that the tool bar was scrolled to
 };
 
 }  // namespace rebake

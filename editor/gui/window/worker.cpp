@@ -112,7 +112,7 @@ void Worker::name_steps(Snapshot& next, const Scene& before) {
   const std::vector<History::Entry> entries = history.entries();
   std::vector<StepEdits> groups;
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    // A script may have undone a part of a step: the rest is a step of its own.
+    // If a script has undone a part of a step, the rest counts as a separate step.
     if (k == 0 || k == history.undo_count() || !entries[k].joined) {
       groups.emplace_back();
       if (entries[k].replaced > 0) groups.back().replaced = entries[k - 1].edit;
@@ -150,7 +150,7 @@ void Worker::publish(const Scene& before) {
   name_steps(*next, before);
   {
     const std::lock_guard lock(prepare_mutex_);
-    // Only a speed-up: the picture makes what is missing, and says what is wrong.
+    // Optional: drawing computes anything missing, and reports the error.
     try {
       if (prepare_) prepare_(next->scene);
     } catch (const std::exception&) {
@@ -207,17 +207,17 @@ void Worker::loop() {
       }
     }
     wake_();
-    // What picking wants to know, while nothing else is to be done.
+    // While idle: builds the ray trees that picking needs.
     try {
       for (const PlacedNode& placed : placed_nodes(session_.scene())) {
         if (busy()) break;
         if (placed.node->object) rays_of(*placed.node->object);
       }
     } catch (const std::exception&) {
-      // Picking says what is wrong when it wants it.
+      // Picking reports the error when it needs the tree.
     }
   }
-  // Where it was made, its context is current.
+  // On this thread, because the renderer's context is current here.
   session_.drop_renderer();
 }
 

@@ -15,64 +15,69 @@
 
 namespace rebake {
 
-/// What the window knows of the document: a copy as it was after the last job.
+/// Immutable copy of the document's state after a job, for the window's thread.
 struct Snapshot {
   Scene scene;
-  std::vector<Edit> done, undone;  ///< oldest first; the first of `undone` is what redo does
-  /// What was made together, in a sentence that never changes again; those that are done, then the undone.
+  std::vector<Edit> done, undone;  ///< oldest first; redo begins with the first of `undone`
+  /// A step of history: edits that are undone together. Its title never changes.
   struct Step {
     std::string title;
-    std::size_t edits = 0;
+    std::size_t edits = 0;  ///< number of edits
   };
-  std::vector<Step> steps;
-  std::size_t steps_done = 0;
-  int revised_steps = 0;  ///< steps back to the scene that the last step was applied to: 1, more after revisions
-  std::optional<Scene> before_last;  ///< the scene before the last step; nothing where it is not kept
-  SourceGuard sources;               ///< where nothing may be written
-  std::uint64_t history_bytes = 0;   ///< that the kept scenes hold
-  std::filesystem::path journal;     ///< that keeps the work safe; empty for none
+  std::vector<Step> steps;     ///< done steps, oldest first, then undone steps
+  std::size_t steps_done = 0;  ///< number of done steps
+  int revised_steps = 0;       ///< steps from the current scene back to the last step's input: 1, more after revisions
+  std::optional<Scene> before_last;  ///< the scene that the last step was applied to, if cached
+  SourceGuard sources;               ///< files and folders that must not be overwritten
+  std::uint64_t history_bytes = 0;   ///< memory of the cached scenes of history
+  std::filesystem::path journal;     ///< the journal; empty for none
 };
 
-/// Carries jobs out on the document, one after the other, off the window's thread.
+/// Owns the document and runs jobs on it, one after another, on a background thread.
 class Worker {
  public:
   using Job = std::function<void(Session&)>;
-  /// `wake` is called, from another thread, when there is something new to take, or progress to show.
+  /// `wake` is called on progress and after each job, from the background thread, and by cancel().
   explicit Worker(std::function<void()> wake);
-  /// Asks what runs to stop, and waits for it.
+  /// Cancels the running job and waits for it.
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// `then` is carried out by take_finished()'s caller once the job is done; `otherwise`, when it failed or was
-  /// cancelled, also while it still waited.
+  /// Queues a job. take_finished() returns `then` after its success, `otherwise` if it failed or was cancelled (also
+  /// before it began). `title` is shown during the job and in errors.
   void start(std::string title, Job job, std::function<void()> then = {}, std::function<void()> otherwise = {});
+  /// Whether a job is running or waiting.
   bool busy() const;
-  /// Asks the present job to stop and forgets those that wait.
+  /// Cancels the running job and removes the waiting ones.
   void cancel();
-  /// Called with every scene before the window sees it, on the worker's thread; null for none.
+  /// `prepare` is called on the background thread with each scene before snapshot() returns it; null for none.
   void set_prepare(std::function<void(const Scene&)> prepare);
-  /// Before the next job: what its renderer holds may be lost.
+  /// Frees the session's renderer before the next job, because its GPU objects may be lost.
   void drop_renderer() { drops_renderer_ = true; }
 
+  /// Progress of the running job.
   struct Status {
-    std::string title, what;  ///< the job, and what it is at
-    double share = 0;         ///< done of that, 0 … 1
+    std::string title, what;  ///< title of the job, and its current task
+    double share = 0;         ///< completed share of the task, 0 … 1
   };
   Status status() const;
   std::shared_ptr<const Snapshot> snapshot() const;
-  /// What jobs had to say since the last call, in order.
+  /// A message of a job: for the user, a report of edits (for the log only), or an error.
   struct Message {
     std::string text;
     enum class Kind { said, reported, failed } kind = Kind::said;
   };
+  /// Messages since the last call, in order.
   std::vector<Message> take_messages();
+  /// Callbacks of jobs that ended since the last call, to be called by the window's thread.
   std::vector<std::function<void()>> take_finished();
 
  private:
   void loop();
-  /// `before`: the scene as it was before the job.
+  /// Creates a new snapshot. `before`: the scene before the job.
   void publish(const Scene& before);
+  /// Fills the steps of `next`. Known steps keep their titles.
   void name_steps(Snapshot& next, const Scene& before);
 
   std::function<void()> wake_;
@@ -81,6 +86,7 @@ class Worker {
   Session session_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
+  /// A queued job, see start().
   struct Waiting {
     std::string title;
     Job job;
@@ -92,9 +98,9 @@ class Worker {
   Status status_;
   std::shared_ptr<const Snapshot> snapshot_ = std::make_shared<const Snapshot>();
   std::vector<Message> messages_;
-  std::map<const void*, std::string> titles_;  ///< of steps, by the value of their first edit
+  std::map<const void*, std::string> titles_;  ///< titles of steps, by address of their first edit's value
   std::vector<std::function<void()>> finished_;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // declared last because it uses the other members
 };
 
 }  // namespace rebake
