@@ -23,7 +23,7 @@ Plane luma(const Image& image) {
   return out;
 }
 
-// Separable Gaussian, σ 1.5, 11 taps; borders repeat.
+// Separable Gaussian filter, σ 1.5, 11 taps; border pixels are repeated.
 Plane blurred(const Plane& in, int width, int height) {
   std::array<double, 11> kernel{};
   double sum = 0;

@@ -4,16 +4,16 @@
 
 namespace rebake {
 
-/// How much two pictures of one size differ.
+/// Error metrics of two pictures of the same size.
 struct Difference {
-  double psnr_db = 0;       ///< over all channels; infinity for equal pictures
+  double psnr_db = 0;       ///< peak signal-to-noise ratio over all channels; infinity for equal pictures
   double ssim = 1;          ///< mean structural similarity of luma (Wang et al. 2004: Gaussian window, σ 1.5)
   int largest = 0;          ///< largest difference of a channel, 0 … 255
-  int x = 0, y = 0;         ///< the first pixel that has it, from the top left
-  double share_beyond = 0;  ///< share of pixels with a channel further apart than the tolerance
+  int x = 0, y = 0;         ///< first pixel with that difference in row order, from the top left
+  double share_beyond = 0;  ///< share of pixels, 0 … 1, with a channel that differs by more than the tolerance
 };
 
-/// Throws Error when sizes differ. `tolerance` in 1/255.
+/// Compares two pictures; `tolerance` is in 1/255. Throws Error if their sizes differ.
 Difference compare(const Image& a, const Image& b, int tolerance);
 
 }  // namespace rebake

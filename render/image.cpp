@@ -12,7 +12,7 @@
 namespace rebake {
 
 namespace {
-constexpr int compression_level = 6;  // zlib's own choice
+constexpr int compression_level = 6;  // zlib's default
 }  // namespace
 
 Image read_image(const std::filesystem::path& path) {

@@ -12,16 +12,16 @@ namespace rebake {
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> rgb;  ///< width × height × 3
+  std::vector<std::uint8_t> rgb;  ///< width × height × 3 bytes, row by row
   bool operator==(const Image&) const = default;
 };
 
-/// Throws FileError. Alpha, where there is one, is dropped; grey becomes RGB.
+/// Reads a picture file of at most 32768 × 32768 pixels; drops alpha and expands grey to RGB. Throws FileError.
 Image read_image(const std::filesystem::path& path);
-/// Throws FileError when write_png would refuse the path: its name promises another picture format, or `guard` protects
-/// it. For asking before the work.
+/// Throws FileError if write_png() would reject the path: its extension is that of another picture format, or `guard`
+/// protects it. For a check before expensive work.
 void check_png_path(const std::filesystem::path& path, const SourceGuard& guard);
-/// Writes a PNG, whole or not at all. Throws FileError; `guard` says where nothing may be written.
+/// Writes a PNG file atomically. Throws FileError, also if `guard` protects the path.
 void write_png(const Image& image, const std::filesystem::path& path, const SourceGuard& guard);
 
 }  // namespace rebake

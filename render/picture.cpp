@@ -39,18 +39,18 @@ class Renderer::Impl {
     state_.empty_array = gl::make_vertex_array();
     GLint largest = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &largest);
-    // Halves of words are read, and two words more than there are.
+    // Each 64-bit word is two texels of R32UI; two words of padding follow the data.
     reads_coded_ = static_cast<std::size_t>(largest) >= 2 * (most_coded_words + 2);
   }
 
-  // What members delete are names in this context, whichever was used last.
+  // Members delete objects of this context, so it must be current.
   ~Impl() {
     try {
       const gl::Current current(*context_);
       state_ = {};
       gpu_.reset();
     } catch (const Error&) {
-      // Lost, and its names with it.
+      // The context is lost, and its objects with it.
     }
   }
   Impl(const Impl&) = delete;
@@ -88,7 +88,7 @@ class Renderer::Impl {
     try {
       return plan(scene, view, {}, &guides, lighting, facts).kept;
     } catch (const Error&) {
-      return false;  // drawing says why
+      return false;  // draw() reports the error
     }
   }
   bool kept() const { return drawn_ && drawn_->kept; }
@@ -101,7 +101,7 @@ class Renderer::Impl {
       const FramePlan frame_plan = plan(frame.scene, frame.view, all_drawn, nullptr, lighting, device_facts());
       if (!remember(variant_of(frame_plan))) continue;
       update(scene, codes_texels(scene, options.texels, device_facts()), lighting);
-      // With targets of its own: what is shown stays.
+      // Draws into separate render targets, so that the shown picture stays.
       PassState other;
       other.empty_array = gl::make_vertex_array();
       const auto exchange = [&] {
@@ -129,9 +129,9 @@ class Renderer::Impl {
       const double share = gpu_->arrive(scene, codes(scene), milliseconds);
       if (glGetError() != GL_OUT_OF_MEMORY) return share;
     } catch (const std::exception&) {
-      // What it was, drawing says.
+      // draw() reports the error.
     }
-    // Where there is no room for both, what is drawn goes before the next picture's comes.
+    // The GPU cannot hold both scenes: update() will evict the current one before it uploads the next.
     gpu_->forget_arrival();
     return 1;
   }
@@ -165,11 +165,11 @@ class Renderer::Impl {
 
   void update(const Scene& scene, bool coded, const Lighting* lighting) {
     gpu_->update(scene, coded, lighting);
-    // Other programs read them.
+    // Coded and plain texels are read by different programs.
     if (std::exchange(coded_, coded) != coded) variants_.clear();
   }
 
-  // Draws what is on the GPU as planned, into the targets of the plan.
+  // Runs the passes of a plan on the resident data.
   FrameTimes carry_out(const FramePlan& frame_plan, bool each_pass, Clock::time_point start) {
     state_.targets.fit(frame_plan);
     if (!frame_plan.runs(effects::selection)) state_.selected.clear();
@@ -198,7 +198,7 @@ class Renderer::Impl {
     return times;
   }
 
-  // True where none like it was drawn before, as far back as programs are kept.
+  // Marks a variant as drawn last. Returns whether it is not among the 32 variants drawn before.
   bool remember(ProgramVariant variant) {
     constexpr std::size_t most = 32;
     const auto known = std::find(variants_.begin(), variants_.end(), variant);
@@ -211,10 +211,10 @@ class Renderer::Impl {
 
   DeviceFacts device_facts() {
     DeviceFacts facts;
-    // A GPU draws triangles some hundred times faster than a processor, which tests them no faster beside it.
+    // A GPU draws triangles about 100 times faster than llvmpipe, but the tests run on the CPU in both cases.
     if (!software_) facts.occlusion_from = 2'000'000;
     facts.reads_coded_texels = reads_coded_;
-    // Too little was hidden: it is looked again from time to time.
+    // If too few triangles were occluded, culling is tried again only every look_again frames.
     if (share_ > worthwhile_share && ++frames_without_ < look_again) facts.shown_share = share_;
     return facts;
   }
@@ -242,22 +242,22 @@ class Renderer::Impl {
       if (pass.effect == &effects::coded_texels) pass.why += fmt::format("; {:.0f} MB", gpu_->texel_bytes() / 1e6);
   }
 
-  static constexpr double worthwhile_share = 0.7;
+  static constexpr double worthwhile_share = 0.7;  // visible share of the triangles in view up to which culling pays
   static constexpr int look_again = 16;
 
   unsigned picture_buffer() { return state_.targets.framebuffer({Target::picture}, false).name(); }
 
-  std::unique_ptr<gl::Context> context_;  // outlives the rest, which are names in it
+  std::unique_ptr<gl::Context> context_;  // declared first: outlives the members that hold its objects
   std::optional<GpuScene> gpu_{std::in_place};
   PassState state_;
   View shown_;
-  std::optional<FramePlan> drawn_;  ///< what the targets hold; nothing where drawing failed
+  std::optional<FramePlan> drawn_;  ///< plan of the picture in the targets; nullopt if drawing failed
   std::string device_;
   bool software_ = false, reads_coded_ = true;
-  bool coded_ = false;                                                            ///< the texels on the GPU
-  std::atomic<RenderOptions::Texels> texels_ = RenderOptions::Texels::automatic;  ///< what was asked for last
+  bool coded_ = false;  ///< whether the resident texels are coded
+  std::atomic<RenderOptions::Texels> texels_ = RenderOptions::Texels::automatic;  ///< option of the last picture
   std::vector<PlannedPass> passes_;
-  std::vector<ProgramVariant> variants_;  ///< that were drawn, the latest last
+  std::vector<ProgramVariant> variants_;  ///< of drawn frames, the latest last
   std::size_t compiled_ = 0;
   double share_ = 0;
   int frames_without_ = 0;

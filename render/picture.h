@@ -10,72 +10,72 @@
 
 namespace rebake {
 
-/// Wall-clock milliseconds of one frame. Passes are timed by finishing each before the next begins.
+/// Wall-clock times of one frame in milliseconds. If passes are timed, the GPU finishes each before the next begins.
 struct FrameTimes {
   double frame_ms = 0;
-  std::map<std::string, double> pass_ms;
+  std::map<std::string, double> pass_ms;  ///< by Effect::name; empty unless passes were timed
 };
 
 namespace gl {
 class Context;
 }
 
-/// Draws scenes. Keeps what it uploaded for the next picture; not for use from several threads at
-/// once.
+/// Renders scenes with OpenGL. GPU data stay resident between pictures. Not thread-safe, except for prepare().
 class Renderer {
  public:
-  /// Without a window. Throws DeviceError where there is no OpenGL.
+  /// Renders in a headless context. Throws DeviceError if OpenGL is not available.
   Renderer();
-  /// In a context that is there already, e.g. a window's, which goes on to own what this makes.
+  /// Renders in the given context, such as that of a window, and creates all OpenGL objects there.
   explicit Renderer(std::unique_ptr<gl::Context> context);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// With `lighting`, colours change as it says.
+  /// Draws a picture and reads it back. `lighting`: corrections of colours, null for none.
   Image render(const Scene& scene, const View& view, const RenderOptions& options = {},
                const Lighting* lighting = nullptr);
 
-  /// Makes the next of the programs that other views of this scene would want, and were not made yet: a driver may take
-  /// a tenth of a second for one. False where there are none. Changes nothing that is shown.
+  /// Compiles programs in advance that other views of this scene may need, because a driver may take 0.1 s per program.
+  /// Each call draws one small frame off screen. Returns false if all programs are compiled.
   bool make_ahead(const Scene& scene, const View& view, const RenderOptions& options, const Lighting* lighting);
-  /// How often a frame had to have programs made, of all that were drawn to be seen.
+  /// Number of frames that had to compile a program while they were drawn.
   std::size_t frames_that_compiled() const;
 
-  /// Works out what the next picture of a scene will upload, so that it takes less time. From any thread.
+  /// Prepares uploads of the next picture of a scene on the CPU, so that it is drawn sooner. Callable from any thread.
   void prepare(const Scene& scene);
 
-  /// Uploads some of what the next picture of a scene needs, for about `milliseconds`, while another scene goes on
-  /// being drawn; returns how much of it is there, from 0 to 1. Drawing it earlier uploads the rest at once.
+  /// Uploads a slice of the data of a scene that is not drawn yet, for about `milliseconds`. The current scene stays
+  /// resident. Returns the uploaded share, 0 … 1; 1 also if the GPU cannot hold both scenes. Drawing the new scene
+  /// uploads the rest at once.
   double arrive(const Scene& scene, double milliseconds);
-  /// Lets go of what arrived, where that scene is not drawn after all.
+  /// Evicts the data uploaded by arrive(), if that scene will not be drawn.
   void forget_arrival();
 
-  /// Draws a frame and leaves it on the GPU. With `each_pass`, waits for each pass and fills pass_ms; else the frame as
-  /// a whole.
+  /// Draws a frame without reading it back. `each_pass`: time each pass (fills pass_ms), otherwise the frame as a
+  /// whole.
   FrameTimes time_frame(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass,
                         const Lighting* lighting = nullptr);
 
-  /// Draws with `guides` over the picture and leaves it on the GPU, to be shown by its texture: RGBA8 of the view's
-  /// size, bottom row first, until the next picture is drawn. `times.pass_ms` is filled with `each_pass`.
+  /// A picture in a texture, for display.
   struct Shown {
-    unsigned texture;
+    unsigned texture;  ///< OpenGL name: RGBA8, size of the view, bottom row first; valid until the next picture
     FrameTimes times;
     std::vector<PlannedPass> passes;
-    bool kept = false;  ///< only the pixels that changed were drawn
+    bool kept = false;  ///< only changed pixels were drawn
   };
+  /// Draws a picture with `guides` over it and leaves it on the GPU. `each_pass` as in time_frame().
   Shown show(const Scene& scene, const View& view, const RenderOptions& options, const Guides& guides, bool each_pass,
              const Lighting* lighting = nullptr);
-  /// Whether only the pixels that changed since the last picture would be drawn: sooner than a whole one.
+  /// Whether show() with default options would draw only the pixels that changed since the last picture.
   bool keeps(const Scene& scene, const View& view, const Guides& guides, const Lighting* lighting) const;
-  /// The picture shown last.
+  /// Reads back the picture drawn last.
   Image shown_image();
 
-  /// Of the picture drawn last: what ran and why, with what looking for hidden triangles found.
+  /// Effects of the last picture, whether they ran and why, with the results of occlusion culling.
   const std::vector<PlannedPass>& passes() const;
 
-  std::string device() const;
-  /// Most bytes held on the GPU at once so far.
+  std::string device() const;  ///< gl::device_name() of its context
+  /// Peak memory of all buffers and textures of this process, in bytes.
   std::uint64_t peak_gpu_bytes() const;
 
  private:

@@ -6,15 +6,15 @@
 
 namespace rebake {
 
-/// An image on the GPU, to be shown in the context in which it was made.
+/// A texture that holds an image, usable in the OpenGL context that was current at its construction.
 class PictureTexture {
  public:
-  /// RGBA8, top row first. Throws DeviceError.
+  /// Uploads the image as RGBA8, top row first. Throws DeviceError if the GPU cannot hold it.
   explicit PictureTexture(const Image& image);
   ~PictureTexture();
   PictureTexture(PictureTexture&&) noexcept;
   PictureTexture& operator=(PictureTexture&&) noexcept;
-  unsigned name() const;
+  unsigned name() const;  ///< OpenGL name
 
  private:
   class Impl;

@@ -6,7 +6,7 @@
 namespace rebake {
 
 Image thumbnail_of(const Image& image, int width, int height) {
-  // As much of the image as has that shape.
+  // Image pixels per thumbnail pixel: the largest crop with that aspect ratio, never less than 1.
   const double step =
       std::max(1.0, std::min(static_cast<double>(image.width) / width, static_cast<double>(image.height) / height));
   Image small;

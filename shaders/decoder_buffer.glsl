@@ -1,4 +1,4 @@
-// decoder_layout of decoder k: where its weights start, in floats, and its hidden widths.
+// Decoder with weights from a buffer. Texel k of decoder_layout: index of the first weight of decoder k, hidden widths.
 uniform samplerBuffer decoder_weights;
 uniform samplerBuffer decoder_layout;
 
@@ -10,7 +10,7 @@ vec3 decode(int k, vec4 low, vec4 high, vec3 ray) {
   float x[11] = float[11](low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w, ray.x, ray.y, ray.z);
   float first[WIDEST_LAYER];
   float second[WIDEST_LAYER];
-  // A neuron's bias comes before its weights.
+  // Per neuron: its bias, then its weights.
   for (int j = 0; j < layout_of.y; ++j) {
     float sum = weight(at++);
     for (int i = 0; i < 11; ++i) sum += weight(at++) * x[i];

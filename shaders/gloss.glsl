@@ -1,8 +1,8 @@
-// What a bent surface mirrors of its light, in place of what it mirrored when it was baked: Gloss in mesh_ops/light.
-uniform sampler2D gloss_before;  // of a node of the light map: a normal of any length, the amount of the sky
-uniform sampler2D gloss_after;
-uniform sampler2D gloss_suns;  // amounts of suns before and after
-uniform vec3 gloss_sky[16];    // real spherical harmonics, the constants multiplied in
+// Change of the specular reflection of a rotated surface: as edited minus as baked (Gloss in mesh_ops/light).
+uniform sampler2D gloss_before;  // as baked, per node of the light map: xyz normal of any length, w amount of the sky
+uniform sampler2D gloss_after;   // as edited, laid out like gloss_before
+uniform sampler2D gloss_suns;    // amounts of suns: r as baked, g as edited
+uniform vec3 gloss_sky[16];      // coefficients of real spherical harmonics, times their normalisation constants
 uniform vec3 gloss_sun_direction[GLOSS_SUNS];
 uniform vec3 gloss_sun_light[GLOSS_SUNS];
 uniform int gloss_sun_count;

@@ -1,6 +1,6 @@
 uniform sampler2D scene_depth;
-uniform int side;      // samples along a pixel's side
-uniform float nearer;  // 1 where larger depths are nearer, else -1
+uniform int side;      // samples per pixel side
+uniform float nearer;  // 1 if larger depths are nearer (reversed depth), else -1
 uniform bool empty;    // nothing was drawn: there is no depth
 in vec4 line_color;
 in float hidden_opacity;

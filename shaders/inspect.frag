@@ -1,7 +1,6 @@
-// Other looks at the triangles than their colours. INSPECT: 1 wireframe, 2 opacity, 3 texture sets, 4 a feature channel,
-// 5 overdraw.
+// Debug views of triangles. INSPECT: 1 wireframe, 2 opacity, 3 texture sets, 4 a feature channel, 5 overdraw.
 #include "texel.glsl"
-uniform int channel;     // 0 … 7
+uniform int channel;     // feature byte, 0 … 7
 uniform vec3 set_color;
 out vec4 color;
 

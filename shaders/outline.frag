@@ -1,5 +1,5 @@
-// Draws a line around what the mask marks, dark beside light so that it shows on any colour; fainter where something
-// lies in front.
+// Draws an outline around marked pixels, fainter where they are occluded. It is light inside and dark outside, so that
+// it is visible on any colour.
 uniform sampler2D mask;
 out vec4 color;
 

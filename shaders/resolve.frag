@@ -5,7 +5,7 @@
 uniform usampler2D features;
 #if WRITES_FRAME
 uniform usampler2D frames;
-uniform samplerBuffer frame_table;  // a frame: three columns of camera-to-fed, then decoder, alpha factor, alpha offset
+uniform samplerBuffer frame_table;  // 4 texels per frame: columns of camera_to_fed; decoder, alpha factor, alpha offset
 uniform float decoder_count;
 #else
 uniform mat3 camera_to_fed;
@@ -26,7 +26,7 @@ out vec4 picture;
 
 const float samples = float(SIDE * SIDE);
 
-// What light does, averaged over covered samples.
+// Sums of gain and offset over covered samples.
 #if WRITES_LIGHT
 struct LightSum {
   vec3 gain;
@@ -51,8 +51,8 @@ vec3 fed_ray(ivec2 at, mat3 to_fed) {
 
 #if !WRITES_FRAME
 Sums sums = Sums(uvec4(0u), 0u);
-vec3 ray = vec3(0.0);       // sum over the covered samples
-vec2 position = vec2(0.0);  // the same, in samples from the pixel's first
+vec3 ray = vec3(0.0);       // sum of the rays of covered samples
+vec2 position = vec2(0.0);  // sum of the positions of covered samples within the pixel, in samples
 #if WRITES_LIGHT
 LightSum light = LightSum(vec3(0.0), vec3(0.0));
 #endif
@@ -72,7 +72,7 @@ void add_sample(ivec2 base, ivec2 offset, uvec2 texel) {
 #endif
 }
 
-// Where the k-th 2×2 samples of a pixel meet.
+// Common corner of the k-th 2×2 samples of a pixel, in texture coordinates.
 vec2 middle(ivec2 base, int k) {
   const int quads = max(SIDE / 2, 1);
   return vec2(base + ivec2(k % quads, k / quads) * 2 + 1) / vec2(textureSize(features, 0));
@@ -88,7 +88,7 @@ void main() {
     red[k] = textureGather(features, middle(base, k), 0);
     any |= red[k].x | red[k].y | red[k].z | red[k].w;
   }
-  // Before all else: blocks of pixels that nothing covers end here.
+  // Early exit of uncovered pixels, before all other work.
   if (any == 0u) discard;
   for (int k = 0; k < quads * quads; ++k) {
     uvec4 green = textureGather(features, middle(base, k), 1);
@@ -120,13 +120,13 @@ void main() {
   picture = vec4(color * coverage + (1.0 - coverage) * background, 1.0);
 }
 #else
-// Each decoder averages its own samples, all others counting as uncovered, and is evaluated once.
+// Evaluates each decoder once, with the average of its own samples; all others count as uncovered.
 void main() {
   ivec2 base = ivec2(gl_FragCoord.xy) * SIDE;
   vec3 color = vec3(0.0);
   float coverage = 0.0;
   for (int k = 0; k < int(decoder_count); ++k) {
-    // Halved and plain alpha differ in how they add up, so they are summed apart.
+    // Halved and plain alpha are decoded differently, so they are summed separately.
     Sums halved = Sums(uvec4(0u), 0u);
     Sums plain = Sums(uvec4(0u), 0u);
     vec3 ray = vec3(0.0);

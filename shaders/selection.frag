@@ -1,4 +1,4 @@
-// Tints what the mask marks, with stripes that show on the tint's own colour, and draws a line around it.
+// Tints marked pixels and draws an outline around them. Stripes keep the tint visible on surfaces of the same colour.
 uniform sampler2D mask;
 out vec4 color;
 

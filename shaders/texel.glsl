@@ -1,12 +1,12 @@
-// The texel of a fragment. A triangle's texels are a rectangle of the texture, which lies elsewhere on the GPU.
+// Fetches the texel of a fragment, clamped to its triangle's rectangle, which is packed or coded on the GPU.
 #if CODED_TEXELS
-uniform usamplerBuffer texel_blocks;  // TexelBlock in coded_texels.h
-uniform usamplerBuffer texel_words;   // halves of its words
+uniform usamplerBuffer texel_blocks;  // TexelBlock in render/gpu_scene/coded_texels.h
+uniform usamplerBuffer texel_words;   // 32-bit halves of CodedTexels::words
 #else
 uniform usampler2D features;
 #endif
-in vec2 at_texel;        // in texels of the texture, v down
-flat in uvec3 packed_at;  // the rectangle's first texel, its last one, where the first one lies: x in the low halves
+in vec2 at_texel;         // texture coordinates in texels, v down
+flat in uvec3 packed_at;  // first and last texel of the rectangle, its place on the GPU: x in the low halves
 
 ivec2 halves(uint both) { return ivec2(both & 0xffffu, both >> 16); }
 
@@ -16,7 +16,8 @@ uint width_of(uint widths, int channel) {
   return code + uint(code == 7u);
 }
 
-uint ones(uint bits) {  // of the low 16
+// Number of bits that are set in the low 16.
+uint ones(uint bits) {
   bits -= (bits >> 1) & 0x5555u;
   bits = (bits & 0x3333u) + ((bits >> 2) & 0x3333u);
   bits = (bits + (bits >> 4)) & 0x0f0fu;
@@ -26,14 +27,14 @@ uint ones(uint bits) {  // of the low 16
 uvec2 texel_here() {
   ivec2 first = halves(packed_at.x), last = halves(packed_at.y);
   ivec2 texel = clamp(ivec2(floor(at_texel)), first, last) - first;
-  // Its number along the rectangle's strips, back and forth.
+  // Number of the texel along the rectangle's strips, which alternate in direction.
   ivec2 size = last - first + 1;
   int last_strip = max(size.y >> 2, 1) - 1;
   int strip = min(texel.y >> 2, last_strip);
   int rows = strip == last_strip ? size.y - 4 * strip : 4;
   int column = (strip & 1) == 0 ? texel.x : size.x - 1 - texel.x;
   int number = 4 * strip * size.x + column * rows + texel.y - 4 * strip;
-  // `place` is a block's number here.
+  // The place is the index of the rectangle's first block.
   uvec4 block = texelFetch(texel_blocks, int(packed_at.z) + (number >> 4));
   number &= 15;
   if (((block.x >> number) & 1u) == 0u) return uvec2(0u);
@@ -45,7 +46,7 @@ uvec2 texel_here() {
   uint shift = at & 31u;
   uint a = texelFetch(texel_words, word).r, b = texelFetch(texel_words, word + 1).r,
        c = texelFetch(texel_words, word + 2).r;
-  // By two steps: shifts of 32 are not defined.
+  // Shifts in two steps, because a shift by 32 is undefined.
   uvec2 left = uvec2((a >> shift) | (b << 1) << (31u - shift), (b >> shift) | (c << 1) << (31u - shift));
   uvec2 found = block.zw;
   for (int channel = 0; channel < 8; ++channel) {

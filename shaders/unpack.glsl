@@ -1,4 +1,4 @@
-// Sums of texel bytes, two channels in each component: 64 samples of 255 fit in 16 bits.
+// Sums of texel bytes, two channels per component: the sum of 64 bytes fits in 16 bits.
 struct Sums {
   uvec4 bytes;  // feat0 R and B, feat0 G and A, feat1 R and B, feat1 G and A
   uint count;
@@ -9,7 +9,8 @@ void add(inout Sums sums, uvec2 texel) {
   sums.count += 1u;
 }
 
-// Averages over `samples`, covered or not. alpha_code is (factor, offset) of the stored alpha: (2, -1) halved, (1, 0) plain.
+// Features 0 … 3 (low) and 4 … 7 (high), averaged over `samples`; uncovered samples count as 0. alpha_code: factor and
+// offset that decode the stored alpha, (2, -1) if halved and (1, 0) if plain.
 void average(Sums sums, float samples, vec2 alpha_code, out vec4 low, out vec4 high) {
   vec4 even = vec4(sums.bytes & 0xffffu);
   vec4 odd = vec4(sums.bytes >> 16);

@@ -3,20 +3,20 @@
 #include <cmath>
 #include <cstdint>
 
-// Arctangent, logarithm, sine and cosine of doubles, by additions, multiplications and divisions alone. A C library
-// picks its own by what the processor offers, and their last bits differ: what an edit commits must not. Right to 2
-// units in the last place. Without branches that a compiler cannot turn into selections, so that loops over them become
-// vectors; always inlined, so that files built for newer processors share no code with others.
+// Arctangent, logarithm, sine and cosine of doubles from basic arithmetic only, so that edits commit the same bits on
+// every processor: C libraries choose implementations by processor, and their last bits differ. Errors are at most 2
+// units in the last place. atan2() and atan() have no branches that prevent vectorisation. They are always inlined, so
+// that files compiled for newer processors share no code with others.
 
 namespace rebake::elementary {
 
-/// The angle of (x, y), −π … π. Coefficients: Moshier, Cephes Mathematical Library (1989), atan.
+/// Angle of (x, y) in radians, −π … π. Coefficients: Moshier, Cephes Mathematical Library (1989), atan.
 [[gnu::always_inline]] inline double atan2(double y, double x) {
   constexpr double half_pi = 1.57079632679489661923, half_pi_rest = 6.123233995736765886130e-17;
   const double height = y < 0 ? -y : y, width = x < 0 ? -x : x;
   const bool steep = height > width;
   const double small = steep ? width : height, large = steep ? height : width;
-  // tan(a − π/4) = (t − 1) / (t + 1): what is left for the fraction lies below 0.66.
+  // tan(a − π/4) = (t − 1) / (t + 1) keeps the argument of the rational approximation within ±0.66.
   const bool middle = small > 0.66 * large;
   const double numerator = middle ? small - large : small, denominator = middle ? small + large : large;
   const double t = numerator / (denominator > 0 ? denominator : 1);
@@ -61,12 +61,13 @@ struct SineCosine {
   double sine, cosine;
 };
 
-/// Sine and cosine of an angle in radians up to ±1e6; of larger ones, by the C library. Coefficients and π/2 in three
-/// parts: fdlibm (1993), k_sin, k_cos, e_rem_pio2.
+/// Sine and cosine of an angle in radians; calls the C library beyond ±1e6. Coefficients and π/2 in three parts: fdlibm
+/// (1993), k_sin, k_cos, e_rem_pio2.
 inline SineCosine sine_cosine(double angle) {
   if (!(std::abs(angle) <= 1e6)) return {std::sin(angle), std::cos(angle)};
   const double turns = std::nearbyint(angle * 6.36619772367581382433e-01);
-  // The first products are exact; what the differences lose comes back in `tail`.
+  // Cody–Waite argument reduction: the first two products are exact, and `tail` restores the rounding error of the
+  // differences.
   double r = angle - turns * 1.57079632673412561417e+00;
   const double second = turns * 6.07710050630396597660e-11, before = r;
   r = before - second;

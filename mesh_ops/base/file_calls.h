@@ -7,8 +7,8 @@
 
 namespace rebake {
 
-/// System calls for writing and for telling files apart, in one place: tests replace them to see the order of calls, to
-/// let one fail or to inject answers. Each returns what the call of its name does, and sets errno.
+/// System calls that write and identify files, in one replaceable place: tests record their order, make one fail or
+/// fake results. Each function has the result of the system call of the same name, and sets errno.
 class FileCalls {
  public:
   virtual ~FileCalls() = default;
@@ -18,16 +18,16 @@ class FileCalls {
   virtual int fsync(int file);
   virtual int close(int file);
   virtual int mkdir(const char* path, mode_t mode);
-  /// `flags` as of renameat2.
+  /// `flags` as for renameat2(2).
   virtual int rename(const char* from, const char* to, unsigned flags);
   virtual int unlink(const char* path);
   virtual int stat(const char* path, struct stat* about);
 };
 
-/// Those in use.
+/// The instance in use.
 FileCalls& file_calls();
 
-/// Puts others in use while it lives. For tests, on one thread.
+/// Replaces the instance in use during its own lifetime. For single-threaded tests.
 class ReplacedFileCalls {
  public:
   explicit ReplacedFileCalls(FileCalls& calls);

@@ -44,7 +44,7 @@ std::string reason() { return std::strerror(errno); }
 
 std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MB"; }
 
-// Reads until the end. `expected` is how much there should be.
+// Reads to the end of the file. `expected`: likely size in bytes. Throws FileError beyond `most` bytes.
 std::string read_all(const fs::path& path, int file, std::uint64_t expected, std::uint64_t most) {
   std::string bytes;
   std::size_t filled = 0;
@@ -62,7 +62,7 @@ std::string read_all(const fs::path& path, int file, std::uint64_t expected, std
   return bytes;
 }
 
-// A file opened for reading, and its size where it is a regular one.
+// A file opened for reading; `size` in bytes is set for regular files only.
 struct Input {
   Descriptor file;
   std::optional<std::uint64_t> size;
@@ -75,7 +75,7 @@ Input open_input(const fs::path& path, bool pipes) {
   if (fs::is_directory(status)) throw FileError(path, "is a folder, not a file");
   const bool regular = fs::is_regular_file(status), pipe = fs::is_fifo(status) || fs::is_character_file(status);
   if (!regular && !(pipes && pipe)) throw FileError(path, "is not a regular file (it is a pipe, a device or a socket)");
-  // A pipe that takes the file's place now would make opening wait for ever.
+  // O_NONBLOCK: open() must not block if a pipe has replaced the file since the check.
   Input input{Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular ? O_NONBLOCK : 0))), std::nullopt};
   struct stat about {};
   if (input.file.value < 0 || ::fstat(input.file.value, &about) != 0) fail(path, "cannot be read");
@@ -93,7 +93,7 @@ std::string read_some(const fs::path& path, std::uint64_t most, bool pipes) {
 
 void write_synced(const fs::path& path, int flags, const std::function<void(const AtomicFolder::Append&)>& make) {
   const OutputFile file(path, O_WRONLY | O_CREAT | flags);
-  // So that nobody takes it for a leftover.
+  // The lock tells other processes that this file is not a leftover.
   ::flock(file.descriptor(), LOCK_SH | LOCK_NB);
   std::uint64_t size = 0;
   make([&](std::string_view bytes) {
@@ -107,7 +107,7 @@ void write_synced(const fs::path& path, std::string_view bytes, int flags) {
   write_synced(path, flags, [&](const AtomicFolder::Append& append) { append(bytes); });
 }
 
-// "NAME.<8 digits>.partial", hidden for folders: what is being written for NAME.
+// Temporary name "NAME.<8 hexadecimal digits>.partial" of a file or folder that is being written.
 std::string partial_name(const std::string& name) {
   std::random_device device;
   std::string result = name;
@@ -145,8 +145,8 @@ bool is_source(const fs::path& path, const SourceGuard& guard) {
   }
 }
 
-// What processes that were killed left behind; one that is at work holds a lock. Never what this run reads: people open
-// leftovers to rescue them.
+// Removes leftovers of killed processes; a running process holds a lock on its files. Skips the sources of this run,
+// because users open leftovers to rescue them.
 void remove_leftovers(const fs::path& folder, const std::string& of, bool are_folders, const SourceGuard& guard) {
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
@@ -160,7 +160,7 @@ void remove_leftovers(const fs::path& folder, const std::string& of, bool are_fo
   }
 }
 
-// A new name that was made in it must be found again after a power loss.
+// Creates a folder and its parents, and syncs each parent, so that the new entries survive a power loss.
 void make_folders(const fs::path& folder) {
   if (folder.empty() || fs::is_directory(folder)) return;
   make_folders(folder.parent_path());
@@ -169,7 +169,7 @@ void make_folders(const fs::path& folder) {
   sync_folder(folder.parent_path());
 }
 
-// A pipe that somebody reads, opened for writing: opening one that nobody reads would block for ever.
+// Opens a pipe for writing and waits up to 5 s for its reader; a blocking open() would wait forever.
 int open_pipe(const fs::path& pipe) {
   constexpr std::chrono::seconds patience(5);
   constexpr std::chrono::milliseconds pause(20);
@@ -186,8 +186,8 @@ int open_pipe(const fs::path& pipe) {
   }
 }
 
-// A rename asks only for the folder's permission, so the file's own is asked for here; that of the bits, too, since the
-// superuser may write everything.
+// A rename checks only the folder's permission, so the file's own is checked here. The mode bits count too, because the
+// superuser may write every file.
 void refuse_write_protected(const fs::path& path) {
   struct stat about {};
   if (file_calls().stat(path.c_str(), &about) != 0) return;
@@ -195,7 +195,7 @@ void refuse_write_protected(const fs::path& path) {
     throw FileError(path, "is write-protected; choose another name, or make it writable first");
 }
 
-// Through symbolic links: what they point to is replaced, not the link.
+// Resolves symbolic links: the target of a link is replaced, not the link.
 fs::path followed(const fs::path& path) {
   std::error_code error;
   fs::path target = fs::weakly_canonical(fs::absolute(path), error);
@@ -213,7 +213,7 @@ void FileBytes::release(std::size_t count) {
   const std::uintptr_t first = (begin + released_ + page - 1) / page * page;
   const std::uintptr_t last = (begin + std::min(count, bytes_.size())) / page * page;
   if (first >= last) return;
-  ::madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);  // a hint: nothing is lost where it fails
+  ::madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);  // only a hint: failure is harmless
   released_ = last - begin;
 }
 
@@ -286,7 +286,7 @@ void write_file_atomically(const fs::path& named, std::string_view bytes, const 
     throw FileError(named.parent_path(), "is not a folder; create it first");
   if (fs::is_directory(path)) throw FileError(named, "is a folder; name a file to write to");
   if (fs::exists(path) && !fs::is_regular_file(path)) {
-    // Devices and pipes are written to; a rename would put a file in their place.
+    // Devices and pipes are written directly: a rename would replace them by a file.
     const Descriptor file{fs::is_fifo(path) ? open_pipe(named) : ::open(path.c_str(), O_WRONLY | O_CLOEXEC)};
     if (file.value < 0) fail(path, "cannot be written");
     std::size_t written = 0;
@@ -356,31 +356,31 @@ void AtomicFolder::write(const fs::path& relative, std::string_view bytes) {
 }
 
 void AtomicFolder::write_in_pieces(const fs::path& relative, const std::function<void(const Append&)>& make) {
-  PartialWrite::committing().unlock();  // nothing is added to a folder that is being removed
+  PartialWrite::committing().unlock();  // blocks forever after abandon_writes(), which removes the folder
   const fs::path path = staging_ / relative;
   make_folders(path.parent_path());
   write_synced(path, O_TRUNC, make);
 }
 
 void AtomicFolder::commit() {
-  PartialWrite::committing().unlock();  // nor is one that was removed looked through
-  // First what it holds, then the folders that name it, then its own name.
+  PartialWrite::committing().unlock();  // blocks forever after abandon_writes()
+  // Subfolders are synced before the folders that contain them, and all of them before the rename.
   std::set<fs::path> folders{staging_};
   for (const auto& entry : fs::recursive_directory_iterator(staging_))
     if (entry.is_directory()) folders.insert(entry.path());
   for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) sync_folder(*folder);
   fs::path old;
   const auto committing = PartialWrite::committing();
-  // Again: a folder on the way may have become a link to a source since.
+  // Checked again: a parent folder may have become a link to a source since.
   guard_.check_folder(target_);
   if (fs::exists(target_)) {
-    // One system call swaps old and new; the old one, now at the staging path, is removed by the destructor.
+    // One system call exchanges old and new; the destructor removes the old folder, now at the staging path.
     if (file_calls().rename(staging_.c_str(), target_.c_str(), RENAME_EXCHANGE) == 0) {
       old = staging_;
     } else {
       if (errno != EINVAL && errno != ENOSYS) fail(target_, "cannot be replaced");
-      // In two steps, where the file system cannot swap: the old one is found under a name of its own in between.
-      const fs::path aside = staging_.string() + ".old";  // no leftover: it may be all that there is
+      // Two renames if the file system cannot exchange; between them, the old folder is at `aside`.
+      const fs::path aside = staging_.string() + ".old";  // not named like a leftover: it may be the only copy
       if (file_calls().rename(target_.c_str(), aside.c_str(), 0) != 0) fail(target_, "cannot be replaced");
       if (file_calls().rename(staging_.c_str(), target_.c_str(), 0) != 0) {
         const int error = errno;

@@ -12,17 +12,16 @@
 
 namespace rebake {
 
-/// All bytes of a regular file of at most `most` bytes. Throws FileError, also for pipes and devices, which might never
+/// Reads a regular file of at most `most` bytes. Throws FileError, also for pipes and devices, because they might never
 /// end.
 std::string read_file(const std::filesystem::path& path, std::uint64_t most = std::uint64_t{8} << 30);
 
-/// All bytes of a regular file, as read_file() reads them. The memory of those that are not needed any more can be
-/// freed while the rest is still in use.
+/// Contents of a regular file in memory. Parts that are no longer needed can be freed while the rest is in use.
 class FileBytes {
  public:
   explicit FileBytes(const std::filesystem::path& path) : bytes_(read_file(path)) {}
   std::string_view view() const { return bytes_; }
-  /// The first `count` bytes, which are not read again: their pages go back to the system.
+  /// Returns the pages of the first `count` bytes to the system; these bytes must not be read again.
   void release(std::size_t count);
 
  private:
@@ -30,66 +29,68 @@ class FileBytes {
   std::size_t released_ = 0;
 };
 
-/// Calls `use` with all bytes of a regular file, a megabyte at a time. Throws FileError.
+/// Calls `use` with the contents of a regular file in pieces of at most 1 MiB. Throws FileError.
 void read_in_pieces(const std::filesystem::path& path, const std::function<void(std::string_view piece)>& use);
 
-/// The absolute path without dots and a slash at the end. Links stay, but in a path with "..": there they are followed,
-/// since ".." leads up from what a link points to.
+/// Absolute path without "." components and without a trailing slash. Symbolic links are resolved only if the path
+/// contains "..", because ".." starts from the link's target.
 std::filesystem::path absolute_path(const std::filesystem::path& path);
 
-/// What a person names as input: a regular file, or a pipe that ends within `most` bytes. Throws FileError.
+/// Reads an input that the user named: a regular file, or a pipe or character device that ends within `most` bytes.
+/// Throws FileError.
 std::string read_input(const std::filesystem::path& path, std::uint64_t most = std::uint64_t{256} << 20);
 
-/// Asks the system to have a folder's entries on the disk: files that were made, renamed or removed there. Throws
-/// FileError; file systems that cannot are let pass.
+/// Syncs a folder's entries to disk: files created, renamed or removed in it. Throws FileError; file systems that do
+/// not support it are ignored.
 void sync_folder(const std::filesystem::path& folder);
 
-/// Writes one file whole or not at all, on the disk when this returns: a temporary beside it, synced, then a rename,
-/// and the folder synced. Devices and pipes are written to. Leftovers of such writes that were killed are removed.
-/// Throws FileError, also where a write-protected file is there; `guard` says where nothing may be written.
+/// Replaces a file atomically and durably: writes and syncs a temporary file beside it, renames it, and syncs the
+/// folder. Devices and pipes are written directly. Removes leftovers of killed writes. Throws FileError, also if the
+/// existing file is write-protected or `guard` protects `path`.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes, const SourceGuard& guard);
 
-/// Removes a file that is not wanted any more, on the disk when this returns. Throws FileError.
+/// Removes a file and syncs its folder. Throws FileError.
 void remove_file(const std::filesystem::path& path);
 
-/// An open file, to be written at given places.
+/// A file that is open for writing at given offsets.
 class OutputFile {
  public:
-  /// `flags` as of open(2). Throws FileError with `reason` about the path.
+  /// `flags` as for open(2). Throws FileError.
   OutputFile(const std::filesystem::path& path, int flags);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   int descriptor() const { return descriptor_; }
-  /// Writes all bytes at an offset. False with errno set where that fails.
+  /// Writes all bytes at `offset` (in bytes). On failure returns false and sets errno.
   bool write_at(std::uint64_t offset, std::string_view bytes) const;
-  /// False with errno set where the disk does not take it.
+  /// Syncs the file to disk. On failure returns false and sets errno.
   bool sync() const;
 
  private:
   int descriptor_;
 };
 
-/// A folder that appears whole or not at all, and on the disk: files are written and synced beside the target and moved
-/// into place by commit(). Destroyed without commit, it leaves what was there before.
+/// Replaces a folder atomically and durably: files are written and synced in a staging folder beside the target, and
+/// commit() renames it. Without commit(), the target stays unchanged.
 class AtomicFolder {
  public:
-  /// `may_replace` throws when the target holds something that must not be lost; it is asked only where the target is
-  /// there. Leftovers of writes to the same target that were killed are removed. Throws FileError when the target is a
-  /// file, cannot be written, or `guard` refuses.
+  /// `may_replace` is called if the target exists; it throws if the target's contents must not be lost. Removes
+  /// leftovers of killed writes to the same target. Throws FileError if the target is a file, cannot be written or is
+  /// protected by `guard`, and FieldError if `target` is empty.
   AtomicFolder(const std::filesystem::path& target, const SourceGuard& guard,
                const std::function<void(const std::filesystem::path&)>& may_replace);
   ~AtomicFolder();
   AtomicFolder(const AtomicFolder&) = delete;
   AtomicFolder& operator=(const AtomicFolder&) = delete;
 
-  /// Writes and syncs one file at a relative path; folders are made as needed. Throws FileError (disk full, no
+  /// Writes and syncs one file at a relative path; creates folders as needed. Throws FileError (disk full, no
   /// permission).
   void write(const std::filesystem::path& relative, std::string_view bytes);
-  /// The same for bytes that are made one after the other: `make` calls `append` with them.
+  /// As write(), for contents that are generated in pieces: `make` calls `append` with each piece.
   using Append = std::function<void(std::string_view bytes)>;
   void write_in_pieces(const std::filesystem::path& relative, const std::function<void(const Append& append)>& make);
+  /// Moves the folder into place. Throws FileError.
   void commit();
 
  private:
@@ -97,7 +98,7 @@ class AtomicFolder {
   std::filesystem::path target_;
   std::filesystem::path staging_;
   std::unique_ptr<PartialWrite> partial_;
-  int lock_ = -1;  ///< held on the staging folder, so that nobody takes it for a leftover
+  int lock_ = -1;  ///< descriptor whose lock marks the staging folder as in use; −1: none
 };
 
 }  // namespace rebake

@@ -7,10 +7,10 @@
 
 namespace rebake {
 
-/// XXH64, seed 0: what files and journals are checked by.
+/// XXH64 with seed 0: the checksum of files and journals.
 std::uint64_t content_hash(std::string_view bytes);
 
-/// The same of bytes that come piece by piece.
+/// Incremental content_hash().
 class ContentHash {
  public:
   ContentHash();
@@ -26,7 +26,7 @@ class ContentHash {
   std::unique_ptr<State> state_;
 };
 
-/// As 16 hexadecimal digits.
+/// A hash as 16 hexadecimal digits.
 std::string hash_text(std::uint64_t hash);
 
 }  // namespace rebake

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 ModuleSymbol module_symbol(const std::string& file, const std::string& name) {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&module_symbol), &info) == 0) return {};
-  // Of the program itself the name may be what it was called by.
+  // For the executable, the name may be the command that started it, without a folder.
   fs::path own = info.dli_fname;
   if (!own.has_parent_path()) own = fs::read_symlink("/proc/self/exe");
   const fs::path folder = fs::absolute(own).parent_path();

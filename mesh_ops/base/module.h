@@ -4,14 +4,14 @@
 
 namespace rebake {
 
-/// What a module of ours gives under a name; `symbol` is null where there is none, and `problem` then says why (empty:
-/// the module is not there). Modules hold what needs large libraries, and are loaded when that is first asked for. They
-/// lie beside the program or library that this code is part of, as it is built, or in lib/rebake below its prefix, as
-/// it is installed. A module stays loaded.
+/// A symbol of a Rebake module. Modules are shared libraries that depend on large libraries; they are loaded on first
+/// use and stay loaded.
 struct ModuleSymbol {
-  void* symbol = nullptr;
-  std::string problem;
+  void* symbol = nullptr;  ///< null if the module or the symbol is missing
+  std::string problem;     ///< reason why loading failed; empty if the module does not exist
 };
+/// Looks up symbol `name` of module `file`. Searches the folder of the calling program or library (as built), then
+/// lib/rebake below its installation prefix.
 ModuleSymbol module_symbol(const std::string& file, const std::string& name);
 
 }  // namespace rebake

@@ -45,7 +45,7 @@ void abandon_writes(std::chrono::milliseconds patience) {
   const std::unique_lock lock(writes().mutex, patience);
   if (!lock) return;
   writes().abandoned = true;
-  // Another thread may still be adding the file that it has begun.
+  // Repeated, because another thread may still be writing its current file.
   constexpr int tries = 3;
   for (int k = 0; k < tries; ++k)
     for (const fs::path& path : writes().partial) {

@@ -6,9 +6,9 @@
 
 namespace rebake {
 
-/// A file or folder that is being written under a temporary name. Known to abandon_writes() until it is destroyed;
-/// after that call neither committing() nor the destructor returns, so that its thread says nothing about the missing
-/// file.
+/// Registers a file or folder that is being written under a temporary name, so that abandon_writes() can remove it.
+/// After abandon_writes(), committing() and the destructor block forever, so that no thread reports an error about the
+/// missing file.
 class PartialWrite {
  public:
   explicit PartialWrite(std::filesystem::path path);
@@ -16,15 +16,15 @@ class PartialWrite {
   PartialWrite(const PartialWrite&) = delete;
   PartialWrite& operator=(const PartialWrite&) = delete;
 
-  /// Held while temporary files are moved into place: abandon_writes() waits until then.
+  /// Lock to hold while temporary files are moved into place; abandon_writes() waits for it.
   static std::unique_lock<std::timed_mutex> committing();
 
  private:
   std::filesystem::path path_;
 };
 
-/// For a process that ends without unwinding its threads: lets nothing be moved into place any more, and removes what
-/// is being written. Waits at most `patience` for a move that has begun, and then removes nothing.
+/// For a process that exits without unwinding its threads: prevents further moves into place and removes all partial
+/// writes. Waits at most `patience` for a move in progress, and removes nothing if it takes longer.
 void abandon_writes(std::chrono::milliseconds patience);
 
 }  // namespace rebake

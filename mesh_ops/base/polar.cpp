@@ -74,7 +74,7 @@ Mat3 orthogonal_factor(const Mat3& linear) {
   if (svd.singularValues()[2] < 1e-14 * svd.singularValues()[0])
     throw std::invalid_argument("the transform is singular: it flattens the object");
   Mat3 factor = svd.matrixU() * svd.matrixV().transpose();
-  // A pure axis-aligned scale has an exact factor; rounding noise in it would needlessly turn every direction.
+  // A pure axis-aligned scale has an exact factor; rounding noise in it would needlessly rotate every direction.
   const Mat3 rounded = factor.array().round();
   if ((factor - rounded).cwiseAbs().maxCoeff() < 1e-15) factor = rounded;
   return factor;

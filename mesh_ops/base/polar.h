@@ -4,31 +4,30 @@
 
 namespace rebake {
 
-/// The rotation that is nearest to a Jacobian.
+/// The rotation nearest to a Jacobian (in the Frobenius norm).
 struct LocalRotation {
   Mat3 rotation = Mat3::Identity();  ///< always a rotation: det 1, RᵀR = I to 1e-14
-  /// False where two rotations are equally near: the Jacobian is flat to a line, or reflects as much as it keeps. A
-  /// neighbour's rotation is the better answer there.
+  /// False if the nearest rotation is not unique, or J is zero or not finite. It is not unique if J has rank 1, or if
+  /// det J < 0 and the two smallest singular values are equal. Use a neighbour's rotation then.
   bool defined = true;
 };
 
-/// By scaled Newton iteration (Higham 1986) where det J > 1e-6 ‖J‖³, else by singular values. Scale does not matter.
+/// Scaled Newton iteration (Higham 1986) if det J > 1e-6 ‖J‖³, otherwise SVD. Invariant to the scale of J.
 LocalRotation local_rotation(const Mat3& jacobian);
 
-/// As local_rotation(), but the orthogonal polar factor, a reflection, if J mirrors: det J < 0 and the smallest
-/// singular value is more than an eighth of the middle one. Nearer to collapse the rotation is taken, which has no jump
-/// at det J = 0.
+/// As local_rotation(), but returns the orthogonal polar factor, a reflection, if det J < 0 and the smallest singular
+/// value exceeds an eighth of the middle one. For flatter J the rotation is continuous at det J = 0.
 LocalRotation local_orthogonal(const Mat3& jacobian);
 
-/// The orthogonal polar factor by scaled Newton iteration: a reflection where det J < 0, and useless where J is nearly
+/// Orthogonal polar factor by scaled Newton iteration: a reflection if det J < 0, and inaccurate if J is nearly
 /// singular.
 Mat3 newton_polar_factor(const Mat3& jacobian);
 
-/// By singular values, the smallest one's sign turned where det J < 0.
+/// Nearest rotation by SVD; if det J < 0, the sign of the smallest singular value is flipped.
 LocalRotation svd_rotation(const Mat3& jacobian);
 
-/// The orthogonal polar factor of `linear`: its rotation, or rotation and reflection. Throws std::invalid_argument when
-/// `linear` is singular or not finite. Scale does not matter.
+/// Orthogonal polar factor of `linear`: a rotation, or a rotation with a reflection. Throws std::invalid_argument if
+/// `linear` is singular or not finite. Invariant to scale.
 Mat3 orthogonal_factor(const Mat3& linear);
 
 }  // namespace rebake

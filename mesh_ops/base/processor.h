@@ -5,10 +5,10 @@
 namespace rebake {
 
 #ifdef REBAKE_WIDE_VECTORS
-// The levels of the x86-64 psABI; the few features not asked for come with these.
+// Micro-architecture levels of the x86-64 psABI. Features that are not tested come with those that are.
 
-/// The highest level to use: what REBAKE_VECTORS says (1, 3 or 4), so that one machine can check the results of others;
-/// else any.
+/// Highest level to use: the environment variable REBAKE_VECTORS (1, 3 or 4), so that one machine can check the results
+/// of others. Default: 4.
 inline int allowed_level() {
   const char* const said = std::getenv("REBAKE_VECTORS");
   return said == nullptr || *said == 0 ? 4 : std::atoi(said);

@@ -8,7 +8,7 @@
 
 namespace rebake {
 
-/// Carries progress out of long work and the wish to stop into it. A default-constructed one does neither.
+/// Reports the progress of a long task and cancels it on request. A default-constructed Progress does neither.
 class Progress {
  public:
   using Report = std::function<void(std::string_view what, double share_done)>;
@@ -17,7 +17,7 @@ class Progress {
   explicit Progress(Report report, const std::atomic<bool>* cancel = nullptr)
       : report_(std::move(report)), cancel_(cancel) {}
 
-  /// Says that `share_done` (0 … 1) of `what` is done. Throws Cancelled if stopping was asked for.
+  /// Reports that the share `share_done` (0 … 1) of task `what` is done. Throws Cancelled if cancelled.
   void at(std::string_view what, double share_done) const {
     if (report_) report_(what, share_done);
     if (cancel_ != nullptr && cancel_->load()) throw Cancelled();

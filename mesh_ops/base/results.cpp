@@ -5,7 +5,7 @@
 namespace rebake {
 
 std::string result_key(const std::string& kind, std::string_view bytes) {
-  // Two hashes: of one, 2^32 results would hold two that share it.
+  // Two 64-bit hashes: with a single one, 2^32 results would likely contain a collision.
   std::string salted = kind;
   salted += '\0';
   salted += bytes;

@@ -6,13 +6,13 @@
 
 namespace rebake {
 
-/// Where expensive results are kept by the content of what they were made of, so that undo, opening and replay need not
-/// make them again. Whatever is kept may be gone at any time. Callable from any thread.
+/// Content-addressed cache of expensive results, so that undo, opening and replay need not compute them again. Entries
+/// may vanish at any time. Thread-safe.
 class Results {
  public:
   virtual ~Results() = default;
   virtual std::optional<std::string> find(const std::string& key) = 0;
-  /// What cannot be kept is not.
+  /// Caches a result; failures are ignored.
   virtual void keep(const std::string& key, std::string_view bytes) = 0;
 
  protected:
@@ -21,7 +21,7 @@ class Results {
   Results& operator=(const Results&) = default;
 };
 
-/// A key for a result of `kind` (with the version of what makes it) from these bytes.
+/// Cache key: `kind` (name and version of the algorithm) followed by hashes of its input bytes.
 std::string result_key(const std::string& kind, std::string_view bytes);
 
 }  // namespace rebake

@@ -13,14 +13,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Folders with more entries than this hold no scene, and are not searched for links or protected files.
+// Number of entries after which the search for links and protected files stops; no scene has more.
 constexpr std::size_t most_entries = 20000;
 
-// Without links, dots and a slash at the end; the part that does not exist yet by its name.
+// Canonical path without a trailing slash; components that do not exist yet stay as named.
 fs::path plain_path(const fs::path& path) {
   std::error_code error;
   fs::path named = fs::absolute(path);
-  // A link to what does not exist yet: writing makes it there.
+  // A dangling link: writing through it creates its target.
   constexpr int most_links = 40;
   for (int k = 0; k < most_links && fs::is_symlink(named, error) && !fs::exists(named, error); ++k)
     named = named.parent_path() / fs::read_symlink(named, error);
@@ -33,7 +33,7 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-// Calls `visit` with every entry below a folder, links not followed.
+// Calls `visit` with every entry below a folder, without following links.
 template <class Visit>
 void for_each_entry(const fs::path& folder, const Visit& visit) {
   std::error_code error;
@@ -67,7 +67,7 @@ void SourceGuard::add(const fs::path& source) {
 }
 
 void SourceGuard::add_folder(const fs::path& folder, const std::string& role) {
-  // Many nodes share a source: its links are looked for once.
+  // Many nodes share a source; its links are searched once.
   if (!add_source({folder, true, role, identity_of(folder), false})) return;
   const std::string linked = "what a link in a source of this scene leads to";
   for_each_entry(folder, [&](const fs::directory_entry& entry) {
@@ -76,7 +76,7 @@ void SourceGuard::add_folder(const fs::path& folder, const std::string& role) {
     const fs::path target = plain_path(entry.path());
     if (lies_in(target, folder)) return;
     if (!fs::is_directory(target, ignored)) add_source({target, false, linked, identity_of(target), false});
-    // A linked folder belongs to the scene when it is one of its objects.
+    // A linked folder belongs to the scene if it is one of its objects.
     else if (fs::exists(target / "mlp.json", ignored))
       add_folder(target, linked);
   });
@@ -108,7 +108,7 @@ void SourceGuard::release_contents(const fs::path& folder) {
 bool SourceGuard::add_source(Source source) {
   for (Source& known : sources_)
     if (known.path == source.path && known.is_folder == source.is_folder) {
-      // It may have been replaced since; moved away, it is still what undo and journals rest on.
+      // The source may have been replaced since. Undo and journals still need the earlier one if it was moved.
       if (!source.seen.empty() && !was_seen(known, source.seen)) known.seen.push_back(source.seen.front());
       known.whole_may_go = known.whole_may_go && source.whole_may_go;
       known.role = std::move(source.role);
@@ -124,7 +124,7 @@ const SourceGuard::Source* SourceGuard::source_holding(const fs::path& wanted) c
     if (lies_in(wanted, source.path) && !may_go(source.path)) return &source;
     for (fs::path at = wanted;; at = at.parent_path()) {
       if (is_same(source, at) && !may_go(at)) return &source;
-      // Only a folder protects what is below it.
+      // Only a folder protects its contents.
       if (!source.is_folder || at == at.parent_path()) break;
     }
   }
@@ -152,7 +152,7 @@ void SourceGuard::check_folder(const fs::path& path) const {
     for (fs::path at = source.path.parent_path(); at != at.parent_path(); at = at.parent_path())
       if (const auto there = identity_of(at); !there.empty() && there == identity_of(wanted)) refuse(source);
   }
-  // A hard link or a mount below it may lead to one.
+  // A hard link or a mount below the folder may lead to a source.
   std::vector<std::vector<Identity>> identities;
   for (const Source& source : sources_) identities.push_back(identity_of(source.path));
   for_each_entry(wanted, [&](const fs::directory_entry& entry) {

@@ -9,7 +9,7 @@ namespace rebake {
 
 namespace {
 
-// No part but the largest is farther from 0 than this.
+// Bound of the magnitude of all components except the largest.
 constexpr double farthest = std::numbers::sqrt2 / 2;
 constexpr std::int64_t steps = TurnBits::steps;
 
@@ -47,7 +47,7 @@ std::array<std::uint8_t, Turn::size> Turn::bytes() const {
 
 TurnBits::Fields TurnBits::unpacked(const Words& words) {
   const auto bits = [&](std::size_t first) {
-    // From the two or three words that they lie in.
+    // Collects the bits from the two or three words that contain them.
     std::uint64_t value = 0;
     for (std::size_t w = first / 32; w < words.size() && w * 32 < first + field; ++w) {
       const std::uint64_t word = words[w];
@@ -76,7 +76,7 @@ Mat3 Turn::matrix() const {
   for (std::size_t k = 0, field = 0; k < 4; ++k)
     if (k != largest) parts[k] = small[field++];
   Mat3 matrix = Eigen::Quaterniond(parts[0], parts[1], parts[2], parts[3]).normalized().toRotationMatrix();
-  // What is nearest to a turn that maps axes onto axes is that turn.
+  // Snaps to a rotation that permutes the axes if the matrix is within rounding of one.
   if (const Mat3 rounded = matrix.array().round(); (matrix - rounded).cwiseAbs().maxCoeff() < 2e-15) matrix = rounded;
   return flags[2] ? Mat3(-matrix) : matrix;
 }

@@ -9,12 +9,13 @@
 
 namespace rebake {
 
-/// How a Turn lies in its bytes: three fields of 53 bits, in each a flag, and above it a part as steps from −√½ to √½.
+/// Bit layout of a Turn: three fields of 53 bits. Bit 0 of a field is a flag; the bits above it are a quaternion
+/// component, as a number of steps from −√½.
 struct TurnBits {
   using Words = std::array<std::uint32_t, 5>;
   using Fields = std::array<std::uint64_t, 3>;
-  static constexpr std::size_t field = 53;
-  static constexpr std::int64_t steps = (std::int64_t{1} << 51) - 1;  ///< from 0 to √½
+  static constexpr std::size_t field = 53;                            ///< bits per field
+  static constexpr std::int64_t steps = (std::int64_t{1} << 51) - 1;  ///< number of steps from 0 to √½
 
   static constexpr Words packed(const Fields& fields) {
     Words words{};
@@ -25,22 +26,21 @@ struct TurnBits {
   static Fields unpacked(const Words& words);
 };
 
-/// An orthogonal matrix in 20 bytes: a unit quaternion by its three smaller parts in 52 bits each, which of the four is
-/// the largest, and whether the matrix mirrors: whether it is −1 times a rotation. Within 2e-15 of the matrix it was
-/// made of,
-/// where that is orthogonal; what maps axes onto axes (identity, quarter turns, mirrors) is exact.
+/// A 3 × 3 orthogonal matrix in 20 bytes: the three smaller components of a unit quaternion in 52 bits each, the index
+/// of the largest, and a flag for a reflection (the matrix is −1 times a rotation). Error at most 2e-15 for an
+/// orthogonal matrix. Matrices that permute the axes, up to sign, are exact (identity, quarter turns, mirrors).
 class Turn {
  public:
   static constexpr std::size_t size = 20;
 
   Turn() = default;  ///< identity
-  /// `orthogonal` within 1e-6; finite.
+  /// `orthogonal` must be finite, and orthogonal within 1e-6.
   explicit Turn(const Mat3& orthogonal);
-  /// Of bytes(); all values of them are turns.
+  /// Inverse of bytes(); every sequence of bytes is valid.
   explicit Turn(std::span<const std::uint8_t, size> bytes);
 
   Mat3 matrix() const;
-  std::array<std::uint8_t, size> bytes() const;  ///< the same on every machine
+  std::array<std::uint8_t, size> bytes() const;  ///< little-endian; the same on every machine
   bool is_identity() const { return *this == Turn(); }
   bool operator==(const Turn&) const = default;
 

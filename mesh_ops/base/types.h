@@ -15,7 +15,7 @@ using Box = Eigen::AlignedBox3d;
 /// Three vertex indices into the positions (and UVs) of one texture set.
 using Face = std::array<std::uint32_t, 3>;
 
-/// Display (sRGB-encoded) colour, 0 … 1 a channel.
+/// Display (sRGB-encoded) colour, 0 … 1 per channel.
 using Color = Eigen::Vector3d;
 
 }  // namespace rebake

@@ -7,8 +7,8 @@
 
 namespace rebake {
 
-/// Disjoint sets of the numbers 0 … size − 1. The lowest number of a set is its root, so that numbering does not depend
-/// on the order of joins.
+/// Union-find over the numbers 0 … size − 1. The lowest number of a set is its root, so that results do not depend on
+/// the order of joins.
 class UnionFind {
  public:
   explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
@@ -16,7 +16,7 @@ class UnionFind {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// Whether they were apart.
+  /// Merges the sets of `a` and `b`. Returns false if they were one set already.
   bool join(std::uint32_t a, std::uint32_t b) {
     a = root(a);
     b = root(b);

@@ -36,12 +36,12 @@ void ArrayCache::charge(Entry& charged, std::uint64_t bytes) {
   const std::scoped_lock lock(mutex_);
   const auto here =
       std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry.get() == &charged; });
-  if (here == entries_.end()) return;  // its arrays went while it was made
+  if (here == entries_.end()) return;  // its arrays were destroyed while it was computed
   charged.bytes = bytes;
   memory_ += bytes;
   for (auto last = entries_.end(); memory_ > budget_ && last != entries_.begin();) {
     --last;
-    // What has no bytes is being made by somebody.
+    // An entry of 0 bytes is still being computed.
     if (last->get() == &charged || (*last)->bytes == 0) continue;
     memory_ -= (*last)->bytes;
     last = entries_.erase(last);

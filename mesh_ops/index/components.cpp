@@ -16,10 +16,11 @@ namespace rebake {
 
 namespace {
 
-// Bit i is set when the texel beside the i-th of 32 places along an edge is opaque, counted from a to b.
+// Opacity at 32 places along the edge from a to b, in texel coordinates; `inside` is the triangle's third corner. Bit i
+// is set if the texel at place i is opaque.
 std::uint32_t opaque_along(const FeatureTexture& texels, const Vec2& a, const Vec2& b, const Vec2& inside) {
   constexpr int places = 32;
-  // A quarter of a texel off the edge, towards the inside, so that rounding cannot fall into a neighbouring patch.
+  // Places lie up to a quarter of a texel inside the edge, so that rounding cannot reach a neighbouring patch.
   const Vec2 along = b - a;
   const Vec2 off = inside - a - along * (along.squaredNorm() > 0 ? (inside - a).dot(along) / along.squaredNorm() : 0.0);
   const double distance = off.norm();
@@ -38,8 +39,8 @@ std::uint32_t opaque_along(const FeatureTexture& texels, const Vec2& a, const Ve
   return mask;
 }
 
-// Places along an edge that are opaque (bits as of opaque_along), at a pitch of at most `pitch` where 32 are enough for
-// that, with its ends.
+// Appends the opaque places of an edge (bits as in opaque_along()), including its ends. Their spacing is at most
+// `pitch` if 32 places allow it.
 void add_edge_points(const Vec3& a, const Vec3& b, std::uint32_t opaque, double pitch, std::vector<Vec3>& points) {
   constexpr std::uint32_t places = 32;
   const double apart = (b - a).norm() / places;
@@ -52,8 +53,9 @@ void add_edge_points(const Vec3& a, const Vec3& b, std::uint32_t opaque, double 
   }
 }
 
-// Points of every triangle in opaque texels, at a pitch of at most a quarter of the gap: centres of texels inside it,
-// and places along its edges, which may lie half a texel farther out.
+// Sample points on the opaque texels of every triangle, and the triangle that owns each. The spacing is at most a
+// quarter of the gap. Points are texel centres inside the triangle, and places along its edges, which may lie half a
+// texel farther out.
 void opaque_points(const BakedObject& object, const std::vector<std::shared_ptr<const EdgeOpacity>>& opacity,
                    double gap, std::vector<Vec3>& points, std::vector<std::uint32_t>& owner) {
   std::uint32_t triangle = 0;
@@ -96,13 +98,13 @@ std::uint32_t end_of(const WeldedCorners& corners, std::size_t half_edge) {
   return corners.places[half_edge - half_edge % 3 + (half_edge + 1) % 3];
 }
 
-// A half edge's opacity from its lower place to its higher one.
+// Opacity along a half edge, ordered from its lower place number to its higher one.
 std::uint32_t upwards(const WeldedCorners& corners, std::size_t half_edge, std::uint32_t along) {
   return corners.places[half_edge] <= end_of(corners, half_edge) ? along : reversed(along);
 }
 
-// Joins what lies along one edge. Who is opaque at a place of it hangs together with the first that is: a wide
-// tolerance can lay hundreds of triangles along one edge, so they are not compared in pairs.
+// Joins triangles across one edge: at each place, all opaque ones are joined to the first. They are not compared in
+// pairs, because a large tolerance can put hundreds of triangles on one edge.
 template <class Opaque, class Part>
 void join_along(std::span<const std::uint32_t> half_edges, Opaque opaque, Part part, UnionFind& parts) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -127,7 +129,7 @@ void for_each_edge(const EdgeTable& edges, Visit visit) {
     visit(std::span(edges.half_edges).subspan(edges.first_of[edge], edges.first_of[edge + 1] - edges.first_of[edge]));
 }
 
-// `part_of`: of each triangle, as parts are numbered that were joined since. Numbered anew, by their first triangles.
+// Renumbers components by their first triangles. `part_of`: element of `parts` per triangle.
 Components numbered(const std::vector<std::uint32_t>& part_of, UnionFind& parts) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   Components result;
@@ -152,7 +154,7 @@ EdgeOpacity edge_opacity(const TextureSet& set) {
   tbb::parallel_for(std::size_t{0}, set.soup.triangle_count(), [&](std::size_t f) {
     const std::array<Vec2, 3> uv = texel_corners(set, f);
     for (std::size_t k = 0; k < 3; ++k) {
-      // Looked at from the same end by both triangles of an edge, so that rounding is the same.
+      // Sampled from the same end for both triangles of an edge, so that rounding is the same.
       const Vec2 &a = uv[k], &b = uv[(k + 1) % 3], &inside = uv[(k + 2) % 3];
       const bool forward = std::pair(a.x(), a.y()) <= std::pair(b.x(), b.y());
       opacity.along[f * 3 + k] =
@@ -225,7 +227,7 @@ Components joined_components(const WeldedCorners& corners, const std::vector<Kno
 Components opaque_components(const BakedObject& object, const WeldedCorners& corners, const EdgeTable& edges,
                              const std::vector<std::shared_ptr<const EdgeOpacity>>& opacity, double gap) {
   const std::size_t total = object.triangle_count();
-  std::vector<std::uint32_t> opaque(total * 3);  // along each half edge, from the lower place to the higher
+  std::vector<std::uint32_t> opaque(total * 3);  // per half edge, from its lower place to its higher one
   std::size_t first = 0;
   for (const auto& set : opacity) {
     tbb::parallel_for(std::size_t{0}, set->along.size(),

@@ -8,48 +8,47 @@
 
 namespace rebake {
 
-/// When two triangles count as joined. Lengths in object units.
+/// Criterion that joins triangles to connected components. Lengths in object units.
 struct Joining {
-  /// Corners at most this far apart are one place (files repeat corners, sometimes rounded); 0: equal bit for bit.
+  /// Corners at most this far apart are welded (files repeat corners, sometimes rounded). 0: only bit-identical
+  /// corners.
   double tolerance = 0;
-  /// Opaque texels at most this far apart join too, whatever the triangles' corners; 0: only across shared edges.
+  /// Triangles with opaque texels at most this far apart are joined too. 0: only across shared edges.
   double gap = 0;
 
   auto operator<=>(const Joining&) const = default;
 };
 
-/// The object's triangles in parts that hang together where they are opaque: two triangles that share an edge are
-/// joined where opaque texels face each other across it (looked at in 32 places along the edge). Triangles without an
-/// opaque texel are parts of their own.
+/// Connected components of an object's opaque surface. Triangles that share an edge are joined if opaque texels face
+/// each other across it, tested at 32 places along the edge. A triangle without opaque texels is a component of its
+/// own.
 struct Components {
-  std::vector<std::uint32_t> part_of;       ///< a triangle's part
-  std::vector<std::uint32_t> triangles_in;  ///< triangles of a part
+  std::vector<std::uint32_t> part_of;       ///< component number per triangle
+  std::vector<std::uint32_t> triangles_in;  ///< number of triangles per component
 };
 
-/// For each half edge of a set's triangles which of 32 places along it show an opaque texel: bit i the i-th, from the
-/// corner it starts at.
+/// Opacity along the half edges of a texture set's triangles, sampled at 32 places.
 struct EdgeOpacity {
-  std::vector<std::uint32_t> along;
+  std::vector<std::uint32_t> along;  ///< per half edge; bit i: opaque at place i from the corner that it starts at
 };
 EdgeOpacity edge_opacity(const TextureSet& set);
 
-/// One set's triangles in parts, whose corners are equal bit for bit. Numbered by their first triangles.
+/// Connected components of one texture set, for bit-identical corners; numbered by their first triangles.
 struct SetParts {
-  std::vector<std::uint32_t> part_of;
-  std::uint32_t count = 0;
+  std::vector<std::uint32_t> part_of;  ///< component number per triangle
+  std::uint32_t count = 0;             ///< number of components
 };
 SetParts set_parts(const WeldedCorners& corners, const EdgeTable& edges, const EdgeOpacity& opacity);
 
-/// What a set is known by.
+/// Cached indices of one texture set.
 struct KnownSet {
   std::shared_ptr<const EdgeOpacity> opacity;
   std::shared_ptr<const SetParts> parts;
 };
-/// The components of an object whose corners are equal bit for bit, without a gap: only edges that sets share are
-/// looked at again.
+/// Components of an object for tolerance 0 and gap 0, from those of its sets: tests only edges that several sets share.
 Components joined_components(const WeldedCorners& corners, const std::vector<KnownSet>& sets);
 
-/// The same with any tolerance and gap. `opacity`: each set's.
+/// Components of an object for any gap, and for the tolerance of `corners` and `edges`. `opacity`: per texture set.
 Components opaque_components(const BakedObject& object, const WeldedCorners& corners, const EdgeTable& edges,
                              const std::vector<std::shared_ptr<const EdgeOpacity>>& opacity, double gap);
 

@@ -13,7 +13,7 @@ EdgeTable edges_between(const WeldedCorners& corners) {
   const auto end_of = [&](std::size_t half_edge) { return places[half_edge - half_edge % 3 + (half_edge + 1) % 3]; };
   const auto low = [&](std::size_t e) { return std::min(places[e], end_of(e)); };
   const auto high = [&](std::size_t e) { return std::max(places[e], end_of(e)); };
-  // By the lower place, as a counting sort; the few of each place then by the higher one.
+  // Counting sort by the lower place; the few half edges per place are then sorted by the higher one.
   std::vector<std::uint32_t> begin(corners.place_count + 1U, 0);
   for (std::size_t e = 0; e < places.size(); ++e) ++begin[low(e) + 1U];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());

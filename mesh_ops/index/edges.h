@@ -7,11 +7,10 @@
 
 namespace rebake {
 
-/// Which triangles share an edge: half edges (3 · triangle + corner it starts at), those between the same two places
-/// side by side.
+/// Triangles per edge of a welded mesh: half edges, grouped by the pair of places (welded vertices) that they connect.
 struct EdgeTable {
-  std::vector<std::uint32_t> half_edges;
-  std::vector<std::uint32_t> first_of;  ///< where each edge's begin; one more at the end
+  std::vector<std::uint32_t> half_edges;  ///< 3 · triangle + number of the corner that it starts at
+  std::vector<std::uint32_t> first_of;    ///< per edge: index of its first half edge; last: their number
 };
 EdgeTable edges_between(const WeldedCorners& corners);
 

@@ -8,7 +8,7 @@
 
 namespace rebake {
 
-/// A face's corners in texel coordinates of its texture, v pointing down: texel (x, y) is the square [x, x+1) × [y,
+/// Corners of a face in texel coordinates of its texture, y pointing down: texel (x, y) is the square [x, x+1) × [y,
 /// y+1).
 inline std::array<Vec2, 3> texel_corners(const TextureSet& set, std::size_t face) {
   std::array<Vec2, 3> corners;
@@ -19,13 +19,13 @@ inline std::array<Vec2, 3> texel_corners(const TextureSet& set, std::size_t face
   return corners;
 }
 
-/// The texel that holds a coordinate in texels, clamped to a texture of `size`. Any number but NaN may be asked for.
+/// Index of the texel that contains a coordinate in texels, clamped to 0 … size − 1. NaN is not allowed.
 inline int texel_within(double coordinate, int size) {
   return static_cast<int>(std::clamp(std::floor(coordinate), 0.0, size - 1.0));
 }
 
-/// Calls visit(y, begin, end) for the rows of texels, begin ≤ x < end, whose centres lie in the triangle, clamped to
-/// the texture. A centre on an edge that two triangles share counts for one or both.
+/// Calls visit(y, begin, end) for each row of texels whose centres lie in the triangle, begin ≤ x < end, clamped to the
+/// texture. A centre on an edge shared by two triangles counts for one or both.
 template <class Visit>
 void for_each_row_inside(const std::array<Vec2, 3>& p, int width, int height, Visit visit) {
   const double top = std::min({p[0].y(), p[1].y(), p[2].y()}), bottom = std::max({p[0].y(), p[1].y(), p[2].y()});
@@ -52,7 +52,7 @@ void for_each_row_inside(const std::array<Vec2, 3>& p, int width, int height, Vi
   }
 }
 
-/// The same texels one by one: visit(x, y).
+/// Calls visit(x, y) for each texel whose centre lies in the triangle.
 template <class Visit>
 void for_each_texel_inside(const std::array<Vec2, 3>& p, int width, int height, Visit visit) {
   for_each_row_inside(p, width, height, [&](int y, int begin, int end) {
@@ -60,7 +60,7 @@ void for_each_texel_inside(const std::array<Vec2, 3>& p, int width, int height, 
   });
 }
 
-/// Weights of the corners at a point, summing to 1; all on the first corner where the triangle has no area.
+/// Barycentric coordinates of a point; (1, 0, 0) if the triangle has no area.
 inline Vec3 barycentric(const std::array<Vec2, 3>& p, const Vec2& at) {
   const Vec2 a = p[1] - p[0], b = p[2] - p[0], c = at - p[0];
   const double area = a.x() * b.y() - a.y() * b.x();

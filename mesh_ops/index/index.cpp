@@ -8,7 +8,7 @@
 
 namespace rebake {
 
-// Hash of the UVs of all faces' corners: the same where vertices were moved, split or not.
+// Hash of the UVs of all face corners; moving or splitting vertices does not change it.
 struct CornerUvs {
   std::uint64_t hash;
 };
@@ -25,7 +25,7 @@ ArrayCache& cache() {
   return cache;
 }
 
-// What each depends on.
+// Arrays that the indices depend on.
 ArrayCache::Arrays geometry_of(const BakedObject& object) {
   ArrayCache::Arrays arrays;
   for (const TextureSet& set : object.sets) {
@@ -44,7 +44,7 @@ ArrayCache::Arrays surface_of(const BakedObject& object) {
 }
 
 ArrayCache::Arrays places_of(const TextureSet& set) { return {set.soup.shared_positions(), set.soup.shared_faces()}; }
-// Trees look texels up in the object's arrays without keeping them; who uses one keeps both.
+// A RayTree refers to the object's arrays without owning them; the returned pointer owns both.
 std::shared_ptr<const RayTree> with_arrays(std::shared_ptr<const RayTree> tree, ArrayCache::Arrays arrays) {
   if (!tree) return nullptr;
   const RayTree* const plain = tree.get();
@@ -74,8 +74,8 @@ std::uint64_t memory_of(const RayTree& tree) { return tree.memory(); }
 
 const ArrayCache& index_cache() { return cache(); }
 
-// What texels say of a set's triangles goes with the texels and with which of them the faces show, wherever vertices
-// are and however they are numbered.
+// Cache settings of per-triangle texel data: a hash of the faces' corner UVs, independent of vertex positions and
+// numbering.
 static ArrayCache::Settings shown_texels(const TextureSet& set) {
   const auto corners = cache().get<CornerUvs>({set.soup.shared_uvs(), set.soup.shared_faces()}, {}, [&] {
     std::vector<Vec2> uvs;
@@ -84,7 +84,7 @@ static ArrayCache::Settings shown_texels(const TextureSet& set) {
       for (const std::uint32_t vertex : face) uvs.push_back(set.soup.uvs()[vertex]);
     return CornerUvs{content_hash({reinterpret_cast<const char*>(uvs.data()), uvs.size() * sizeof(Vec2)})};
   });
-  // Doubles hold 32 bits each exactly.
+  // A double represents 32 bits exactly.
   return {static_cast<double>(corners->hash >> 32), static_cast<double>(corners->hash & 0xffffffffU)};
 }
 
@@ -148,7 +148,7 @@ std::shared_ptr<const Components> components_of(const BakedObject& object, const
     return joined_components(*corners_of(object), sets);
   });
 }
-// Triangles are used as often as their trees, so that trees, which hold them, go first.
+// Marks the triangles as used after their tree, so that the cache evicts the tree, which owns them too, first.
 static void touch_triangles(const BakedObject& object) { cache().if_there<RayTriangles>(geometry_of(object), {}); }
 
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object) {

@@ -11,29 +11,30 @@
 
 namespace rebake {
 
-// What selecting on an object needs to know of it. Each is computed when it is first asked for and kept by the object's
-// arrays (see ArrayCache): what moves vertices keeps what is known of texels, and the other way round. Callable from
-// any thread.
+// Cached indices of an object. Each is computed on first request and cached by the arrays that it depends on (see
+// ArrayCache): moving vertices does not invalidate indices of texels, and vice versa. Thread-safe.
 
 std::shared_ptr<const std::vector<TriangleTraits>> traits_of(const BakedObject& object);
+/// `tolerance`: welding distance in object units.
 std::shared_ptr<const WeldedCorners> corners_of(const BakedObject& object, double tolerance = 0);
 std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tolerance = 0);
 std::shared_ptr<const Components> components_of(const BakedObject& object, const Joining& joining = {});
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object);
-/// What frames may leave out, see decoder_bounds.h.
+/// Bounds of colours by which the frame plan skips effects, see decoder_bounds.h.
 std::shared_ptr<const DirectionUse> direction_use_of(const std::shared_ptr<const Decoder>& decoder);
 std::shared_ptr<const std::optional<FeatureRange>> feature_range_of(
     const std::shared_ptr<const FeatureTexture>& texture);
-/// Null where they are not there yet: for who must not wait.
+/// As rays_of(), but null if the object's triangles are not indexed yet, for callers that must not wait.
 std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object);
 
-/// Rays through placed objects, in their order.
+/// Ray queries through placed objects; instance k is objects[k].
 SceneRays rays_through(const std::vector<PlacedNode>& objects);
 
-/// Computes all of the above with their defaults, to be called off the window's thread before anything is selected.
+/// Computes traits, components and rays with default parameters, so that the first selection does not wait. Call it
+/// outside the window's thread.
 void prepare_index(const BakedObject& object, const Progress& progress = {});
 
-/// Where all of them are kept: one gigabyte at most.
+/// The cache of all indices, with a budget of 1 GiB.
 const ArrayCache& index_cache();
 
 }  // namespace rebake

@@ -26,7 +26,7 @@ Cell cell_of(const Vec3& p, const Vec3& origin, double size) {
 
 void join_near(UnionFind& parts, const std::vector<Vec3>& points, const std::vector<std::uint32_t>& owner, double reach,
                const Vec3& origin) {
-  // Below the rounding of the points themselves, a reach means nothing (and cells could not be counted).
+  // A reach below the rounding of the points is meaningless, and its cell numbers would overflow.
   double extent = 0;
   for (const Vec3& p : points) extent = std::max(extent, (p - origin).cwiseAbs().maxCoeff());
   if (!(reach > extent * 1e-15) || !std::isfinite(reach)) return;

@@ -8,8 +8,9 @@
 
 namespace rebake {
 
-/// Joins in `parts` the owners of points that are at most `reach` apart. `origin` is any point near them. Dense clouds
-/// cost no more than sparse ones: what shares a cell of a grid is joined without being compared.
+/// Joins in `parts` the owners of points that are at most `reach` apart. `owner`: element of `parts` per point;
+/// `origin`: any point near them. Points in the same grid cell are joined without comparison, so dense clouds cost no
+/// more than sparse ones.
 void join_near(UnionFind& parts, const std::vector<Vec3>& points, const std::vector<std::uint32_t>& owner, double reach,
                const Vec3& origin);
 

@@ -10,14 +10,14 @@ namespace rebake {
 
 namespace {
 
-// Signed distance, in texels, of a point to an edge's line; the triangle lies on the positive side.
+// Line through an edge: normal · p + offset is the signed distance of p in texels, positive inside the triangle.
 struct Edge {
   Vec2 normal;
   double offset;
 };
 
 bool shows_opaque(const FeatureTexture& texels, std::array<Vec2, 3> p) {
-  // Where is not known: it may show anything.
+  // Unknown UVs may show any texel.
   if (!(p[0].allFinite() && p[1].allFinite() && p[2].allFinite())) return true;
   const Vec2 low = p[0].cwiseMin(p[1]).cwiseMin(p[2]), high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
   if (!(low.minCoeff() >= 0 && high.x() <= texels.width() && high.y() <= texels.height())) return true;
@@ -27,7 +27,7 @@ bool shows_opaque(const FeatureTexture& texels, std::array<Vec2, 3> p) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2 along = p[(k + 1) % 3] - p[k];
     const double length = along.norm();
-    // A degenerate triangle has no inside: its whole box is looked at.
+    // A degenerate triangle has no inside: all texels of its bounding box count.
     edges[k].normal = doubled_area == 0 || length == 0 ? Vec2(0, 0) : Vec2(Vec2(-along.y(), along.x()) / length);
     edges[k].offset = -edges[k].normal.dot(p[k]);
   }
@@ -35,7 +35,7 @@ bool shows_opaque(const FeatureTexture& texels, std::array<Vec2, 3> p) {
   const int right = std::min(texels.width() - 1, static_cast<int>(std::floor(high.x())) + 1);
   const int top = std::max(0, static_cast<int>(std::floor(low.y())) - 1);
   const int bottom = std::min(texels.height() - 1, static_cast<int>(std::floor(high.y())) + 1);
-  // A texel is touched when its square meets the triangle: half a diagonal, and some room for rounding.
+  // Distance in texels at which a texel's square may still touch the triangle: half a diagonal, plus room for rounding.
   constexpr double reach = 1.0;
   for (int y = top; y <= bottom; ++y)
     for (int x = left; x <= right; ++x) {

@@ -34,9 +34,8 @@ TexelPatches texel_patches(const TextureSet& set) {
     if (fresh) rects.push_back(rect);
     rect_of_face.push_back(it->second);
   }
-  // Only rectangles in the same block of texels can overlap.
-  // A block that very many share is one heap of overlaps: taken as joined, which moves more texels together, but no
-  // texel wrong.
+  // Only rectangles in the same block of 32 × 32 texels can overlap. Rectangles of a crowded block are joined without a
+  // test: patches become larger, but stay valid.
   constexpr int block = 32;
   constexpr std::size_t crowded = 64;
   UnionFind groups(rects.size());

@@ -9,9 +9,9 @@
 
 namespace rebake {
 
-/// A rectangle of texels.
+/// An axis-aligned rectangle of texels; row 0 is at the top.
 struct TexelRect {
-  int left = 0, top = 0, right = 0, bottom = 0;  ///< right and bottom included
+  int left = 0, top = 0, right = 0, bottom = 0;  ///< right and bottom are inclusive
   auto operator<=>(const TexelRect&) const = default;
   bool overlaps(const TexelRect& o) const {
     return left <= o.right && o.left <= right && top <= o.bottom && o.top <= bottom;
@@ -26,14 +26,14 @@ struct TexelRect {
   int height() const { return bottom - top + 1; }
 };
 
-/// What of a texture belongs together: groups of faces whose rectangles of texels overlap.
+/// Groups of faces whose texel rectangles overlap.
 struct TexelPatches {
-  std::vector<TexelRect> rects;
-  std::vector<std::size_t> of_face;  ///< number of a face's patch
+  std::vector<TexelRect> rects;      ///< bounding rectangle per patch
+  std::vector<std::size_t> of_face;  ///< patch number per face
 };
 TexelPatches texel_patches(const TextureSet& set);
 
-/// The rectangle that a face's texels lie in.
+/// Bounding rectangle of a face's texels, clamped to the texture.
 TexelRect texel_rect(const TextureSet& set, const Face& face);
 
 }  // namespace rebake

@@ -11,13 +11,13 @@ namespace rebake {
 
 namespace {
 
-// Sums of the texels' bytes; they become features once.
+// Sums of texel bytes; converted to features once per triangle.
 struct Sum {
   std::array<std::uint32_t, 8> bytes{};
   std::uint32_t opaque = 0;
   std::uint32_t all = 0;
 
-  // At most 256 texels, whose bytes then fit into 16 bits each: four are added at a time.
+  // At most 256 texels, whose sums fit into 16 bits, so that one addition adds four bytes.
   void add(const Texel* texels, int count) {
     std::uint64_t even = 0, odd = 0;
     for (int i = 0; i < count; ++i) {
@@ -61,7 +61,7 @@ TriangleLooks looks_of(const TextureSet& set, const TexelReader& reader, std::si
   return looks;
 }
 
-// The decoder on many triangles at once: a column each.
+// Decodes the colours of a batch of triangles, one per matrix column.
 void decode_colors(const Decoder& decoder, TriangleLooks* looks, Eigen::Index count) {
   const Eigen::MatrixXf w0 = decoder.weights0.cast<float>().transpose();
   const Eigen::MatrixXf w1 = decoder.weights1.cast<float>().transpose();

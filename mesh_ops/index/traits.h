@@ -8,28 +8,29 @@
 
 namespace rebake {
 
-/// What a triangle looks like, for selecting by likeness. Object space.
+/// Appearance and shape of a triangle in object space, for selecting similar triangles.
 struct TriangleTraits {
-  std::array<float, 8> features{};  ///< mean of its opaque texels' decoded features
-  std::array<float, 3> color{};     ///< those features decoded, averaged over six axis directions; 0 … 1
-  float opacity = 0;                ///< share of its texels that are opaque
-  float area = 0;                   ///< in square units
-  std::array<float, 3> normal{};    ///< unit, or zero where the triangle has no area
+  std::array<float, 8> features{};  ///< mean of the decoded features of its opaque texels
+  std::array<float, 3> color{};  ///< display colour of the mean features, averaged over the six axis directions; 0 … 1
+  float opacity = 0;             ///< share of opaque texels, 0 … 1
+  float area = 0;                ///< in square object units
+  std::array<float, 3> normal{};  ///< unit vector, or zero if the triangle has no area
 };
 
-/// What of a triangle's traits its texels say, wherever its corners lie.
+/// The traits of a triangle that depend on its texels and the decoder, but not on vertex positions.
 struct TriangleLooks {
   std::array<float, 8> features{};
   std::array<float, 3> color{};
   float opacity = 0;
 };
-/// Of a set's triangles. One too small to hold a texel centre counts the texel at its own centre.
+/// Texel-dependent traits per triangle of a set. A triangle that contains no texel centre uses the texel at its
+/// centroid.
 std::vector<TriangleLooks> triangle_looks(const TextureSet& set, const Decoder& decoder);
 
-/// Whether one triangle's TriangleLooks::opacity is above 0; looks at no colour.
+/// Whether TriangleLooks::opacity of one triangle is above 0; decodes no colours.
 bool shows_opaque(const TextureSet& set, std::size_t triangle);
 
-/// Traits of every triangle, in the object's numbering, from the looks of each set's.
+/// Traits per triangle, in the object's numbering. `looks`: triangle_looks() per texture set.
 std::vector<TriangleTraits> triangle_traits(
     const BakedObject& object, const std::vector<std::shared_ptr<const std::vector<TriangleLooks>>>& looks);
 

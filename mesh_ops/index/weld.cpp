@@ -17,7 +17,7 @@ struct KeyHash {
 };
 using Places = Numbering<Key, KeyHash>;
 
-// −0 and 0 are one place.
+// Adding 0.0 makes −0 and 0 one place.
 Key key_of(const Vec3& p) {
   return {std::bit_cast<std::uint64_t>(p.x() + 0.0), std::bit_cast<std::uint64_t>(p.y() + 0.0),
           std::bit_cast<std::uint64_t>(p.z() + 0.0)};

@@ -8,20 +8,20 @@
 
 namespace rebake {
 
-/// Corners of an object's triangles, welded: three place numbers a triangle.
+/// Triangle corners after welding: each corner refers to a place, the number of a distinct position.
 struct WeldedCorners {
-  std::vector<std::uint32_t> places;  ///< 3 a triangle
-  std::uint32_t place_count = 0;
+  std::vector<std::uint32_t> places;  ///< per corner: [3 · triangle + corner]
+  std::uint32_t place_count = 0;      ///< number of distinct places
 };
-/// One set's corners, those that are equal bit for bit as one place, and where these are, in the order in which
-/// triangles come to them.
+/// Corners of one texture set, welded if bit-identical; places are numbered in order of first use by triangles.
 struct WeldedSet {
   WeldedCorners corners;
-  std::vector<Vec3> points;
+  std::vector<Vec3> points;  ///< position per place
 };
 WeldedSet weld_set(const Soup& soup);
 
-/// Of all sets. Corners at most `tolerance` apart are one place; 0: equal bit for bit.
+/// Welds the corners of all sets. Corners at most `tolerance` (object units) apart become one place; 0: only
+/// bit-identical ones.
 WeldedCorners weld(const BakedObject& object, const std::vector<std::shared_ptr<const WeldedSet>>& sets,
                    double tolerance);
 

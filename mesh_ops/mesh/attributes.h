@@ -11,18 +11,18 @@
 
 namespace rebake {
 
-/// One value an element (a vertex or a face), immutable. Elements without a value of their own have the neutral one.
+/// Immutable array of one value per element (vertex or face). Elements without an explicit value have the neutral one.
 class Attribute {
  public:
   virtual ~Attribute() = default;
 
   virtual std::size_t size() const = 0;
   virtual std::uint64_t memory() const = 0;  ///< bytes
-  /// The values of these elements, in this order; null where all of them are neutral.
+  /// Values of `elements`, in this order; null if all are neutral.
   virtual std::shared_ptr<const Attribute> picked(const std::vector<std::uint32_t>& elements) const = 0;
-  /// The values between so many neutral ones before and behind.
+  /// A copy padded with `before` neutral values in front and `behind` neutral values at the end.
   virtual std::shared_ptr<const Attribute> padded(std::size_t before, std::size_t behind) const = 0;
-  /// The values and those of another attribute of this type behind them.
+  /// Concatenation with `other`. Throws std::bad_cast if it has another type.
   virtual std::shared_ptr<const Attribute> followed_by(const Attribute& other) const = 0;
 
  protected:
@@ -31,18 +31,20 @@ class Attribute {
   Attribute& operator=(const Attribute&) = default;
 };
 
+/// An Attribute with values of type T.
 template <class T>
 class Values final : public Attribute {
  public:
   explicit Values(std::vector<T> values) : values_(std::move(values)) {}
 
+  /// Zero if T has T::Zero(), else T{}.
   static T neutral() {
     if constexpr (requires { T::Zero(); })
       return T::Zero();
     else
       return T{};
   }
-  /// Null where all are neutral.
+  /// Null if all values are neutral.
   static std::shared_ptr<const Attribute> of(std::vector<T> values) {
     if (std::all_of(values.begin(), values.end(), [](const T& value) { return value == neutral(); })) return nullptr;
     return std::make_shared<const Values>(std::move(values));
@@ -74,33 +76,34 @@ class Values final : public Attribute {
   std::vector<T> values_;
 };
 
-/// Attributes by name. What takes elements apart, puts them together or doubles them carries all of them along, and
-/// knows none. A name stands for one type everywhere.
+/// Attributes by name. Code that splits, joins or duplicates elements carries all attributes along without knowing
+/// them. A name has the same type everywhere.
 class Attributes {
  public:
   using Shared = std::shared_ptr<const Attribute>;
 
-  /// Null where there is none of that name.
+  /// Null if no attribute has that name.
   Shared shared(const std::string& name) const;
+  /// Values of an attribute; null if no attribute has that name. Throws std::bad_cast if it has another type.
   template <class T>
   const std::vector<T>* find(const std::string& name) const {
     const Shared attribute = shared(name);
     return attribute ? &dynamic_cast<const Values<T>&>(*attribute).get() : nullptr;
   }
-  /// With another attribute of that name, or without one where it is null.
+  /// A copy with one attribute replaced, or removed if `attribute` is null.
   Attributes with(const std::string& name, Shared attribute) const;
-  /// Of these elements, in this order.
+  /// Attributes of `elements`, in this order.
   Attributes picked(const std::vector<std::uint32_t>& elements) const;
-  /// Of `count` elements and those of `other` behind them.
+  /// Attributes of `count` elements, followed by `other_count` elements with the attributes `other`.
   Attributes followed_by(std::size_t count, const Attributes& other, std::size_t other_count) const;
 
   auto begin() const { return entries_.begin(); }
   auto end() const { return entries_.end(); }
-  /// The very same values.
+  /// Whether both share the same arrays.
   bool operator==(const Attributes&) const = default;
 
  private:
-  std::vector<std::pair<std::string, Shared>> entries_;  ///< by name
+  std::vector<std::pair<std::string, Shared>> entries_;  ///< sorted by name
 };
 
 }  // namespace rebake

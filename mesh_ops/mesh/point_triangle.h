@@ -7,7 +7,7 @@
 
 namespace rebake {
 
-/// Distance of a point from a segment.
+/// Distance of point p from the segment ab.
 inline double distance_to_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
   const Vec3 along = b - a;
   const double length = along.squaredNorm();
@@ -15,11 +15,11 @@ inline double distance_to_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
   return (p - (a + share * along)).stableNorm();
 }
 
-/// Distance of a point from a triangle, its inside and its edges. A triangle without area is its edges.
+/// Distance of point p from the triangle abc. A triangle without area is treated as its edges.
 inline double distance_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const Vec3 normal = (b - a).cross(c - a);
   const double area = normal.squaredNorm();
-  // Above the triangle where it lies on the inner side of all three edges.
+  // p projects into the triangle if it lies on the inner side of all three edges.
   if (area > 0 && normal.dot((b - a).cross(p - a)) >= 0 && normal.dot((c - b).cross(p - b)) >= 0 &&
       normal.dot((a - c).cross(p - c)) >= 0)
     return std::abs(normal.dot(p - a)) / std::sqrt(area);

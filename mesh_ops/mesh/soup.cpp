@@ -97,7 +97,7 @@ Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t
 
 namespace {
 
-// The parts of one soup put together, or nothing when they are not such parts.
+// Union of disjoint subsets of one soup; nullopt for any other two soups.
 std::optional<Soup> reunited(const Soup& a, const Soup& b) {
   if (!a.lineage() || !b.lineage()) return std::nullopt;
   const Soup& whole = a.lineage()->whole;

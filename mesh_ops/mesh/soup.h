@@ -12,8 +12,8 @@
 
 namespace rebake {
 
-/// The triangles of one texture set: an unwelded, non-manifold soup. Immutable; each array is shared on its own, so an
-/// edit that moves vertices keeps the UVs and faces of the scene before.
+/// Triangles of one texture set: an unwelded, non-manifold triangle soup. Immutable; each array is shared separately,
+/// so an edit that moves vertices shares the UVs and faces with the previous scene.
 class Soup {
  public:
   using Positions = std::shared_ptr<const std::vector<Vec3>>;
@@ -21,43 +21,43 @@ class Soup {
   using Faces = std::shared_ptr<const std::vector<Face>>;
 
   Soup();
-  /// The vertex attribute that is the rotation field: by which orthogonal matrix an edit turned each vertex against its
-  /// object (Turn).
+  /// Name of the vertex attribute for rotations: the orthogonal matrix by which edits rotated a vertex relative to its
+  /// object (type Turn).
   static constexpr const char* rotation = "rotation";
-  /// The vertex attribute that says how far edits moved each vertex from where it was when its light was baked
-  /// (Eigen::Vector3f, object space).
+  /// Name of the vertex attribute for displacements: how far edits moved a vertex since its light was baked (type
+  /// Eigen::Vector3f, object space).
   static constexpr const char* displacement = "displacement";
 
-  /// Positions in object space, UVs with v up, one of each a vertex. Faces must be in range, and attributes as many as
-  /// vertices and faces (std::invalid_argument).
+  /// Positions in object space, one UV per position, v up. Throws std::invalid_argument if a face index is out of
+  /// range, or an array or attribute has the wrong size.
   Soup(Positions positions, Uvs uvs, Faces faces, Attributes vertex_attributes = {}, Attributes face_attributes = {});
   Soup(std::vector<Vec3> positions, std::vector<Vec2> uvs, std::vector<Face> faces);
 
   const std::vector<Vec3>& positions() const { return *positions_; }
   const std::vector<Vec2>& uvs() const { return *uvs_; }
   const std::vector<Face>& faces() const { return *faces_; }
-  /// Null where nothing was turned.
+  /// Rotation per vertex; null if no vertex was rotated.
   const std::vector<Turn>* rotations() const { return rotations_; }
   const Attributes& vertex_attributes() const { return vertex_attributes_; }
   const Attributes& face_attributes() const { return face_attributes_; }
-  /// With other attributes of the faces.
+  /// A copy with other face attributes.
   Soup with_face_attributes(Attributes attributes) const;
-  /// With another displacement of the vertices; null for none.
+  /// A copy with other displacements of the vertices; null removes them.
   Soup with_displacement(Attributes::Shared displaced) const;
 
   const Positions& shared_positions() const { return positions_; }
   const Uvs& shared_uvs() const { return uvs_; }
   const Faces& shared_faces() const { return faces_; }
 
-  /// Of which soup this is a subset, so that parts can be put together again as they were; null for a whole soup and
-  /// for one whose vertices were moved.
+  /// Records the soup that this one is a subset of, so that united() can restore it. Null for a whole soup, and after
+  /// vertices were moved.
   struct Lineage;
   const std::shared_ptr<const Lineage>& lineage() const { return lineage_; }
 
   std::size_t triangle_count() const { return faces_->size(); }
-  /// Box of the vertices that faces use; empty when there are no faces.
+  /// Bounding box of the vertices used by faces; empty without faces.
   const Box& bounds() const { return bounds_; }
-  std::uint64_t memory() const;
+  std::uint64_t memory() const;  ///< bytes
 
  private:
   friend Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted);
@@ -67,32 +67,33 @@ class Soup {
   Faces faces_;
   Attributes vertex_attributes_;
   Attributes face_attributes_;
-  const std::vector<Turn>* rotations_ = nullptr;  ///< one of vertex_attributes_
+  const std::vector<Turn>* rotations_ = nullptr;  ///< points into vertex_attributes_; null if absent
   Box bounds_;
   std::shared_ptr<const Lineage> lineage_;
 };
 
 struct Soup::Lineage {
   Soup whole;
-  std::vector<std::uint32_t> faces;  ///< number in `whole` of each face
+  std::vector<std::uint32_t> faces;  ///< per face: its number in `whole`
 };
 
-/// The faces whose `keep` flag (one a face) is `wanted`, with the vertices they use, in the old order.
+/// Faces whose flag keep[first_flag + face] equals `wanted`, with the vertices that they use; preserves the order.
 Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted);
 
-/// Both soups as one. Parts of one soup without a common face become its subset again (the soup itself when all faces
-/// are there, bit for bit); others are put one after the other.
+/// Union of two soups. Disjoint subsets of one soup become its subset again (the soup itself, bit for bit, if
+/// complete); other soups are concatenated.
 Soup united(const Soup& a, const Soup& b);
-/// Which face each one of united(a, b) was, counted through those of a and then those of b.
+/// Per face of united(a, b): its number among the faces of a followed by those of b.
 std::vector<std::uint32_t> faces_of_united(const Soup& a, const Soup& b);
 
-/// Gives the flagged faces' vertices other positions and rotations: `change` is called once for each. Vertices that
-/// change and are shared with other faces are split; where nothing changes, nothing does.
+/// Calls `change` once for each vertex of the faces with a non-zero flags[first_flag + face], to set its position and
+/// rotation. Also updates displacements. Changed vertices that other faces share are split. Returns `soup` if nothing
+/// changes.
 Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag,
                      const std::function<void(std::uint32_t vertex, Vec3& position, Mat3& rotation)>& change);
 
-/// Moves the flagged faces by `motion`, recording `turn` (orthogonal, in object space) in their rotations.
-/// Vertices shared by moved and unmoved faces are split.
+/// Applies `motion` to the flagged faces, and `turn` (orthogonal, object space) to their rotations. Vertices shared by
+/// moved and unmoved faces are split.
 Soup move_faces(const Soup& soup, const std::vector<std::uint8_t>& flags, std::size_t first_flag, const Affine& motion,
                 const Mat3& turn);
 

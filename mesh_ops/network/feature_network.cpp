@@ -100,7 +100,7 @@ namespace {
 
 constexpr float beta1 = 0.9F, beta2 = 0.99F, tiny = 1e-8F;
 
-// By multiplications alone, the same on every processor.
+// 1 − beta^steps, by multiplications only: the same bits on every processor.
 float correction(float beta, int steps) {
   float power = 1, square = beta;
   for (; steps > 0; steps /= 2, square *= square)

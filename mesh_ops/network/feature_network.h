@@ -8,39 +8,39 @@
 
 namespace rebake {
 
-/// The implementation for this machine's processor.
+/// The fastest implementation for this processor.
 const NetworkKernels& network_kernels();
-/// All that this processor can run, the widest vectors first.
+/// All implementations that this processor can run, widest vectors first.
 std::vector<const NetworkKernels*> all_network_kernels();
 
-/// A network of two hidden layers in single precision, as it is trained: ReLUs, then logistic outputs.
+/// An MLP for training, in single precision: two hidden ReLU layers and logistic outputs.
 struct FeatureNetwork {
   std::size_t inputs, hidden0, hidden1, outputs;
-  std::vector<float> values;  ///< as in NetworkView
+  std::vector<float> values;  ///< biases and weights, in the order of NetworkView
 
-  /// All zero.
+  /// All weights and biases are 0.
   FeatureNetwork(std::size_t input_count, std::size_t width0, std::size_t width1, std::size_t output_count);
-  /// A decoder that is fed directions as they are.
+  /// A decoder in single precision; its inputs are 8 features and the fed direction.
   explicit FeatureNetwork(const Decoder& decoder);
 
   NetworkView view() const { return {inputs, hidden0, hidden1, outputs, values.data()}; }
-  Decoder to_decoder() const;  ///< of one with 11 inputs and 3 outputs
+  Decoder to_decoder() const;  ///< requires 11 inputs and 3 outputs
 };
 
-/// Random weights of the spread that keeps ReLUs alive (He et al. 2015), uniform; biases 0.
+/// He initialisation (He et al. 2015): uniform random weights, biases 0.
 void randomise(FeatureNetwork& network, std::uint64_t seed);
 
-/// The same function with layers of at least `width` neurons. New ones do nothing yet: random weights lead to them,
-/// none away from them.
+/// The same function with hidden layers of at least `width` neurons. New neurons have random input weights and zero
+/// weights to existing neurons and outputs.
 FeatureNetwork widened(const FeatureNetwork& network, std::size_t width, std::uint64_t seed);
 
-/// Adam (Kingma & Ba 2015), β₁ = 0.9, β₂ = 0.99.
+/// Adam optimiser (Kingma and Ba 2015) with β₁ = 0.9 and β₂ = 0.99.
 class Adam {
  public:
   explicit Adam(std::size_t count) : mean_(count), square_(count) {}
-  /// One step of all values.
+  /// Updates all values.
   void step(std::vector<float>& values, const std::vector<float>& gradient, float rate);
-  /// One step of a value on its own: `steps` is how many it has had, this one included.
+  /// Updates value `i` only. `steps`: number of updates of this value, including this one.
   void step_one(std::size_t i, float& value, float gradient, float rate, int steps);
 
  private:
@@ -48,22 +48,23 @@ class Adam {
   int steps_ = 0;
 };
 
-/// The rate of a step: falls from 1 to a hundredth along a cosine while `share` goes from 0 to 1.
+/// Cosine schedule of the learning rate: falls from 1 to 0.01 while the share of done steps goes from 0 to 1.
 float falling_rate(double share);
 
-/// Small repeatable random numbers (SplitMix64, Steele et al. 2014): the same on every machine.
+/// Pseudo-random numbers (SplitMix64, Steele et al. 2014), the same on every machine.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : state_(seed) {}
+  /// 64 random bits.
   std::uint64_t next() {
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
     return z ^ (z >> 31);
   }
-  /// Below `count`.
+  /// Uniform integer in [0, count).
   std::size_t below(std::size_t count) { return static_cast<std::size_t>((next() >> 32) * count >> 32); }
-  /// In [0, 1).
+  /// Uniform number in [0, 1).
   double share() { return static_cast<double>(next() >> 11) * 0x1p-53; }
 
  private:

@@ -1,5 +1,5 @@
-// Compiled for several kinds of processors (mesh_ops/CMakeLists.txt): GCC's vector types become the widest registers
-// that each has.
+// Compiled for several processor levels (mesh_ops/CMakeLists.txt): GCC maps vector types to the widest registers of
+// each.
 #include "mesh_ops/network/network_batch.h"
 
 #ifndef REBAKE_NETWORK_NAME
@@ -26,7 +26,7 @@ REBAKE_INLINE Vector least(Vector a, Vector b) { return a < b ? a : b; }
 REBAKE_INLINE Vector greatest(Vector a, Vector b) { return a > b ? a : b; }
 REBAKE_INLINE Vector all(float value) { return Vector{} + value; }
 
-// The nearest whole number, of numbers below 2²²: those beyond 1.5 · 2²³ have no places behind the point.
+// Rounds numbers below 2²² to integers: floats near 1.5 · 2²³ have no fractional bits.
 constexpr float shifter = 12582912;
 REBAKE_INLINE Vector rounded(Vector x) { return (x + shifter) - shifter; }
 
@@ -36,7 +36,7 @@ REBAKE_INLINE Vector root(Vector x) {
   return result;
 }
 
-// Right to 2 units in the last place. Coefficients: Moshier, Cephes Mathematical Library (1989), expf.
+// Error of at most 2 units in the last place. Coefficients: Moshier, Cephes Mathematical Library (1989), expf.
 REBAKE_INLINE Vector exponential(Vector x) {
   x = greatest(least(x, all(87.F)), all(-87.F));
   const Vector shifted = x * 1.44269504088896341F + shifter, turns = shifted - shifter;
@@ -46,14 +46,14 @@ REBAKE_INLINE Vector exponential(Vector x) {
                        r +
                    5.0000001201e-1F;
   const Vector power = p * (r * r) + r + 1.F;
-  // The lowest bits of `shifted` are the power of two: they are added to the exponent.
+  // The low bits of `shifted` hold the power of two; they are added to the exponent.
   return __builtin_bit_cast(Vector,
                             __builtin_bit_cast(Integers, power) + (__builtin_bit_cast(Integers, shifted) << 23));
 }
 
 REBAKE_INLINE Vector logistic(Vector x) { return 1.F / (1.F + exponential(-x)); }
 
-// The loops that most time goes to know a processor's registers: GCC keeps wider vectors in memory.
+// The hottest loops use vectors of register size, because GCC spills wider ones to memory.
 #if defined(__AVX512F__)
 constexpr std::size_t register_bytes = 64;
 #elif defined(__AVX__)
@@ -62,14 +62,15 @@ constexpr std::size_t register_bytes = 32;
 constexpr std::size_t register_bytes = 16;
 #endif
 using Register = float __attribute__((vector_size(register_bytes), may_alias));
-constexpr std::size_t registers = sizeof(Vector) / register_bytes;  // of a vector
-// As many as leave room for the sums of four neurons.
+constexpr std::size_t registers = sizeof(Vector) / register_bytes;  // registers per Vector
+// Registers per pass: few enough that the sums of four neurons fit.
 constexpr std::size_t at_once = registers < 2 ? registers : 2;
 
 REBAKE_INLINE Register& part(Vector& v, std::size_t k) { return reinterpret_cast<Register*>(&v)[k]; }
 REBAKE_INLINE const Register& part(const Vector& v, std::size_t k) { return reinterpret_cast<const Register*>(&v)[k]; }
 
-// So many neurons at once, whose weights begin at `values`, so that an input is read once for them.
+// Evaluates `count` neurons together, so that each input is loaded once. `values`: bias and weights of the first
+// neuron.
 template <std::size_t count>
 REBAKE_INLINE void neurons(const float* values, std::size_t inputs, const Vector* x, Vector* y) {
   for (std::size_t first = 0; first < registers; first += at_once) {
@@ -92,7 +93,7 @@ void layer(const float* values, std::size_t inputs, std::size_t outputs, const V
   for (; j < outputs; ++j) neurons<1>(values + j * (inputs + 1), inputs, x, y + j);
 }
 
-// Slopes of a layer's inputs from those of its outputs.
+// Backpropagates slopes (derivatives of the loss) from a layer's outputs to its inputs.
 void layer_back(const float* values, std::size_t inputs, std::size_t outputs, const Vector* slopes, Vector* result) {
   for (std::size_t i = 0; i < inputs; ++i) result[i] = Vector{};
   std::size_t j = 0;
@@ -115,6 +116,7 @@ void layer_back(const float* values, std::size_t inputs, std::size_t outputs, co
   }
 }
 
+// Adds the derivatives of the loss by a layer's biases and weights to `gradient`.
 void layer_gradient(std::size_t inputs, std::size_t outputs, const Vector* x, const Vector* slopes, Vector* gradient) {
   for (std::size_t j = 0; j < outputs; ++j, gradient += inputs + 1)
     for (std::size_t k = 0; k < registers; ++k) {
@@ -124,7 +126,7 @@ void layer_gradient(std::size_t inputs, std::size_t outputs, const Vector* x, co
     }
 }
 
-// Where activations and slopes lie in the workspace.
+// Layout of activations and slopes in the workspace.
 struct Places {
   Vector *first, *second, *first_slopes, *second_slopes, *output_slopes, *input, *input_slopes;
   Places(const NetworkView& n, Vector* w)
@@ -141,7 +143,7 @@ std::size_t workspace_lanes(const NetworkView& n) { return 2 * (n.hidden0 + n.hi
 const float* second_values(const NetworkView& n) { return n.values + n.hidden0 * (n.inputs + 1); }
 const float* third_values(const NetworkView& n) { return second_values(n) + n.hidden1 * (n.hidden0 + 1); }
 
-// x where `of` is above 0, else 0.
+// ReLU and its derivative: sets each lane of x to 0 unless that of `of` is above 0.
 REBAKE_INLINE void rectify(Vector* x, const Vector* of, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < registers; ++k) part(x[i], k) = part(of[i], k) > 0.F ? part(x[i], k) : Register{};
@@ -156,7 +158,7 @@ void evaluate(const NetworkView& n, const Vector* inputs, Vector* outputs, const
   for (std::size_t o = 0; o < n.outputs; ++o) outputs[o] = logistic(outputs[o]);
 }
 
-// From the slopes of the outputs before the logistic function.
+// Backpropagation from the slopes of the outputs before the logistic function.
 void evaluate_back(const NetworkView& n, const Vector* inputs, const Vector* output_slopes, Vector* gradient,
                    Vector* input_slopes, const Places& at) {
   layer_back(third_values(n), n.hidden1, n.outputs, output_slopes, at.second_slopes);
@@ -188,7 +190,7 @@ void backward(const NetworkView& network, const Lanes* inputs, const Lanes* outp
   evaluate_back(network, as_vectors(inputs), at.output_slopes, as_vectors(gradient), as_vectors(input_slopes), at);
 }
 
-// Means of four texels, for each way to mix them.
+// Mean features of four texels, for each used value of Sighting::mix; index 0 holds the texels' own features.
 struct Mixed {
   static constexpr std::uint32_t ways = 5;
   Vector features[ways][features_count];
@@ -209,8 +211,7 @@ struct Mixed {
   }
 };
 
-// The decoder's inputs for a sighting. `others`: what the texels were when neighbours were averaged; `own`: what they
-// are tried as.
+// Decoder inputs for a view sample. `own`: features to try; `before`: the features that `mixed` was computed from.
 REBAKE_INLINE void set_inputs(const Sighting& sighting, const Vector* own, const Vector* before, const Mixed& mixed,
                               Vector* input) {
   for (std::size_t c = 0; c < features_count; ++c) {
@@ -222,6 +223,7 @@ REBAKE_INLINE void set_inputs(const Sighting& sighting, const Vector* own, const
     input[features_count + axis] = sighting.coverage * as_vector(sighting.direction[axis]);
 }
 
+// Weighted sum of squared errors over view samples and channels.
 Vector error_of(const NetworkView& n, const Sighting* sightings, std::size_t count, const Vector* own,
                 const Vector* before, const Mixed& mixed, const Places& at) {
   Vector sum{}, out[3];
@@ -238,7 +240,8 @@ Vector error_of(const NetworkView& n, const Sighting* sightings, std::size_t cou
   return sum;
 }
 
-// The error's quadratic model around the features: error + 2 gᵀ e + eᵀ H e, H's lower triangle row by row.
+// Quadratic model of the error for a change e of the features: error + 2 gᵀ e + eᵀ H e. `slope` is g; `curvature` is
+// the lower triangle of H, row by row.
 struct Model {
   Vector error, slope[features_count], curvature[triangle];
 };
@@ -272,8 +275,8 @@ void linearise(const NetworkView& n, const Sighting* sightings, std::size_t coun
 
 constexpr std::size_t entry(std::size_t i, std::size_t j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
 
-// The step of damped Gauss–Newton (Levenberg 1944, Marquardt 1963). Features at their bounds that would leave them
-// stay.
+// Damped Gauss–Newton step (Levenberg 1944, Marquardt 1963), to be subtracted from the features. Features at a bound of
+// [0, 1] that would leave it stay.
 void step_of(const Model& model, const Vector* own, Vector damping, Vector* step) {
   Vector a[triangle], g[features_count], trace{};
   for (std::size_t i = 0; i < triangle; ++i) a[i] = model.curvature[i];
@@ -289,7 +292,7 @@ void step_of(const Model& model, const Vector* own, Vector damping, Vector* step
     for (std::size_t j = 0; j <= i; ++j) {
       Vector sum = a[entry(i, j)];
       for (std::size_t k = 0; k < j; ++k) sum -= a[entry(i, k)] * a[entry(j, k)];
-      // Where nothing changes the colour, there is nothing to solve: any pivot gives a step of 0.
+      // If a feature does not change the colour, any positive pivot gives a step of 0.
       a[entry(i, j)] = i == j ? root(sum > 0.F ? sum : all(1.F)) : sum / a[entry(j, j)];
     }
   for (std::size_t i = 0; i < features_count; ++i) {
@@ -304,12 +307,13 @@ void step_of(const Model& model, const Vector* own, Vector damping, Vector* step
   }
 }
 
+// Number of the nearest quantisation level.
 REBAKE_INLINE Vector on_level(Vector value, const FeatureLevels& level) {
   const Vector k = rounded((value - level.first) / level.step);
   return greatest(least(k, all(level.highest)), all(level.lowest));
 }
 
-// Coordinate descent over levels on the quadratic model, from the nearest ones.
+// Coordinate descent over quantisation levels on the quadratic model, starting from the nearest levels.
 void search_levels(const Model& model, const TexelFit& fit, const Vector* own, Vector* found) {
   Vector off[features_count];
   for (std::size_t i = 0; i < features_count; ++i) off[i] = found[i] - own[i];

@@ -8,7 +8,7 @@ namespace rebake {
 
 namespace {
 
-// Up to 16 texels, each with a direction, in the network's lanes.
+// A batch of up to 16 texels, each with a view direction.
 class Batch {
  public:
   explicit Batch(const FeatureNetwork& network)

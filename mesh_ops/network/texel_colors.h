@@ -9,19 +9,19 @@
 
 namespace rebake {
 
-/// What texels look like along directions, 16 at once.
+/// Decodes the colours of texels along view directions, in batches of 16.
 class TexelColors {
  public:
   using Features = std::array<double, 8>;
 
-  /// Fed directions of unit length.
+  /// `directions`: unit vectors, as fed to the decoder. `decoder` must outlive this object.
   TexelColors(const Decoder& decoder, std::vector<Vec3> directions);
 
   std::size_t directions() const { return directions_.size(); }
-  /// Display colours, texel after texel, direction after direction: `colors` holds features.size() × directions(). In
-  /// single precision (errors below 1e-5), in double for decoders wider than 256. Safe on several threads.
+  /// Display colours, as [texel][direction]: `colors` has features.size() × directions() elements. Single precision
+  /// (errors below 1e-5), or double for hidden layers wider than 256. Thread-safe.
   void decode_into(std::span<const Features> features, std::span<Color> colors) const;
-  /// As decode_into, each texel along a direction of its own.
+  /// As decode_into(), but with one direction per texel.
   void decode_each(std::span<const Features> features, std::span<const Vec3> directions, std::span<Color> colors) const;
 
  private:
@@ -30,7 +30,7 @@ class TexelColors {
   std::vector<Vec3> directions_;
 };
 
-/// Directions spread evenly over all (a Fibonacci spiral).
+/// Unit vectors spread evenly over the sphere (Fibonacci lattice).
 std::vector<Vec3> even_directions(std::size_t count);
 
 }  // namespace rebake

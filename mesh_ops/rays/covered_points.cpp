@@ -1,4 +1,4 @@
-// Compiled for several kinds of processors (mesh_ops/CMakeLists.txt), to the same bits.
+// Compiled for several processor levels (mesh_ops/CMakeLists.txt); all give the same bits.
 #include "mesh_ops/rays/covered_points.h"
 
 #include <bit>
@@ -38,7 +38,7 @@ REBAKE_INLINE void store(Vector v, Value* to) {
   std::memcpy(to, &v, sizeof(v));
 }
 REBAKE_INLINE Integers bits(Floats v) { return __builtin_bit_cast(Integers, v); }
-// A bit for each lane whose sign is set.
+// Bit mask of the lanes whose sign bit is set.
 REBAKE_INLINE unsigned signs(Integers v) {
 #if defined(__AVX__)
   return static_cast<unsigned>(__builtin_ia32_movmskps256(__builtin_bit_cast(Floats, v)));
@@ -51,12 +51,12 @@ REBAKE_INLINE unsigned signs(Integers v) {
 #endif
 }
 
-// Points are found to lie in cells, and triangles over them, by the same rounded sums; what both are rounded by before
-// is less than this.
+// Exceeds the rounding error of the projected coordinates of points and triangles. Both are assigned to cells by the
+// same rounded sums.
 constexpr float rounding = 1e-6F;
 
-// Of triangles, by the square of their longest edge. The signs that points find at what is narrower are rounding, far
-// along its line too: there it counts how far that reaches.
+// A triangle is narrow if twice its area is below this share of its squared longest edge. Rounding noise then decides
+// its edge tests, even far along its line, so its bounding rectangle is tested too.
 constexpr float narrow = 1e-4F;
 
 template <bool endless, bool solid>
@@ -68,13 +68,13 @@ void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes
   float on_line[9][lanes];  // u, v, w of three corners
   std::int32_t left[lanes], right[lanes], bottom[lanes], top[lanes];
   const auto beyond = static_cast<float>(grid.columns_of.size());
-  // Of a number of a part that may lie outside of all of them.
+  // Clamps a part number to the valid range.
   const auto part = [&](Floats number) {
     return __builtin_convertvector(least(greatest(number, all(0)), all(beyond - 1)), Integers);
   };
   Integers lane_numbers;
   for (std::size_t k = 0; k < lanes; ++k) lane_numbers[k] = static_cast<std::int32_t>(k);
-  // Kept apart from `marks`, which might be anything's.
+  // Local copies, because `marks` might alias the grid.
   const float *const points_u = grid.u.data(), *const points_v = grid.v.data(), *const points_w = grid.w.data();
   const std::int32_t* const points_along = grid.along.data();
   const std::uint32_t* const first = grid.first.data();
@@ -95,7 +95,7 @@ void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes
     const auto to = [](const Floats* c) { return greatest(c[0], greatest(c[1], c[2])) + rounding; };
     const Floats u0 = (from(u) - grid.u_from) * grid.u_scale, u1 = (to(u) - grid.u_from) * grid.u_scale,
                  v0 = (from(v) - grid.v_from) * grid.v_scale, v1 = (to(v) - grid.v_from) * grid.v_scale;
-    // Comparisons of what is no number are false; the least of several may be one all the same.
+    // Comparisons with NaN are false, but a minimum can hide a NaN among its operands; the sum cannot.
     const Floats sum = u[0] + u[1] + u[2];
     const auto squared = [](Floats x, Floats y) { return x * x + y * y; };
     const Floats abu = u[1] - u[0], abv = v[1] - v[0], acu = u[2] - u[0], acv = v[2] - v[0],
@@ -123,12 +123,12 @@ void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes
         for (std::uint32_t s = row[first_column], end = row[end_column]; s < end; s += lanes) {
           const auto pu = load<Floats>(points_u + s), pv = load<Floats>(points_v + s), pw = load<Floats>(points_w + s);
           const Floats au = ua - pu, bu = ub - pu, cu = uc - pu, av = va - pv, bv = vb - pv, cv = vc - pv;
-          // Twice the signed areas over the edges. Two triangles find an edge's to be each other's opposite, to the
-          // bit.
+          // Twice the signed areas of the point with each edge. Two triangles with a common edge get exactly opposite
+          // values for it, so that no point slips between them.
           const Floats a = bu * cv - cu * bv, b = cu * av - au * cv, c = au * bv - bu * av;
           const Floats area = a + b + c;
           const Floats height = a * (wa - pw) + b * (wb - pw) + c * (wc - pw);
-          // The sign bit is set where it is not hidden. Points of the next cells come along, and are not asked for.
+          // The sign bit is set if the triangle does not occlude the point. Lanes beyond `end` are masked out.
           const Integers behind = bits(height) ^ bits(area) ^ load<Integers>(points_along + s);
           Integers hidden = ((least(a, least(b, c)) >= 0.F) | (greatest(a, greatest(b, c)) <= 0.F)) & (area != 0.F) &
                             ~behind & (lane_numbers < static_cast<std::int32_t>(end - s));

@@ -12,15 +12,14 @@ namespace rebake {
 
 namespace {
 
-// So many triangles are looked at in the time of one ray.
+// Number of triangles that can be tested at the cost of one ray.
 constexpr std::size_t triangles_a_ray = 30;
-// Points of a block, which lie near each other where neighbours follow each other.
+// Points per block. Blocks are compact if consecutive points are close together.
 constexpr std::size_t block_size = 256;
-// Points of a cell, as points have it: beyond it rays are sooner.
+// Limit of the number of points per cell, averaged over points; beyond it single rays are faster.
 constexpr double crowd = 64;
 
-// In a function of its own: GCC 12 makes vectors of pairs of numbers, and leaves out that they are rounded where it
-// sees them become doubles again.
+// Not inlined: GCC 12 would vectorise pairs of numbers and omit the rounding to float before they become doubles again.
 [[gnu::noinline]] std::array<float, 3> in_floats(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
@@ -41,25 +40,25 @@ std::vector<const ParallelKernels*> all_parallel_kernels() {
   return kernels;
 }
 
-// Points that one object may hide, in the order of their cells. Kept by each thread from one call to the next.
+// Points that one object may occlude, sorted by grid cell. Each thread reuses its buffers in later calls.
 struct ParallelRays::Scratch {
-  std::size_t count = 0;                            // of those that are asked for,
-  std::vector<std::uint32_t> asked;                 // their numbers,
-  std::array<std::vector<float>, 3> near;           // where they are: u, v, w,
-  std::array<std::vector<std::uint16_t>, 2> parts;  // and in which parts of u and v
-  std::array<std::vector<float>, 3> sorted;
+  std::size_t count = 0;                            // number of candidate points
+  std::vector<std::uint32_t> asked;                 // per candidate: index in `ways`
+  std::array<std::vector<float>, 3> near;           // per candidate: u, v, w
+  std::array<std::vector<std::uint16_t>, 2> parts;  // per candidate: part of u and of v
+  std::array<std::vector<float>, 3> sorted;         // u, v, w in the order of cells
   std::vector<std::int32_t> along, marks;
   std::vector<std::uint32_t> numbers, first, counts;
-  std::array<std::vector<std::uint16_t>, 2> cell_of;  // columns and rows of parts
+  std::array<std::vector<std::uint16_t>, 2> cell_of;  // column per part of u, row per part of v
 
-  /// Nothing where they crowd.
+  /// The grid of the candidates; nullopt if they are too crowded.
   std::optional<PointGrid> grid(std::span<const std::int8_t> ways);
 
  private:
   void find_cells(std::size_t axis, std::size_t part_count, std::uint32_t cells);
 };
 
-// Columns and rows hold as many points as the others, wherever those are.
+// Chooses `cells` columns (axis 0) or rows (axis 1) with equal numbers of points.
 void ParallelRays::Scratch::find_cells(std::size_t axis, std::size_t part_count, std::uint32_t cells) {
   counts.assign(part_count, 0);
   for (std::size_t k = 0; k < count; ++k) ++counts[parts[axis][k]];
@@ -92,7 +91,7 @@ std::optional<PointGrid> ParallelRays::Scratch::grid(std::span<const std::int8_t
     for (std::size_t k = 0; k < count; ++k)
       parts[axis][k] = static_cast<std::uint16_t>(std::min(last, (at[k] - least) * scale[axis]));
   }
-  // Cells are twice as high as wide: a row of them is asked for at once.
+  // Cells are twice as high as wide, because the cells of a row are tested in one pass.
   constexpr double most_columns = 2048;
   const double aspect = extent[1] > 0 ? static_cast<double>(extent[0] / extent[1]) : most_columns * most_columns;
   const auto points = static_cast<double>(count);
@@ -179,7 +178,7 @@ void ParallelRays::shade_by(std::size_t instance, const Vec3& direction, std::si
   const double length = along.stableNorm();
   if (!(length > 0) || !std::isfinite(length) || tree.triangle_count() == 0) return;
   const Vec3 exact_w = along / length, exact_u = exact_w.unitOrthogonal(), exact_v = exact_w.cross(exact_u);
-  // Points are seen along the same axes as triangles.
+  // Points are projected on the same rounded axes as triangles.
   const LineAxes axes{in_floats(exact_u), in_floats(exact_v), in_floats(exact_w)};
   const auto rounded = [](const std::array<float, 3>& axis) -> Vec3 {
     return Eigen::Vector3f(axis[0], axis[1], axis[2]).cast<double>();
@@ -210,7 +209,7 @@ void ParallelRays::shade_by(std::size_t instance, const Vec3& direction, std::si
                              rows, {seen[0].data(), seen[1].data(), seen[2].data()});
     for (std::size_t k = 0; k < to - from; ++k) {
       const std::size_t i = from - first + k;
-      // Written where the next one goes, kept if it is asked for: most are, in no order that could be foreseen.
+      // Branch-free compaction: every point is written to the next slot, which is kept only for a candidate.
       scratch.asked[count] = static_cast<std::uint32_t>(i);
       for (std::size_t axis = 0; axis < 3; ++axis) scratch.near[axis][count] = seen[axis][k];
       count += static_cast<std::size_t>(static_cast<int>(ways[i] != 0) & static_cast<int>(hidden[i] == 0) &

@@ -16,13 +16,13 @@ namespace rebake {
 
 namespace {
 
-// What the filter needs to look a hit's texel up.
+// Data of one texture set that the hit filter needs to look up a texel.
 struct Surface {
   const std::vector<Face>* faces;
   const std::vector<Vec2>* uvs;
   const FeatureTexture* texels;
   std::uint32_t first_triangle;
-  const std::uint32_t* numbers;  // of the faces that are there; null: all
+  const std::uint32_t* numbers;  // face numbers of a subset; null: all faces
 
   std::uint32_t face(std::uint32_t primitive) const { return numbers != nullptr ? numbers[primitive] : primitive; }
   std::uint32_t triangle(std::uint32_t primitive) const { return first_triangle + face(primitive); }
@@ -33,10 +33,10 @@ struct Surface {
   }
 };
 
-// Passed along with each ray, so that trees with other texels share their triangles.
+// Passed with each ray, so that trees with different textures can share triangles.
 struct Context {
   RTCIntersectContext embree;
-  const Surface* surfaces;  // a set each
+  const Surface* surfaces;  // one per texture set
 
   explicit Context(const std::vector<Surface>& of) : embree{}, surfaces(of.data()) { rtcInitIntersectContext(&embree); }
 };
@@ -58,14 +58,14 @@ void let_through_transparent(const RTCFilterFunctionNArguments* args) {
 
 }  // namespace
 
-// A ray in the tree's own frame, where the object's box is about 1 wide: shifted along itself to where it enters the
-// box, so that neither far eyes nor tiny or huge objects leave what floats tell apart, and of length 1.
+// A ray in the tree's frame, where the longest side of the object's box is ½ … 1. The origin is moved along the ray to
+// the box, and the direction is a unit vector, so that floats suffice for distant eyes and for tiny or huge objects.
 struct LocalRay {
   std::array<float, 3> origin{}, direction{};
   float near = 0, far = -1;
-  double shift = 0;   // what was left out before the origin, in the caller's t
-  double length = 1;  // of the caller's direction here
-  bool meets = false;
+  double shift = 0;    // distance that the origin was moved, in the caller's t
+  double length = 1;   // length of the caller's direction in this frame
+  bool meets = false;  // whether the ray meets the box
 
   double t(float local) const { return shift + static_cast<double>(local) / length; }
 };
@@ -90,7 +90,7 @@ class RayTriangles::Impl {
     std::size_t first = 0, next = 0;
     for (const TextureSet& set : object.sets) {
       RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-      // One without triangles keeps the geometry numbers those of the sets.
+      // A set without triangles gets a geometry too, so that geometry numbers equal set numbers.
       const std::size_t end = first + set.soup.triangle_count();
       std::vector<std::uint32_t>& numbers = numbers_.emplace_back();
       counts_.push_back(set.soup.triangle_count());
@@ -154,7 +154,7 @@ class RayTriangles::Impl {
     const double squared = d.squaredNorm();
     ray.length = squared > 1e-200 && squared < 1e200 ? std::sqrt(squared) : d.stableNorm();
     if (!(far >= near) || !(ray.length > 0) || !std::isfinite(ray.length) || !o.allFinite()) return ray;
-    // Where it enters and leaves the box. Most rays start within it.
+    // Ray parameters of entering and leaving the box. Most rays start inside.
     double enters = near, leaves = far;
     const bool within = near >= 0 && (o.cwiseAbs().array() <= half_.array()).all();
     for (int axis = 0; axis < 3; ++axis) {
@@ -179,8 +179,9 @@ class RayTriangles::Impl {
   }
 
  private:
-  // The same triangles at silhouettes and shared corners on every processor: SSE 4.2 finds bit for bit what SSE 2 does,
-  // a fifth faster; with AVX one of several triangles at one distance may be another, with AVX 2 distances too.
+  // Limits Embree to instructions that find the same triangles at silhouettes and shared corners on every processor.
+  // SSE 4.2 gives the same bits as SSE 2 and is faster. AVX may find another one of several triangles at the same
+  // distance, and AVX 2 other distances too.
   static const char* instructions() {
 #ifdef __x86_64__
     if (__builtin_cpu_supports("sse4.2")) return "isa=sse4.2";
@@ -193,11 +194,11 @@ class RayTriangles::Impl {
                                                                  3 * sizeof(float), soup.positions().size()));
     void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Face),
                                             soup.faces().size());
-    if (vertices == nullptr || indices == nullptr) return;  // the device says why
+    if (vertices == nullptr || indices == nullptr) return;  // the constructor reports the device's error
     for (const Vec3& p : soup.positions()) vertices = put(p, vertices);
     std::memcpy(indices, soup.faces().data(), soup.faces().size() * sizeof(Face));
   }
-  // With vertices of their own: who asks for some has few.
+  // Subsets are small, so each of their triangles gets its own vertices.
   void add_triangles(RTCGeometry geometry, const Soup& soup, const std::vector<std::uint32_t>& numbers) {
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), 3 * numbers.size()));
@@ -219,16 +220,16 @@ class RayTriangles::Impl {
     if (device_ != nullptr) rtcReleaseDevice(device_);
   }
 
-  std::atomic<std::int64_t> bytes_ = 0;  ///< that Embree holds
+  std::atomic<std::int64_t> bytes_ = 0;  ///< memory held by Embree, in bytes
   RTCDevice device_;
   RTCScene scene_;
-  bool some_;                                        ///< not all triangles are there
-  std::vector<std::vector<std::uint32_t>> numbers_;  ///< of those, in each set
-  std::vector<std::size_t> counts_;                  ///< of the triangles that are there, in each set
+  bool some_;                                        ///< only a subset of the triangles is included
+  std::vector<std::vector<std::uint32_t>> numbers_;  ///< per set: faces of the subset; empty if all are included
+  std::vector<std::size_t> counts_;                  ///< per set: number of included triangles
   std::size_t triangle_count_ = 0;
   Vec3 center_{0, 0, 0};
   double scale_ = 1;             ///< a power of two
-  Vec3 half_{1e-6, 1e-6, 1e-6};  ///< of the box, in the tree's frame, with some room
+  Vec3 half_{1e-6, 1e-6, 1e-6};  ///< half size of the box in the tree's frame, slightly enlarged
 };
 
 class RayTree::Impl {

@@ -9,12 +9,13 @@
 
 namespace rebake {
 
-/// Where the triangles of an object lie, for rays: what takes long to make, and stays as texels change. Holds copies.
+/// Bounding volume hierarchy (Embree) over the triangles of an object, without texels. It is the expensive part of a
+/// RayTree, and stays valid if texels change. Copies the positions.
 class RayTriangles {
  public:
   explicit RayTriangles(const BakedObject& object);
-  /// Some of its triangles alone, numbers in ascending order: rays find what they find among all, but for the others,
-  /// and where they pass edges by less than the rounding of floats.
+  /// Only the triangles with the numbers `only`, in ascending order. Rays find the same hits as among all triangles,
+  /// except hits of the omitted ones, and hits at edges within float rounding.
   RayTriangles(const BakedObject& object, const std::vector<std::uint32_t>& only);
   RayTriangles(RayTriangles&&) noexcept;
   ~RayTriangles();
@@ -26,24 +27,25 @@ class RayTriangles {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Finds the opaque triangle that a ray meets first. Transparent texels let rays through. Distances are found in single
-/// precision, relative to the object's centre: good to about 1e-6 of its size. The object's arrays must outlive it.
+/// Ray queries for the opaque surface of an object; rays pass through transparent texels. Distances have single
+/// precision relative to the object's centre: an error of about 1e-6 of its size. The object's arrays must outlive this
+/// tree.
 class RayTree {
  public:
   explicit RayTree(const BakedObject& object);
-  /// `triangles` are of an object with the same positions and faces, all or some of them.
+  /// `triangles`: all or some triangles of an object with the same positions and faces.
   RayTree(std::shared_ptr<const RayTriangles> triangles, const BakedObject& object);
   RayTree(RayTree&&) noexcept;
   ~RayTree();
 
   struct Hit {
-    double t;                ///< at origin + t · direction
+    double t;                ///< the hit is at origin + t · direction
     std::uint32_t triangle;  ///< in the object's numbering
   };
-  /// The nearest hit with t in [near, far]. Origin and direction in object space, the direction of any length.
+  /// Nearest opaque hit with t in [near, far]. Origin and direction in object space; the direction may have any length.
   std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const;
-  /// The same for eight rays that go much the same way: faster than one by one. Rays whose `far` is below
-  /// `near` are left out. Where something is hit, `far` and `triangle` become the hit's.
+  /// Packet of eight coherent rays, faster than single rays. Rays with `far` below `near` are skipped. On a hit, `far`
+  /// and `triangle` are set to those of the hit.
   struct Bundle {
     std::array<Vec3, 8> origins;
     std::array<Vec3, 8> directions;
@@ -52,19 +54,22 @@ class RayTree {
     std::array<bool, 8> hit;
   };
   void nearest(Bundle& rays, double near) const;
-  /// Whether anything opaque lies at t in [near, far].
+  /// Whether an opaque triangle lies at t in [near, far].
   bool blocked(const Vec3& origin, const Vec3& direction, double near, double far) const;
-  /// Of the triangles, in object space, with some room.
+  /// Bounding box of the triangles in object space, slightly enlarged.
   Box bounds() const;
 
-  /// What ParallelRays asks instead of the tree, in the tree's own frame: there the box is about 1 wide.
+  /// Transform from object space to the tree's frame, where the longest side of the box is ½ … 1. This and the next
+  /// functions serve ParallelRays, which tests triangles without the tree.
   Affine to_frame() const;
   std::size_t triangle_count() const;
-  /// Corners as the tree knows them, in vectors [set][3 · corner + axis], `room` numbers longer that are none.
+  /// Corners in the tree's frame, as [set][3 · corner + axis][triangle], padded with `room` NaNs. Coordinates that are
+  /// not finite become NaN.
   std::vector<std::array<std::vector<float>, 9>> corners(std::size_t room) const;
-  /// Whether all of a set's texels are opaque.
+  /// Whether all texels of a set's texture are opaque.
   bool solid(std::size_t set) const;
-  /// Of a triangle in `corners`, at weights of its second and third corner.
+  /// Opacity at a point of a triangle, numbered as in corners(); b1 and b2 are the weights of its second and third
+  /// corner.
   bool opaque(std::size_t set, std::uint32_t triangle, double b1, double b2) const;
   std::uint64_t memory() const;  ///< bytes, without the triangles
 

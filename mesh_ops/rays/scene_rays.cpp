@@ -8,7 +8,7 @@ namespace rebake {
 
 namespace {
 
-// So few are asked one by one.
+// Largest number of instances in a leaf of the sphere hierarchy.
 constexpr std::uint32_t few = 4;
 
 }  // namespace
@@ -34,14 +34,14 @@ void SceneRays::grow(std::uint32_t first, std::uint32_t end) {
   Branch branch{{middles.center(), 0}, first, end, 0};
   bool numbers = true;
   for (std::uint32_t k = first; k < end; ++k) {
-    // A sum of what is rounded, and a little more.
+    // Slightly enlarged to cover rounding.
     const double reached = ((ball(k).middle - branch.ball.middle).norm() + ball(k).radius) * (1 + 1e-12);
     branch.ball.radius = std::max(branch.ball.radius, reached);
     numbers = numbers && std::isfinite(reached);
   }
   const std::size_t number = branches_.size();
   branches_.push_back(branch);
-  // What is no number can't be put in order.
+  // Spheres that are not finite cannot be sorted.
   if (end - first <= few || !numbers) return;
   int axis = 0;
   middles.sizes().maxCoeff(&axis);
@@ -55,7 +55,7 @@ void SceneRays::grow(std::uint32_t first, std::uint32_t end) {
 }
 
 bool SceneRays::Ball::passed_by(const Vec3& origin, const Vec3& direction) const {
-  // Squares of long distances are rounded: 1e-12 of them is far more. What is no number passes nothing by.
+  // Adds 1e-12 of the squared distance, far more than its rounding error. With NaN the result is false.
   const Vec3 to_middle = middle - origin;
   const double along = to_middle.dot(direction), squared = to_middle.squaredNorm(), length = direction.squaredNorm(),
                reached = radius * radius + 1e-12 * squared;
@@ -65,7 +65,7 @@ bool SceneRays::Ball::passed_by(const Vec3& origin, const Vec3& direction) const
 template <class Visit>
 bool SceneRays::any_near(const Vec3& origin, const Vec3& direction, Visit visit) const {
   if (branches_.empty()) return false;
-  // Halves differ by one at most, so 32 levels hold all that have numbers.
+  // Halves differ in size by at most one, so 32 levels suffice for all 32-bit numbers.
   std::array<std::uint32_t, 33> waiting;
   std::size_t count = 0;
   waiting[count++] = 0;
@@ -131,7 +131,7 @@ bool SceneRays::blocked(const Vec3& from, const Vec3& to) const {
     const Placed& placed = placed_[k];
     const Vec3 start = placed.to_object * from, way = placed.to_object * to - start;
     const double distance = way.norm();
-    constexpr double rounding = 1e-5;  // of the object's size, ten times the tree's
+    constexpr double rounding = 1e-5;  // relative to the object's size; ten times the tree's error
     return distance > 0 && placed.tree->blocked(start, way, 0, 1 - rounding * std::max(1.0, placed.size / distance));
   });
 }

@@ -11,29 +11,29 @@
 
 namespace rebake {
 
-/// Rays in world space through placed objects, whose trees are shared by all nodes and scenes that show them. Each
-/// object keeps a frame of its own, in which floats tell its triangles apart: one tree over all of them would not,
-/// where nodes differ much in scale or lie far apart. What a ray does not come near costs tests against a few balls, in
-/// a tree over the objects; bundles are tested against each object's.
+/// Ray queries in world space through instances of objects; instances share trees. Each object is queried in its own
+/// frame: one tree in floats over the whole scene would be too inexact if nodes differ much in scale or lie far apart.
+/// A hierarchy of bounding spheres over the instances culls single rays; packets are tested against each instance's
+/// sphere.
 class SceneRays {
  public:
   struct Instance {
     std::shared_ptr<const RayTree> tree;
     Affine to_world;
-    double size;  ///< of the object, the diagonal of its box in its own units
-    double reach = std::numeric_limits<double>::infinity();  ///< in world units: farther away it shades nothing
+    double size;                                             ///< diagonal of the object's box, in object units
+    double reach = std::numeric_limits<double>::infinity();  ///< range of shaded(), in world units
   };
   explicit SceneRays(std::vector<Instance> instances);
 
   struct Hit {
-    double t;                ///< at origin + t · direction
-    std::size_t instance;    ///< number of the instance
+    double t;                ///< the hit is at origin + t · direction
+    std::size_t instance;    ///< index of the instance
     std::uint32_t triangle;  ///< in the object's numbering
   };
-  /// The nearest opaque triangle with t in [near, far]; of several at one t the last instance's, as pictures show.
+  /// Nearest opaque triangle with t in [near, far]; of several at the same t, that of the last instance, as in
+  /// rendering.
   std::optional<Hit> nearest(const Vec3& origin, const Vec3& direction, double near, double far) const;
-  /// The same for eight rays that go much the same way. Those whose `far` is below `near` are left out. Where something
-  /// is hit, `far` becomes its t.
+  /// Packet of eight coherent rays. Rays with `far` below `near` are skipped. On a hit, `far` is set to its t.
   struct Bundle {
     std::array<Vec3, 8> origins;
     std::array<Vec3, 8> directions;
@@ -41,41 +41,46 @@ class SceneRays {
     std::array<std::optional<Hit>, 8> hits{};
   };
   void nearest(Bundle& rays, double near) const;
-  /// Whether anything opaque lies between two points; not at `to` itself, within the trees' rounding.
+  /// Whether an opaque triangle lies between two points. Triangles at `to` itself, within the trees' error, do not
+  /// count.
   bool blocked(const Vec3& from, const Vec3& to) const;
-  /// Whether anything opaque lies along the direction of length 1, within the instances' reach.
+  /// Whether an opaque triangle lies along the unit vector `direction`, within its instance's `reach`.
   bool shaded(const Vec3& from, const Vec3& direction) const;
 
  private:
   friend class ParallelRays;
+  /// Bounding sphere in world space.
   struct Ball {
-    Vec3 middle{0, 0, 0};  ///< in world space
+    Vec3 middle{0, 0, 0};
     double radius = 0;
 
-    /// Whether what begins at `origin` goes past it.
+    /// Whether a ray misses the sphere. Conservative: false within rounding.
     bool passed_by(const Vec3& origin, const Vec3& direction) const;
   };
+  /// An instance with its bounding sphere.
   struct Placed {
     std::shared_ptr<const RayTree> tree;
     Affine to_object;
     double size, reach;
     Ball ball;
   };
-  /// A ball around instances `first` … `end` − 1 of `order_`, whose halves follow: the next branch and `second`.
+  /// Node of the sphere hierarchy, over order_[first] … order_[end − 1]. Its children are the next branch and branch
+  /// `second`.
   struct Branch {
     Ball ball;
     std::uint32_t first, end;
-    std::uint32_t second;  ///< 0 where it has no halves
+    std::uint32_t second;  ///< 0 for a leaf
   };
 
+  /// Builds the hierarchy over order_[first] … order_[end − 1], and sorts them.
   void grow(std::uint32_t first, std::uint32_t end);
-  /// Calls visit(number) for instances whose balls are not passed by, in any order, until it returns true; returns
+  /// Calls visit(instance) for instances whose spheres the ray meets, in any order, until it returns true. Returns
   /// whether it did.
   template <class Visit>
   bool any_near(const Vec3& origin, const Vec3& direction, Visit visit) const;
 
   std::vector<Placed> placed_;
-  std::vector<std::uint32_t> order_;  ///< the instances, neighbours together
+  std::vector<std::uint32_t> order_;  ///< instance indices, in the order of the hierarchy's leaves
   std::vector<Branch> branches_;
 };
 

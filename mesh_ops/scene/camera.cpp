@@ -50,8 +50,8 @@ void check(const Camera& camera) {
 }
 
 Camera with_planes(const Camera& camera, const Box& visible, double aspect) {
-  constexpr double depth_range = 1e4;  // of planes where the eye is among what it sees
-  // The plane that was given is the one to name.
+  constexpr double depth_range = 1e4;  // far / near, if the eye lies inside the visible box
+  // Errors name the plane that the caller gave.
   if (camera.far_plane == 0 && !std::isfinite(depth_range * camera.near_plane))
     throw FieldError("near", "is too far away: no far plane fits behind it");
   if (camera.near_plane == 0 && camera.far_plane != 0 && !(camera.far_plane / depth_range > 0))
@@ -70,7 +70,7 @@ Camera with_planes(const Camera& camera, const Box& visible, double aspect) {
   if (!std::isfinite(farthest)) throw FieldError("eye", "is farther from the scene than numbers reach");
   if (result.far_plane == 0) result.far_plane = std::max(farthest, 2 * result.near_plane);
   if (result.near_plane == 0) {
-    // Of what lies at a distance in the picture's corner, the depth is less.
+    // Ratio of depth to distance in the picture's corner.
     const double up = half_height(camera, 1), right = up * aspect;
     const double corner = camera.orthographic() ? 0.0 : 1 / std::sqrt(1 + up * up + right * right);
     const double nearest = visible.exteriorDistance(camera.eye) * std::min(0.5, corner);

@@ -10,7 +10,7 @@ namespace rebake {
 Mat3 ground_frame(const Ground& ground) {
   const Vec3& n = ground.normal;
   if (n.y() < 0) {
-    const Mat3 over = Vec3(1, -1, -1).asDiagonal();  // half a turn about x
+    const Mat3 over = Vec3(1, -1, -1).asDiagonal();  // 180° about x
     return over * ground_frame({over * n, 0});
   }
   // Rodrigues: R = I + [v] + [v]²/(1 + c) with v = y × n and c = y · n.

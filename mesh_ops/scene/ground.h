@@ -6,7 +6,7 @@
 
 namespace rebake {
 
-/// The ground plane of a scene in world space: points p with normal · p = height. Things drop onto it and snap to it,
+/// The ground plane of a scene in world space: points p with normal · p = height. Objects drop onto it and snap to it,
 /// the grid is drawn on it, and its normal is the up direction of sky light.
 struct Ground {
   Vec3 normal{0, 1, 0};  ///< unit vector, up
@@ -24,7 +24,7 @@ Mat3 ground_frame(const Ground& ground);
 /// Smallest height of a box's corners above the plane.
 double lowest_above(const Ground& ground, const Box& box);
 
-/// The plane through three points; its normal points to the side of +y (of +x or +z where the plane is vertical).
+/// The plane through three points; its normal points to the side of +y (of +x or +z if the plane is vertical).
 /// Relative error of normal and height: a few rounding errors times the ratio of the triangle's longest to its shortest
 /// height. Throws std::invalid_argument if the points are not finite or lie within 1e-9 of a line, relative to their
 /// distances.

@@ -62,7 +62,7 @@ bool SkyMap::black() const {
 }
 
 Radiance SkyMap::mean() const {
-  // Octahedral texels differ in solid angle: by the cube of the octahedron's distance.
+  // The solid angle of an octahedral texel is proportional to the cube of the 1-norm of its unit direction.
   Radiance sum = Radiance::Zero();
   double weights = 0;
   for (std::size_t k = 0; k < texels_.size(); ++k) {

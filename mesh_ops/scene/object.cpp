@@ -64,7 +64,7 @@ bool same_body(const BakedBody& a, const BakedBody& b) {
                                              b.object->sets.end(), same_set));
 }
 
-// Whether nothing is but what the origin's files hold.
+// Whether the object is unchanged since it was read from the origin's files.
 static bool as_read(const BakedObject& object) {
   return object.origin && object.bodies.empty() && object.decoder == object.origin->decoder &&
          std::equal(object.sets.begin(), object.sets.end(), object.origin->sets.begin(), object.origin->sets.end(),

@@ -13,25 +13,30 @@
 
 namespace rebake {
 
-/// How a MobileNeRF folder names and cuts its files (format.md, "Files of one scene").
-enum class Layout { split, chunked, unsplit };
+/// File layout of a MobileNeRF folder (format.md, "Files of one scene").
+enum class Layout {
+  split,    ///< shape{i}.obj per texture set
+  chunked,  ///< shape{i}_{j}.obj: several chunks per texture set
+  unsplit   ///< shape.obj: one texture set
+};
 
-/// Triangles and the texels that their UVs point into.
+/// A triangle soup and the feature texture that its UVs refer to.
 struct TextureSet {
   Soup soup;
   std::shared_ptr<const FeatureTexture> texels;
 };
 
-/// A file that an object was read from, to copy it unchanged later.
+/// A file that an object was read from, so that an export can copy it unchanged.
 struct SourceFile {
   std::string name;
-  std::uint64_t size = 0;
+  std::uint64_t size = 0;  ///< bytes
   std::uint64_t hash = 0;  ///< XXH64 of the bytes
   bool operator==(const SourceFile&) const = default;
 };
 
-/// Where an object was read from, and which of its parts are still what the files hold.
+/// Source folder of an object, and the arrays read from it, to recognise the parts that are unchanged.
 struct Origin {
+  /// Files and arrays of one texture set.
   struct Set {
     std::vector<SourceFile> geometry;  ///< shape{i}.obj, or its chunks in order
     SourceFile feat0;
@@ -45,53 +50,56 @@ struct Origin {
   Layout layout = Layout::split;
   std::vector<Set> sets;
   SourceFile mlp;
-  int obj_num = 0;  ///< as mlp.json says it; 0: it does not
+  int obj_num = 0;  ///< value in mlp.json; 0 if absent
   std::shared_ptr<const Decoder> decoder;
-  /// Sentences on what the folder left open and reading assumed.
+  /// Sentences about missing information in the folder and the values assumed instead.
   std::vector<std::string> assumptions = {};
 };
 
-/// A flag for each triangle of an object, numbered through its sets in order.
+/// One flag per triangle of an object, numbered through its sets in order.
 using TriangleSet = std::vector<std::uint8_t>;
 
 struct BakedObject;
-/// What an object was when its light was baked, edits undone: what it shaded itself with.
+/// An object with its geometry as baked, before edits: it defines the occlusion in its baked colours.
 struct BakedBody {
   std::shared_ptr<const BakedObject> object;
-  Affine to_object = Affine::Identity();  ///< from its own space into that of the object made of it
+  Affine to_object = Affine::Identity();  ///< from the body's space to that of the object derived from it
 };
 
-/// One baked scene: texture sets that share a decoder. Immutable once made; nodes share it.
+/// One baked scene: texture sets that share a decoder. Immutable after creation, and shared by nodes.
 struct BakedObject {
   std::vector<TextureSet> sets;
   std::shared_ptr<const Decoder> decoder;
   Axes axes = Axes::y_up;
   Layout layout = Layout::split;
   std::shared_ptr<const Origin> origin;  ///< null for objects that were not read from a folder
-  /// Members of mlp.json that the format does not know, which exports keep: key → JSON as it was spelt.
+  /// Members of mlp.json that the format does not define, preserved by exports: key → JSON text.
   std::map<std::string, std::string> other_members = {};
-  /// What it was made of by edits that move, remove or erase triangles; empty: it is as its light was baked.
+  /// The bodies from which edits that move, remove or erase triangles derived this object; empty if its geometry is as
+  /// baked.
   std::vector<BakedBody> bodies;
-  /// The face attribute with the number of a face's body (std::uint16_t).
+  /// Name of the face attribute for the number of a face's body (std::uint16_t).
   static constexpr const char* body = "body";
 
   std::size_t triangle_count() const;
   std::size_t vertex_count() const;
   std::uint64_t opaque_texel_count() const;
   Box bounds() const;
-  bool any_rotations() const;
-  std::uint64_t memory() const;
+  bool any_rotations() const;    ///< whether edits rotated any vertex
+  std::uint64_t memory() const;  ///< bytes; a texture shared by several sets counts once
 };
 
-/// The object's bodies; of one that is as its light was baked, itself.
+/// The object's bodies; the object itself if its geometry is as baked.
 std::vector<BakedBody> bodies_of(const BakedObject& object);
-/// To be called of what is made of an object by moving, removing or erasing triangles: it knows its bodies then.
+/// Records the bodies of `of` in `made`, unless it has some. Must be called for an object derived from another by
+/// moving, removing or erasing triangles.
 void keep_bodies(BakedObject& made, const BakedObject& of);
-/// The same triangles at the same places.
+/// Whether both have the same arrays and transform.
 bool same_body(const BakedBody& a, const BakedBody& b);
-/// Whether both are still what was read from one folder, whose files were the same both times.
+/// Whether both are unchanged since they were read from the same folder with identical files.
 bool same_reading(const BakedObject& a, const BakedObject& b);
 
+/// Number of flagged triangles.
 std::size_t count(const TriangleSet& triangles);
 
 }  // namespace rebake

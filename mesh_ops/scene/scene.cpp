@@ -35,7 +35,7 @@ bool edit_list(std::vector<NodePtr>& nodes, NodeId id,
   return false;
 }
 
-// Names that are taken, with the number that each was last given.
+// Names in use, and the last number appended to each.
 class Names {
  public:
   explicit Names(const Scene& scene) {

@@ -25,62 +25,62 @@ using NodePtr = std::shared_ptr<const Node>;
 struct Node {
   NodeId id = NodeId::none;
   std::string name;
-  bool visible = true;  ///< hides its children too
-  bool locked = false;  ///< edits refuse it and its children
+  bool visible = true;  ///< if false, its children are hidden too
+  bool locked = false;  ///< if true, edits reject the node and its children
   Affine to_parent = Affine::Identity();
   std::shared_ptr<const BakedObject> object;     ///< null for groups
-  std::shared_ptr<const TriangleSet> selection;  ///< null when nothing is selected
+  std::shared_ptr<const TriangleSet> selection;  ///< null if nothing is selected
   std::map<std::string, std::shared_ptr<const TriangleSet>> saved_selections;
   std::vector<NodePtr> children;
 };
 
-/// Everything people edit, as a value: copying is cheap, and no function changes a scene that it was given.
+/// Everything that users edit, as a value: copying is cheap, and functions never modify their argument.
 struct Scene {
   std::vector<NodePtr> roots;
   Color background{1, 1, 1};
   Ground ground;
   std::map<std::string, Camera> views;
-  std::uint64_t next_id = 1;
-  std::shared_ptr<const SceneLight> light;  ///< null: colours stay as they were baked
+  std::uint64_t next_id = 1;                ///< identity of the next added node
+  std::shared_ptr<const SceneLight> light;  ///< null: colours stay as baked
 };
 
-/// A node as it stands in the world.
+/// A node with its world transform and inherited flags.
 struct PlacedNode {
   NodePtr node;
   Affine to_world;
-  bool visible;  ///< the node and all its ancestors are
-  bool locked;   ///< the node or an ancestor is
+  bool visible;  ///< whether the node and all its ancestors are visible
+  bool locked;   ///< whether the node or an ancestor is locked
 };
 
 /// All nodes, parents before their children, in drawing order.
 std::vector<PlacedNode> placed_nodes(const Scene& scene);
 
-/// Null or nothing when there is no such node.
+/// Null or nullopt if there is no such node.
 NodePtr find(const Scene& scene, NodeId id);
 NodePtr find(const Scene& scene, const std::string& name);
 std::optional<PlacedNode> find_placed(const Scene& scene, NodeId id);
-/// Empty when the node is a root (or absent).
+/// NodeId::none if the node is a root or absent.
 NodeId parent_of(const Scene& scene, NodeId id);
 
-/// The scene with one node changed; everything beside the path to it is shared.
+/// The scene with one node changed; shares everything except the path to that node.
 Scene with_changed(const Scene& scene, NodeId id, const std::function<void(Node&)>& change);
 /// The scene without a node and its children.
 Scene without(const Scene& scene, NodeId id);
-/// The scene with `node` added under `parent` (none: at the top) at `index` (past the end: last). Nodes without an id
-/// get one, their children too; names that are taken get a number. `added`, where given, receives the id.
+/// The scene with `node` added under `parent` (none: as a root) at position `index` (past the end: last). The node and
+/// its children get an id if they have none, and a unique name. `added` receives the id if it is not null.
 Scene with_added(const Scene& scene, Node node, NodeId parent, std::size_t index, NodeId* added = nullptr);
 
-/// `wanted`, or `wanted.2`, `wanted.3`, … when it is taken.
+/// `wanted`, or `wanted.2`, `wanted.3`, … if that name is taken.
 std::string unique_name(const Scene& scene, const std::string& wanted);
 
-/// Groups are nested at most this deep.
+/// Maximum nesting depth of groups.
 inline constexpr int deepest_group = 64;
 /// Levels of nodes: 0 for an empty scene, 1 without groups.
 int depth(const Scene& scene);
 
-/// World box of all visible objects.
+/// Bounding box of all visible objects in world space.
 Box world_bounds(const Scene& scene);
-/// Box of an axis-aligned box after a transform.
+/// Axis-aligned bounding box of a transformed box.
 Box transformed(const Box& box, const Affine& transform);
 
 }  // namespace rebake

@@ -27,7 +27,7 @@ struct KeyHash {
 Corner corner_of(const Soup& soup, std::uint32_t vertex) {
   const Vec3& p = soup.positions()[vertex];
   const Vec2& uv = soup.uvs()[vertex];
-  // −0 and 0 are one place.
+  // Adding 0.0 makes −0 and 0 equal.
   const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v + 0.0); };
   return {bits(p.x()), bits(p.y()), bits(p.z()), bits(uv.x()), bits(uv.y())};
 }

@@ -4,8 +4,8 @@
 
 namespace rebake {
 
-/// Triangles with the same corners (places and UVs, in any order) and texels as one that is drawn later: that one shows
-/// everything that they do.
+/// Triangles whose corners (positions and UVs, in any order) and texture equal those of a triangle drawn later, which
+/// shows the same.
 TriangleSet duplicate_triangles(const BakedObject& object);
 
 }  // namespace rebake

@@ -20,12 +20,12 @@ Features features_of(const TriangleTraits& traits) {
 }
 Vec3 vector_of(const std::array<float, 3>& v) { return Vec3(v[0], v[1], v[2]); }
 
-// How a node's transform changes areas and planes.
+// Transforms areas and normals of triangles to world space.
 class WorldShape {
  public:
   explicit WorldShape(const PlacedNode& placed)
       : cofactor_(placed.to_world.linear().determinant() * placed.to_world.linear().inverse().transpose()) {}
-  // The triangle's area vector in the world: normal times area.
+  // Area vector in world space: normal times area.
   Vec3 area(const TriangleTraits& traits) const { return cofactor_ * vector_of(traits.normal) * traits.area; }
 
  private:
@@ -37,7 +37,8 @@ class WorldShape {
 Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector<TriangleSet>& picked) {
   Likeness mean;
   double total = 0;
-  // Planes have no sign: the axis that all normals agree on best is the largest eigenvector of their outer products.
+  // The sign of normals is ignored: the mean axis is the eigenvector with the largest eigenvalue of the sum of their
+  // outer products.
   Mat3 planes = Mat3::Zero();
   for (std::size_t k = 0; k < objects.size(); ++k) {
     if (count(picked[k]) == 0) continue;
@@ -65,7 +66,7 @@ Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector
 }
 
 TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, const LikenessBounds& bounds) {
-  // The cosine of 90 degrees in double is above 0, and planes are no farther apart.
+  // 90 degrees includes all planes, but its rounded cosine is above 0.
   const double least_cosine = bounds.orientation && *bounds.orientation < 90
                                   ? elementary::sine_cosine(*bounds.orientation * std::numbers::pi / 180).cosine
                                   : 0;

@@ -7,28 +7,29 @@
 
 namespace rebake {
 
-/// What triangles look like in the world, on average.
+/// Mean appearance and shape of triangles, in world space.
 struct Likeness {
-  Vec3 color = Vec3::Zero();                                                 ///< decoded, channels 0 … 1
-  Eigen::Array<double, 8, 1> features = Eigen::Array<double, 8, 1>::Zero();  ///< 0 … 1
-  double opacity = 0;                                                        ///< share of opaque texels
-  double area = 0;                                                           ///< in square units of the world
-  Vec3 normal = Vec3::Zero();  ///< unit, of no sign: the axis that their planes agree on best
+  Vec3 color = Vec3::Zero();  ///< decoded display colour, 0 … 1 per channel
+  Eigen::Array<double, 8, 1> features = Eigen::Array<double, 8, 1>::Zero();  ///< decoded features, 0 … 1
+  double opacity = 0;                                                        ///< share of opaque texels, 0 … 1
+  double area = 0;                                                           ///< square world units
+  Vec3 normal = Vec3::Zero();  ///< unit axis closest to all normals; its sign has no meaning
 };
 
-/// Of the flagged triangles of placed objects, one set an object; at least one is flagged.
+/// Mean over the flagged triangles of placed objects. `picked`: flags per object; at least one triangle must be
+/// flagged.
 Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector<TriangleSet>& picked);
 
-/// How far triangles may be from a likeness; what is not given is not looked at.
+/// Largest differences from a Likeness; bounds without a value are ignored.
 struct LikenessBounds {
-  std::optional<double> color;        ///< distance of mean decoded colours, channels 0 … 1
+  std::optional<double> color;        ///< distance of mean decoded colours in RGB, 0 … 1 per channel
   std::optional<double> features;     ///< root mean square difference of mean features
-  std::optional<double> opacity;      ///< difference of the share of opaque texels
-  std::optional<double> size;         ///< factor between areas, at least 1
-  std::optional<double> orientation;  ///< degrees between planes, 0 … 90
+  std::optional<double> opacity;      ///< difference of the shares of opaque texels
+  std::optional<double> size;         ///< ratio of the larger to the smaller area, at least 1
+  std::optional<double> orientation;  ///< angle between planes in degrees, 0 … 90
 };
 
-/// The object's triangles within all bounds. What shows nothing has neither colour nor features.
+/// Triangles within all bounds. Fully transparent triangles match no bound on colour or features.
 TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, const LikenessBounds& bounds);
 
 }  // namespace rebake

@@ -4,17 +4,17 @@
 
 namespace rebake {
 
-/// The selection and the triangles that share a place with it.
+/// Dilation: adds the triangles that share a welded vertex with the selection.
 TriangleSet grown(const WeldedCorners& corners, const TriangleSet& selection);
-/// The selection without the triangles that share a place with others.
+/// Erosion: removes the triangles that share a welded vertex with unselected ones.
 TriangleSet shrunk(const WeldedCorners& corners, const TriangleSet& selection);
-/// The selection and the islands inside it: unselected triangles, joined through shared edges, that border selected
-/// ones and are fewer than `largest`.
+/// Hole filling: adds the edge-connected components of unselected triangles that border the selection and have fewer
+/// than `largest` triangles.
 TriangleSet filled(const EdgeTable& edges, const TriangleSet& selection, std::size_t largest);
 
-/// Triangles that hang together with the given one through places they share, transparent ones too.
+/// Connected component of a triangle, through shared welded vertices; ignores opacity.
 TriangleSet joined_to(const WeldedCorners& corners, std::size_t triangle);
-/// Of the triangles `within`, those that hang together with one of `from` through places they share.
+/// Triangles of `within` that are connected to one of `from`, through welded vertices of triangles in either set.
 TriangleSet joined_within(const WeldedCorners& corners, const TriangleSet& within, const TriangleSet& from);
 
 }  // namespace rebake

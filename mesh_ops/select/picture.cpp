@@ -48,8 +48,9 @@ PixelMask brush_mask(const std::vector<Vec2>& points, double radius, int width, 
   std::fill(mask.flags.begin(), mask.flags.end(), std::uint8_t{0});
   tbb::parallel_for(0, height, [&](int y) {
     const double row = y + 0.5;
-    // Where the stroke around each piece begins and ends in this row: a capsule is convex, so it is one interval.
-    std::vector<int> starts(static_cast<std::size_t>(width) + 1, 0);  // less those that end
+    // Each segment of the stroke is a capsule, which is convex, so it covers one interval of this row.
+    std::vector<int> starts(static_cast<std::size_t>(width) + 1,
+                            0);  // per pixel: intervals starting minus ending
     for (std::size_t k = 0; k < points.size(); ++k) {
       const Vec2 &a = points[k], &b = points[std::min(k + 1, points.size() - 1)];
       if (std::min(a.y(), b.y()) - radius > row || std::max(a.y(), b.y()) + radius < row) continue;
@@ -74,7 +75,7 @@ PixelMask brush_mask(const std::vector<Vec2>& points, double radius, int width, 
         return static_cast<std::size_t>(std::ceil(std::clamp(x - 0.5, 0.0, static_cast<double>(width))));
       };
       if (low > high) continue;
-      // Up to and with a centre that the edge just touches.
+      // Includes a pixel whose centre lies exactly on the boundary.
       const std::size_t end =
           static_cast<std::size_t>(std::floor(std::clamp(high + 0.5, 0.0, static_cast<double>(width))));
       if (column(low) >= end) continue;
@@ -190,7 +191,7 @@ Standpoint standpoint_of(const Camera& camera, const Affine& to_object) {
 
 namespace {
 
-// Barycentric: the middle, and places near each corner and edge.
+// Barycentric coordinates of the centroid, and of points near each corner and edge.
 const std::array<Vec3, 7> inner_points = {
     Vec3(1.0 / 3, 1.0 / 3, 1.0 / 3), Vec3(0.8, 0.1, 0.1),   Vec3(0.1, 0.8, 0.1),  Vec3(0.1, 0.1, 0.8),
     Vec3(0.45, 0.45, 0.1),           Vec3(0.1, 0.45, 0.45), Vec3(0.45, 0.1, 0.45)};
@@ -208,7 +209,7 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standp
       const Face& face = set.soup.faces()[f];
       const std::vector<Vec3>& p = set.soup.positions();
       if ((p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]).isZero(0)) {
-        flags[first + f] = 1;  // without area it is never drawn
+        flags[first + f] = 1;  // a triangle without area is never drawn
         return;
       }
       std::vector<Vec3> opaque;
@@ -217,8 +218,7 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standp
         const Vec3 w = barycentric(uv, {x + 0.5, y + 0.5});
         opaque.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
       });
-      // Texels' centres may all lie outside of a narrow or small triangle, which shows the texels that its points lie
-      // in.
+      // A narrow or small triangle may contain no texel centre; then points inside it are tested.
       if (opaque.empty())
         for (const Vec3& w : inner_points) {
           const Vec2 at = uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2];
@@ -226,16 +226,16 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standp
           const int y = std::clamp(static_cast<int>(at.y()), 0, set.texels->height() - 1);
           if (set.texels->opaque(x, y)) opaque.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
         }
-      // Spread over all of them.
+      // At most 16 points, spread evenly over all of them.
       constexpr std::size_t most = 16;
       const std::size_t tried = std::min(most, opaque.size());
       bool seen = false;
       for (std::size_t k = 0; k < tried && !seen; ++k) {
         const Vec3& point = opaque[k * opaque.size() / tried];
         for (const Standpoint& from : standpoints) {
-          // Parallel rays begin just outside the object: nothing of it lies farther off.
+          // Parallel rays start outside the object.
           const Vec3 eye = from.back.isZero(0) ? from.eye : Vec3(point + 1.5 * size * from.back);
-          // Stops short of the point by more than the tree's rounding.
+          // The ray ends before the point by more than the tree's error.
           const Vec3 way = point - eye;
           const double distance = way.norm();
           if (distance > 0 && rays->blocked(eye, way, 0, 1 - 1e-5 * size / distance)) continue;
@@ -251,7 +251,7 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standp
 }
 
 std::vector<Standpoint> eyes_around(const Box& box, int count, double distance) {
-  // A Fibonacci lattice.
+  // Fibonacci lattice.
   std::vector<Standpoint> eyes;
   const double radius = distance * box.diagonal().norm() / 2;
   for (int i = 0; i < count; ++i) {

@@ -6,19 +6,20 @@
 
 namespace rebake {
 
-/// A camera's picture. Pixel (0, 0) is at the top left.
+/// A camera and the size of its picture in pixels. Pixel (0, 0) is at the top left.
 struct Picture {
   Camera camera;
   int width = 800;
   int height = 800;
 };
 
-/// A flag for each pixel of a picture, row by row from the top.
+/// One flag per pixel of a picture, row by row from the top.
 struct PixelMask {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> flags;
 
+  /// False outside the picture.
   bool at(int x, int y) const {
     return x >= 0 && y >= 0 && x < width && y < height &&
            flags[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] != 0;
@@ -29,22 +30,25 @@ struct PixelMask {
 PixelMask polygon_mask(const std::vector<Vec2>& corners, int width, int height);
 /// Pixels whose centre is at most `radius` pixels from a stroke through `points`.
 PixelMask brush_mask(const std::vector<Vec2>& points, double radius, int width, int height);
+/// All pixels.
 PixelMask full_mask(int width, int height);
 
-/// Where world points fall in a picture.
+/// Projects world points to pixels of a picture.
 class Projector {
  public:
-  /// Throws FieldError for a camera that is not sound.
+  /// Throws FieldError for an invalid camera.
   explicit Projector(const Picture& picture);
   struct At {
     int x, y;
-    double depth;  ///< along the view axis
+    double depth;  ///< distance along the view axis
   };
-  /// False behind the near plane or beyond the far one. Pixels outside the picture are possible.
+  /// Projects a point. Returns false if it is not between the near and far planes. The pixel may lie outside the
+  /// picture.
   bool operator()(const Vec3& world, At& at) const;
-  /// Through a pixel's centre.
+  /// Ray through a pixel's centre.
   ViewRay ray(int x, int y) const;
-  /// From where a world point is looked at.
+  /// Viewpoint of a world point: the eye, or for an orthographic camera the point's projection to the image plane
+  /// through the eye.
   Vec3 eye_for(const Vec3& world) const;
   const Camera& camera() const { return picture_.camera; }
 
@@ -52,33 +56,32 @@ class Projector {
   Picture picture_;
   Vec3 eye_;
   Mat3 rows_;
-  double half_height_;  ///< of the picture in the world; of a pinhole's at a depth of 1
+  double half_height_;  ///< half the visible height in world units; for a pinhole, at depth 1
 };
 
-/// Triangles whose centre falls on a flagged pixel at a depth in [nearest, farthest], hidden ones too.
+/// Triangles whose centroid projects to a flagged pixel at a depth in [nearest, farthest], including occluded ones.
 TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, const Projector& project,
                             const PixelMask& mask, double nearest, double farthest);
 
-/// For each of `objects` the triangles that are seen through the centre of a flagged pixel, at a depth in [nearest,
-/// farthest]; the objects hide each other. A triangle that covers no pixel's centre is not seen.
+/// Per object: the triangles visible through the centre of a flagged pixel at a depth in [nearest, farthest]. The
+/// objects occlude each other. A triangle that covers no pixel centre is not found.
 std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, const Projector& project,
                                         const PixelMask& mask, double nearest, double farthest);
 
-/// From where an object is looked at, in its space: from a point, or from as good as nowhere by parallel rays.
+/// Viewpoint in object space: a point, or a direction for parallel rays (a viewpoint at infinity).
 struct Standpoint {
-  Vec3 eye{0, 0, 0};
-  Vec3 back{0, 0, 0};  ///< of parallel rays the way to where they come from, of length 1; else 0
+  Vec3 eye{0, 0, 0};   ///< ignored for parallel rays
+  Vec3 back{0, 0, 0};  ///< unit vector towards the viewer for parallel rays; zero for a point
 };
 
-/// A camera's, in the space that `to_object` leads to from the world.
+/// A camera's viewpoint in object space. `to_object`: transform from world to object space.
 Standpoint standpoint_of(const Camera& camera, const Affine& to_object);
 
-/// Triangles of which no opaque part (up to 16 texels of each are tried) is seen from any of the standpoints.
-/// Errs on the side of seen only as far as those texels reach: a triangle seen through a gap smaller than their spacing
-/// counts as unseen.
+/// Triangles without an opaque texel visible from any of the viewpoints. Tests up to 16 texels per triangle: one that
+/// is visible only through a gap smaller than their spacing counts as unseen.
 TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standpoint>& standpoints);
 
-/// `count` points spread evenly on a sphere around a box, at `distance` times its half diagonal from its centre.
+/// `count` viewpoints spread evenly on a sphere around a box; its radius is `distance` times the box's half diagonal.
 std::vector<Standpoint> eyes_around(const Box& box, int count, double distance);
 
 }  // namespace rebake

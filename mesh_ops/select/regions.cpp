@@ -20,7 +20,7 @@ FramePoints::FramePoints(CoordinateFrame frame, const PlacedNode& placed) {
   const Box box = placed.node->object->bounds();
   radius_scale_ = box.diagonal().norm();
   for (int axis = 0; axis < 3; ++axis) {
-    // A flat box has a single coordinate along its flat side; it counts as 0.
+    // If the box is flat along an axis, its only coordinate on that axis maps to 0.
     const double size = box.sizes()[axis];
     const double scale = size > 0 ? 1 / size : 1;
     from_object_.linear()(axis, axis) = scale;

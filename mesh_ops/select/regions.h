@@ -7,10 +7,11 @@
 
 namespace rebake {
 
-/// What a region's numbers are given in: world; node: the object's own coordinates; bounds: shares of its box.
+/// Coordinate frame of a region. world: world space; node: object space; bounds: relative to the object's bounding box,
+/// 0 … 1 per axis.
 enum class CoordinateFrame { world, node, bounds };
 
-/// Both ends included.
+/// Axis-aligned box, including its boundary.
 struct BoxRegion {
   Vec3 min, max;
 };
@@ -23,15 +24,15 @@ struct HalfSpaceRegion {
   Vec3 point, normal;
 };
 
-/// Turns object coordinates into those that a selection's numbers are given in, and back.
+/// Converts between object space and the coordinate frame of a region.
 class FramePoints {
  public:
   FramePoints(CoordinateFrame frame, const PlacedNode& placed);
   const Affine& from_object() const { return from_object_; }
   Vec3 to_object(const Vec3& point) const { return from_object_.inverse() * point; }
-  /// What a radius is multiplied by, to be compared with distances in metric().
+  /// Factor from a radius in the frame to a distance in the space of metric().
   double radius_scale() const { return radius_scale_; }
-  /// Coordinates in which distances mean something: world, or the object's own.
+  /// Transform from object space to the space in which distances are measured: world space, or object space itself.
   const Affine& metric() const { return metric_; }
 
  private:
@@ -40,19 +41,19 @@ class FramePoints {
   double radius_scale_ = 1;
 };
 
-/// A region of an object, in object space.
+/// A region of an object, as functions of points in object space.
 struct ObjectRegion {
   std::function<bool(const Vec3&)> inside;
-  /// False only where the triangle between the corners lies outside altogether.
+  /// Conservative: false only if the triangle with these corners lies entirely outside.
   std::function<bool(const std::array<Vec3, 3>&)> may_touch;
 };
 
-/// Callable from any thread.
+/// The region's functions are thread-safe.
 ObjectRegion region_of(const FramePoints& points, const BoxRegion& box);
 ObjectRegion region_of(const FramePoints& points, const SphereRegion& sphere);
 ObjectRegion region_of(const FramePoints& points, const HalfSpaceRegion& half);
 
-/// Triangles whose centre, in object space, is inside. `inside` is called from several threads.
+/// Triangles whose centroid in object space is inside. `inside` is called from several threads at once.
 TriangleSet triangles_by_centre(const BakedObject& object, const std::function<bool(const Vec3&)>& inside);
 
 }  // namespace rebake

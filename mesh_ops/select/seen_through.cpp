@@ -25,7 +25,7 @@ SeenThrough::SeenThrough(const Projector& project, const PixelMask& mask)
 }
 
 void SeenThrough::look_at(const BakedObject& object, const Affine& to_world) {
-  // More than the tree's rounding.
+  // Exceeds the tree's error.
   room_ = 1e-5 * object.bounds().diagonal().norm();
   const Camera& camera = project_.camera();
   const Mat3 turn = world_to_camera(camera) * to_world.linear();
@@ -43,7 +43,7 @@ void SeenThrough::look_at(const BakedObject& object, const Affine& to_world) {
   for (std::size_t k = 0; k < 4; ++k) {
     const ViewRay &a = corners[k], &b = corners[(k + 1) % 4], &across = corners[(k + 2) % 4];
     Vec3 normal = a.direction.cross(b.origin + b.direction - a.origin);
-    // Between rays so close rounding turns it by more than their pixels are wide.
+    // The rays are too close: rounding would rotate the plane by more than a pixel.
     constexpr double least_sine = 1e-6;
     if (!(normal.norm() > least_sine)) {
       sides_[k] = {};
@@ -64,7 +64,7 @@ bool SeenThrough::beside(const Box& box) const {
 
 bool SeenThrough::may_meet(const Vec3& a, const Vec3& b, const Vec3& c) const {
   for (const Side& side : sides_) {
-    // What is no number is not left out.
+    // With NaN the comparisons are false, so nothing is culled.
     const double nearest = side.at - room_;
     if (side.normal.dot(a) < nearest && side.normal.dot(b) < nearest && side.normal.dot(c) < nearest) return false;
   }

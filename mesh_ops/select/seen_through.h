@@ -10,18 +10,23 @@
 
 namespace rebake {
 
-/// Whether a triangle may be met by rays through the centres of a mask's flagged pixels: errs on that side.
+/// Culls triangles that no ray through the centre of a mask's flagged pixels can hit. Conservative: keeps triangles if
+/// in doubt.
 class SeenThrough {
  public:
-  /// The projector must live on.
+  /// `project` must outlive this object.
   SeenThrough(const Projector& project, const PixelMask& mask);
 
-  /// What is asked from now on is in the object's space.
+  /// Selects the object for the following queries, which are in its space.
   void look_at(const BakedObject& object, const Affine& to_world);
+  /// Whether a box lies entirely outside the planes around the rays through flagged pixels.
   bool beside(const Box& box) const;
+  /// False only if no ray can hit the triangle abc.
   bool may_meet(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
  private:
+  /// One of four planes around the rays through flagged pixels: points with normal · p ≥ at are inside. Normal 0: no
+  /// bound.
   struct Side {
     Vec3 normal{0, 0, 0};
     double at = 0;
@@ -29,23 +34,24 @@ class SeenThrough {
   std::size_t corner(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1) + static_cast<std::size_t>(x);
   }
-  /// Pixels above and left of a corner.
+  /// Number of flagged pixels above and left of a pixel corner (summed-area table).
   int flagged_before(int x, int y) const { return sums_[corner(x, y)]; }
 
   const Projector& project_;
   int width_, height_;
   std::vector<int> sums_;
   int left_ = std::numeric_limits<int>::max(), right_ = -1, top_ = left_, bottom_ = -1;
-  // Of the object that is looked at.
+  // Rounding margin in object units, and pixels per object unit at depth 1, for the current object.
   double room_ = 0, pixels_a_unit_ = 0;
-  // In its space: pixels from the picture's middle, at a depth of 1, and the depth itself.
+  // In object space: the eye; vectors whose dot products with an offset from the eye give pixels right of and below the
+  // picture's centre at depth 1; and the same for the depth.
   Vec3 eye_, across_, down_, depth_;
-  std::array<Side, 4> sides_;  // around all flagged pixels, in the object's space
+  std::array<Side, 4> sides_;  // planes around all flagged pixels, in object space
 };
 
-/// A tree for the rays that `mask` was made for: of the triangles that may be met alone, which takes less than one of
-/// all, or of all where many may be met. Which it is does not depend on what is indexed already: at edges, rays may
-/// find another triangle in another tree.
+/// A tree for rays through the mask. It contains only the triangles that may be hit, or all of them if more than an
+/// eighth may be. The choice does not depend on cached indices, because at edges rays may find another triangle in
+/// another tree.
 std::shared_ptr<const RayTree> rays_seen_through(const SeenThrough& mask, const BakedObject& object);
 
 }  // namespace rebake

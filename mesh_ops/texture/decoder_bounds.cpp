@@ -7,7 +7,7 @@ namespace rebake {
 
 namespace {
 
-// Sums of a hundred terms in 32-bit floats, as shaders add them, are off by less.
+// Exceeds the rounding error of a shader's sums of a hundred terms in single precision.
 constexpr double slack = 1e-5;
 
 double logistic(double x) { return 1 / (1 + std::exp(-x)); }
@@ -16,7 +16,7 @@ struct Interval {
   Eigen::VectorXd low, high;
 };
 
-// A layer without its activation. `spread` widens each neuron's interval.
+// Interval arithmetic through a layer without its activation. `spread` widens each neuron's interval.
 Interval through(const Interval& x, const Eigen::MatrixXd& weights, const Eigen::VectorXd& bias,
                  const Eigen::VectorXd& spread) {
   const Eigen::MatrixXd positive = weights.cwiseMax(0), negative = weights.cwiseMin(0);
@@ -25,7 +25,7 @@ Interval through(const Interval& x, const Eigen::MatrixXd& weights, const Eigen:
 }
 Interval rectified(const Interval& x) { return {x.low.cwiseMax(0), x.high.cwiseMax(0)}; }
 
-// The most that a direction of length 1 adds to each neuron of the first layer.
+// Largest contribution of a unit direction to each neuron of the first layer.
 Eigen::VectorXd reach_of_direction(const Decoder& decoder) {
   return decoder.weights0.bottomRows(3).colwise().norm().transpose();
 }
@@ -37,7 +37,7 @@ DirectionUse direction_use(const Decoder& decoder) {
   auto without = std::make_shared<Decoder>(decoder);
   without->weights0.bottomRows(3).setZero();
   result.without = std::move(without);
-  // Neither the rectifiers nor, by more than a quarter, the logistic function make a change larger.
+  // Lipschitz bound: ReLUs have slopes of at most 1, the logistic function at most 1/4.
   const Eigen::VectorXd first = reach_of_direction(decoder);
   const Eigen::VectorXd second = decoder.weights1.cwiseAbs().transpose() * first;
   const Eigen::VectorXd last = decoder.weights2.cwiseAbs().transpose() * second;
@@ -66,7 +66,7 @@ std::optional<FeatureRange> narrow_feature_range(const FeatureTexture& texture) 
       }
     }
   FeatureRange range;
-  if (high[0] < 0) return range;  // nothing is opaque: nothing is decoded
+  if (high[0] < 0) return range;  // no opaque texel, so nothing is decoded
   const auto decoded = [&](const std::array<int, 8>& bytes) {
     Texel texel;
     for (std::size_t k = 0; k < 8; ++k)
@@ -90,7 +90,7 @@ ColorRange color_range(const Decoder& decoder, const FeatureRange& features, dou
     x.low[k] = share * features.low[static_cast<std::size_t>(k)];
     x.high[k] = share * features.high[static_cast<std::size_t>(k)];
   }
-  // The direction is no box but a ball: it comes in as what it adds at most.
+  // The direction lies in a ball, not a box: its largest contribution enters as `spread`.
   const Interval first = rectified(through(x, decoder.weights0, decoder.bias0, share * reach_of_direction(decoder)));
   const Interval second =
       rectified(through(first, decoder.weights1, decoder.bias1, Eigen::VectorXd::Zero(decoder.hidden1())));

@@ -7,35 +7,36 @@
 #include "mesh_ops/texture/decoder.h"
 #include "mesh_ops/texture/texels.h"
 
-// Bounds, not estimates: by interval arithmetic through the network, rounded outward.
+// Guaranteed bounds of decoded colours, by interval arithmetic through the network.
 
 namespace rebake {
 
-/// What the view direction does to a decoder's colours.
+/// Influence of the view direction on a decoder's colours.
 struct DirectionUse {
-  double change = 0;  ///< no display colour changes by more between any direction and none (0, 0, 0)
-  /// The decoder with all weights of the direction 0.
+  double change = 0;  ///< upper bound of the change of a display colour between any unit direction and (0, 0, 0)
+  /// The decoder with zero weights for the direction.
   std::shared_ptr<const Decoder> without;
 };
 DirectionUse direction_use(const Decoder& decoder);
 
-/// Smallest and largest value of each feature.
+/// Range of each decoded feature.
 struct FeatureRange {
-  bool any = false;  ///< there is something opaque
+  bool any = false;  ///< false if no texel is opaque
   std::array<double, 8> low{}, high{};
 };
-/// Of a texture's opaque texels; nothing where one of them varies by more than 16 of its 255 steps, which is found out
-/// in the first tile of most textures.
+/// Range over a texture's opaque texels; nullopt if a feature varies by more than 16 of its 255 levels. For most
+/// textures the first tile decides.
 std::optional<FeatureRange> narrow_feature_range(const FeatureTexture& texture);
 
-/// A display colour's channels.
+/// Range of each display colour channel.
 struct ColorRange {
   Color low, high;
-  void join(const ColorRange& other);
+  void join(const ColorRange& other);  ///< extends this range to include `other`
   double widest() const { return (high - low).maxCoeff(); }
 };
-/// Of all features in a range, seen from any direction, where `share` of a pixel's samples show them and the others
-/// show nothing: features and direction are averaged over all samples, so the decoder sees `share` of them.
+/// Bounds for all features in a range and all view directions, with a margin for rounding in shaders. `share` of a
+/// pixel's samples show the texels, and the others are empty. The decoder is fed features and direction averaged over
+/// all samples, that is, scaled by `share`.
 ColorRange color_range(const Decoder& decoder, const FeatureRange& features, double share);
 
 }  // namespace rebake

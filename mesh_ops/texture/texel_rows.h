@@ -7,20 +7,20 @@
 
 namespace rebake {
 
-/// The texels of a texture as they are asked for, one row of tiles after the other: a large texture need not be in
-/// memory to be written.
+/// Texels of a texture, produced on request for one row of tiles at a time, so that a large texture can be written
+/// without being in memory as a whole.
 struct TexelRows {
   int width = 0, height = 0;
-  /// Writes `count` rows of `width` texels from row `first` on. Callers ask for rows of tiles: `first` is a multiple of
-  /// TexelTile::size and `count` at most that. Callable from several threads at once.
+  /// Writes `count` rows of `width` texels, from row `first` on, to `rows`. `first` must be a multiple of
+  /// TexelTile::size, and `count` at most TexelTile::size. Thread-safe.
   std::function<void(int first, int count, Texel* rows)> read;
 };
 
-/// The texture's own texels, converted where `code` is another than its own (converted_texel).
+/// Rows of a texture, converted by converted_texel() to `code`.
 TexelRows rows_of(std::shared_ptr<const FeatureTexture> texture, AlphaCode code);
 
-/// The texel with its alpha stored another way. Halved from plain loses the alpha's lowest bit, as the published
-/// exporter does.
+/// Converts the code of a texel's alpha channels. From plain to halved, alpha loses its lowest bit, as in the published
+/// exporter.
 Texel converted_texel(Texel texel, AlphaCode from, AlphaCode to);
 
 }  // namespace rebake

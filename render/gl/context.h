@@ -5,19 +5,19 @@
 
 namespace rebake::gl {
 
-/// An OpenGL 3.3 core context (or newer). Not tied to a window: passes work the same on any kind.
+/// An OpenGL core context, version 3.3 or newer, with or without a window.
 class Context {
  public:
   virtual ~Context() = default;
   virtual bool is_current() const = 0;
-  /// On the calling thread. Throws DeviceError, e.g. while another thread has it.
+  /// Makes it current on the calling thread. Throws DeviceError, for example if it is current on another thread.
   virtual void make_current() = 0;
-  /// The calling thread has none then, and others can take it.
+  /// Leaves the calling thread without a context, so that another thread can make this one current.
   virtual void release() = 0;
 };
 
-/// A context is current on this thread while this lives, and afterwards where it was before: so any thread can draw in
-/// its turn.
+/// Scope guard: makes a context current on this thread, and releases it at the end unless it was current before. Lets
+/// several threads draw one after the other.
 class Current {
  public:
   explicit Current(Context& context) : context_(context), was_(context.is_current()) {
@@ -34,12 +34,12 @@ class Current {
   bool was_;
 };
 
-/// Tells whether the current context was lost, and with it all that was made in it. To be made while the context is
-/// sound: a lost one does not tell what it can do.
+/// Detects the loss of the current context and all its objects (glGetGraphicsResetStatus). Construct it while the
+/// context works: a lost one cannot list its extensions.
 class LossCheck {
  public:
   LossCheck();
-  /// False where the driver cannot say.
+  /// Returns false if the driver cannot detect losses.
   bool lost() const;
 
  private:
@@ -50,11 +50,11 @@ class LossCheck {
 /// Clears the window of the current context, `width` × `height` pixels.
 void clear_window(int width, int height);
 
-/// A context without any display or window system, through EGL: Mesa's surfaceless platform first, then the first EGL
-/// device. Throws DeviceError that says what is missing.
+/// Creates a context without a display or window system, through EGL: on the first hardware device, otherwise on Mesa's
+/// surfaceless platform. Throws DeviceError if neither works or OpenGL is older than 3.3.
 std::unique_ptr<Context> make_headless_context();
 
-/// What the current context runs on, e.g. "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5".
+/// Renderer and version of the current context, such as "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5".
 std::string device_name();
 
 }  // namespace rebake::gl

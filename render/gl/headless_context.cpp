@@ -21,7 +21,7 @@ EGLDisplay initialised(EGLDisplay display) {
 
 EGLDisplay open_display() {
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-  // A hardware device comes first where there is one: Mesa's surfaceless platform would fall back to software there.
+  // Prefers a hardware device: Mesa's surfaceless platform would fall back to software even if there is one.
   if (has_extension(client, "EGL_EXT_device_enumeration") && has_extension(client, "EGL_EXT_platform_device")) {
     std::array<EGLDeviceEXT, 16> devices{};
     EGLint count = 0;
@@ -71,7 +71,7 @@ class HeadlessContext final : public Context {
   HeadlessContext& operator=(const HeadlessContext&) = delete;
 
   bool is_current() const override {
-    eglBindAPI(EGL_OPENGL_API);  // each thread has its own
+    eglBindAPI(EGL_OPENGL_API);  // the bound API is per thread
     return eglGetCurrentContext() == context_;
   }
   void release() override {

@@ -11,7 +11,7 @@ namespace rebake::gl {
 
 namespace {
 
-// Several threads may draw, each in a context of its own.
+// Atomic, because several threads may draw, each in its own context.
 std::atomic<std::uint64_t> held = 0, most = 0;
 
 void take(std::uint64_t bytes) {

@@ -8,14 +8,14 @@
 
 namespace rebake::gl {
 
-/// Bytes held by the live Buffer and Texture objects of this process, and the most that were held at once.
+/// Memory of all Buffer and Texture objects of this process in bytes: current and peak.
 struct MemoryUse {
   std::uint64_t now = 0;
   std::uint64_t peak = 0;
 };
 MemoryUse memory_use();
 
-/// A move-only OpenGL name; `Traits` knows how it is deleted.
+/// Move-only owner of an OpenGL object, which `Traits::release` deletes.
 template <class Traits>
 class Handle {
  public:
@@ -62,16 +62,18 @@ using Framebuffer = Handle<FramebufferTraits>;
 using VertexArray = Handle<VertexArrayTraits>;
 using Program = Handle<ProgramTraits>;
 
-/// A buffer with these bytes, for use as `target` (GL_ARRAY_BUFFER, …). Throws DeviceError when memory is out.
+/// Creates a buffer bound to `target` (GL_ARRAY_BUFFER, …); null `data` leaves it uninitialised. Throws DeviceError if
+/// out of memory.
 Buffer make_buffer(unsigned target, const void* data, std::size_t bytes);
-/// A 2-D texture without mipmaps, clamped; sampled linearly where it is a picture (GL_RGBA8), else the nearest texel.
-/// Throws DeviceError when too large.
+/// Creates a 2-D texture without mipmaps, clamped to its edges, with linear filtering for GL_RGBA8 and nearest sampling
+/// for other formats. Throws DeviceError if it is too large or memory is out.
 Texture make_texture(unsigned internal_format, int width, int height, int bytes_a_texel);
-/// A texture that reads `buffer` in this format, such as GL_RGBA32F.
+/// Creates a buffer texture that reads `buffer` in a format such as GL_RGBA32F.
 Texture make_buffer_texture(const Buffer& buffer, unsigned internal_format);
+/// Creates a framebuffer; `depth` may be null. Throws DeviceError if the driver does not support these attachments.
 Framebuffer make_framebuffer(const std::vector<const Texture*>& colors, const Texture* depth);
 VertexArray make_vertex_array();
-/// Compiles and links. Throws DeviceError with the driver's log.
+/// Compiles and links a program. Throws DeviceError with the driver's log.
 Program make_program(const std::string& vertex_source, const std::string& fragment_source);
 
 }  // namespace rebake::gl

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path shader_folder() {
-  // Installed, they lie below the same prefix as this code: bin/rebake, or the Python module some folders deeper.
+  // If installed, shaders are below the same prefix as this code: bin/rebake, or the Python module some folders deeper.
   std::error_code error;
   Dl_info self{};
   if (::dladdr(reinterpret_cast<const void*>(&make_program), &self) != 0) {
@@ -50,7 +50,7 @@ std::string resolved(const fs::path& folder, const std::string& name) {
 }  // namespace
 
 std::string shader_source(const std::string& name, const std::string& preamble) {
-  // 4.0 brings textureGather of any component.
+  // OpenGL 4.0 added textureGather of any component.
   const bool gathers = epoxy_gl_version() >= 40;
   return fmt::format("#version {} core\n#define GATHERS {}\n", gathers ? 400 : 330, gathers ? 1 : 0) + preamble +
          resolved(shader_folder(), name);

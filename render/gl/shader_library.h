@@ -4,9 +4,9 @@
 
 namespace rebake::gl {
 
-/// The text of a file in shaders/, with its `#include "name"` lines resolved, behind a #version line and `preamble`
-/// (defines and generated functions). Looks beside the installed program first, then in the source tree. Throws
-/// DeviceError when it is not found.
+/// Source of a shader: a #version line, `preamble` (defines and generated functions), and the file `name` with its
+/// `#include "name"` lines resolved. Looks in the installation first, then in the source tree. Throws DeviceError if
+/// there is no folder of shaders, FileError if the file is missing.
 std::string shader_source(const std::string& name, const std::string& preamble);
 
 }  // namespace rebake::gl

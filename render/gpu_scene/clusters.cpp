@@ -14,13 +14,13 @@ NearbyOrder nearby_order(const Soup& soup, const std::vector<Face>& faces) {
     std::iota(order.begin(), order.end(), 0U);
     return std::make_shared<const std::vector<std::uint32_t>>(std::move(order));
   }
-  // Relative to the first corner, so that floats tell them apart far from the origin.
+  // Relative to the first corner, so that floats are precise enough far from the origin.
   const Vec3 origin = soup.positions()[faces[0][0]];
   std::vector<Eigen::Vector3f> middles(faces.size());
   tbb::parallel_for(std::size_t{0}, faces.size(), [&](std::size_t f) {
     Vec3 sum = Vec3::Zero();
     for (const std::uint32_t vertex : faces[f]) sum += soup.positions()[vertex] - origin;
-    // What is no number has no place; it may be anywhere in the order.
+    // A face with a NaN or infinite position may be anywhere in the order.
     middles[f] = sum.allFinite() ? Eigen::Vector3f((sum / 3).cast<float>()) : Eigen::Vector3f::Zero();
   });
   std::vector<unsigned> place(faces.size());

@@ -8,34 +8,34 @@
 
 namespace rebake {
 
-/// Numbers of faces, those that lie close together one after the other.
+/// Permutation of face indices in which nearby faces follow each other.
 using NearbyOrder = std::shared_ptr<const std::vector<std::uint32_t>>;
 
-/// Most faces of a FaceCluster. On the mic's 82,421 triangles clusters of 64 leave 46,000 to be looked at one by one,
-/// clusters of 256 60,000; below 64 looking at clusters costs what it spares.
+/// Maximum number of faces of a FaceCluster. Of the mic's 82,421 triangles, clusters of 64 leave 46,000 to be tested
+/// one by one, clusters of 256 leave 60,000. Below 64, testing more clusters costs as much as it saves.
 inline constexpr std::size_t faces_a_face_cluster = 64;
 
-/// [first, first + count) of an order, and the box of these faces in object space.
+/// A range [first, first + count) of a NearbyOrder, with the bounding box of its faces in object space.
 struct FaceCluster {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   Box bounds;
 };
 
-/// Where a cluster's triangles lie, so that all of them are looked at in one sweep: [corner][axis][face], as the floats
-/// that are drawn. Behind the cluster's last face that one stands again.
+/// Corner positions of a cluster's faces, laid out for SIMD: [corner][axis][face], with the same floats as on the GPU.
+/// Slots after the last face repeat it.
 struct ClusterCorners {
   float at[3][3][faces_a_face_cluster];
 };
 
-/// Faces along a curve through their middles (Morton order, meshoptimizer).
+/// Sorts faces by their centroids along a space-filling curve (Morton order, meshoptimizer).
 NearbyOrder nearby_order(const Soup& soup, const std::vector<Face>& faces);
 
 struct FaceClusters {
   std::vector<FaceCluster> clusters;
-  std::vector<ClusterCorners> corners;
+  std::vector<ClusterCorners> corners;  ///< per cluster
 };
-/// The order cut into clusters; corners are relative to `center`.
+/// Cuts an order into clusters. Corners are relative to `center`.
 FaceClusters face_clusters(const Soup& soup, const std::vector<Face>& faces, const std::vector<std::uint32_t>& order,
                            const Vec3& center);
 

@@ -12,12 +12,12 @@ namespace rebake {
 namespace {
 
 constexpr std::size_t texels_a_block = 16;
-constexpr int strip = 4;  // rows of one
+constexpr int strip = 4;  // rows per strip
 constexpr std::size_t channels = 8;
-// Rows of tiles whose texels are unpacked at once.
+// Rows of tiles per parallel task.
 constexpr int tile_rows_at_once = 4;
 
-// Three bits tell a width: 7 stands for 8 bits, which 7 bits are stored in too.
+// The 3-bit code of a width: 7 means 8 bits and is used for values of 7 bits, too.
 constexpr unsigned bits_of(unsigned code) { return code == 7 ? 8 : code; }
 unsigned code_of(unsigned range) { return std::min<unsigned>(static_cast<unsigned>(std::bit_width(range)), 7); }
 
@@ -25,14 +25,14 @@ using Bytes = std::array<std::uint8_t, channels>;
 
 Bytes bytes_of(const Texel& texel) { return std::bit_cast<Bytes>(texel); }
 
-// The opaque texels of a block, and which they are.
+// The opaque texels of a block, and a mask of their positions.
 struct Gathered {
   std::array<Bytes, texels_a_block> texels{};
   std::size_t count = 0;
   std::uint32_t opaque = 0;
 };
 
-// Puts the low `count` bits of a value at a place among words.
+// Stores a value of at most `count` bits at bit `bit` of zeroed words.
 void put(std::vector<std::uint64_t>& words, std::size_t bit, std::uint64_t value, unsigned count) {
   if (count == 0) return;
   const std::size_t word = bit / 64, shift = bit % 64;
@@ -40,7 +40,7 @@ void put(std::vector<std::uint64_t>& words, std::size_t bit, std::uint64_t value
   if (shift + count > 64) words[word + 1] |= value >> (64 - shift);
 }
 
-// Goes on with a rectangle's block.
+// Codes a block and appends it.
 void append_block(const Gathered& of, std::size_t word, std::vector<TexelBlock>& blocks,
                   std::vector<std::uint64_t>& words) {
   TexelBlock block;
@@ -77,10 +77,10 @@ void append_block(const Gathered& of, std::size_t word, std::vector<TexelBlock>&
   }
 }
 
-// Where a strip begins and ends.
+// A strip of rows.
 struct Strip {
   int top = 0, rows = 0;
-  bool back = false;  // from right to left
+  bool back = false;  // columns are numbered from right to left
 };
 
 Strip strip_of(const PackedRect& rect, int y) {
@@ -118,7 +118,7 @@ void append_coded(const PackedRect& rect, const TexelReader& texels, std::size_t
 }
 
 CodedTexels coded(const std::vector<PackedRect>& rects, const FeatureTexture& texels) {
-  // Runs of rectangles that begin in some rows of tiles.
+  // Groups of consecutive rectangles that begin in the same rows of tiles.
   const auto rows_of = [](const PackedRect& rect) { return rect.y / (TexelTile::size * tile_rows_at_once); };
   std::vector<std::size_t> begins;
   for (std::size_t k = 0; k < rects.size(); ++k)
@@ -127,7 +127,7 @@ CodedTexels coded(const std::vector<PackedRect>& rects, const FeatureTexture& te
   struct Part {
     std::vector<TexelBlock> blocks;
     std::vector<std::uint64_t> words;
-    std::vector<std::size_t> blocks_before, words_before;  // of each rectangle
+    std::vector<std::size_t> blocks_before, words_before;  // per rectangle
   };
   std::vector<Part> parts(begins.size() - 1);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {

@@ -24,10 +24,10 @@ std::vector<GpuCluster> clusters_of(const Soup& soup, const std::vector<Face>& f
   return clusters;
 }
 
-// Bytes that a surface or a mesh counts beside its own, and what is uploaded at once.
+// In bytes: the overhead per surface or mesh, and the size up to which arrive() leaves a change to update().
 constexpr double each_upload = 65536, at_once = 8e6;
 
-// Surfaces that a scene no longer needs, to be taken over by sets that they are good for.
+// Surfaces that a scene no longer needs. Sets for which serves() is true can take them over.
 class Released {
  public:
   Released(const std::vector<SurfaceKey>& keys, const std::map<SurfaceKey, GpuSurface>& surfaces)
@@ -58,12 +58,12 @@ class Released {
   std::multimap<std::pair<const void*, const void*>, SurfaceKey> left_;
 };
 
-// Whether a mesh is a set's but for its positions, as while something is dragged.
+// Whether two meshes differ in positions only, as during a drag.
 bool differs_in_place(const MeshKey& held, const MeshKey& wanted) {
   return held.surface == wanted.surface && held.turns == nullptr && wanted.turns == nullptr;
 }
 
-// New positions into a mesh that is there.
+// Replaces the positions of a resident mesh.
 void move_vertices(GpuMesh& mesh, PreparedMesh made) {
   mesh.source = std::move(made.source);
   mesh.center = made.center;
@@ -199,7 +199,7 @@ void GpuScene::prepare(const Scene& scene, bool coded) {
     };
     for (const TextureSet& set : wanted.meshes) refresh(prepared_meshes_, mesh_key(set, coded));
     for (const TextureSet& set : wanted.surfaces) refresh(prepared_surfaces_, surface_key(set, coded));
-    // What two calls did not want is of a preview that was never shown.
+    // Data that this call and the two before did not need belong to a preview that was never shown.
     const auto old = [&](const auto& entry) { return entry.second.turn + 2 < turn; };
     std::erase_if(prepared_meshes_, old);
     std::erase_if(prepared_surfaces_, old);
@@ -213,7 +213,7 @@ void GpuScene::prepare(const Scene& scene, bool coded) {
   std::set<SurfaceKey> taken_over;
   for (const TextureSet& set : missing.surfaces) {
     const SurfaceKey key = surface_key(set, coded);
-    // What is on the GPU will do, with a few texels changed: that is not known before.
+    // update() will take over a resident surface and upload its changed texels: nothing to prepare.
     if (std::any_of(held.begin(), held.end(), [&](const auto& entry) {
           return entry.first.coded == coded && serves(entry.second.made_for, entry.second.source, set);
         })) {
@@ -262,7 +262,7 @@ void GpuScene::plan_arrival(const Scene& scene, bool coded) {
   std::set<SurfaceKey> wanted;
   double bytes = 0;
   for (const TextureSet& set : change.surfaces) {
-    // A few texels of what is there change: update() does that.
+    // update() takes over a resident surface and uploads its changed texels.
     if (released.take(set, coded)) continue;
     plan.surfaces.push_back(set);
     wanted.insert(surface_key(set, coded));
@@ -336,7 +336,7 @@ void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) 
   if (change.meshes.empty() && change.surfaces.empty() && change.released_meshes.empty() &&
       change.released_surfaces.empty())
     return;
-  // Where texels changed, and none became opaque, only those are uploaded.
+  // If texels changed and none became opaque, takes over the resident surface and uploads the changed texels only.
   ++changes_;
   Released released(change.released_surfaces, surfaces_);
   std::map<SurfaceKey, SurfaceKey> taken_over;
@@ -358,7 +358,7 @@ void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) 
     node.key() = key(set);
     return meshes_.insert(std::move(node)).position->second;
   };
-  // What has only moved, or only other texels, keeps its buffers.
+  // A mesh whose positions or texels alone changed reuses its buffers.
   std::erase_if(change.meshes, [&](const TextureSet& set) {
     const MeshKey key = mesh_key(set, coded);
     const auto now = [&](MeshKey other) {
@@ -378,10 +378,10 @@ void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) 
     move_vertices(rekeyed(held, set), std::move(made));
     return true;
   });
-  // Before what comes needs the room.
+  // Evicts before uploading, to limit the peak of memory.
   for (const MeshKey& key : change.released_meshes) meshes_.erase(key);
   for (const SurfaceKey& key : change.released_surfaces) surfaces_.erase(key);
-  std::set<SurfaceKey> came;  // from what had arrived
+  std::set<SurfaceKey> came;  // taken over from arrive()
   for (const TextureSet& set : change.surfaces) {
     const SurfaceKey key = surface_key(set, coded);
     auto arrived = arriving_surfaces_.extract(key);

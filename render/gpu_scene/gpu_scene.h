@@ -14,27 +14,28 @@
 
 namespace rebake {
 
-/// Faces [first, first + count) and their box, so that what is out of view is not drawn.
+/// Faces [first_face, first_face + face_count) with their bounding box in object space, for frustum culling.
 struct GpuCluster {
   std::size_t first_face = 0;
   std::size_t face_count = 0;
   Box bounds;
 };
 
-/// What is uploaded of where a set's vertices are, worked out beforehand: floats relative to `center`.
+/// Positions of a texture set, prepared on the CPU for upload: floats relative to `center`.
 struct PreparedMesh {
-  TextureSet source;  ///< keeps the arrays alive, so that their addresses stay identities
-  /// What its clusters are of. One surface may show more faces than another of the same texels.
+  TextureSet source;  ///< keeps the arrays alive whose addresses are in the MeshKey
+  /// Faces that the clusters contain. A surface that was taken over from another texture may have more faces.
   std::shared_ptr<const std::vector<Face>> shown;
   Vec3 center{0, 0, 0};
   std::vector<Eigen::Vector3f> positions;
-  std::vector<float> turns;  ///< 9 a vertex; empty where none is turned
+  std::vector<float> turns;  ///< 3×3 rotation per vertex, column-major; empty if no vertex is rotated
   std::vector<GpuCluster> clusters;
-  FaceClusters nearby;
+  FaceClusters nearby;  ///< clusters for occlusion culling
 };
+/// Prepares the positions of a set. `shown`: faces of its surface.
 PreparedMesh prepared(const TextureSet& set, const ShownFaces& shown);
 
-/// A texture set's triangles on the GPU.
+/// Positions of a texture set on the GPU, and clusters of its triangles. Texels and indices are in its GpuSurface.
 struct GpuMesh {
   TextureSet source;
   Vec3 center{0, 0, 0};
@@ -45,42 +46,44 @@ struct GpuMesh {
   FaceClusters nearby;
 };
 
-/// Makes the vertex array that is bound read positions and a surface's vertices.
+/// Sets the attributes of the bound vertex array: positions and a surface's vertices.
 void bind_vertices(const gl::Buffer& positions, const GpuSurface& surface);
 
 /// A light map on the GPU.
 struct GpuLight {
   std::shared_ptr<const LightMap> source;
-  gl::Buffer places;
-  gl::Texture gain, offset;                           ///< no offset where there is none
-  gl::Texture gloss_before, gloss_after, gloss_suns;  ///< where there is any
+  gl::Buffer places;                                  ///< per vertex: position in the map, in nodes
+  gl::Texture gain, offset;                           ///< `offset` is empty if the map has none
+  gl::Texture gloss_before, gloss_after, gloss_suns;  ///< empty if the map has no gloss
 };
 
-/// Owns what is on the GPU for the current scene.
+/// Owner of the resident GPU data: those of the current scene, and those of a scene that is being uploaded in slices.
 class GpuScene {
  public:
-  /// Uploads what is missing and releases what `scene` no longer holds. `coded`: texels in blocks, in about half the
-  /// memory, to the same picture.
+  /// Uploads the missing data of `scene` and evicts data that it does not need. `coded`: store texels in lossless
+  /// blocks, which take about half the memory.
   void update(const Scene& scene, bool coded, const Lighting* lighting = nullptr);
-  /// Uploads some of what update() would of `scene`, for about so long and at least a piece, beside what is there;
-  /// returns how much of it is, from 0 to 1. What is little is left to update(), which takes what has arrived.
+  /// Uploads a slice of the data that update() would upload for `scene`, beside the current data: for about
+  /// `milliseconds`, and at least one piece. Returns the uploaded share, 0 … 1. Small changes are left to update(),
+  /// which takes over the uploaded data.
   double arrive(const Scene& scene, bool coded, double milliseconds);
-  /// Lets go of what arrived for a scene that was not drawn.
+  /// Evicts the data uploaded by arrive() for a scene that was not drawn.
   void forget_arrival();
-  /// Works out what update() will upload, from any thread; it takes what there is of it.
+  /// Prepares data on the CPU that update() will upload. Callable from any thread; update() prepares the rest.
   void prepare(const Scene& scene, bool coded);
 
   MeshKey key(const TextureSet& set) const { return mesh_key(set, coded_); }
   const GpuMesh& mesh(const TextureSet& set) const { return meshes_.at(key(set)); }
   const GpuSurface& surface(const TextureSet& set) const { return surfaces_.at(surface_key(set, coded_)); }
-  /// So far.
+  /// Number of texels uploaded so far.
   std::uint64_t texels_uploaded() const { return texels_uploaded_; }
-  std::uint64_t texel_bytes() const;  ///< held
+  /// Memory of the resident texels in bytes.
+  std::uint64_t texel_bytes() const;
   const GpuLight& light(const std::shared_ptr<const LightMap>& map) const { return lights_.at(map.get()); }
 
  private:
   void update_light(const Lighting* lighting);
-  /// What was prepared of a set, or is now.
+  /// Removes and returns the prepared data of a set; prepares them if there are none.
   PreparedMesh take_mesh(const TextureSet& set, bool coded, const GpuSurface& surface);
   PreparedSurface take_surface(const TextureSet& set, bool coded);
   ResourceDiff difference(const Scene& scene, bool coded) const;
@@ -89,23 +92,23 @@ class GpuScene {
   std::map<MeshKey, GpuMesh> meshes_;
   std::map<SurfaceKey, GpuSurface> surfaces_;
   std::map<const LightMap*, GpuLight> lights_;
-  bool coded_ = false;         ///< the texels of the scene that is there
-  std::uint64_t changes_ = 0;  ///< of the maps above
-  // What arrives for a scene that is not drawn yet, and what is still missing then.
+  bool coded_ = false;         ///< whether the current scene's texels are coded
+  std::uint64_t changes_ = 0;  ///< number of changes of meshes_ and surfaces_
+  /// Upload in slices of a scene that is not drawn yet.
   struct Arrival {
-    std::vector<NodePtr> roots;  ///< of the scene
+    std::vector<NodePtr> roots;  ///< identify the scene
     bool coded = false;
-    std::uint64_t changes = 0;  ///< when this was planned
-    std::vector<TextureSet> surfaces, meshes;
-    std::size_t surfaces_there = 0, meshes_there = 0;
+    std::uint64_t changes = 0;                         ///< value of changes_ when this was planned
+    std::vector<TextureSet> surfaces, meshes;          ///< sets to upload
+    std::size_t surfaces_there = 0, meshes_there = 0;  ///< number of uploaded ones
   };
   std::optional<Arrival> arrival_;
   std::map<SurfaceKey, GpuSurface> arriving_surfaces_;
   std::map<MeshKey, GpuMesh> arriving_meshes_;
   std::uint64_t texels_uploaded_ = 0;
-  // Shared with prepare():
+  // Guarded by mutex_, because prepare() uses them from other threads:
   std::mutex mutex_;
-  /// Of what is on the GPU; sources keep what the keys are made of alive.
+  /// A resident surface; `source` keeps the arrays alive whose addresses are in the key.
   struct Held {
     TextureSet source;
     std::shared_ptr<const FeatureTexture> made_for;
@@ -114,14 +117,15 @@ class GpuScene {
   std::map<MeshKey, TextureSet> held_meshes_;
   std::map<SurfaceKey, ShownFaces> arriving_shown_;
   std::map<SurfaceKey, Held> held_surfaces_;
+  /// Prepared data that wait for update().
   template <class Prepared>
   struct Waiting {
     Prepared made;
-    unsigned turn = 0;  ///< the call of prepare() that wanted it last
+    unsigned turn = 0;  ///< number of the last call of prepare() that needed it
   };
   std::map<MeshKey, Waiting<PreparedMesh>> prepared_meshes_;
   std::map<SurfaceKey, Waiting<PreparedSurface>> prepared_surfaces_;
-  unsigned turn_ = 0;
+  unsigned turn_ = 0;  ///< number of calls of prepare()
 };
 
 }  // namespace rebake

@@ -12,26 +12,26 @@ namespace rebake {
 
 namespace {
 
-// Of the whole texture's texels, above which packing is not worth it.
+// Share of the whole texture above which packing is not worthwhile.
 constexpr double most_packed = 0.9;
-constexpr int widest = 16384;
+constexpr int widest = 16384;  // maximum side of the packed texture
 
 struct Range {
-  int left = widest, top = widest, right = -1, bottom = -1;  ///< all included
+  int left = widest, top = widest, right = -1, bottom = -1;  ///< inclusive
 };
 
-// The texel that the shaders fetch at a coordinate, which they are given as a float.
+// The texel that the shaders fetch at a coordinate, which they receive as a float.
 int texel_at(double coordinate, int size) {
   return texel_within(static_cast<double>(static_cast<float>(coordinate)), size);
 }
 
-// Rows of rectangles, the highest first. Returns the height.
+// Shelf packing, tallest rectangles first. Returns the height.
 int place_in_rows(std::vector<PackedRect>& rects, int width) {
   std::vector<std::uint32_t> order(rects.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return rects[a].height > rects[b].height; });
-  // The first texel stands for those that are not there.
+  // Texel (0, 0) stays free, for vertices without a rectangle.
   int x = 1, y = 0, row = 1;
   for (const std::uint32_t k : order) {
     PackedRect& rect = rects[k];
@@ -68,7 +68,7 @@ TexelPacking pack_texels(const TextureSet& set, const std::vector<std::uint8_t>&
     part_shown[part] |= shown[f];
     for (const std::uint32_t vertex : face) {
       const Vec2& uv = soup.uvs()[vertex];
-      // What is no number may be anywhere.
+      // With a NaN or infinite UV, the rectangle spans the whole texture.
       const bool sound = uv.allFinite();
       const int x = sound ? texel_at(uv.x() * width, width) : 0,
                 y = sound ? texel_at((1 - uv.y()) * height, height) : 0;
@@ -86,7 +86,7 @@ TexelPacking pack_texels(const TextureSet& set, const std::vector<std::uint8_t>&
   std::vector<std::uint32_t> shown_parts;
   for (std::uint32_t part = 0; part < count; ++part)
     if (part_shown[part] != 0) shown_parts.push_back(part);
-  // Whoever reads them unpacks few tiles at a time.
+  // Sorted by tile, so that each parallel task of coded() unpacks few tiles.
   const auto in_order = [&](std::uint32_t part) {
     const Range& r = ranges[part];
     return std::tuple(r.top / TexelTile::size, r.left / TexelTile::size, r.top, r.left, part);

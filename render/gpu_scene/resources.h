@@ -9,17 +9,17 @@
 
 namespace rebake {
 
-/// Identity of what a set shows wherever its vertices are: texels on the GPU, and where triangles find them.
+/// Identity of a GpuSurface: addresses of the shared arrays of its texture set. Independent of positions.
 struct SurfaceKey {
   const void* uvs = nullptr;
   const void* faces = nullptr;
   const void* texels = nullptr;
-  bool coded = false;  ///< whether its texels are
+  bool coded = false;  ///< whether its texels are stored as coded blocks
   auto operator<=>(const SurfaceKey&) const = default;
 };
 SurfaceKey surface_key(const TextureSet& set, bool coded);
 
-/// Identity of a mesh on the GPU: the shared arrays that it was made from.
+/// Identity of a GpuMesh: addresses of the shared arrays of its texture set, and its surface.
 struct MeshKey {
   const void* positions = nullptr;
   const void* turns = nullptr;
@@ -28,7 +28,7 @@ struct MeshKey {
 };
 MeshKey mesh_key(const TextureSet& set, bool coded);
 
-/// What to upload before a picture can be drawn, and what nothing needs any more.
+/// Sets to upload before a scene can be drawn, and keys of resident data to evict.
 struct ResourceDiff {
   std::vector<TextureSet> meshes;
   std::vector<TextureSet> surfaces;
@@ -36,8 +36,8 @@ struct ResourceDiff {
   std::vector<SurfaceKey> released_surfaces;
 };
 
-/// Pure: compares what is held with what a scene can draw (hidden nodes included, so that showing them again is
-/// instant).
+/// Compares resident data with the needs of a scene. Hidden nodes count too, so that showing them again uploads
+/// nothing. Pure.
 ResourceDiff diff(const std::set<MeshKey>& held_meshes, const std::set<SurfaceKey>& held_surfaces, const Scene& scene,
                   bool coded);
 

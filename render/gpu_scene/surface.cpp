@@ -13,11 +13,11 @@ namespace rebake {
 
 namespace {
 
-// What is uploaded at a time: some milliseconds' worth where scenes arrive in slices.
+// Size of an upload slice: a few milliseconds' worth.
 constexpr int band = 64;  // rows of texels
 constexpr std::size_t bytes_at_once = 1 << 20;
 
-// The parts of a rectangle that lie in changed tiles. Returns how many texels that is.
+// Uploads the parts of a rectangle that lie in changed tiles. Returns their number of texels.
 std::uint64_t upload_changed(const TexelReader& texels, int tile_columns, const std::vector<std::uint8_t>& changed,
                              const PackedRect& rect, std::vector<Texel>& rows) {
   constexpr int size = TexelTile::size;
@@ -46,10 +46,10 @@ std::uint64_t area_of(const std::vector<PackedRect>& rects) {
   return area;
 }
 
-// A texel takes a word at most. Rectangles that overlap would be there several times; tiny ones are smaller as they
-// are.
+// Codes texels; nullopt if they may exceed most_coded_words (a texel takes at most one word) or save less than a tenth:
+// overlapping rectangles would be stored several times, and tiny ones are smaller uncoded.
 std::optional<CodedTexels> coded_where_worth(const TexelPacking& packing, const FeatureTexture& texels) {
-  constexpr double most_coded = 0.9;  // of what it is without
+  constexpr double most_coded = 0.9;  // share of the uncoded size
   const double plain = static_cast<double>(sizeof(Texel)) * packing.width * packing.height;
   if (area_of(packing.rects) > most_coded_words) return std::nullopt;
   if (static_cast<double>(sizeof(Texel) * area_of(packing.rects)) > 2 * plain) return std::nullopt;
@@ -60,7 +60,7 @@ std::optional<CodedTexels> coded_where_worth(const TexelPacking& packing, const 
 }
 
 GpuCodedTexels begin_upload(CodedTexels coded) {
-  // The shader reads the word that data begin in and the next.
+  // Padding: from the start of a texel's data, the shader reads three 32-bit halves of words.
   coded.words.resize(coded.words.size() + 2, 0);
   GpuCodedTexels made;
   made.blocks = gl::make_buffer(GL_TEXTURE_BUFFER, nullptr, coded.blocks.size() * sizeof(TexelBlock));
@@ -78,7 +78,7 @@ void upload_part(const gl::Buffer& buffer, std::size_t first, std::size_t bytes,
   glBufferSubData(GL_TEXTURE_BUFFER, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes), data);
 }
 
-// Returns the share that is there then.
+// Uploads the next slice. Returns the uploaded share, 0 … 1.
 double upload_some(GpuCodedTexels& coded) {
   const CodedTexels& waiting = coded.waiting;
   const std::size_t blocks = waiting.blocks.size() * sizeof(TexelBlock),
@@ -107,8 +107,8 @@ bool touches(const PackedRect& rect, int tile_columns, const std::vector<std::ui
   return false;
 }
 
-// Rectangles in changed tiles anew, each in the room that it has; runs of them at once. Returns how many texels that
-// is, nothing where some need more room.
+// Recodes the rectangles in changed tiles, within the words allocated for them, and uploads runs of them at once.
+// Returns their number of texels; nullopt if they need more words.
 std::optional<std::uint64_t> recode_changed(const GpuCodedTexels& coded, const std::vector<PackedRect>& rects,
                                             const TexelReader& texels, int tile_columns,
                                             const std::vector<std::uint8_t>& changed) {
@@ -141,7 +141,7 @@ PreparedSurface prepared_surface(const TextureSet& set, bool coded) {
   const Soup& soup = set.soup;
   PreparedSurface made;
   made.source = set;
-  // Faces that show nothing are not worth a draw.
+  // Leaves out faces without opaque texels.
   const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
   auto faces = std::make_shared<std::vector<Face>>();
   for (std::size_t f = 0; f < shows.size(); ++f)
@@ -160,7 +160,7 @@ PreparedSurface prepared_surface(const TextureSet& set, bool coded) {
     const std::uint32_t number = packing->rect_of_vertex[v];
     if (number == packing->rects.size()) {
       if (!packing->whole || made.coded) return;
-      // Its own texels are there too.
+      // The whole texture is resident, so the vertex can use its own texels.
       vertex.last_texel[0] = static_cast<std::uint16_t>(packing->width - 1);
       vertex.last_texel[1] = static_cast<std::uint16_t>(packing->height - 1);
       return;
@@ -179,7 +179,7 @@ PreparedSurface prepared_surface(const TextureSet& set, bool coded) {
 
 GpuSurface begin_upload(PreparedSurface made) {
   GpuSurface surface;
-  // The element buffer is bound to no vertex array here.
+  // Indices are uploaded as GL_ARRAY_BUFFER, because an element buffer would need a vertex array.
   glBindVertexArray(0);
   surface.vertices =
       gl::make_buffer(GL_ARRAY_BUFFER, made.vertices.data(), made.vertices.size() * sizeof(SurfaceVertex));
@@ -232,7 +232,7 @@ std::uint64_t take_over(GpuSurface& surface, const TextureSet& set) {
     surface.source = set;
     if (const auto recoded = recode_changed(*surface.coded, rects, texels, after.tile_columns(), changed))
       return *recoded;
-    // Blocks stay where they are, so that vertices find them.
+    // The indices of blocks stay the same, so that the vertices remain valid.
     surface.coded = begin_upload(coded(rects, after));
     while (upload_some(*surface.coded) < 1) {
     }

@@ -11,62 +11,63 @@
 
 namespace rebake {
 
-/// What geometry.vert reads of a vertex besides its position.
+/// Vertex attributes of geometry.vert except the position.
 struct SurfaceVertex {
-  float texel[2];                               ///< in texels of the texture, v down
-  std::uint16_t first_texel[2], last_texel[2];  ///< of its rectangle
-  /// Of the rectangle's first texel among those on the GPU; of coded ones the halves of its first block's number.
+  float texel[2];                               ///< texture coordinates in texels, v down
+  std::uint16_t first_texel[2], last_texel[2];  ///< corners of its rectangle in the texture, inclusive
+  /// Corner of the rectangle in the packed texture; if texels are coded, low and high half of its first block's index.
   std::uint16_t place[2];
 };
 
-/// A set's faces that may show something, and an order of them in which neighbours stay neighbours wherever edits move
-/// them.
+/// Faces of a set that may show opaque texels, and a spatial order of them, which is reused when edits move vertices.
 struct ShownFaces {
   std::shared_ptr<const std::vector<Face>> faces;
   NearbyOrder nearby;
 };
 
-/// What is uploaded of a set wherever its vertices are, worked out beforehand.
+/// Data of a texture set that do not depend on positions (faces, texels), prepared on the CPU for upload.
 struct PreparedSurface {
-  TextureSet source;  ///< keeps arrays and texels alive, so that their addresses stay identities
+  TextureSet source;  ///< keeps the arrays alive whose addresses are in the SurfaceKey
   ShownFaces shown;
   std::shared_ptr<const TexelPacking> packing;
-  std::optional<CodedTexels> coded;  ///< its texels, where they are to be and can
+  std::optional<CodedTexels> coded;  ///< coded texels, if wanted and worthwhile
   std::vector<SurfaceVertex> vertices;
 };
+/// Prepares a set. `coded`: code its texels if that saves memory.
 PreparedSurface prepared_surface(const TextureSet& set, bool coded);
 
-/// Texels of a surface as blocks.
+/// Coded texels of a surface on the GPU.
 struct GpuCodedTexels {
   std::vector<std::uint32_t> first_block, first_word;  ///< as in CodedTexels
   gl::Buffer blocks, words;
-  gl::Texture read_blocks, read_words;
-  CodedTexels waiting;       ///< what is still to be uploaded
-  std::size_t uploaded = 0;  ///< bytes of it, blocks first
+  gl::Texture read_blocks, read_words;  ///< buffer textures of `blocks` and `words`
+  CodedTexels waiting;                  ///< data to upload; empty when all are uploaded
+  std::size_t uploaded = 0;             ///< number of uploaded bytes, blocks first
 };
 
-/// A set's faces and texels on the GPU.
+/// Faces and texels of a texture set on the GPU. Positions are in a GpuMesh.
 struct GpuSurface {
   TextureSet source;
-  std::shared_ptr<const FeatureTexture> made_for;  ///< whose opaque texels decided what is here
-  ShownFaces shown;                                ///< faces as in `indices`
+  std::shared_ptr<const FeatureTexture> made_for;  ///< texture whose opaque texels determined `shown` and `packing`
+  ShownFaces shown;                                ///< faces in the order of `indices`
   std::shared_ptr<const TexelPacking> packing;
   gl::Buffer vertices;
   gl::Buffer indices;
   gl::Texture texels;
-  std::optional<GpuCodedTexels> coded;         ///< instead of those
-  double uploaded = 0;                         ///< the share of its texels
-  int rows_uploaded = 0;                       ///< of the texels
-  std::unique_ptr<const TexelReader> reading;  ///< of the source's, while they are uploaded
+  std::optional<GpuCodedTexels> coded;         ///< if set, used instead of `texels`
+  double uploaded = 0;                         ///< share of the texels, 0 … 1
+  int rows_uploaded = 0;                       ///< rows of `texels`
+  std::unique_ptr<const TexelReader> reading;  ///< unpacks the source's texels during the upload
 };
-/// All but the texels.
+/// Uploads vertices and indices, and allocates the texels.
 GpuSurface begin_upload(PreparedSurface made);
-/// Some more of its texels, at most a few milliseconds' worth. Returns whether those were the last.
+/// Uploads the next slice of texels, at most a few milliseconds' worth. Returns whether it was the last.
 bool upload_more(GpuSurface& surface);
 
-/// Whether a surface is good for a set with the same triangles: no texel has become opaque, and sizes are the same.
+/// Whether a surface of `source`, with GpuSurface::made_for, can be reused for `set`: both share UVs and faces,
+/// textures have the same size, and no texel has become opaque.
 bool serves(const std::shared_ptr<const FeatureTexture>& made_for, const TextureSet& source, const TextureSet& set);
-/// Makes it that set's, for which it serves: uploads what changed of the texels, and returns how many it uploaded.
+/// Reuses a surface for `set`, for which it serves(): uploads the changed texels and returns their number.
 std::uint64_t take_over(GpuSurface& surface, const TextureSet& set);
 
 }  // namespace rebake

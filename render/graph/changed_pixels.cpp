@@ -10,9 +10,9 @@ namespace rebake {
 
 namespace {
 
-// What is looked at texel by texel; more is sooner drawn.
+// Maximum number of changed tiles per texture that are compared texel by texel; with more, a whole frame is faster.
 constexpr std::size_t most_tiles = 64;
-// Hidden triangles are not left out of them: where more of the picture may differ, a whole frame is drawn as soon.
+// Share of the picture above which a whole frame is as fast, because partial frames run without occlusion culling.
 constexpr double most_pixels = 1.0 / 3;
 
 bool same_frame(const NodeFrame& a, const NodeFrame& b) {
@@ -34,7 +34,7 @@ bool same_but_texels(const Draw& a, const Draw& b) {
           (was.width() == is.width() && was.height() == is.height() && was.alpha_code() == is.alpha_code()));
 }
 
-// A rectangle for each tile of which some differ; nothing where too many do.
+// Bounding rectangle of the changed texels per changed tile; nullopt if more than most_tiles tiles changed.
 std::optional<std::vector<PixelRect>> changed_texels(const FeatureTexture& before, const FeatureTexture& now) {
   constexpr int size = TexelTile::size;
   std::vector<PixelRect> changed;
@@ -59,7 +59,8 @@ std::optional<std::vector<PixelRect>> changed_texels(const FeatureTexture& befor
   return changed;
 }
 
-// Whether a triangle may show any of them: nearest texels, with one of room for interpolation and clamping.
+// Whether a triangle may show changed texels under nearest sampling, with a margin of one texel for rounding and
+// clamping.
 bool may_show(const std::array<Vec2, 3>& uvs, const FeatureTexture& texels, const std::vector<PixelRect>& changed) {
   const auto [left, right] = std::minmax({uvs[0].x(), uvs[1].x(), uvs[2].x()});
   const auto [low, high] = std::minmax({uvs[0].y(), uvs[1].y(), uvs[2].y()});
@@ -71,6 +72,7 @@ bool may_show(const std::array<Vec2, 3>& uvs, const FeatureTexture& texels, cons
   });
 }
 
+// Bounding rectangle of the pixels in which a draw may show changed texels.
 PixelRect showing(const Draw& draw, const std::vector<PixelRect>& changed, const View& view) {
   const Soup& soup = draw.set.soup;
   PixelRect pixels;
@@ -105,7 +107,7 @@ ChangedPixels changed_pixels(const FramePlan* before, const FramePlan& now) {
     if (!changed) return {std::nullopt, "many texels changed since the last frame"};
     if (!changed->empty()) pixels = join(pixels, showing(now.draws[k], *changed, now.view));
   }
-  // Who asks for the same once more wants it drawn.
+  // If the same frame is requested again, the caller wants it to be drawn.
   if (!any) return {std::nullopt, "nothing changed since the last frame"};
   pixels = around(pixels, mark_pixels, now.view);
   const auto area = [](double width, double height) { return width * height; };

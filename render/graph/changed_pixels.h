@@ -4,17 +4,17 @@
 
 namespace rebake {
 
-/// So many pixels around what is marked its marks depend on.
+/// Radius, in pixels, within which a pixel of the mask affects tints and outlines (selection.frag, outline.frag).
 inline constexpr int mark_pixels = 4;
 
-/// The pixels in which a frame may differ from the one before it, where it is enough to draw those.
+/// The part of a frame that may differ from the frame before it, if it is worthwhile to draw only that part.
 struct ChangedPixels {
-  std::optional<PixelRect> pixels;  ///< nothing where all are to be drawn; may be empty
-  std::string why;
+  std::optional<PixelRect> pixels;  ///< nullopt: draw the whole frame; an empty rectangle: no pixel changed
+  std::string why;                  ///< reason, for the plan
 };
 
-/// `now` without its passes. Both differ in texels at most: other differences are drawn whole. Errs on the side of more
-/// pixels.
+/// Compares the plans of two consecutive frames. `before`: null if there is none; `now`: without its passes yet.
+/// Returns pixels only if nothing but texels changed. Conservative: may include unchanged pixels.
 ChangedPixels changed_pixels(const FramePlan* before, const FramePlan& now);
 
 }  // namespace rebake

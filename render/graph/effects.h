@@ -8,54 +8,60 @@
 
 namespace rebake {
 
-/// Buffers of a frame that effects pass on to each other.
+/// Render targets of a frame, which effects write and later effects read.
 enum class Target {
-  picture,       ///< RGBA8, a pixel
-  features,      ///< RG32UI, a sample's 8 feature bytes
-  frames,        ///< R16UI, a sample's index into FramePlan::frames
-  rays,          ///< RGBA32F, a sample's fed direction where its triangle was turned, else 0
-  depth,         ///< a sample's depth
-  light_gain,    ///< RGBA16F, a sample's factor of linear light
-  light_offset,  ///< RGBA16F, what is added to it
-  mask,          ///< R8, a pixel's selected triangles, then those of outlined nodes
+  picture,       ///< RGBA8 per pixel
+  features,      ///< RG32UI per sample: the 8 feature bytes
+  frames,        ///< R16UI per sample: index into FramePlan::frames
+  rays,          ///< RGBA32F per sample: view direction fed to the decoder if the triangle was rotated, otherwise 0
+  depth,         ///< DEPTH_COMPONENT32F per sample
+  light_gain,    ///< RGBA16F per sample: factor of linear light
+  light_offset,  ///< RGBA16F per sample: linear light to add
+  mask,          ///< R8 per pixel: strength of the selection, then of outlined nodes
 };
 inline constexpr std::size_t target_count = 8;
 
 struct Effect;
 struct PassInput;
 
-/// That an effect reads or writes a target; with `where` only in frames in which that one runs too.
+/// Declares that an effect reads or writes a target.
 struct Use {
   Target target;
-  const Effect* where = nullptr;
+  const Effect* where = nullptr;  ///< if set: only in frames in which this effect runs too
 };
 
-/// What a frame is made of, as far as it is planned.
+/// Input of Effect::decide: the frame as planned so far.
 struct FrameFacts {
-  const FramePlan& plan;  ///< all but its passes
+  const FramePlan& plan;  ///< complete except for its passes
   const DeviceFacts& device;
+  /// Numbers of: draws with triangles rotated apart from their object; visible nodes out of view; nodes hidden by an
+  /// edit.
   std::size_t turned_draws = 0, culled = 0, hidden = 0;
-  std::string why_kept;  ///< or why not
+  std::string why_kept;  ///< reason why unchanged pixels are reused or not
 
   bool any_draw() const { return !plan.draws.empty(); }
   bool forward() const { return plan.options.shading == RenderOptions::Shading::forward; }
 };
 
+/// Whether an effect runs, and the reason in words.
 struct Decision {
   bool runs = false;
   std::string why;
 };
 
-/// A pass, or an optional part of one: when it runs and why, what it reads and writes. Each is an object of its own, so
-/// that a name which does not exist does not compile.
+/// A render pass, or an optional part of one: its decision, its drawing, the targets that it reads and writes. Effects
+/// are referred to by object, not by string, so that a misspelt name does not compile.
 struct Effect {
-  /// What it is there for: inspecting leaves out what decodes colours, and a plain picture has no overlays.
-  enum class Kind { colors, always, overlay };
+  enum class Kind {
+    colors,  ///< decodes colours; left out if triangles are inspected
+    always,  ///< decided in every frame
+    overlay  ///< decided only if guides are drawn
+  };
 
-  const char* name;
+  const char* name;  ///< in the plan and in FrameTimes
   Kind kind;
-  std::optional<Decision> (*decide)(const FrameFacts& facts);  ///< nothing where it is not worth a word
-  void (*execute)(const PassInput& input) = nullptr;           ///< null for a part of another
+  std::optional<Decision> (*decide)(const FrameFacts& facts);  ///< nullopt: not worth a line in the plan
+  void (*execute)(const PassInput& input) = nullptr;           ///< draws; null for a part of another pass
   std::span<const Use> reads{}, writes{};
 };
 
@@ -65,16 +71,16 @@ extern const Effect geometry, supersampling, view_direction, node_frames, turned
     coded_texels, inspect, selection, outline, guides;
 }
 
-/// All of them, in the order in which they are said and run.
+/// All effects, in the order in which they are listed and run.
 std::span<const Effect* const> effect_table();
 
-/// "3 draws".
+/// A count with its noun: "3 draws".
 std::string plural(std::size_t count, const std::string& one, const std::string& many);
-/// What is drawn, in words.
+/// Size of a plan in words: "3 draws, 1200 triangles".
 std::string drawn_words(const FramePlan& plan);
-/// How it is decoded, in words. Something is drawn.
+/// The first decoder in words: "decoder 11-16-16-3, weights as constants". Requires a draw.
 std::string decoder_words(const FramePlan& plan);
-/// Bytes of textures above which texels are coded.
+/// Size of textures in bytes above which texels are coded by default.
 inline constexpr std::uint64_t coded_from = std::uint64_t{256} << 20;
 inline constexpr const char* nothing_in_view = "nothing is in view";
 

@@ -9,14 +9,13 @@
 
 namespace rebake {
 
-/// Programs by their full source, the most recently used ones: a decoder that comes back is not compiled again, and
-/// those of decoders long gone do not pile up.
+/// LRU cache of up to 64 shader programs, keyed by file names and preamble (which contains constant decoder weights).
 class ProgramCache {
  public:
-  /// The program made of two shader files behind a preamble.
+  /// The program of two files in shaders/ with a common preamble; compiled on a cache miss. Throws DeviceError.
   const gl::Program& get(const std::string& vertex, const std::string& fragment, const std::string& preamble);
   std::size_t size() const { return entries_.size(); }
-  /// How many were compiled so far.
+  /// Number of compiled programs so far, evicted ones included.
   std::size_t made() const { return made_; }
 
  private:
@@ -30,57 +29,59 @@ class ProgramCache {
   std::size_t made_ = 0;
 };
 
-/// Weights as literals, as text for shaders; made once for a set of decoders.
+/// Cached GLSL text of the current decoders with weights as literals.
 struct DecoderText {
   std::vector<std::shared_ptr<const Decoder>> decoders;
   RenderOptions::Precision precision = RenderOptions::Precision::full;
   std::string text;
 };
 
-/// Decoder weights on the GPU when they are fetched from buffers.
+/// Weights of the current decoders in GPU buffers, for RenderOptions::Weights::buffer.
 struct DecoderTables {
   std::vector<std::shared_ptr<const Decoder>> decoders;
   RenderOptions::Precision precision = RenderOptions::Precision::full;
-  int widest_layer = 1;
+  int widest_layer = 1;  ///< largest hidden width
   gl::Buffer weights_buffer, layout_buffer;
   gl::Texture weights, layout;
 };
 
-/// The selected faces of a texture set on the GPU.
+/// Index buffer of the selected faces of a texture set.
 struct SelectedFaces {
   std::shared_ptr<const TriangleSet> selection;
-  TextureSet source;  ///< with the selection keeps the key's addresses alive
+  TextureSet source;  ///< with `selection`, keeps alive the arrays whose addresses are in the key
   gl::VertexArray array;
   gl::Buffer indices;
-  std::size_t count = 0;
+  std::size_t count = 0;  ///< number of indices
 };
+/// Identity of SelectedFaces: mesh, and address of the selection.
 using SelectionKey = std::pair<MeshKey, const TriangleSet*>;
 
 struct OcclusionState;
 
-/// Lives as long as the renderer: shaders and buffers that frames share.
+/// Data that passes share and keep between frames; one per renderer.
 struct PassState {
   ProgramCache programs;
   DecoderText text;
   TargetPool targets;
   DecoderTables tables;
   std::map<SelectionKey, SelectedFaces> selected;
-  gl::VertexArray empty_array;
-  std::shared_ptr<OcclusionState> occlusion;  ///< what `occlusion` knows of earlier frames; null before its first
-  OcclusionCounts occlusion_counts;           ///< of this frame, where it ran
+  gl::VertexArray empty_array;                ///< for draw calls without vertex attributes
+  std::shared_ptr<OcclusionState> occlusion;  ///< visibility in earlier frames; null before the first culled frame
+  OcclusionCounts occlusion_counts;           ///< of the last frame with occlusion culling
 };
 
-/// What a pass is given.
+/// Arguments of Effect::execute.
 struct PassInput {
   const FramePlan& plan;
   const GpuScene& gpu;
   PassState& state;
   const Effect& effect;
 
-  /// The texture's name, 0 where nothing wrote it in this frame. Throws std::logic_error for one that the effect does
-  /// not say it reads.
+  /// OpenGL name of a target's texture; 0 if no effect writes it in this frame. Throws std::logic_error if the effect
+  /// does not declare the target in Effect::reads.
   unsigned read(Target target) const;
-  /// From here on drawing goes there. Throws std::logic_error likewise.
+  /// Binds these targets for drawing, with the depth target if `depth`. Throws std::logic_error if the effect does not
+  /// declare them in Effect::writes.
   void draw_to(const std::vector<Target>& colors, bool depth) const;
 };
 

@@ -10,8 +10,8 @@ std::optional<PixelRect> projected(const Box& box, const View& view) {
   const double nearest = view.camera.near_plane, farthest = view.camera.far_plane;
   if (box.isEmpty() || -box.min().z() < nearest || -box.max().z() > farthest) return std::nullopt;
   const PixelRect whole{0, 0, view.width, view.height};
-  // The box is clipped to depths [nearest, farthest] before it is divided: each edge in x and y projects largest at one
-  // of the two depths.
+  // Clips the box to depths [nearest, farthest] before the perspective division. Its extreme projections are at one of
+  // these two depths.
   const double z0 = std::max(nearest, -box.max().z()), z1 = std::min(farthest, -box.min().z());
   double left = 1e300, right = -1e300, bottom = 1e300, top = -1e300;
   for (const double z : {z0, z1}) {

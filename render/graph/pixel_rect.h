@@ -12,11 +12,11 @@ struct PixelRect {
   bool empty() const { return left >= right || top >= bottom; }
 };
 
-/// Where a camera-space box falls in the picture, with a pixel around it: nothing when it is out of view.
+/// Bounding rectangle of a camera-space box in the picture, with a margin of one pixel; nullopt if it is out of view.
 std::optional<PixelRect> projected(const Box& box, const View& view);
-/// With so many pixels of the picture around it.
+/// The rectangle, grown by `pixels` on each side and clipped to the picture. Empty rectangles stay empty.
 PixelRect around(const PixelRect& rect, int pixels, const View& view);
-/// What holds both.
+/// The smallest rectangle that contains both.
 PixelRect join(const PixelRect& a, const PixelRect& b);
 
 }  // namespace rebake

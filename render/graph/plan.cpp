@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t most_constant_decoders = 4;
 constexpr std::size_t most_constant_weights = 4096;
 
-// Constants leave out weights of 0, of which decoders side by side have many.
+// Constants omit zero weights, of which decoders fused side by side have many.
 std::size_t weight_count(const Decoder& d) {
   const auto count = [](const Eigen::MatrixXd& weights) {
     return static_cast<std::size_t>((weights.array() != 0).count());
@@ -45,11 +45,11 @@ std::size_t frame_index(FramePlan& plan, const NodeFrame& frame) {
   return plan.frames.size() - 1;
 }
 
-// Bytes of textures, each once.
+// Total size of distinct textures.
 class TextureBytes {
  public:
   void add(const BakedObject& object) {
-    // Of many nodes, neighbours often show one object.
+    // Shortcut: consecutive nodes often share an object.
     if (std::exchange(last_, &object) == &object) return;
     for (const TextureSet& set : object.sets)
       if (counted_.insert(set.texels.get()).second)
@@ -71,11 +71,11 @@ RenderOptions::Texels chosen(RenderOptions::Texels texels, std::uint64_t bytes, 
   return bytes > coded_from ? Texels::coded : Texels::plain;
 }
 
-// Where no decoder's colours depend on the direction by more than is seen, directions are left out.
+// Omits the view direction if it changes no decoder's colours by more than `unseen`.
 void leave_out_direction(FramePlan& plan) {
   for (const auto& decoder : plan.decoders)
     plan.direction_change = std::max(plan.direction_change, direction_use_of(decoder)->change);
-  // Light may make a change of colours any number of times larger.
+  // A light map may amplify a change of colours by any factor.
   const bool lit = std::any_of(plan.draws.begin(), plan.draws.end(), [](const Draw& d) { return d.light != nullptr; });
   if (plan.options.everything || plan.draws.empty() || plan.direction_change > (lit ? 0 : unseen)) return;
   plan.sees_direction = false;
@@ -89,11 +89,11 @@ void leave_out_direction(FramePlan& plan) {
     if (!decoder->weights0.bottomRows(3).isZero(0)) decoder = direction_use_of(decoder)->without;
 }
 
-// Where all that a pixel may show, and the background, have one colour as far as is seen, one sample is as good as
-// many.
+// Reduces the samples to 1 per pixel if everything that a pixel may show differs by at most `unseen`, background
+// included.
 void leave_out_samples(FramePlan& plan) {
   if (plan.options.everything || plan.view.samples == 1 || plan.draws.empty()) return;
-  // Of each decoder, of all textures that a pixel may mix.
+  // Per decoder: range of the features in all textures that a pixel may mix.
   std::vector<std::optional<FeatureRange>> features(plan.decoders.size());
   for (const Draw& draw : plan.draws) {
     if (draw.light != nullptr) return;

@@ -25,7 +25,7 @@ constexpr std::array<Format, target_count> formats{{{GL_RGBA8, 4, false},
 
 std::bitset<target_count> written_by(const FramePlan& plan) {
   std::bitset<target_count> written;
-  written.set(static_cast<std::size_t>(Target::picture));  // it has a background at least
+  written.set(static_cast<std::size_t>(Target::picture));  // always cleared to the background
   for (const Effect* effect : effect_table()) {
     if (effect->execute == nullptr || !plan.runs(*effect)) continue;
     for (const Use& use : effect->writes)
@@ -42,8 +42,8 @@ void TargetPool::fit(const FramePlan& plan) {
   bool changes = resized;
   for (std::size_t k = 0; k < target_count; ++k) changes = changes || wanted[k] != static_cast<bool>(textures_[k]);
   if (!changes) return;
-  // What is not needed goes first, so that both never take memory at once. Sizes are set at the end: what fails in
-  // between is made anew.
+  // Frees old targets first, to limit the peak of memory. Sizes are set last, so that all targets are reallocated after
+  // a failure.
   framebuffers_.clear();
   width_ = 0;
   for (std::size_t k = 0; k < target_count; ++k)

@@ -10,15 +10,16 @@
 
 namespace rebake {
 
-/// The targets that a frame's effects write: made when one does, kept from frame to frame while sizes stay, freed when
-/// none does.
+/// Owner of the render targets. Targets are allocated when an effect of a frame writes them, reused while the size
+/// stays the same, and freed when no effect writes them.
 class TargetPool {
  public:
-  /// Throws DeviceError.
+  /// Allocates and frees targets for a frame. Throws DeviceError if memory is out.
   void fit(const FramePlan& plan);
 
   const gl::Texture& texture(Target target) const { return textures_[static_cast<std::size_t>(target)]; }
-  /// What draws into these, in this order, and with `depth` into depth too. All are there.
+  /// Cached framebuffer with these colour attachments in this order, and the depth target if `depth`. All must be
+  /// allocated.
   const gl::Framebuffer& framebuffer(const std::vector<Target>& colors, bool depth);
 
  private:

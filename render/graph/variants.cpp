@@ -17,18 +17,18 @@ namespace rebake {
 
 namespace {
 
-// Nodes of which every combination is looked at: 31 of 5.
+// Maximum number of representatives whose combinations are all enumerated: 31 for 5.
 constexpr std::size_t most_combined = 5;
-constexpr std::size_t most_kinds = 12;
-// No power of two, as windows are: llvmpipe compiles programs again for textures of such sizes.
+constexpr std::size_t most_kinds = 12;  // maximum number of kinds that are represented
+// Pixels per side. Not a power of two, like most windows: llvmpipe recompiles programs for power-of-two textures.
 constexpr int side = 24;
 
-// Which preamble a draw's light wants.
+// Number of the preamble that a light map needs: 0 without, 1 or 2 without or with offset, plus 2 with gloss.
 int light_of(const LightMap* light) {
   return light == nullptr ? 0 : (light->offset.empty() ? 1 : 2) + (light->gloss ? 2 : 0);
 }
 
-// What of a node decides which programs it is drawn by.
+// Properties of a node that determine the programs that draw it.
 struct Kind {
   std::shared_ptr<const Decoder> decoder;
   bool turned = false;
@@ -46,7 +46,7 @@ Kind kind_of(const PlacedNode& placed, const Lighting* lighting) {
   return kind;
 }
 
-// Nodes that stand for all: of each kind one, and another that is turned otherwise, where there is one.
+// Representatives of all visible nodes: per kind one node, and a second one with another rotation if there is one.
 std::vector<PlacedNode> representatives(const Scene& scene, const Lighting* lighting) {
   struct Held {
     Kind kind;
@@ -64,7 +64,7 @@ std::vector<PlacedNode> representatives(const Scene& scene, const Lighting* ligh
     try {
       turn = orthogonal_factor(placed.to_world.linear());
     } catch (const std::invalid_argument&) {
-      continue;  // drawing it will say so
+      continue;  // draw() reports the error
     }
     if (known == held.end())
       held.push_back({kind, turn});
@@ -77,6 +77,7 @@ std::vector<PlacedNode> representatives(const Scene& scene, const Lighting* ligh
   return result;
 }
 
+// The scene of the nodes whose bit is set in `which`.
 Scene of_nodes(const Scene& scene, const std::vector<PlacedNode>& nodes, std::uint64_t which) {
   Scene some;
   some.background = scene.background;
@@ -91,7 +92,8 @@ Scene of_nodes(const Scene& scene, const std::vector<PlacedNode>& nodes, std::ui
   return some;
 }
 
-// All of it in few pixels that are as wide as the view's: from far away where rays meet in the eye.
+// A small view of the whole scene in the direction of `like`. Pixels have the same angular size, so a perspective
+// camera is far away.
 View small_view(const Scene& scene, const View& like, int samples) {
   View view{like.camera, side, side, samples};
   const Box box = world_bounds(scene);
@@ -117,7 +119,7 @@ View small_view(const Scene& scene, const View& like, int samples) {
 ProgramVariant variant_of(const FramePlan& plan) {
   ProgramVariant variant;
   if (plan.options.weights == RenderOptions::Weights::constants) variant.decoders = plan.decoders;
-  std::uint64_t draws = 0;  // a bit for each way in which a set is drawn
+  std::uint64_t draws = 0;  // bit per combination of rotation and light map
   for (const Draw& draw : plan.draws)
     draws |= std::uint64_t{1} << (5 * (draw.set.soup.rotations() != nullptr ? 1 : 0) + light_of(draw.light.get()));
   variant.flags = fmt::format("{}/{}/{}/{}:", static_cast<int>(plan.options.weights),
@@ -140,7 +142,7 @@ std::vector<FrameToCome> frames_to_come(const Scene& scene, const View& view, co
     for (std::size_t a = 0; a < nodes.size(); ++a)
       for (std::size_t b = 0; b <= a; ++b) some.push_back(std::uint64_t{1} << a | std::uint64_t{1} << b);
   }
-  // The likely ones first: all, then each alone.
+  // Most likely combinations first: all nodes, then each alone.
   std::stable_sort(some.begin() + 1, some.end(),
                    [](std::uint64_t a, std::uint64_t b) { return std::popcount(a) < std::popcount(b); });
   std::vector<FrameToCome> result;

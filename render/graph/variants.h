@@ -8,22 +8,22 @@
 
 namespace rebake {
 
-/// What a frame's programs for colours are made of: frames of one variant use the same programs.
+/// Key of the shader programs that draw a frame's colours: frames with equal keys use the same programs.
 struct ProgramVariant {
-  std::vector<std::shared_ptr<const Decoder>> decoders;  ///< whose weights are in the text; none where they are fetched
-  std::string flags;
+  std::vector<std::shared_ptr<const Decoder>> decoders;  ///< with weights as literals; empty if weights are fetched
+  std::string flags;                                     ///< options, samples, effects that run, and kinds of draws
   bool operator==(const ProgramVariant&) const = default;
 };
 ProgramVariant variant_of(const FramePlan& plan);
 
-/// Frames that together want the programs which views of a scene may want, so that these can be made before the camera
-/// turns there: small pictures, at the given view's samples and at 1, of nodes that stand for all that are drawn like
-/// them. Each holds some of the scene's nodes; frames of one variant come once. Of scenes of many kinds of nodes only
-/// those of all together, of each alone and of pairs. Pure.
+/// A small frame of some of a scene's nodes, drawn off screen to compile programs before a camera needs them.
 struct FrameToCome {
   Scene scene;
   View view;
 };
+/// Frames that together use all programs that views of a scene may need: one per ProgramVariant, most likely ones
+/// first. Combines representatives of similar nodes, at the samples of `view` and at 1: all combinations of up to 5
+/// representatives; of more only all together, each alone, and pairs. Pure.
 std::vector<FrameToCome> frames_to_come(const Scene& scene, const View& view, const RenderOptions& options,
                                         const Lighting* lighting);
 

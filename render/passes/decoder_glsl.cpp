@@ -15,7 +15,7 @@ float rounded(double weight, RenderOptions::Precision precision) {
   return precision == RenderOptions::Precision::half ? static_cast<float>(Eigen::half(single)) : single;
 }
 
-// Calls `neuron(layer, index, bias, weights)` in the order in which the network is evaluated.
+// Calls `neuron(layer, index, bias, weights)` in the order of evaluation.
 void for_each_neuron(const Decoder& d,
                      const std::function<void(int, Eigen::Index, double, const Eigen::VectorXd&)>& neuron) {
   for (Eigen::Index j = 0; j < d.bias0.size(); ++j) neuron(0, j, d.bias0[j], d.weights0.col(j));

@@ -8,15 +8,15 @@
 
 namespace rebake {
 
-/// GLSL text of `vec3 decode(int k, vec4 low, vec4 high, vec3 ray)` with all weights as literals.
+/// GLSL text of `vec3 decode(int k, vec4 low, vec4 high, vec3 ray)` with weights as literals; zero weights are omitted.
 std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decoder>>& decoders,
                                    RenderOptions::Precision precision);
 
-/// The same weights for decoder_buffer.glsl.
+/// Contents of the buffers of decoder_buffer.glsl.
 struct DecoderBuffers {
-  std::vector<float> weights;  ///< a neuron's bias, then its weights; padded to whole texels
-  std::vector<float> layout;   ///< four floats a decoder: first weight, hidden widths, 0
-  int widest_layer = 1;
+  std::vector<float> weights;  ///< per neuron its bias, then its weights; padded to texels of four floats
+  std::vector<float> layout;   ///< four floats per decoder: index of its first weight, two hidden widths, 0
+  int widest_layer = 1;        ///< largest hidden width
 };
 DecoderBuffers decoder_buffers(const std::vector<std::shared_ptr<const Decoder>>& decoders,
                                RenderOptions::Precision precision);

@@ -55,7 +55,7 @@ bool DepthPyramid::hides(const ScreenTriangle& t) const {
             top = std::min(t.samples.top, rect_.top - 1) - rect_.bottom;
   constexpr int most_blocks = 1024;
   if ((right / block - left / block + 1) * (top / block - bottom / block + 1) > most_blocks) return false;
-  // A function a · x + b · y + c of the middle of the sample at column x, row y of the rectangle.
+  // A linear function a · x + b · y + c at the centre of the sample in column x, row y of the rectangle.
   struct Linear {
     double a, b, c;
     double at(double x, double y) const { return a * x + b * y + c; }
@@ -67,18 +67,19 @@ bool DepthPyramid::hides(const ScreenTriangle& t) const {
   const double abn = t.nearness[1] - t.nearness[0], acn = t.nearness[2] - t.nearness[0];
   const double area = abx * acy - aby * acx;
   const double x_shift = rect_.left + 0.5, y_shift = rect_.bottom + 0.5;
-  // Its plane; what a driver draws inside of it is a mean of its corners, which have been moved.
+  // Upper bound of nearness: the triangle's plane, raised by the displacement and error of the corners that a driver
+  // interpolates.
   Linear plane{(abn * acy - acn * aby) / area, (acn * abx - abn * acx) / area, 0};
   plane.c = t.nearness[0] + plane.a * (x_shift - t.x[0]) + plane.b * (y_shift - t.y[0]) +
             (std::abs(plane.a) + std::abs(plane.b)) * t.moved + t.error;
-  // Drivers work out its slopes in floats, which slivers make steep.
+  // Drivers compute slopes in floats; the error is large for slivers.
   constexpr double rounding = 16.0 / (1 << 24);
   const double longest =
       std::max({abx * abx + aby * aby, acx * acx + acy * acy, (acx - abx) * (acx - abx) + (acy - aby) * (acy - aby)});
   const auto [least, most] = std::minmax({t.nearness[0], t.nearness[1], t.nearness[2]});
   plane.c += rounding * (most - least) * longest / std::abs(area);
   if (!std::isfinite(plane.c)) return false;
-  // Not negative inside, and where moved corners may bring it.
+  // Edge functions, not negative inside the triangle and within the displacement of its corners.
   std::array<Linear, 3> edges;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
@@ -115,13 +116,13 @@ bool DepthPyramid::hides(const SampleRect& samples, float nearness) const {
            bottom = static_cast<unsigned>(std::max(samples.bottom - rect_.bottom, 0)) / block,
            right = static_cast<unsigned>(std::min(samples.right, rect_.right - 1) - rect_.left) / block,
            top = static_cast<unsigned>(std::min(samples.top, rect_.top - 1) - rect_.bottom) / block;
-  // At most 4 × 4 blocks are looked at.
+  // Selects the level where the rectangle spans at most 4×4 blocks.
   const Level* level = levels_.data();
   for (; right - left > 3 || top - bottom > 3; ++level) left /= 2, right /= 2, bottom /= 2, top /= 2;
   const float* row = &level->farthest[static_cast<std::size_t>(bottom) * static_cast<unsigned>(level->width)];
   for (unsigned y = bottom; y <= top; ++y, row += level->width)
     for (unsigned x = left; x <= right; ++x)
-      // Not "<=", so that what is no number hides nothing and is not hidden.
+      // Not "<=", so that NaN neither occludes nor is occluded.
       if (!(row[x] > nearness)) return false;
   return true;
 }

@@ -6,40 +6,42 @@
 
 namespace rebake {
 
-/// Rectangle of a raster's samples, y up; right and top are excluded.
+/// A rectangle of samples of a raster, y up; right and top are excluded.
 struct SampleRect {
   int left = 0, bottom = 0, right = 0, top = 0;
 };
 
-/// A triangle as it is drawn, as far as that is known.
+/// Bounds of a triangle as a driver may rasterise it.
 struct ScreenTriangle {
-  SampleRect samples;          ///< that it may cover, right and top included
-  std::array<double, 3> x, y;  ///< corners in samples, y up; the middle of the first sample is at ½
-  std::array<double, 3> nearness;
-  double moved = 0;  ///< samples by which a driver may have moved a corner
-  double error = 0;  ///< of nearness at corners
+  SampleRect samples;              ///< samples that it may cover; here right and top are included
+  std::array<double, 3> x, y;      ///< corners in samples, y up; sample centres are at integers + ½
+  std::array<double, 3> nearness;  ///< per corner, as in DepthPyramid
+  double moved = 0;                ///< largest displacement of a corner by rounding, in samples
+  double error = 0;                ///< bound of the error of nearness at corners
 };
 
-/// How near what has been drawn so far is, so that what lies behind it need not be drawn. Nearness is 1 at the near
-/// plane and 0 at the far one, where nothing was drawn too.
+/// Hi-Z pyramid for occlusion tests on the CPU: the depth of the farthest sample per block of 4×4 samples, then per 2×2
+/// blocks on each coarser level. Depth is given as nearness: 1 at the near plane, 0 at the far plane and if nothing was
+/// drawn.
 class DepthPyramid {
  public:
-  /// Of `rect` of a raster; `nearness` has its rows one after the other, the lowest first, and is asked later, too.
+  /// Builds the pyramid of a part `rect` of a raster. `nearness`: per sample, row by row from the bottom; must outlive
+  /// the tests.
   void build(const SampleRect& rect, const std::vector<float>& nearness);
 
-  /// Whether all samples of a rectangle, its right and top included, are nearer than `nearness`. Samples outside the
-  /// pyramid's rectangle do not count. Errs on the side of false.
+  /// Whether all samples of a rectangle, here with right and top included, are nearer than `nearness`. Ignores samples
+  /// outside the pyramid. Conservative: may return false for occluded rectangles.
   bool hides(const SampleRect& samples, float nearness) const;
-  /// The same of the samples that a triangle may cover, each as near as the triangle may be there. Of large ones that
-  /// is not asked: false.
+  /// Whether all samples that a triangle may cover are nearer than the triangle, each compared with its bound at that
+  /// sample. Conservative; returns false without a test for triangles over more than 1024 blocks.
   bool hides(const ScreenTriangle& triangle) const;
 
  private:
-  static constexpr int block = 4;  ///< samples a side of the finest level
+  static constexpr int block = 4;  ///< samples per side of a block of the finest level
 
   struct Level {
     int width = 0, height = 0;
-    std::vector<float> farthest;
+    std::vector<float> farthest;  ///< smallest nearness per block
   };
   SampleRect rect_;
   const std::vector<float>* nearness_ = nullptr;

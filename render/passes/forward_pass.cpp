@@ -26,7 +26,7 @@ void execute(const PassInput& input) {
     bind_decoders(input, shader);
     return shader;
   };
-  // What was drawn hides the background wherever it was drawn, and is drawn again there.
+  // Clears depth only: drawing again overwrites all colours that were drawn before.
   draw_sets(input, use, [&] {
     begin_clear(plan);
     clear_depth();

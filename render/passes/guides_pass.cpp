@@ -6,7 +6,7 @@ namespace rebake {
 
 namespace {
 
-// A surface is looked for so much before and behind a triangle that lies on it, as a share of its distance.
+// Depth tolerance between a triangle and the surface on which it lies, as a share of its distance.
 constexpr double nearer = 2e-3;
 
 void execute(const PassInput& input) {
@@ -17,7 +17,7 @@ void execute(const PassInput& input) {
   const Mat3 rows = world_to_camera(camera);
   std::vector<Vertex> vertices;
   if (input.plan.guides.triangles) {
-    // A little nearer than the surface that they lie on, at the same pixels.
+    // Moves triangles slightly towards the eye along view rays, so that they cover the same pixels.
     const Eigen::Vector3f c = input.plan.guides.triangle_color.cast<float>();
     for (const Guides::Triangle& triangle : *input.plan.guides.triangles)
       for (std::size_t k = 0; k < 3; ++k) {

@@ -10,7 +10,7 @@ namespace rebake {
 
 namespace {
 
-// Colours far apart for numbers close together, by the golden angle.
+// Distinct hues for consecutive numbers, by the golden angle.
 glm::vec3 color_of(std::size_t number) {
   const double hue = std::fmod(static_cast<double>(number) * 0.381966, 1.0) * 6;
   const auto channel = [&](double offset) {

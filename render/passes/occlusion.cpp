@@ -17,19 +17,19 @@
 
 namespace rebake {
 
-/// What frames pass on to each other.
+/// Visibility of triangles that is remembered from frame to frame.
 struct OcclusionState {
-  /// Bits of a face's flags.
-  static constexpr std::uint8_t shown = 1;    ///< in the last frame that looked
-  static constexpr std::uint8_t pending = 2;  ///< to be drawn next
-  static constexpr std::uint8_t close = 4;    ///< showed also when it was looked at sample by sample
+  /// Bits of a face's flags:
+  static constexpr std::uint8_t shown = 1;    ///< found visible in the last frame with a test
+  static constexpr std::uint8_t pending = 2;  ///< to be drawn by the next draw call
+  static constexpr std::uint8_t close = 4;    ///< also found visible in the test per sample
 
   using Key = std::pair<NodeId, std::size_t>;  ///< node, first triangle of the set
-  /// What showed from a camera: a guess for the next frame from near there, which may be wrong.
+  /// Visibility from one camera: a prediction for the next frame from a camera nearby, which may be wrong.
   struct Memory {
     Camera camera;
-    std::map<Key, std::vector<std::uint8_t>> faces;  ///< flags
-    /// What that was found in.
+    std::map<Key, std::vector<std::uint8_t>> faces;  ///< flags per face
+    /// Identity of a draw for which the visibility was found.
     struct Drawn {
       Key key;
       Eigen::Matrix4d to_camera;
@@ -37,16 +37,16 @@ struct OcclusionState {
       bool operator==(const Drawn& other) const;
     };
     std::vector<Drawn> draws;
-    std::array<int, 4> raster{};  ///< width, height, samples a side, and how it is shaded
-    int frames_at_rest = 0;       ///< in which nothing of that has changed
-    bool known = false;           ///< what is close: it was looked at in this state
-    OcclusionCounts counts;
-    std::vector<std::uint8_t> blocks;
+    std::array<int, 4> raster{};       ///< width, height, samples per pixel side, RenderOptions::Shading
+    int frames_at_rest = 0;            ///< since camera, raster or draws changed
+    bool known = false;                ///< whether `close` is valid: the test per sample has run in this state
+    OcclusionCounts counts;            ///< of the test per sample
+    std::vector<std::uint8_t> blocks;  ///< OcclusionState::blocks of that test
   };
-  std::vector<Memory> memories;  ///< the last used one last
-  std::vector<float> depth;
+  std::vector<Memory> memories;  ///< most recently used last
+  std::vector<float> depth;      ///< nearness per sample, as in DepthPyramid
   DepthPyramid pyramid;
-  std::vector<std::uint8_t> blocks;  ///< of the picture: 1 where something may have been drawn
+  std::vector<std::uint8_t> blocks;  ///< per 16×16 pixels: 1 if something may have been drawn
   int block_columns = 0;
 };
 
@@ -61,30 +61,31 @@ bool OcclusionState::Memory::Drawn::operator==(const Drawn& other) const {
 namespace {
 
 constexpr int block_pixels = 16;
-// The frame at rest in which it is looked sample by sample, what then shows being drawn from there on: that takes as
-// long as drawing what it leaves out.
+// Number of frames at rest after which triangles are tested per sample. Later frames draw the triangles found visible.
+// The test takes about as long as drawing the triangles that it removes.
 constexpr int looked_closely = 2;
-// Up to a quarter as many triangles as were drawn are added to them; where more are missing, all that show are drawn
-// again.
+// If the second pass has at most a quarter as many triangles as the first, it is drawn on top. Otherwise all visible
+// triangles are drawn again.
 constexpr std::size_t few_missing = 4;
 
+// A cluster in view: indices of its set and within the set.
 struct Candidate {
   std::uint32_t set;
   std::uint32_t cluster;
 };
 
-// Whether what showed from one camera says much of what shows from another.
+// Whether visibility from one camera predicts visibility from another.
 bool near_by(const Camera& a, const Camera& b) {
   const Vec3 to_a = a.target - a.eye, to_b = b.target - b.eye;
-  constexpr double most_turned = 0.9;  // cosine, 26 degrees
-  constexpr double most_moved = 0.25;  // of the distance to what is looked at
+  constexpr double most_turned = 0.9;  // cosine of the angle: 26°
+  constexpr double most_moved = 0.25;  // share of the distance to the target
   return to_a.dot(to_b) > most_turned * to_a.norm() * to_b.norm() &&
          (a.eye - b.eye).norm() < most_moved * std::max(to_a.norm(), to_b.norm()) &&
          a.orthographic() == b.orthographic();
 }
 
-// What is remembered of a camera near this one; nothing where there is none. A few are kept, so that views may
-// alternate.
+// Removes and returns the latest memory of a camera nearby; an empty one if there is none. Keeps up to three memories,
+// so that views can alternate, and evicts the oldest.
 OcclusionState::Memory recalled(std::vector<OcclusionState::Memory>& memories, const Camera& camera) {
   constexpr std::size_t most = 3;
   OcclusionState::Memory found;
@@ -98,7 +99,7 @@ OcclusionState::Memory recalled(std::vector<OcclusionState::Memory>& memories, c
   return found;
 }
 
-// A set in this frame.
+// A texture set in this frame.
 struct Set {
   const Draw* draw;
   const GpuMesh* mesh;
@@ -140,7 +141,7 @@ class Frame {
       auto node = before.faces.extract(key);
       std::vector<std::uint8_t>& flags = now.faces[key];
       if (!node.empty()) flags = std::move(node.mapped());
-      // Of another object by now, whose faces have other numbers.
+      // The node shows another object now, whose faces are numbered differently.
       if (flags.size() != surface.shown.faces->size()) flags.assign(surface.shown.faces->size(), 0);
       sets_.push_back({&draw, &mesh, &surface, bounder(draw), &flags});
     }
@@ -148,7 +149,7 @@ class Frame {
 
   void draw(const std::function<void()>& clear) {
     OcclusionState::Memory& memory = state_.memories.back();
-    // Drawn again without a change it would be found the same.
+    // Nothing has changed: draws the triangles that the test per sample found visible.
     if (memory.known) {
       gather(OcclusionState::close);
       draw_gathered();
@@ -166,13 +167,13 @@ class Frame {
         flags |= OcclusionState::pending;
         remembered = true;
       });
-    // Nothing is known: all of it, and then what of it shows.
+    // There is no prediction: the first pass draws all triangles in view.
     if (!remembered)
       for (const Candidate& c : candidates)
         for_faces(c, [](std::uint32_t, std::uint8_t& flags) { flags |= OcclusionState::pending; });
     const std::size_t first = gather(OcclusionState::pending).back();
     draw_gathered();
-    glFinish();  // so that only what looking adds is counted
+    glFinish();  // so that the measured time excludes drawing
     timed([&] {
       read_depth();
       look(candidates);
@@ -184,7 +185,7 @@ class Frame {
       draw_gathered();
     }
     counts().triangles_drawn = first + missing;
-    // In the scene's order. Where much was missing that is sooner done than asking, and drawing what is hidden.
+    // Draws all visible triangles again, in scene order. If many were missing, this is faster than a test for ties.
     if (any_tie_found || missing > first / few_missing) {
       gather(OcclusionState::shown);
       clear();
@@ -276,7 +277,7 @@ class Frame {
     const int size = block_pixels * side_;
     for (int y = samples.bottom / size; y <= samples.top / size; ++y)
       for (int x = samples.left / size; x <= samples.right / size; ++x) {
-        // Several threads may set the same one, to the same value.
+        // Several threads may write the same value to a block.
         std::uint8_t& block =
             state_.blocks[static_cast<std::size_t>(y) * static_cast<std::size_t>(state_.block_columns) +
                           static_cast<std::size_t>(x)];
@@ -293,7 +294,7 @@ class Frame {
     state_.pyramid.build(rect_, state_.depth);
   }
 
-  // Finds what of the candidates is not hidden by what was drawn: that shows, and is pending where it was not drawn.
+  // Tests candidates against the Hi-Z pyramid. Visible triangles become `shown`, and `pending` if not drawn yet.
   void look(const std::vector<Candidate>& candidates) {
     using Where = ScreenBounds::Where;
     const bool closely = looks_closely();
@@ -320,7 +321,7 @@ class Frame {
     });
   }
 
-  // Faces with a flag, in their order, as indices; the result is where those of each set end.
+  // Uploads the indices of faces with a flag, in scene order. Returns offsets: 0, then the end of each set.
   const std::vector<std::size_t>& gather(std::uint8_t flag) {
     ends_.assign(1, 0);
     indices_.clear();
@@ -331,7 +332,7 @@ class Frame {
         for (; k < end; ++k)
           if ((flags[k] & flag) != 0) indices_.push_back((*set.surface->shown.faces)[k]);
       };
-      // Eight at a time: mostly none of them is.
+      // Skips eight faces at a time, because most have no flag.
       while (k + 8 <= flags.size()) {
         std::uint64_t eight = 0;
         std::memcpy(&eight, &flags[k], 8);
@@ -358,18 +359,18 @@ class Frame {
       glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer_.name());
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(first * sizeof(Face)));
-      // The vertex array remembers it.
+      // Restores the element buffer of the vertex array.
       glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, sets_[s].surface->indices.name());
       unbind_set(*sets_[s].draw);
     }
   }
 
-  // Whether a sample is as near as what is there: of two that are equally near the later one in the scene's order
-  // shows, which is not always the one that is drawn later here.
+  // Whether a sample of the gathered triangles has the same depth as the drawn sample (occlusion query). Of such ties,
+  // the later triangle in scene order must win, which may have been drawn first.
   bool any_tie() {
     GLint function = GL_LEQUAL;
     glGetIntegerv(GL_DEPTH_FUNC, &function);
-    // Undone also where drawing throws: later frames would draw nothing.
+    // Restores the state even if drawing throws; later frames would draw nothing otherwise.
     struct Quiet {
       GLuint query = 0;
       GLenum function;
@@ -464,7 +465,7 @@ std::optional<Decision> decide(const FrameFacts& facts) {
     if (plan.triangles < facts.device.occlusion_from)
       return Decision{false, fmt::format("{} are drawn sooner than looked at; here it pays from {} on",
                                          plural(plan.triangles, "triangle", "triangles"), facts.device.occlusion_from)};
-    // One set costs as much to look after as a few of its triangles to draw.
+    // The overhead per set is as large as the time to draw a few triangles.
     if (plan.triangles < faces_a_face_cluster * plan.draws.size())
       return Decision{false, fmt::format("{} with few triangles each are drawn sooner than looked at",
                                          plural(plan.draws.size(), "object", "objects"))};

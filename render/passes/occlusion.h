@@ -6,14 +6,15 @@
 
 namespace rebake {
 
-/// Draws all sets of a plan in their order, with the same result as if all their triangles were drawn. `use` makes
-/// ready to draw a set and returns the program; `clear` empties the targets. Where the plan runs `occlusion`: what
-/// showed when it was last looked from near by (all, where it was not) first, then what its depth does not hide.
+/// Draws all texture sets of a plan. If it runs `occlusion`, by two-pass occlusion culling: first the triangles that
+/// were visible from a remembered camera nearby (all if there is none), then those that a Hi-Z pyramid of the first
+/// pass does not occlude. The picture does not depend on culling. `use` binds the program for a set; `clear` clears the
+/// targets.
 void draw_sets(const PassInput& input, const std::function<const gl::Program&(const Draw&)>& use,
                const std::function<void()>& clear);
 
-/// Pixels, y up, outside which draw_sets drew nothing in this frame; one rectangle, the plan's, where that was not
-/// worked out.
+/// Rectangles of pixels, y up, outside which draw_sets() drew nothing in this frame: blocks of 16×16 pixels, merged
+/// along rows. Without occlusion culling the single rectangle plan.covered.
 std::vector<SampleRect> drawn_pixels(const PassInput& input);
 
 }  // namespace rebake

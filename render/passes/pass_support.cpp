@@ -24,7 +24,7 @@ glm::mat4 to_glm(const Eigen::Matrix4d& matrix) {
 GLint location(const gl::Program& program, const char* name) { return glGetUniformLocation(program.name(), name); }
 
 bool outside(const Eigen::Matrix4d& object_to_clip, const Box& box) {
-  // Beyond one of the planes x, y = ±w or behind the eye with all eight corners.
+  // Frustum culling: whether all eight corners are beyond one of the planes x = ±w and y = ±w.
   int left = 0, right = 0, down = 0, up = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector4d c = object_to_clip * box.corner(static_cast<Box::CornerType>(corner)).homogeneous();
@@ -38,9 +38,9 @@ bool outside(const Eigen::Matrix4d& object_to_clip, const Box& box) {
 
 }  // namespace
 
-// Depth 1 at the near plane and 0 at the far one keeps float depth precise at any distance.
+// Reversed depth keeps float depth precise at any distance.
 bool reversed_depth() {
-  // Asked each time: another thread may draw in another driver's context.
+  // Queried on each call, because threads may draw in contexts of different drivers.
   return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
 }
 
@@ -127,7 +127,7 @@ Mat3 camera_to_fed(const FramePlan& plan, const NodeFrame& frame) {
 glm::vec2 alpha_factors(AlphaCode code) { return code == AlphaCode::halved ? glm::vec2(2, -1) : glm::vec2(1, 0); }
 
 void set_ray_uniforms(const gl::Program& program, const View& view, int side) {
-  // Parallel rays are all (0, 0, -1).
+  // All rays of an orthographic camera are (0, 0, −1).
   const double top = view.camera.orthographic() ? 0 : half_height(view.camera, 1);
   const double right = top * view.width / view.height;
   set_uniform(program, "ray_scale", glm::vec2(2 * right / (view.width * side), 2 * top / (view.height * side)));
@@ -213,7 +213,7 @@ void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Progr
 
 namespace {
 
-// Constants of the real spherical harmonics of gloss.glsl, whose polynomials are without them.
+// Normalisation constants of real spherical harmonics, which the polynomials in gloss.glsl omit.
 constexpr std::array<double, sh::count> harmonic_constants{
     0.28209479177387814, 0.4886025119029199, 0.4886025119029199,  0.4886025119029199,
     1.0925484305920792,  1.0925484305920792, 0.31539156525252005, 1.0925484305920792,
@@ -274,8 +274,8 @@ void unbind_set(const Draw& draw) {
 
 namespace {
 
-// Camera to clip space as far as it tells what may be drawn: where the rest is kept, the covered part and what marks
-// there depend on.
+// Camera to clip space for frustum culling. If pixels outside plan.covered are kept, the frustum is narrowed to
+// plan.covered with the margin of marks.
 Eigen::Matrix4d drawn_projection(const FramePlan& plan) {
   Eigen::Matrix4d part = Eigen::Matrix4d::Identity();
   if (plan.kept) {
@@ -289,7 +289,7 @@ Eigen::Matrix4d drawn_projection(const FramePlan& plan) {
   return part * projection(plan.view);
 }
 
-// Of a set that is bound.
+// Draws the clusters in view of a bound set.
 void draw_clusters(const GpuMesh& mesh, const Eigen::Matrix4d& object_to_clip) {
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
@@ -297,7 +297,7 @@ void draw_clusters(const GpuMesh& mesh, const Eigen::Matrix4d& object_to_clip) {
     if (outside(object_to_clip, cluster.bounds)) continue;
     const auto begin = reinterpret_cast<const void*>(cluster.first_face * sizeof(Face));
     const auto count = static_cast<GLsizei>(cluster.face_count * 3);
-    // Neighbours in view are drawn as one range: each separate range costs a call inside the driver.
+    // Merges consecutive clusters in view into one range: each range costs a draw call in the driver.
     if (!counts.empty() &&
         reinterpret_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()) * 4 ==
             reinterpret_cast<std::size_t>(begin)) {
@@ -314,7 +314,7 @@ void draw_clusters(const GpuMesh& mesh, const Eigen::Matrix4d& object_to_clip) {
                         static_cast<GLsizei>(counts.size()));
 }
 
-// Whether nothing but their place differs in what is bound to draw them.
+// Whether two draws share all bindings and differ only in their transform.
 bool bound_alike(const Draw& a, const Draw& b) {
   const Soup &first = a.set.soup, &second = b.set.soup;
   return a.frame == b.frame && !a.light && !b.light && first.rotations() == nullptr && second.rotations() == nullptr &&
@@ -377,7 +377,7 @@ void begin_geometry(const FramePlan& plan, int side) {
 }
 
 void begin_clear(const FramePlan& plan) {
-  // Drivers empty whole targets at once, and draw a rectangle to empty a part: that is 2 to 3 times slower a sample.
+  // Drivers have a fast clear for whole targets. They clear a part by drawing, 2 to 3 times slower per sample.
   const auto area = [](double width, double height) { return width * height; };
   const PixelRect& c = plan.covered;
   const bool most = 3 * area(c.right - c.left, c.bottom - c.top) > area(plan.view.width, plan.view.height);
@@ -450,7 +450,7 @@ void end_geometry() {
 void begin_mask(const PassInput& input) {
   input.draw_to({Target::mask}, false);
   begin_overlay(input.plan);
-  // Passes share the mask: around what is drawn it is another's.
+  // Passes share the mask, so the margin around plan.covered holds marks of another pass.
   if (input.plan.kept) restrict_to(around(input.plan.covered, mark_pixels, input.plan.view), input.plan.view, 1);
   const float nothing[4] = {};
   glClearBufferfv(GL_COLOR, 0, nothing);

@@ -9,21 +9,23 @@
 
 namespace rebake {
 
-/// The program made of two shader files behind a preamble; compiled once.
+/// The cached program of two files in shaders/ with a common preamble. Throws DeviceError if it does not compile.
 const gl::Program& program(PassState& state, const std::string& vertex, const std::string& fragment,
                            const std::string& preamble);
 
-/// Text of the decoder function as the plan wants it: generated constants or the buffer version.
+/// Preamble of the decoder function: generated GLSL with constant weights, or the defines of decoder_buffer.glsl, whose
+/// buffers it uploads.
 std::string decoder_preamble(const PassInput& input);
-/// Binds the weight buffers, where the plan uses them, to texture units 4 and 5.
+/// Binds the weight buffers, if the plan uses them, to texture units 4 and 5.
 void bind_decoders(const PassInput& input, const gl::Program& program);
 
 glm::mat3 to_glm(const Mat3& matrix);
+/// Rotation from camera space into the space of the directions that are fed to the decoder.
 Mat3 camera_to_fed(const FramePlan& plan, const NodeFrame& frame);
-/// Stored alpha's factor and offset, as unpack.glsl wants them.
+/// Factor and offset that decode the stored alpha in unpack.glsl.
 glm::vec2 alpha_factors(AlphaCode code);
 
-/// Sets ray_scale and ray_offset for samples of a pixel's `side`.
+/// Sets ray_scale and ray_offset, which map sample positions to rays; `side`: samples per pixel side.
 void set_ray_uniforms(const gl::Program& program, const View& view, int side);
 
 void set_uniform(const gl::Program& program, const char* name, int value);
@@ -35,60 +37,61 @@ void set_uniform(const gl::Program& program, const char* name, const glm::ivec2&
 void set_uniform(const gl::Program& program, const char* name, const glm::mat3& value);
 void set_uniform(const gl::Program& program, const char* name, const glm::mat4& value);
 
-/// 0: no light changes; 1: by factors; 2: something is added too.
+/// Light targets of a plan: 0 for none, 1 for factors, 2 for factors and offsets.
 int light_level(const FramePlan& plan);
-/// What shaders need to know of a draw's light map.
+/// Defines for a draw's light map: LIT_MESH, GLOSSY_MESH, GLOSS_SUNS.
 std::string light_preamble(const Draw& draw);
-/// How texel.glsl reads a draw's texels.
+/// Define CODED_TEXELS: how texel.glsl reads a draw's texels.
 std::string texel_preamble(const PassInput& input, const Draw& draw);
 
-/// Whether depth is 1 at the near plane and 0 at the far one; without clip control it runs −1 … 1.
+/// Whether depth is reversed: 1 at the near plane, 0 at the far plane. Without clip control it is −1 … 1.
 bool reversed_depth();
-/// Camera to clip space.
+/// Matrix from camera to clip space.
 Eigen::Matrix4d projection(const View& view);
-/// Factor and offset that make of depth in clip space 1 at the near plane and 0 at the far one.
+/// Factor and offset that map depth z / w in clip space to nearness: 1 at the near plane, 0 at the far plane.
 Vec2 nearness_of_depth();
 
-/// Sets what geometry.vert needs of a set and binds its texture.
+/// Sets the uniforms of geometry.vert for a set, and binds its texels.
 void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Program& program);
-/// The same, and binds its vertices and light.
+/// Calls set_mesh_uniforms(), and binds the vertices and the light map of a set.
 void bind_set(const PassInput& input, const Draw& draw, const gl::Program& program);
 void unbind_set(const Draw& draw);
-/// The same, and draws the clusters in view.
+/// Binds a set and draws its clusters in view (frustum culling).
 void draw_set(const PassInput& input, const Draw& draw, const gl::Program& program);
-/// The plan's sets in their order; what neighbours that show one object have in common is bound once. `use` makes ready
-/// to draw a set and returns the program.
+/// Draws all sets of a plan in order, without occlusion culling. Consecutive instances of one object share their
+/// bindings. `use` binds the program for a set and returns it.
 void draw_all_sets(const PassInput& input, const std::function<const gl::Program&(const Draw&)>& use);
 
-/// From here on nothing is drawn outside plan.covered, at `side` samples.
+/// Sets the scissor rectangle to plan.covered, with `side` samples per pixel side.
 void restrict_to_covered(const FramePlan& plan, int side);
-/// What is cleared next is cleared where plan.covered is at least; all of it where lines are compared with its depth,
-/// or where that is done sooner, but where the rest is kept. end_clear() after that.
+/// Sets the scissor rectangle for clears: plan.covered, or the whole target if guides test against its depth or if that
+/// is faster, unless pixels outside are kept. Call end_clear() afterwards.
 void begin_clear(const FramePlan& plan);
-void clear_depth();
+void clear_depth();  ///< to the far plane
 void end_clear();
-/// Depth test (less or equal, in reversed depth where the driver can), both sides drawn, restricted to plan.covered at
-/// `side` samples.
+/// Sets the state for drawing triangles: depth test (nearer or equal), reversed depth if possible, no back-face
+/// culling, scissor to plan.covered. `side`: samples per pixel side.
 void begin_geometry(const FramePlan& plan, int side);
 void end_geometry();
 
-/// Draws rectangles of the picture with rectangles.vert.
+/// Draws rectangles of pixels, y up, with a program that uses rectangles.vert.
 void draw_rectangles(const View& view, const gl::Program& program, const std::vector<SampleRect>& rectangles);
 
-/// For what is drawn over the picture: its whole raster, or where the rest is kept plan.covered; the depth convention
-/// of the scene, no depth test.
+/// Sets the state for drawing over the whole picture (or only plan.covered if pixels outside are kept): no depth test,
+/// the depth convention of the scene.
 void begin_overlay(const FramePlan& plan);
-/// Binds the scene's depth to texture unit 1, and sets scene_depth, side and nearer.
+/// Binds the scene's depth to texture unit 1 and sets the uniforms scene_depth, side and nearer.
 void bind_scene_depth(const PassInput& input, const gl::Program& program);
-/// Clears Target::mask, as far as what is drawn depends on it, and makes ready to draw geometry into it, nearest marks
-/// staying; end_mask() after that.
+/// Clears Target::mask as far as drawn pixels depend on it, and sets the state for drawing into it: the strongest mark
+/// of a pixel wins. Call end_mask() afterwards.
 void begin_mask(const PassInput& input);
+/// Binds the program that draws a set into the mask with a strength of 0 … 1.
 const gl::Program& use_mask(const PassInput& input, const Draw& draw, float strength = 1);
 void end_mask();
-/// Draws a fragment shader that reads the mask over the picture.
+/// Draws over the picture with a fragment shader that reads the mask.
 void draw_by_mask(const PassInput& input, const std::string& fragment);
 void set_camera_to_clip(const FramePlan& plan, const gl::Program& program);
-/// A vertex array over a mesh's vertices, without indices.
+/// Creates a vertex array of a mesh's positions and a surface's vertices, without an element buffer.
 gl::VertexArray make_position_array(const GpuMesh& mesh, const GpuSurface& surface);
 
 }  // namespace rebake

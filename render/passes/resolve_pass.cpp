@@ -7,6 +7,7 @@ namespace rebake {
 
 namespace {
 
+// Contents of frame_table in resolve.frag.
 std::vector<float> frame_table(const FramePlan& plan) {
   std::vector<float> table;
   for (const NodeFrame& frame : plan.frames) {
@@ -91,14 +92,14 @@ std::optional<Decision> decide_compositing(const FrameFacts& facts) {
   return Decision{true, fmt::format("{} decoders in view", count)};
 }
 
-// Width or height of a pixel over its distance along the view axis; nothing where rays are parallel.
+// Width of a pixel divided by its distance along the view axis; 0 for orthographic cameras.
 double pixel_span(const View& view) {
   return view.camera.orthographic() ? 0 : 2 * half_height(view.camera, 1) / view.height;
 }
 
 std::optional<Decision> decide_ray_per_sample(const FrameFacts& facts) {
-  // Largest share of its distance that a pixel may span for its samples' rays to be taken as one. The mean of unit
-  // vectors spread by s differs from the unit vector of their mean position by O(s^2): at most 4e-6 here.
+  // Largest pixel width, divided by distance, for which one ray replaces those of all samples. The mean of unit vectors
+  // spread by s differs from the unit vector of their mean position by O(s²): at most 4e-6 here.
   constexpr double widest_single_ray = 1.0 / 256;
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   if (facts.forward() || facts.plan.view.samples == 1) return Decision{false, "a pixel has one sample"};

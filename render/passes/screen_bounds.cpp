@@ -8,13 +8,13 @@ namespace rebake {
 
 namespace {
 
-// Half a unit of a float's last place, and how many such errors a transform in floats adds up at most, the driver's and
-// the one here: each three products, three sums, the matrix's and the position's own rounding.
+// Rounding error of a float, relative, and the maximum number of such errors in two transforms by floats, the driver's
+// and ours. Each has three products, three sums, and the rounding of the matrix and of the position.
 constexpr double float_rounding = 1.0 / (1 << 24);
 constexpr double roundings = 16;
-// Samples by which a corner is moved when it is rounded to the raster's grid of 1/256, and some.
+// Displacement of a corner in samples when it is snapped to the grid of 1/256, with a margin.
 constexpr double snapping = 1.0 / 128;
-// A triangle's height, in samples, below which its depth follows from rounding.
+// Height of a triangle in samples below which its depth is rounding noise.
 constexpr double thinnest = 1.0 / 32;
 
 }  // namespace
@@ -66,12 +66,12 @@ ScreenBounds ScreenBounder::box(const Box& box) const {
     if (!(c.w() >= least_w)) least_w = c.w();
     clip[static_cast<std::size_t>(k)] = c;
   }
-  // All beyond one plane of the view's frustum: nothing is drawn.
+  // Frustum culling: all corners are beyond one plane.
   if (beyond != 0) {
     bounds.where = ScreenBounds::Where::outside;
     return bounds;
   }
-  // Behind the eye, or so near that rounding decides.
+  // Behind the eye, or so close that rounding errors dominate.
   if (!(least_w > 64 * clip_error_.w())) return bounds;
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const Eigen::Vector4d& c : clip) {
@@ -114,7 +114,7 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
     w[k] = std::numeric_limits<float>::infinity();
     extent[k] = 0;
   }
-  // Simple loops over all faces, which compilers turn into vector instructions.
+  // Simple loops over all faces, which compilers vectorise.
   for (std::size_t c = 0; c < 3; ++c) {
     const float* px = corners.at[c][0];
     const float* py = corners.at[c][1];
@@ -134,7 +134,7 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
       x[c][k] = cx * over_w;
       y[c][k] = cy * over_w;
       z[c][k] = cz * over_w;
-      // Of what is no number, or too large for one, none comes out.
+      // Not finite if any coordinate is NaN or infinite.
       extent[k] += std::abs(x[c][k]) + std::abs(y[c][k]) + std::abs(z[c][k]);
     }
   }
@@ -150,8 +150,8 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
     const float y_error =
         ((ey + most(-y0, y1) * ew) * over_w + rounding * (most(-y0, y1) + 1)) * half_height + number(snapping);
     const float z_error = ((ez + most(-z0, z1) * ew) * over_w + rounding * (most(-z0, z1) + abs_offset)) * abs_factor;
-    // The first sample whose middle is not left of or below it, and the last one; those outside the rectangle do not
-    // count. Numbers are at least 0 when they are cut off to whole ones.
+    // Bounds of sample indices as floats, with sample centres at integers: below, the first two are rounded up, and the
+    // last two are rounded down minus 1. They are clamped to at least 0 before, so that truncation rounds down.
     edges[0][k] = (x0 + 1) * half_width - x_error - 0.5F;
     edges[1][k] = (y0 + 1) * half_height - y_error - 0.5F;
     edges[2][k] = (x1 + 1) * half_width + x_error + 0.5F;
@@ -171,14 +171,14 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
     bounds.error[k] = 2 * z_error;
     bounds.nearness[k] = area * area > longest * lowest * lowest ? near_end : std::numeric_limits<float>::infinity();
   }
-  // Within the rectangle, so that they are numbers that can be cut off to whole ones. One bound at a time: both at once
-  // compile to branches.
+  // Clamps to the rectangle, so that the conversion to integers is defined. One bound at a time: clamping to both at
+  // once compiles to branches.
   for (int e = 0; e < 4; ++e) {
     const float low = e % 2 == 0 ? rect_left : rect_bottom, high = e % 2 == 0 ? rect_right : rect_top;
     for (std::size_t k = 0; k < count; ++k) edges[e][k] = most(edges[e][k], low);
     for (std::size_t k = 0; k < count; ++k) edges[e][k] = least(edges[e][k], high);
   }
-  // From the first sample whose middle is not left of or below it to the last one.
+  // First and last sample whose centres are within the bounds.
   for (std::size_t k = 0; k < count; ++k) {
     const auto up = [](float value) {
       const auto whole = static_cast<std::int32_t>(value);
@@ -190,7 +190,7 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
     bounds.top[k] = static_cast<std::int32_t>(edges[3][k]) - 1;
   }
   for (std::size_t k = 0; k < count; ++k) {
-    // What is no number is not less than anything.
+    // Comparisons with NaN are false, so that NaN is never sound.
     const std::int32_t sound = static_cast<std::int32_t>(w[k] > least_sound) &
                                static_cast<std::int32_t>(extent[k] < std::numeric_limits<float>::infinity());
     const std::int32_t none = static_cast<std::int32_t>(beyond[k] != 0) |

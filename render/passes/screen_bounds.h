@@ -9,54 +9,54 @@
 
 namespace rebake {
 
-/// Which samples of a raster something may cover.
+/// Conservative bounds of the samples that a box or triangle may cover.
 struct ScreenBounds {
   enum class Where : std::int32_t {
-    outside,   ///< of the raster's rectangle, or between its samples
-    inside,    ///< within `samples`
-    anywhere,  ///< it comes too near to the eye to say
+    outside,   ///< covers no sample of the drawn rectangle
+    inside,    ///< covers samples within `samples` only
+    anywhere,  ///< too close to the eye for a bound
   };
   Where where = Where::anywhere;
-  SampleRect samples;  ///< right and top included
+  SampleRect samples;  ///< here right and top are included
 };
 
-/// The same of a cluster's triangles, and how near they may come there, each in an array of its own.
+/// Bounds of a cluster's triangles, as one array per field for SIMD.
 struct ClusterBounds {
   template <class T>
   using Each = std::array<T, faces_a_face_cluster>;
-  Each<std::int32_t> left, bottom, right, top;  ///< as ScreenBounds::samples; empty where nothing is covered
-  Each<float> nearness;  ///< above all where a triangle is so thin that what drivers draw of it is rounding
-  Each<std::int32_t> where;
+  Each<std::int32_t> left, bottom, right, top;  ///< as ScreenBounds::samples; empty if no sample is covered
+  Each<float> nearness;      ///< upper bound; infinity for triangles so thin that their depth is rounding noise
+  Each<std::int32_t> where;  ///< ScreenBounds::Where
 
-  std::array<Each<float>, 3> x, y, z;  ///< corners, over w
-  Each<float> moved, error;            ///< as of ScreenTriangle
+  std::array<Each<float>, 3> x, y, z;  ///< corners in normalised device coordinates
+  Each<float> moved, error;            ///< as in ScreenTriangle
 
   SampleRect samples(std::size_t k) const { return {left[k], bottom[k], right[k], top[k]}; }
 };
 
-/// Bounds what a driver draws of triangles and boxes, so that nothing it draws lies outside them: with room for the
-/// driver's floats, and for corners that it rounds to 1/256 of a sample.
+/// Computes conservative screen-space bounds: no driver draws outside them. They allow for the driver's float rounding
+/// and for its snapping of corners to 1/256 of a sample.
 class ScreenBounder {
  public:
-  /// `to_clip`: object to clip space. `bounds`: what is drawn, in object space. `nearness_of_depth`: factor and offset
-  /// that make of z / w in clip space 1 at the near plane and 0 at the far one.
+  /// `to_clip`: object to clip space. `bounds`: bounding box of the drawn mesh in object space. `nearness_of_depth`: as
+  /// from nearness_of_depth(). `width`, `height`: raster in samples. `rect`: its drawn part.
   ScreenBounder(const Eigen::Matrix4d& to_clip, const Box& bounds, const Vec2& nearness_of_depth, int width, int height,
                 const SampleRect& rect);
 
-  /// Where triangles within the box may be drawn, in object space. How near they come does not follow from their box:
-  /// on triangles that are seen edge-on drivers extrapolate depth.
+  /// Bounds of triangles within a box in object space. A box cannot bound their nearness, because drivers extrapolate
+  /// depth on triangles seen edge-on.
   ScreenBounds box(const Box& box) const;
-  /// Of triangles given relative to the centre of what is drawn.
+  /// Bounds of a cluster's triangles, with corners relative to the centre of the mesh's bounding box.
   void triangles(const ClusterCorners& corners, ClusterBounds& bounds) const;
-  /// One of those that is inside and whose nearness has a bound.
+  /// Triangle `k` of a cluster. Requires Where::inside and finite nearness.
   ScreenTriangle triangle(const ClusterBounds& bounds, std::size_t k) const;
 
  private:
   ScreenBounds covered(double left, double bottom, double right, double top) const;
 
   Eigen::Matrix4d to_clip_;
-  Eigen::Matrix4f centred_;     ///< the same from the centre
-  Eigen::Vector4d clip_error_;  ///< of each component, as worked out in floats
+  Eigen::Matrix4f centred_;     ///< the same for positions relative to the centre
+  Eigen::Vector4d clip_error_;  ///< bound of the float error per component
   double factor_, offset_;
   double half_width_, half_height_;
   SampleRect rect_;

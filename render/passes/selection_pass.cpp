@@ -8,7 +8,7 @@ namespace rebake {
 
 namespace {
 
-// The selected faces of a set as indices of their own, over the vertices that are there already.
+// Uploads the indices of the selected faces of a set; vertices are shared with the mesh.
 SelectedFaces upload(const Draw& draw, const GpuMesh& mesh, const GpuSurface& surface) {
   SelectedFaces selected;
   selected.selection = draw.selection;
@@ -25,7 +25,7 @@ SelectedFaces upload(const Draw& draw, const GpuMesh& mesh, const GpuSurface& su
   return selected;
 }
 
-// Share of the full tint with which selections are drawn that the next command leaves alone.
+// Strength of the tint for selections that the next command does not affect, relative to the full tint.
 constexpr float dimmed_strength = 0.3F;
 
 float strength_of(const FramePlan& plan, const Draw& draw) {
