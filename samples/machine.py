@@ -1,4 +1,4 @@
-"""The machine that measurements were made on."""
+"""Description of the machine and the day, for reports of measurements."""
 import datetime
 import os
 import platform
@@ -6,7 +6,7 @@ import re
 
 
 def machine():
-    """Cores and processor, for example "2 cores, Intel(R) Xeon(R) Processor"."""
+    """Number of cores and name of the processor, for example "2 cores, Intel(R) Xeon(R) Processor"."""
     with open("/proc/cpuinfo") as file:
         model = re.search(r"model name\s*: (.*)", file.read())
     return f"{os.cpu_count()} cores, {model.group(1).strip() if model else platform.machine()}"

@@ -14,7 +14,7 @@ namespace rebake {
 
 namespace {
 
-// "i/n" as two numbers, 1 ≤ i ≤ n.
+// Parses "i/n". Throws FieldError unless 1 ≤ i ≤ n.
 void parse_shard(const std::string& text, BatchOptions& options) {
   const char* const end = text.data() + text.size();
   const auto first = std::from_chars(text.data(), end, options.shard);
@@ -57,7 +57,8 @@ void print_table(const std::vector<BatchResult>& results) {
   fmt::print("{} scenes, {} failed\n", results.size(), failed);
 }
 
-// Nothing but an earlier report is replaced, and no other name that it has.
+// Checks that a report may be written: throws FileError if a file exists that is not an earlier report. Unlinks an
+// earlier report that has other hard links, so that their content stays.
 void prepare_report(const std::filesystem::path& report) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(report, error) || std::filesystem::file_size(report, error) == 0) return;
@@ -104,7 +105,7 @@ void describe_batch(CommandDescription& command) {
     for (const std::string& variable : batch.variables)
       if (variable.find('=') == std::string::npos || variable.front() == '=')
         throw FieldError("--var", fmt::format("\"{}\" must be name=value", variable));
-    // What is wrong with script and patterns is said before anything is made.
+    // Reports a faulty script or pattern before anything is written.
     read_file(batch.script);
     const std::filesystem::path report =
         !options->report.empty() ? std::filesystem::path(options->report)
@@ -117,7 +118,7 @@ void describe_batch(CommandDescription& command) {
     std::ofstream lines(report);
     if (!lines) throw FileError(report, "cannot be written");
     const std::vector<BatchResult> results = run_batch(batch, progress_bar(), [&](const BatchResult& result) {
-      // Names and messages may hold bytes that are no text.
+      // Names and messages may contain invalid UTF-8.
       lines << to_json(result).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
       if (!lines) throw FileError(report, "cannot be written");
     });

@@ -14,13 +14,13 @@ class Option;
 
 namespace rebake {
 
-/// A subcommand while it is described: its options and what it does. The library that parses them is known to
-/// command.cpp alone, which takes long to compile.
+/// Builder of a subcommand: declares its options and its function. Wraps CLI11, which is slow to compile and included
+/// only by command.cpp.
 class CommandDescription {
  public:
   explicit CommandDescription(CLI::App& app) : app_(&app) {}
 
-  /// What an option takes; each returns itself.
+  /// Constraints of an option's value; each function returns the option for chaining.
   class Option {
    public:
     explicit Option(CLI::Option* option) : option_(option) {}
@@ -28,39 +28,43 @@ class CommandDescription {
     Option& one_of(const std::vector<std::string>& words);
     Option& one_of(const std::vector<int>& numbers);
     Option& between(int least, int most);
-    /// Refuses an empty text, such as a shell's variable that is not set.
+    /// Refuses an empty value, such as an unset shell variable.
     Option& not_empty();
 
    private:
     CLI::Option* option_;
   };
 
-  /// `names` as "-o,--out", or a plain name for what stands without one. `hint` is shown in help for the value.
+  /// Adds an option that is stored in `value`. `names`: "-o,--out", or a name without dashes for a positional argument.
+  /// `hint`: placeholder and default of the value in the help.
   template <class T>
   Option option(const std::string& names, T& value, const std::string& help, const std::string& hint);
+  /// Adds an option without a value, which sets `value` to true.
   void flag(const std::string& names, bool& value, const std::string& help);
-  /// Behind the options in help.
+  /// Text after the options in the help.
   void footer(const std::string& text);
-  /// What it does, once the options are read.
+  /// Sets the function to run after the options are parsed.
   void does(std::function<void()> run);
 
  private:
   CLI::App* app_;
 };
 
-/// A subcommand: its name, what it is for, and its description.
+/// Entry of the table of subcommands (commands.h).
 struct Subcommand {
   const char* name;
-  const char* help;
+  const char* help;  ///< one line
   void (*describe)(CommandDescription& command);
 };
 
-/// Thrown by a subcommand for a missing or wrong option that only it can tell; ends with exit code 2.
+/// Thrown by a subcommand that ran but whose answer is "no", to end the program with an exit code and without an error
+/// message.
 struct ExitWith {
-  int code;  ///< what main is to return after a command that ran, but whose answer is "no" (compare below its bar)
+  int code;  ///< 1 failed, 3 pictures differ, 4 below the requested quality
 };
 
-/// Parses and runs; returns the exit code. Throws what the subcommand throws.
+/// Parses the command line and runs the subcommand. Returns the exit code: 0, or 2 for a wrong command line. Throws
+/// exceptions of the subcommand.
 int run_program(int argc, char** argv);
 
 }  // namespace rebake

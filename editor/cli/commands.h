@@ -15,7 +15,7 @@ void describe_compare(CommandDescription& command);
 void describe_study(CommandDescription& command);
 void describe_light(CommandDescription& command);
 
-/// The one table of subcommands, in the order of help.
+/// Table of all subcommands, in help order.
 inline constexpr Subcommand subcommand_table[] = {
     {"edit", "opens the editor's window", describe_edit},
     {"info", "says what a folder or scene holds", describe_info},

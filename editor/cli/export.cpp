@@ -57,7 +57,7 @@ void describe_export(CommandDescription& command) {
     session.say = say_line;
     Opened opened = read_all({options->folder}, options->axes, session.progress);
     session.document = Document(std::move(opened.scene));
-    // What names the folders must stay as well as they.
+    // The sources include the scene or project file that refers to the source folders.
     opened.sources.check_folder(options->out);
     std::error_code error;
     const bool replaces = std::filesystem::exists(options->out, error);

@@ -60,7 +60,7 @@ json scene_info(const Scene& scene) {
     box.extend(transformed(object.bounds(), placed.to_world));
     triangles += object.triangle_count();
     vertices += object.vertex_count();
-    // One object in several places is held once.
+    // An object that several nodes share counts once.
     if (seen.insert(&object).second) {
       sets += object.sets.size();
       chunks += chunk_count(object);

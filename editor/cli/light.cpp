@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-// A number, or a list of them.
+// Applies `change` to a number, or to all numbers of a list.
 template <class Change>
 void for_each_number(json& value, Change change) {
   if (value.is_number()) value = change(value.get<double>());
@@ -33,7 +33,7 @@ void for_each_number(json& value, Change change) {
       if (one.is_number()) one = change(one.get<double>());
 }
 
-// What says how far a deformation goes: scaled by a share of it that each pose draws.
+// Scales the strength of a deformation: angles and translations by `share`, positive factors to the power of `share`.
 void scale_strength(json& edit, double share) {
   for (const char* field : {"degrees", "translate"}) {
     if (!edit.contains(field)) continue;
@@ -45,7 +45,7 @@ void scale_strength(json& edit, double share) {
   if (edit.contains("rotate") && edit["rotate"].is_object()) scale_strength(edit["rotate"], share);
 }
 
-// The edit as pose `k` has it: as far as −1 … 1 of what it says, moves of a cage each on their own.
+// The edit of a random pose: its strength is scaled by a random share in −1 … 1, each move of a cage by its own.
 json posed(json edit, std::mt19937& random) {
   const auto share = [&] { return 2 * ((random() + 0.5) / 4294967296.0) - 1; };
   if (edit.contains("moves") && edit["moves"].is_array()) {
@@ -98,9 +98,9 @@ void say(const TransferModel& model) {
              model.learnt.seconds + (model.net ? model.net->seconds() : 0));
 }
 
-// Its light, ready to go along.
+// Drag light of a node: the start from which TransferModel learns. Throws Error if the node has none.
 std::shared_ptr<const TurnedLight> turning_of(Scene scene, NodeId node) {
-  // What shows of a surface and its points do not depend on the scene's other settings.
+  // The sites and their visible sides do not depend on other light settings.
   if (!scene.light) scene.light = std::make_shared<const SceneLight>();
   LightingOptions options;
   options.rays = 16;
@@ -170,7 +170,7 @@ void train(const Options& options) {
     json edit = json::parse(text, nullptr, false);
     if (!edit.is_object()) throw FieldError("edit", "is no JSON object: " + text);
     if (!edit.contains("node") && has_node_field(edit)) edit["node"] = node->name;
-    // What is wrong with it is said before anything is traced.
+    // Reports a faulty edit before anything is traced.
     NodePtr after;
     try {
       after = find(apply(scene, read_edit(edit, scene)).scene, node->id);

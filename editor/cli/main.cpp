@@ -13,7 +13,7 @@
 
 namespace {
 
-// A file that is opened while one of these is closed would get its number, and messages with it.
+// If a standard stream is closed, the next opened file would get its descriptor and receive messages.
 void open_standard_streams() {
   for (int number = 0; number <= 2; ++number)
     if (::fcntl(number, F_GETFD) < 0) ::open("/dev/null", number == 0 ? O_RDONLY : O_WRONLY);
@@ -23,7 +23,7 @@ void open_standard_streams() {
 
 int main(int argc, char** argv) {
   open_standard_streams();
-  // A full quota then fails a write, which is reported, instead of ending the program.
+  // A write beyond the file size limit then fails with an error instead of killing the process.
   std::signal(SIGXFSZ, SIG_IGN);
   rebake::stop_on_interrupt();
   rebake::keep_results_in(rebake::ResultStore::of_user());

@@ -141,15 +141,15 @@ View ViewOptions::view(const Scene& scene) const {
   if (!up.empty()) view.camera.up = parse_vec3(up, "--up");
   if (fov) {
     view.camera.fov_degrees = *fov;
-    view.camera.ortho_height = 0;  // who asks for a field of view wants perspective
+    view.camera.ortho_height = 0;  // a field of view implies a perspective camera
   }
   if (!eye.empty()) {
     view.camera.eye = parse_vec3(eye, "--eye");
-    // The framing's planes belong to the framing's eye.
+    // The framing's near and far planes do not fit another eye position.
     if (camera_file.empty()) view.camera.near_plane = view.camera.far_plane = 0;
   }
   if (near_plane || far_plane) {
-    // Who gives one plane leaves the other open, unless a camera brings it.
+    // If only one plane is given, the other comes from the camera file or is fitted to the scene.
     if (camera_file.empty()) view.camera.near_plane = view.camera.far_plane = 0;
     if (near_plane) view.camera.near_plane = positive(*near_plane, "--near");
     if (far_plane) view.camera.far_plane = positive(*far_plane, "--far");

@@ -12,21 +12,22 @@
 
 namespace rebake {
 
-/// Numbers written as x,y,z. Throws FieldError naming the option.
+/// Parses "x,y,z". Throws FieldError for the option `option`.
 Vec3 parse_vec3(const std::string& text, const char* option);
 
-/// --axes 360|forward
+/// Adds --axes 360|forward: the orientation of MobileNeRF folders.
 void add_axes_option(CommandDescription& command, std::string& axes);
+/// Throws Error for another word.
 Axes axes_of(const std::string& word);
 
-/// What a command line names, in one scene; names made unique.
+/// All folders, scenes and projects of a command line in one scene, with unique node names.
 struct Opened {
   Scene scene;
-  SourceGuard sources;  ///< where nothing may be written
+  SourceGuard sources;  ///< files and folders that must not be overwritten
 };
 Opened read_all(const std::vector<std::string>& folders, const std::string& axes, const Progress& progress);
 
-/// Camera and raster options of commands that render.
+/// Camera and rendering options of subcommands that render. Texts are parsed by view() and render_options().
 struct ViewOptions {
   std::string size = "800x800", eye, target, up, camera_file, background;
   std::optional<double> fov, near_plane, far_plane;
@@ -34,11 +35,13 @@ struct ViewOptions {
   std::string weights = "automatic", shading = "automatic", precision = "full", occlusion = "automatic",
               texels = "automatic";
 
+  /// Adds the options to a subcommand.
   void add_to(CommandDescription& command);
-  /// The view on `scene`: the options over the camera file, or over a camera that frames the scene. Throws FieldError,
-  /// FileError.
+  /// The view of `scene`. Options override the camera file or stored view, or a camera that frames the scene. Throws
+  /// FieldError, FileError.
   View view(const Scene& scene) const;
   RenderOptions render_options() const;
+  /// Sets the scene's background if --background is given. Throws FieldError.
   void set_background(Scene& scene) const;
   /// Protects the camera file, if one is given.
   void protect_files(SourceGuard& sources) const;

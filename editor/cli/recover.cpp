@@ -22,7 +22,8 @@ struct Recovery {
   bool keep = false, replace = false;
 };
 
-// Paths may hold "=" too: the first behind which something exists, else the first.
+// Position of the "=" between old and new path: the first one whose right side is an existing path, else the first one.
+// Paths may contain "=" too.
 std::size_t divider_of(const std::string& pair) {
   for (std::size_t at = pair.find('='); at != std::string::npos; at = pair.find('=', at + 1))
     if (std::error_code error; at + 1 < pair.size() && std::filesystem::exists(pair.substr(at + 1), error)) return at;
@@ -40,17 +41,18 @@ Relinked links_of(const std::vector<std::string>& pairs) {
   return links;
 }
 
-// Also a damaged one.
+// Whether a file is a project, even a damaged one.
 bool holds_project(const std::filesystem::path& path) {
   return read_file(path).find("\"rebake_project\"") != std::string::npos;
 }
 
-// 0 where it cannot be read.
+// Number of edits of a project; 0 if it cannot be parsed.
 std::size_t edits_in_project(const std::filesystem::path& path) {
   const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
   return root.is_object() && root.contains("edits") ? root.at("edits").size() : 0;
 }
 
+// Throws FileError if --replace would replace a project with more edits.
 void refuse_larger_project(const Recovery& options, std::size_t recovered) {
   if (!options.replace || !std::filesystem::exists(options.out)) return;
   if (const std::size_t there = edits_in_project(options.out); there > recovered)
@@ -59,7 +61,7 @@ void refuse_larger_project(const Recovery& options, std::size_t recovered) {
                                              there, recovered));
 }
 
-// A project whose sources were moved: the same edits, on the sources where they lie now.
+// Saves a project with moved sources again, with their new paths.
 void relink_project(const Recovery& options) {
   const Document document = Document::open(options.journal, links_of(options.sources), progress_bar());
   const std::vector<std::string> warnings = document.save(options.out, progress_bar());
@@ -84,7 +86,7 @@ void recover(const Recovery& options) {
     return;
   }
   Document::Recovered recovered = Document::recover(options.journal, links_of(options.sources), progress_bar());
-  // A project of nothing would stand in the way of the next attempt.
+  // An empty project would block the next attempt.
   const bool nothing = recovered.edits == 0;
   if (!nothing) refuse_larger_project(options, recovered.edits);
   if (!nothing)

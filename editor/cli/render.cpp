@@ -29,6 +29,7 @@ struct Rendering {
   int time = 0;
 };
 
+// Minimum, median and maximum.
 json spread(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
@@ -40,7 +41,7 @@ json measure(Renderer& renderer, const Scene& scene, const View& view, const Ren
              const Lighting& lighting, int frames) {
   std::vector<double> frame_ms;
   std::map<std::string, std::vector<double>> pass_ms;
-  // The first frames compile shaders; whole frames and passes are timed apart, since waiting after each pass costs
+  // The first frames compile shaders. Frames and passes are timed separately, because waiting after each pass takes
   // time.
   for (const bool each_pass : {false, true}) renderer.time_frame(scene, view, options, each_pass, &lighting);
   for (int i = 0; i < frames; ++i) {
@@ -72,12 +73,13 @@ void print_times(const json& times) {
              times.at("peak_gpu_bytes").get<double>() / 1e6);
 }
 
-// Draws with all that may change something, and compares.
+// Also renders with all omitted passes and light effects, and compares. Throws Error if too many pixels differ by more
+// than the bounds and estimates.
 json audited(const Scene& scene, const View& view, const RenderOptions& how, const Lighting& lighting, bool quiet) {
   const Lighting everything = lit(scene, progress_bar(), true);
   RenderOptions all = how;
   all.everything = true;
-  // Both pictures are rounded.
+  // In 1/255; plus 1 because both pictures are rounded.
   const double allowed = (lighting.left_out + plan(scene, view, how, nullptr, &lighting).left_out) * 255 + 1;
   const double most_beyond = lighting.estimated ? Lighting::most_beyond : 0;
   Renderer renderer;
@@ -124,7 +126,7 @@ void render(const Rendering& options) {
     }
   }
   if (options.plan) {
-    // As it was drawn, where it was: then it says what was found.
+    // The plan of the drawn picture, if there is one, contains the results of occlusion culling.
     const std::vector<PlannedPass> passes =
         renderer ? renderer->passes() : plan(scene, view, how, nullptr, &lighting).passes;
     if (!options.json) fmt::print("{}", describe(passes));

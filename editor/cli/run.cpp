@@ -29,13 +29,14 @@ namespace {
 
 using nlohmann::json;
 
+// A line of --list-files; `what`: "read" or "wrote".
 std::string line_of(const char* what, const std::filesystem::path& path, std::uint64_t content) {
   return json{{what, absolute_path(path).string()}, {"content", hash_text(content)}}.dump(
              -1, ' ', false, json::error_handler_t::replace) +
          '\n';
 }
 
-// One JSON line per input that the script read and per file and folder that it wrote, with content hashes.
+// One JSON line per input of the script and per file or folder that it wrote, with content hashes.
 std::string file_list(const Session& session, const std::string& script,
                       const std::map<std::string, std::string>& variables) {
   std::set<std::filesystem::path> read;
@@ -47,14 +48,14 @@ std::string file_list(const Session& session, const std::string& script,
   std::set<std::filesystem::path> wrote;
   for (const std::vector<std::string>* const written : {&session.exports, &session.outputs})
     for (const std::string& path : *written) wrote.insert(absolute_path(path));
-  // A pipe or a device keeps nothing to compare.
+  // Pipes and devices have no content to hash.
   for (const std::filesystem::path& path : wrote)
     if (std::filesystem::is_directory(path) || std::filesystem::is_regular_file(path))
       lines += line_of("wrote", path, content_at(path));
   return lines;
 }
 
-// A journal inside of a scene that the script is going to read would be one of its files.
+// Throws FileError if the journal would lie in a source folder of the script, where it would count as one of its files.
 void check_journal(const std::filesystem::path& journal, const std::string& scene, const std::string& script,
                    const std::map<std::string, std::string>& variables) {
   SourceGuard guard;
@@ -63,9 +64,9 @@ void check_journal(const std::filesystem::path& journal, const std::string& scen
   guard.check_file(journal);
 }
 
-// Protects existing inputs from earlier lines of the script: files, and the files in scene folders. A scene folder as a
-// whole is protected when it is imported, since a script may import its own export, and may run again; or from the
-// start if the import says which content it expects.
+// Protects existing inputs from outputs of earlier lines: files, and the files in scene folders. A scene folder may be
+// replaced as a whole before it is imported, because a script may import its own export and may run again. It may not
+// if the import expects a content hash.
 void protect_input_files(Document& document, const std::string& script,
                          const std::map<std::string, std::string>& variables) {
   for (const ScriptInput& input : script_inputs(script, variables)) {
@@ -80,7 +81,8 @@ void protect_input_files(Document& document, const std::string& script,
   }
 }
 
-// A list as --protect takes it. What only this scene's own script reads is guarded while it is read.
+// Protects the paths in a list for --protect, except those that this scene's own script reads: protect_input_files()
+// protects them.
 void protect_listed(Document& document, const std::filesystem::path& list, const std::string& scene) {
   const std::string text = read_file(list);
   std::istringstream words{text};

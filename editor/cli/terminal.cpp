@@ -25,11 +25,12 @@ namespace {
 std::atomic<bool> interrupted = false;
 sem_t asked_to_end;
 
-// Work that asks its Progress ends by itself. What does not within this time is abandoned with the process, so that it
-// ends within a second of the signal.
+// Work that polls its Progress stops on its own. Work that has not stopped within this time is abandoned, so that the
+// process ends within a second of the signal.
 constexpr int stopped_by_signal = 130;  // exit code
 constexpr std::chrono::milliseconds work_ends_within{600}, moves_end_within{200};
 
+// Watcher thread: ends the process some time after a signal.
 void end_when_asked() {
   while (::sem_wait(&asked_to_end) != 0 && errno == EINTR) {
   }
@@ -50,7 +51,7 @@ void stop_on_interrupt() {
     });
     if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // as under nohup
   }
-  // The watcher takes no signals: they are for the other threads.
+  // Signals are blocked in the watcher, so that other threads handle them.
   sigset_t all, before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -72,14 +73,14 @@ std::string coloured(const std::string& text, const char* sgr) {
 
 Progress progress_bar() {
   if (!is_interactive()) {
-    // No bar where nobody looks; but logs are told once how long something takes.
+    // No bar, but a log gets each estimate of the remaining time once.
     auto said = std::make_shared<std::pair<std::mutex, std::string>>();
     return Progress(
         [said](std::string_view what, double) {
           const std::size_t at = what.find(about);
           if (at == std::string_view::npos) return;
           const std::scoped_lock lock(said->first);
-          // What follows the time counts steps.
+          // The text after the time counts steps and is cut off.
           const std::string words(what.substr(0, what.find(", ", at + 1)));
           if (std::exchange(said->second, words) != words) complain(fmt::format("note: {}\n", words));
         },

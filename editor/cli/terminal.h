@@ -7,26 +7,28 @@
 
 namespace rebake {
 
-/// Colour and progress on standard error, only where a person watches: both are off when it is piped, colour also under
-/// NO_COLOR.
+/// Whether standard error is a terminal. If not, there is no colour and no progress bar.
 bool is_interactive();
+/// The text in a colour, for standard error; unchanged if not interactive or if NO_COLOR is set. `sgr`: parameters of
+/// the escape sequence, such as "1;31".
 std::string coloured(const std::string& text, const char* sgr);
 
-/// SIGINT, SIGTERM and SIGHUP ask long work to stop. Work that has not stopped after 0.6 s is abandoned: nothing is
-/// moved into place any more, temporary files are removed, and the process ends with exit code 130. A second signal
-/// ends it at once.
+/// Installs signal handlers: SIGINT, SIGTERM and SIGHUP cancel the work of progress_bar(). After 0.6 s, unfinished work
+/// is abandoned: no further file is moved into place, temporary files are removed, and the process ends with exit code
+/// 130. A second signal ends it at once.
 void stop_on_interrupt();
 
-/// A one-line bar that is redrawn at most ten times a second and removed when done.
+/// A progress bar on standard error, redrawn at most ten times per second and removed at the end. Signals cancel it,
+/// see stop_on_interrupt().
 Progress progress_bar();
 
-/// Writes to standard error, as far as that takes it: work goes on where nobody reads it.
+/// Writes to standard error; failures are ignored, so that work continues.
 void complain(const std::string& text);
 void clear_progress_bar();
 
-/// Text that may hold anything (names, paths), fit for a terminal: control characters but line ends are written out.
+/// Escapes control characters except newline and tab as \xNN, so that names and paths cannot control the terminal.
 std::string printable(std::string_view text);
-/// A line on standard error, beside the progress bar.
+/// Writes a line to standard error, after removing the progress bar.
 void say_line(const std::string& line);
 
 }  // namespace rebake

@@ -12,23 +12,25 @@ namespace rebake {
 class Session;
 struct FieldLine;
 
-/// A command that is carried out.
+/// A parsed action, ready to run.
 using Action = std::function<void(Session&)>;
 
-/// A kind of action: a line of the one table (table.cpp). Actions write files or walk through history, and are never
-/// part of it. Each is a struct of its own, described in its own file by REBAKE_DESCRIBE_ACTION (describe.h).
+/// Description of one kind of action; table.cpp lists all. Actions write files, or undo and redo edits, and are not
+/// steps of history themselves. Each kind is a struct in its own file, described there by REBAKE_DESCRIBE_ACTION
+/// (describe.h).
 struct ActionType {
-  const char* op;    ///< its name in scripts
-  const char* help;  ///< one sentence
-  std::vector<FieldLine> (*fields)();
+  const char* op;                      ///< name in scripts
+  const char* help;                    ///< one sentence
+  std::vector<FieldLine> (*fields)();  ///< names, types, defaults and help
+  /// Parses an action from its JSON object; node names are looked up in `scene`. Throws FieldError.
   Action (*read)(const nlohmann::json& object, const Scene& scene);
 };
 
-/// The type of an action's struct; each specialises this.
+/// The ActionType of an action struct; specialised per action.
 template <class T>
 const ActionType& action_type();
 
-/// All kinds of actions, in the order of help.
+/// All kinds of actions, in help order.
 std::span<const ActionType* const> action_types();
 
 }  // namespace rebake

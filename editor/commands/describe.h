@@ -1,13 +1,14 @@
 #pragma once
 
-// What an action's own .cpp includes to describe it.
+// Describes an action's fields to the framework. Included only by the action's own .cpp.
 
 #include "editor/commands/action.h"
 #include "editor/fields/visitors.h"
 
 namespace rebake::described {
 
-/// `Describe` is a lambda that holds nothing: (action, visit) visits the action's fields.
+/// Builds the ActionType of the action struct T. `Describe` is a captureless lambda (action, visit) that calls
+/// `visit(name, member, need, help, unit)` for each field.
 template <class T, class Describe>
 ActionType action_of(const char* help, Describe) {
   ActionType type{};
@@ -32,7 +33,8 @@ ActionType action_of(const char* help, Describe) {
 
 }  // namespace rebake::described
 
-/// Defines action_type<Type>(): its help, then (auto& action, auto& visit) with its fields.
+/// Defines action_type<Type>(). Arguments: the struct, one sentence of help, and (auto& action, auto& visit) {…} that
+/// visits the fields.
 #define REBAKE_DESCRIBE_ACTION(Type, help, ...)                                      \
   template <>                                                                        \
   const ActionType& action_type<Type>() {                                            \

@@ -27,11 +27,12 @@ namespace rebake {
 
 namespace {
 
-// How pictures of another scene differ from those of `scene`, lit where it is, from four sides.
+// Difference between pictures of `other` (unlit) and `scene` (with `lighting`, if not null), 400×400 pixels from four
+// sides.
 struct SeenLoss {
-  double mean_db = 0, worst_db = 100;
-  int largest = 0;          ///< of a channel, 0 … 255
-  double share_beyond = 0;  ///< of pixels that differ by more than 2/255
+  double mean_db = 0, worst_db = 100;  ///< PSNR over all pictures and of the worst one, at most 100
+  int largest = 0;                     ///< largest difference of a channel, 0 … 255
+  double share_beyond = 0;             ///< share of pixels that differ by more than 2/255
 };
 SeenLoss seen_loss(Session& session, const Scene& scene, const Scene& other, const Lighting* lighting = nullptr) {
   const Camera front = framing_of(scene, 1);
@@ -56,7 +57,7 @@ SeenLoss seen_loss(Session& session, const Scene& scene, const Scene& other, con
   return loss;
 }
 
-// Says what `describe` makes of a loss. It needs OpenGL; says so where there is none.
+// Reports the loss in the words of `describe`, or why it cannot be measured without OpenGL.
 template <class Describe>
 void say_loss(Session& session, const Scene& scene, const Scene& other, const Describe& describe,
               const Lighting* lighting = nullptr) {
@@ -67,6 +68,7 @@ void say_loss(Session& session, const Scene& scene, const Scene& other, const De
   }
 }
 
+// Number of different decoders of the visible objects.
 std::size_t decoders_of(const Scene& scene) {
   std::vector<const Decoder*> found;
   for (const PlacedNode& placed : placed_nodes(scene))
@@ -76,7 +78,7 @@ std::size_t decoders_of(const Scene& scene) {
   return found.size();
 }
 
-// The format has no light that follows: what is lost without it.
+// Reports the loss by omitted light corrections, which the format cannot store.
 void say_light_lost(Session& session, const Scene& scene) {
   const Lighting lighting = lit(session.scene(), session.progress);
   if (std::none_of(lighting.maps.begin(), lighting.maps.end(), [](const auto& entry) {
@@ -94,7 +96,7 @@ void say_light_lost(Session& session, const Scene& scene) {
       &lighting);
 }
 
-// What the export shows otherwise than the scene, by pictures of both.
+// Reports differences between pictures of the scene and of the exported one.
 void say_losses(Session& session, const Scene& scene, const ExportAction& action, const ExportReport& report) {
   std::vector<std::string> bent;
   const Scene flat = without_bends(scene, &bent);
@@ -103,8 +105,8 @@ void say_losses(Session& session, const Scene& scene, const ExportAction& action
       return fmt::format("that costs {:.1f} dB PSNR over four sides, {:.1f} dB at the worst", loss.mean_db,
                          loss.worst_db);
     });
-  // Samples of one decoder are mixed before it, those of several after: at the edges between parts that were turned
-  // apart pixels differ.
+  // Within one decoder, samples are averaged before decoding; across decoders, after. So pixels differ at edges between
+  // parts that were split because of different rotations.
   if (!report.one_folder && bent.empty() && report.folders > decoders_of(scene))
     say_loss(session, scene, read_any(action.out, Axes::y_up, session.progress), [](const SeenLoss& loss) {
       return fmt::format(
@@ -118,7 +120,7 @@ void say_losses(Session& session, const Scene& scene, const ExportAction& action
 void export_plain(Session& session, const Scene& scene, const ExportAction& action) {
   if (action.format != "mobilenerf") throw FieldError("plain", "is for the MobileNeRF format only");
   const FuseOptions options = fuse_options(scene, action);
-  // What cannot be written is said before it is computed.
+  // Reports unwritable outputs before the long computation.
   check_can_export(action.out, session.document.sources());
   if (!action.report.empty()) {
     session.document.sources().check_file(action.report);

@@ -7,32 +7,34 @@
 
 namespace rebake {
 
-/// Writes the scene in a format of the table; in MobileNeRF's, as scene.json where one folder cannot hold it.
+/// Exports the scene in a format of the table (formats.h). In the MobileNeRF format: one folder, or a scene.json with
+/// several folders if one cannot represent the scene exactly.
 struct ExportAction {
   static constexpr const char* op = "export";
-  std::string out;
-  std::string format = "mobilenerf";
-  std::optional<Layout> layout;
-  std::optional<int> page_size;  ///< texels a side of textures that are laid out again, at most; nothing: as read
-  std::vector<NodeRef> nodes;    ///< only these and what is inside them; empty: all
-  bool plain = false;            ///< one folder whatever it takes: fits one decoder to all of it
-  FuseWidth width;
-  std::optional<FuseWay> way;  ///< nothing: whichever is best
-  std::string keep = "auto";   ///< of a plain folder: a node that stays bit for bit, none, or auto
-  std::optional<double> psnr;  ///< dB that a plain folder is to reach
-  double seconds = 0;          ///< that fitting may take; 0: as long as it takes
-  int picture_size = 800;      ///< pixels a side of the pictures that a plain folder is judged by
-  std::string report;          ///< file for what was measured, as JSON; empty: none
+  std::string out;                    ///< folder to write
+  std::string format = "mobilenerf";  ///< name of a format in the table
+  std::optional<Layout> layout;       ///< nothing: as read
+  std::optional<int> page_size;       ///< maximum side of repacked textures, in texels; nothing: largest_page_side()
+  std::vector<NodeRef> nodes;         ///< only these and their children; empty: all
+  bool plain = false;                 ///< always one folder: fits one decoder to the whole scene if needed
+  FuseWidth width;                    ///< plain: maximum width of the decoder's hidden layers
+  std::optional<FuseWay> way;         ///< plain: method of fusing decoders; nothing: the best
+  std::string keep = "auto";          ///< plain: name of the node that stays bit for bit, none, or auto
+  std::optional<double> psnr;         ///< plain: requested PSNR in dB; nothing: 40, fits all texels
+  double seconds = 0;                 ///< plain: time limit of fitting; 0: none
+  int picture_size = 800;             ///< plain: side of the pictures for measuring, in pixels
+  std::string report;                 ///< plain: JSON file for the measured errors; empty: none
 };
 template <>
 const ActionType& action_type<ExportAction>();
 
-/// How the action fits a plain folder. Throws FieldError.
+/// Options for fitting a plain folder. Throws FieldError.
 FuseOptions fuse_options(const Scene& scene, const ExportAction& action);
 
-/// Throws FieldError where fields are given that only a plain folder has.
+/// Throws FieldError if a field that only plain folders have is set.
 void check_not_plain(const ExportAction& action);
 
+/// Throws FieldError for invalid fields, FileError if the folder cannot be written.
 void run(Session& session, const ExportAction& action);
 
 }  // namespace rebake

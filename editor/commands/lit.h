@@ -4,8 +4,8 @@
 
 namespace rebake {
 
-/// What light does to a scene as it is, with what was traced before; nothing where the scene has no light that follows.
-/// `everything`: also what it does not call for.
+/// Light corrections of a scene, by lighting_of() with the cache kept_results(); empty if Scene::light is null.
+/// `everything`: also effects that the scene does not call for.
 Lighting lit(const Scene& scene, const Progress& progress = {}, bool everything = false);
 
 }  // namespace rebake

@@ -20,7 +20,7 @@ Scene on_background(Scene scene, const Color& background) {
   return scene;
 }
 
-// A picture's pixels, each with its three channels alike.
+// A flag per channel of a picture, the same for all channels of a pixel.
 using Mask = std::vector<bool>;
 
 template <class Wanted>
@@ -39,7 +39,7 @@ Mask differing(const Image& a, const Image& b) {
   return pixels(a, [&](std::size_t k) { return !same_pixel(a, b, k); });
 }
 
-// Where not all is background: the same scene on white and on black.
+// Pixels that are not pure background, from pictures of the same scene on white and on black.
 Mask covered(const Image& on_white, const Image& on_black) {
   return pixels(on_white, [&](std::size_t k) {
     return !std::all_of(on_white.rgb.begin() + static_cast<std::ptrdiff_t>(k),
@@ -51,6 +51,7 @@ Mask covered(const Image& on_white, const Image& on_black) {
   });
 }
 
+// Sums of squared differences of channels, 0 … 1.
 struct Squares {
   double sum = 0, count = 0, pixels_far_off = 0;
   void add(const Image& a, const Image& b, const Mask& mask) {
@@ -127,13 +128,13 @@ std::vector<View> judging_views(const Scene& scene, int size) {
 
 void measure_pictures(Renderer& renderer, const Scene& composition, const Lighting& lighting, const Scene& fused,
                       PlainReport& report, const Progress& progress, int size) {
-  // The published viewers show white, and what is covered shows on black otherwise.
+  // White background, as in the published viewers; with black as well, covered pixels are found.
   const Scene before = on_background(composition, Color::Ones()), after = on_background(fused, Color::Ones()),
               on_black = on_background(composition, Color::Zero());
   std::vector<PlacedNode> nodes;
   for (const PlacedNode& placed : placed_nodes(composition))
     if (placed.visible && placed.node->object) nodes.push_back(placed);
-  // A node's pixels are those that change without it. Of very many nodes that would take long.
+  // A node's pixels are those that change without it. Skipped for many nodes, because each needs a picture per view.
   constexpr std::size_t most_nodes = 16;
   if (nodes.size() < 2 || nodes.size() > most_nodes) nodes.clear();
   std::vector<Squares> of_node(nodes.size());

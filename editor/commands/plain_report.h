@@ -9,55 +9,56 @@
 
 namespace rebake {
 
-/// How pictures of a fused scene differ from those of what it was made of, over the pixels that it covers.
+/// Difference between pictures of a fused scene and of the original composition, over the pixels that it covers.
 struct PictureErrors {
-  double psnr_db = 100;        ///< over all views; 100 at most
-  double worst_psnr_db = 100;  ///< of the worst view
-  double ssim = 1;             ///< mean over views
-  /// Share of pixels one channel of which is further off than `far_off` of 255: what is seen as a speckle.
+  double psnr_db = 100;        ///< PSNR over all views, at most 100
+  double worst_psnr_db = 100;  ///< PSNR of the worst view
+  double ssim = 1;             ///< mean SSIM over the views
+  /// Share of pixels with a channel that differs by more than `far_off` / 255: visible speckles.
   double far_off_share = 0;
   static constexpr int far_off = 32;
 };
 
-/// What a plain folder shows, measured.
+/// Measured quality of a plain folder.
 struct PlainReport {
-  FuseReport texels;
-  bool exact = false;  ///< one decoder showed all of it already: nothing was fitted
-  int hidden0 = 0, hidden1 = 0;
-  bool pictures_measured = false;  ///< false where there is no OpenGL
-  PictureErrors whole;
+  FuseReport texels;               ///< errors per texel
+  bool exact = false;              ///< one decoder represents the scene exactly; nothing was fitted
+  int hidden0 = 0, hidden1 = 0;    ///< widths of the decoder's hidden layers
+  bool pictures_measured = false;  ///< false without OpenGL
+  PictureErrors whole;             ///< errors of whole pictures
   struct OfNode {
-    std::string node;
-    double psnr_db = 100;  ///< over the pixels that the node shows
+    std::string node;      ///< name
+    double psnr_db = 100;  ///< PSNR over the pixels that the node covers
   };
   std::vector<OfNode> nodes;
-  double frame_ms = 0, composition_frame_ms = 0;  ///< medians, measured in turn
-  double seconds = 0;  ///< of the whole command: light, trials, fitting, writing and measuring; 0 where nobody took it
+  double frame_ms = 0, composition_frame_ms = 0;  ///< median frame times, measured alternately
+  double seconds = 0;                             ///< wall-clock time of the whole export; 0: not measured
 };
 
-/// Throws FileError where a file is at `path` that is not empty and no such report as JSON: it may be anything that
-/// somebody needs.
+/// Throws FileError if there is a non-empty file at `path` that is not an earlier report, so that no other file is
+/// overwritten.
 void check_replaces_report(const std::filesystem::path& path);
 
-/// Twenty views all around (of forward-facing scenes: from the front), none of which features were fitted to.
+/// Twenty held-out views of `size`² pixels: all around the scene, or from the front if it is forward-facing.
 std::vector<View> judging_views(const Scene& scene, int size);
 
-/// Fills in what pictures of `size` pixels a side (as the published viewers') and frame times say. `composition` and
-/// `fused` show the same, the first with what `lighting` makes of its colours.
+/// Measures errors in pictures of `size`² pixels and frame times, and fills them in. Compares `fused` with
+/// `composition`, the original scene with `lighting`.
 void measure_pictures(Renderer& renderer, const Scene& composition, const Lighting& lighting, const Scene& fused,
                       PlainReport& report, const Progress& progress, int size = 800);
 
-/// Median of so many frames, after one that is not counted.
+/// Median time of `frames` frames in milliseconds, after one warm-up frame.
 double median_frame_ms(Renderer& renderer, const Scene& scene, const View& view, int frames,
                        const Lighting* lighting = nullptr);
 
-/// The node whose pixels differ most, or all of it when nodes were not told apart (then without a name).
+/// The node with the lowest PSNR; the whole scene, without a name, if its PSNR is lower or nodes were not measured.
 PlainReport::OfNode worst_object(const PlainReport& report);
 
-/// What a way is, for people.
+/// Name of a method, for people.
 const char* words_of(FuseWay way);
-/// For people, a line each.
+/// The report as lines of text for people.
 std::vector<std::string> lines_of(const PlainReport& report);
+/// The report as JSON, see ExportAction::report.
 nlohmann::json to_json(const PlainReport& report);
 
 }  // namespace rebake

@@ -14,11 +14,12 @@ namespace rebake {
 
 namespace {
 
+// The scene with `object` in place of all visible objects, and without light.
 Scene with_one_object(Scene scene, std::shared_ptr<const BakedObject> object) {
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.visible && placed.node->object)
       scene = with_changed(scene, placed.node->id, [](Node& node) { node.object = nullptr; });
-  // What light does is in the colours.
+  // The object's colours contain the light corrections.
   scene.light = nullptr;
   Node node;
   node.name = "scene";
@@ -65,7 +66,7 @@ Scene PlainParts::scene(const Scene& original, std::size_t candidate, const Fuse
 
 namespace {
 
-// The scene that one decoder shows exactly.
+// The plain scene if one decoder represents it exactly.
 Scene exact_scene(const Scene& scene, const FuseOptions& options, PlainReport& report) {
   report.exact = true;
   const std::vector<Node> merged = merged_for_export(without_bends(scene), options.layout);
@@ -75,7 +76,7 @@ Scene exact_scene(const Scene& scene, const FuseOptions& options, PlainReport& r
   return with_one_object(scene, merged.front().object);
 }
 
-// Names for each node without texels of its own the first one that shares its textures.
+// Fills in FuseReport::Part::shares: for each node without texels of its own, the first node with the same textures.
 void name_sharers(const Scene& scene, FuseReport& report) {
   const std::vector<PlacedNode> nodes = placed_nodes(scene);
   const auto shares = [](const PlacedNode& a, const PlacedNode& b) {
@@ -107,7 +108,7 @@ Scene fused_scene(PlainParts& parts, const Scene& scene, std::size_t candidate, 
   return with_one_object(scene, std::move(fused.object));
 }
 
-// Candidates in the order in which to try them: the plan's choice, then the others from the best on.
+// Indices of candidates in the order of trials: the plan's choice, then the others by descending score.
 std::vector<std::size_t> by_promise(const FusePlan& plan) {
   std::vector<std::size_t> order(plan.candidates.size());
   std::iota(order.begin(), order.end(), 0);
@@ -137,7 +138,7 @@ Scene best_plain_scene(const Scene& scene, const Lighting& lighting, const FuseO
   PlainParts parts(scene, lighting, options.layout, progress);
   if (parts.composition.exact()) return exact_scene(scene, options, report);
   std::vector<std::size_t> order = by_promise(parts.make_plan(options, progress));
-  // Each is fitted as a whole; a limit of time leaves none for a second.
+  // Each trial fits all texels, so with a time limit there is only one.
   constexpr std::size_t most_tries = 3;
   order.resize(options.seconds > 0 ? 1 : std::min(order.size(), most_tries));
   std::optional<Scene> best;

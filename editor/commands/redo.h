@@ -6,10 +6,10 @@
 
 namespace rebake {
 
-/// Does edits again that were taken back.
+/// Redoes undone edits.
 struct RedoAction {
   static constexpr const char* op = "redo";
-  int steps = 1;
+  int steps = 1;  ///< number of edits
 };
 template <>
 const ActionType& action_type<RedoAction>();

@@ -15,7 +15,7 @@ void run(Session& session, const RenderAction& action) {
   check_png_path(action.out, session.document.sources());
   const Scene scene = with_only(session.scene(), action.nodes);
   const View view = chosen_view(scene, action.camera, action.view, action.width, action.height, action.samples);
-  // What is not shown still shades.
+  // Objects that are not drawn still cast shadows.
   const Lighting lighting = lit(session.scene(), session.progress);
   const Image picture = session.renderer().render(scene, view, {}, &lighting);
   write_png(picture, action.out, session.document.sources());

@@ -6,16 +6,16 @@
 
 namespace rebake {
 
-/// Draws the scene into a PNG.
+/// Renders the scene to a PNG.
 struct RenderAction {
   static constexpr const char* op = "render";
   std::string out;
-  std::string view;
-  std::optional<Camera> camera;
-  int width = 800;
-  int height = 800;
-  int samples = 4;
-  std::vector<NodeRef> nodes;  ///< only these and what is inside them; empty: all
+  std::string view;              ///< name of a stored view; empty: `camera`
+  std::optional<Camera> camera;  ///< nothing: a camera that frames the scene
+  int width = 800;               ///< pixels
+  int height = 800;              ///< pixels
+  int samples = 4;               ///< samples per pixel: 1, 4 or 16
+  std::vector<NodeRef> nodes;    ///< only these and their children; empty: all
 };
 template <>
 const ActionType& action_type<RenderAction>();

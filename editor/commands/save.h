@@ -6,10 +6,10 @@
 
 namespace rebake {
 
-/// Writes a Rebake scene folder that keeps every node.
+/// Writes a Rebake scene folder, which contains all nodes, also hidden ones.
 struct SaveAction {
   static constexpr const char* op = "save";
-  std::string out;
+  std::string out;  ///< folder
 };
 template <>
 const ActionType& action_type<SaveAction>();

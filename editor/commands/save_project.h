@@ -6,10 +6,10 @@
 
 namespace rebake {
 
-/// Writes a project: what was imported, by relative path and content, and the edits; open it like a folder.
+/// Writes a project file: the sources, by relative path and content hash, and all edits.
 struct SaveProjectAction {
   static constexpr const char* op = "save_project";
-  std::string out;
+  std::string out;  ///< file, NAME.rebake
 };
 template <>
 const ActionType& action_type<SaveProjectAction>();

@@ -11,7 +11,8 @@ namespace rebake {
 
 class Renderer;
 
-/// What a script or command works on: the scene now, and a renderer that is made when it is first needed.
+/// State of a running script, command or window: the document, outputs, progress, messages, and a renderer that is
+/// created on first use.
 class Session {
  public:
   Session();
@@ -19,29 +20,29 @@ class Session {
 
   Document document;
   const Scene& scene() const { return document.scene(); }
-  /// Carries an edit out and says in numbers what became of selections and triangles.
+  /// Applies an edit and reports its effect.
   void edit(const Edit& edit);
-  /// All of them, to be undone together, or none where one throws. `made` as Document::edits() takes it.
+  /// Applies edits as one step, or none if one throws; see Document::edits().
   void edits(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
-  /// In place of the last step.
+  /// Replaces the last step; see Document::adjust().
   void adjust(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
-  /// In place of the last step, as a step of its own: undo returns to the last one.
+  /// Replaces the last step by a new one; undo returns to the replaced step. See Document::revise().
   void revise(const std::vector<Edit>& edits, const CarriedOut* made = nullptr);
 
-  /// To be called when a scene folder was written.
+  /// Records a written scene folder and ends the protection of its earlier content.
   void wrote_scene(const std::string& folder, bool exported);
-  std::vector<std::string> exports;  ///< folders that export wrote
-  std::vector<std::string> outputs;  ///< pictures, projects and scene folders that other actions wrote
-  bool below_asked = false;          ///< an export was done, but missed the quality that was asked for
-  Progress progress;
-  std::function<void(const std::string&)> say = [](const std::string&) {};  ///< one line for people
+  std::vector<std::string> exports;  ///< folders written by ExportAction
+  std::vector<std::string> outputs;  ///< pictures, projects and scene folders written by other actions
+  bool below_asked = false;          ///< an export missed its requested PSNR
+  Progress progress;                 ///< for long operations
+  std::function<void(const std::string&)> say = [](const std::string&) {};  ///< outputs a message of one line
 
-  /// What edits did, a line each; said too, unless somebody wants it apart.
+  /// Outputs a report line of an edit; by default as a message.
   std::function<void(const std::string&)> report = [this](const std::string& line) { say(line); };
 
-  /// Throws DeviceError where there is no OpenGL.
+  /// Throws DeviceError if OpenGL is not available.
   Renderer& renderer();
-  /// Frees it, on the thread that used it.
+  /// Frees the renderer; call it on the thread that used it.
   void drop_renderer();
 
  private:

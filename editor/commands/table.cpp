@@ -1,6 +1,6 @@
 #include "editor/commands/action.h"
 
-// The one table of actions, in the order of help.
+// Table of all actions, in help order.
 #define REBAKE_ACTIONS(X) X(RenderAction) X(ExportAction) X(SaveAction) X(SaveProjectAction) X(UndoAction) X(RedoAction)
 
 namespace rebake {

@@ -6,10 +6,10 @@
 
 namespace rebake {
 
-/// Takes edits back.
+/// Undoes edits.
 struct UndoAction {
   static constexpr const char* op = "undo";
-  int steps = 1;
+  int steps = 1;  ///< number of edits
 };
 template <>
 const ActionType& action_type<UndoAction>();

@@ -15,7 +15,8 @@ namespace rebake {
 
 namespace {
 
-// The box around the middle nine tenths of what is visible, along each axis.
+// Box between the 5 % and 95 % quantiles of visible triangle centres along each axis, from a sample of about 20000;
+// empty for fewer than 20.
 Box dense_bounds(const Scene& scene) {
   const std::vector<PlacedNode> placed_all = placed_nodes(scene);
   std::size_t triangles = 0;
@@ -38,7 +39,7 @@ Box dense_bounds(const Scene& scene) {
       }
   }
   Box box;
-  constexpr std::size_t few = 20;  // of which no tenth can be left out
+  constexpr std::size_t few = 20;  // too few to leave out a tenth
   if (along[0].size() < few) return box;
   const auto quantile = [&](double share) {
     Vec3 at;
@@ -54,9 +55,9 @@ Box dense_bounds(const Scene& scene) {
   return box;
 }
 
-// Names what lies so far out that no camera can hold it, before a camera's own numbers are blamed.
+// Throws EditError for a vertex that is too far away for any camera, before the camera itself is checked.
 void check_reach(const Scene& scene) {
-  constexpr double farthest = 1e150;  // the square of a distance must be a number
+  constexpr double farthest = 1e150;  // its square must be finite
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.visible || !placed.node->object) continue;
     const Box box = transformed(placed.node->object->bounds(), placed.to_world);
@@ -87,7 +88,7 @@ Camera framing_of(const Scene& scene, double aspect, double fov_degrees) {
   check_reach(scene);
   const Box all = world_bounds(scene);
   if (forward) return framing(all, aspect, forward, fov_degrees);
-  // A backdrop far around what was photographed is no place to look from.
+  // A camera outside of a distant backdrop would show only its back.
   const Box dense = dense_bounds(scene);
   constexpr double backdrop = 0.4;
   const double size = dense.isEmpty() ? 0 : dense.diagonal().norm();
@@ -124,7 +125,7 @@ std::optional<std::string> why_blank(const Scene& scene, const View& view, const
   for (std::size_t i = 3; i < bytes.size(); ++i)
     if (bytes[i] != bytes[i - 3]) return std::nullopt;
   const std::string nothing = "the picture shows nothing: ";
-  Box box, seen;  // in the camera's space: right, up and depth
+  Box box, seen;  // camera space (right, up, depth): all vertices, and those inside the picture's sides
   const Mat3 turn = world_to_camera(view.camera);
   bool any_object = false;
   for (const PlacedNode& placed : placed_nodes(scene)) {
@@ -146,7 +147,7 @@ std::optional<std::string> why_blank(const Scene& scene, const View& view, const
   if (box.isEmpty()) return nothing + "all that could be seen is hidden, deleted, or has no place";
   const double near = view.camera.near_plane, far = view.camera.far_plane;
   if (box.max().z() <= 0) return nothing + "the scene lies behind the camera";
-  // Planes are to blame only for what would be in the picture.
+  // Near and far planes are the reason only for vertices inside the picture's sides.
   if (seen.isEmpty())
     return nothing + "the scene may lie beside what the camera sees; aim it at its target, or widen it";
   const double pixel = 2 * half_height(view.camera, seen.min().z()) / view.height;

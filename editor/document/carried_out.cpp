@@ -10,7 +10,7 @@ namespace rebake {
 
 namespace {
 
-// An import with the name that its node got: the folder's own may be another where journals and projects find it again.
+// Records in an import the name that its node got, because a relinked folder may have another name on replay.
 Edit with_name(const Edit& edit, const Scene& after) {
   const auto* import = edit.as<Import>();
   if (import == nullptr || !import->as.empty()) return edit;
@@ -19,6 +19,7 @@ Edit with_name(const Edit& edit, const Scene& after) {
   return named;
 }
 
+// Compares edits by their JSON; an import without a name matches any name.
 bool is_same(const Edit& own, const Edit& wanted) {
   if (&own.type() != &wanted.type()) return false;
   nlohmann::json a = to_json(own), b = to_json(completed(wanted));
@@ -29,7 +30,7 @@ bool is_same(const Edit& own, const Edit& wanted) {
   return a == b;
 }
 
-// All that edits look at, by what scenes share.
+// Compares all input of edits; nodes and light by pointer, since unchanged data is shared.
 bool same_scene(const Scene& a, const Scene& b) {
   return a.roots == b.roots && a.background == b.background && a.views == b.views && a.next_id == b.next_id &&
          a.light == b.light && a.ground == b.ground;

@@ -6,20 +6,20 @@
 
 namespace rebake {
 
-/// Edits as a document carries them out, one on what the other made. A document may take it in in place of doing the
-/// same again.
+/// Precomputed result of consecutive edits, for example from a background job. Document::edits(), adjust() and revise()
+/// accept it instead of applying the same edits again.
 struct CarriedOut {
-  Scene start;
-  std::vector<Edit> edits;    ///< as journals and projects read them
-  std::vector<Scene> scenes;  ///< after each
-  std::vector<Report> reports;
+  Scene start;                  ///< scene before the first edit
+  std::vector<Edit> edits;      ///< completed and read back from JSON
+  std::vector<Scene> scenes;    ///< scene after each edit
+  std::vector<Report> reports;  ///< one per edit
 
-  /// Whether it is of this very scene and these edits.
+  /// Whether it was computed for these edits from this scene, compared by shared data, not by value.
   bool is_of(const Scene& scene, const std::vector<Edit>& wanted) const;
 };
 
-/// What is carried out is what journals and projects will read, to the last bit: nothing can be accepted now and
-/// refused, or done otherwise, later. Throws as apply() does.
+/// Applies edits one after another. Each edit is first completed() and read back from its JSON, so that replaying a
+/// journal or project gives the same bits and refuses nothing that was accepted. Throws as apply() does.
 CarriedOut carried_out(const Scene& start, const std::vector<Edit>& edits, const Progress& progress = {});
 
 }  // namespace rebake

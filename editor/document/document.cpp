@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// One line for what was made together: a torn journal holds all of it or nothing.
+// One journal line for all edits of a step: a torn journal contains all of them or none.
 json entry_of(const std::vector<Edit>& edits, std::size_t replaced = 0) {
   json entry;
   if (edits.size() == 1)
@@ -26,7 +26,7 @@ json entry_of(const std::vector<Edit>& edits, std::size_t replaced = 0) {
   return entry;
 }
 
-// Journals of earlier versions say true for one.
+// Journals of earlier versions write `true` for 1.
 std::size_t count_in(const json& value) { return value.is_boolean() ? 1 : value.get<std::size_t>(); }
 
 }  // namespace
@@ -49,14 +49,14 @@ Document Document::open(const fs::path& project, const Relinked& links, const Pr
 
 namespace {
 
-// The edits of a journal's line; empty for undo and redo.
+// The edits of a journal line; empty for undo and redo.
 json edits_in(const json& entry) {
   if (entry.contains("adjust")) return entry.at("adjust").at("edits");
   if (entry.contains("edit")) return json::array({entry.at("edit")});
   return entry.contains("edits") ? entry.at("edits") : json::array();
 }
 
-// "line 7: bend", for lists of what was lost.
+// "line 7: bend", for the list of lost lines.
 std::string named(std::size_t line, const json& entry) {
   std::string what;
   for (const json& edit : edits_in(entry)) what += (what.empty() ? "" : ", ") + edit.value("op", std::string("?"));
@@ -69,7 +69,7 @@ std::string named(std::size_t line, const json& entry) {
 namespace {
 
 struct JournalLine {
-  std::size_t number;  // in the file, from 1
+  std::size_t number;  // line number in the file, from 1
   json entry;
 };
 
@@ -81,8 +81,8 @@ bool reads_missing_source(const json& entry, const Relinked& links) {
   return false;
 }
 
-// The lines to replay. Where a step that was undone reads a source that is missing, only those of steps that are left
-// done: nothing else rests on it.
+// The lines to replay: all of them, or only those of steps that are not undone (`only_done`) if only undone steps read
+// a missing source. No other step depends on those.
 std::vector<JournalLine> lines_to_replay(const Journal::Contents& contents, const Relinked& links, bool& only_done) {
   std::vector<JournalLine> lines;
   for (const std::string& text : contents.entries) lines.push_back({lines.size() + 2, json::parse(text)});
@@ -107,7 +107,7 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
   result.torn = contents.torn;
   bool only_done = false;
   const std::vector<JournalLine> lines = lines_to_replay(contents, links, only_done);
-  // One line: all of it, or nothing.
+  // Replays one line: all its edits or none.
   const auto replay = [&](const json& entry) {
     const bool adjusts = entry.contains("adjust");
     if (!adjusts && !entry.contains("edit") && !entry.contains("edits")) {
@@ -150,7 +150,7 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
   std::size_t count = 0;
   for (const auto& [line, entry] : lines) {
     progress.at("recovering", static_cast<double>(++count) / static_cast<double>(lines.size() + 1));
-    // What follows a lost edit would not be what people made.
+    // Edits after a lost one would be applied to another scene than the user's.
     if (!result.lost.empty()) {
       result.lost.push_back(named(line, entry));
       continue;
@@ -242,7 +242,7 @@ std::vector<Report> Document::adjust(const std::vector<Edit>& edits, const Progr
   if (last == 0 || edits.empty()) throw EditError("there is no step to adjust, or nothing to do in its place");
   const std::size_t replaced = history_.replaced_by_last_step();
   CarriedOut taken = done(history_.scene_at(history_.undo_count() - last - replaced, progress), edits, progress, made);
-  // One line: however the program ends, the step is there as it was, or as it is now.
+  // One line: after a crash the step is there either as before or as after the adjustment.
   if (journal_) {
     json entry = {{"undo", last}, {"edits", json::array()}};
     for (const Edit& edit : taken.edits) entry["edits"].push_back(to_json(edit));

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t checkpoint_distance = 32;
 
-// Calls visit(address, bytes) for every shared part that a scene holds, some more than once.
+// Calls visit(address, bytes) for each shared allocation of a scene (nodes, arrays, tiles), for some more than once.
 template <class Visit>
 void for_each_part(const Scene& scene, Visit visit) {
   std::unordered_set<const void*> textures;
@@ -131,7 +131,8 @@ bool History::redo(std::size_t edits, const Progress& progress) {
   return true;
 }
 
-// The steps to compute for a step's scene, each from the one before, the first from its cached base.
+// Steps whose edits must be applied to get a step's scene, in order. The first starts from a cached scene, each other
+// from the result before it.
 std::vector<std::size_t> History::uncached_chain(std::size_t step) const {
   std::vector<std::size_t> chain;
   for (; !steps_[step].scene; step = steps_[step].base) chain.push_back(step);
@@ -148,9 +149,8 @@ Scene History::scene_at(std::size_t edits, const Progress& progress) const {
 
 void History::go_to(std::size_t step, const Progress& progress) {
   const std::vector<std::size_t> chain = uncached_chain(step);
-  // The last values on the way are kept too, as far as the budget goes: whoever undoes once usually undoes again. What
-  // is kept for later steps stays until this has succeeded, and goes first then: until there as much as half the budget
-  // may lie beside it.
+  // The last intermediate scenes are cached too, because one undo is often followed by another. Scenes of later steps
+  // are evicted only after success; until then, intermediate scenes may take half of the budget in addition.
   const std::uint64_t there = memory_;
   Scene scene = *steps_[chain.empty() ? step : steps_[chain.front()].base].scene;
   std::size_t oldest = 0;
@@ -187,9 +187,9 @@ void History::drop(std::size_t step) {
 }
 
 void History::fit_budget() {
-  // Every so many values one stays longer than the others, so that few edits need repeating to get one back.
+  // Checkpoints are evicted last, so that few edits must be repeated to get an evicted scene back.
   for (const bool checkpoints : {false, true}) {
-    // From both ends towards the present, the farther end first.
+    // From both ends towards the present scene, the farther end first.
     std::size_t first = 1, last = steps_.size() - 1;
     while (memory_ > budget_ && (first < position_ || last > position_)) {
       const bool oldest = first < position_ && (last <= position_ || position_ - first >= last - position_);

@@ -40,14 +40,14 @@ std::string line_of(const json& entry) {
 
 struct Parsed {
   Journal::Contents contents;
-  std::uint64_t good_bytes = 0;  // where the last whole line before any damage ends
-  bool ends_in_newline = true;   // that line
-  bool begun = false;            // the first line is whole
+  std::uint64_t good_bytes = 0;  // end of the last intact line before any damage
+  bool ends_in_newline = true;   // whether that line ends in a newline
+  bool begun = false;            // the first line is intact
 };
 
 std::string first_line(int of) { return line_of({{"rebake_journal", of}}); }
 
-// The JSON behind a line's checksum, where that is right.
+// The JSON of a line; nothing if its checksum is wrong.
 std::optional<json> whole(std::string_view line) {
   if (line.size() <= checksum_digits + 1 || line[checksum_digits] != ' ' ||
       hash_text(content_hash(line.substr(checksum_digits + 1))) != line.substr(0, checksum_digits))
@@ -59,7 +59,7 @@ std::optional<json> whole(std::string_view line) {
 Parsed parse(const fs::path& path, std::string_view bytes) {
   Parsed parsed;
   Journal::Contents& contents = parsed.contents;
-  // A piece of a first line: the journal was being begun.
+  // A truncated first line: the program ended while it began the journal.
   for (int of = 1; of <= journal_version; ++of)
     if (bytes.size() < first_line(of).size() && first_line(of).starts_with(bytes)) {
       contents.torn = true;
@@ -81,7 +81,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
       parsed.good_bytes = begin;
       continue;
     }
-    // Behind damage, which may have joined or split lines, numbers need not be those of the lines.
+    // Damage may have joined or split lines, so behind it entry numbers need not match line numbers.
     const bool follows =
         entry && (contents.damaged_line != 0 ? entry->contains("n") : entry->value("n", json()) == number);
     whole_lines += follows ? 1 : 0;
@@ -93,13 +93,13 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
       parsed.good_bytes = begin;
       parsed.ends_in_newline = ends;
     } else if (number > 0 && !ends) {
-      contents.torn = true;  // the last line: it was being written
+      contents.torn = true;  // the program ended while it wrote this last line
     } else if (number > 0) {
       contents.damaged_line = number + 1;
     }
   }
   if (!parsed.begun) {
-    // Only its first line is damaged, where others are whole: what it says beyond its version is not needed.
+    // If other lines are intact, only the first is damaged; it contains nothing but the version.
     if (whole_lines == 0) throw FileError(path, "is not a journal of Rebake");
     if (contents.damaged_line == 0) contents.damaged_line = 1;
   }
@@ -110,7 +110,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
 
 class Journal::File {
  public:
-  // Opens and locks.
+  // Opens the file and locks it for this process. Throws FileError if another process holds the lock.
   File(fs::path path, int flags) : path_(std::move(path)), descriptor_(open(path_, flags)) {
     if (::flock(descriptor_.value, LOCK_EX | LOCK_NB) != 0)
       throw FileError(path_, "is being written by another Rebake");
@@ -150,7 +150,7 @@ class Journal::File {
   }
 
  private:
-  // On the disk when this returns.
+  // Writes at the end and syncs.
   void append_text(std::string_view text) {
     std::string_view rest = text;
     while (!rest.empty()) {
@@ -165,7 +165,7 @@ class Journal::File {
     end_ += text.size();
   }
 
-  // Whether the path still names the file that is written.
+  // Whether the path still leads to the open file.
   bool is_in_place() const {
     struct stat written {
     }, named{};
@@ -186,7 +186,7 @@ class Journal::File {
     return descriptor;
   }
 
-  // Leaves the file as it was before the entry.
+  // Truncates the file to its size before the failed write, and throws FileError.
   [[noreturn]] void fail() {
     const std::string reason = std::strerror(errno);
     [[maybe_unused]] const int ignored = file_calls().ftruncate(descriptor_.value, static_cast<off_t>(end_));
@@ -261,7 +261,7 @@ Journal::Contents Journal::read(const fs::path& path) { return parse(path, read_
 
 StepsDone steps_done(const Journal::Contents& contents) {
   struct Step {
-    std::size_t line, end;  // the number of edits at its end
+    std::size_t line, end;  // index into entries; number of edits after the step
   };
   std::vector<Step> steps;
   std::size_t done = 0;

@@ -8,24 +8,24 @@
 
 namespace rebake {
 
-/// A file of what was done, a checksummed line each, for getting work back after a crash. A line is on the disk before
-/// append() returns.
+/// Write-ahead log of a document for recovery after a crash: one checksummed line per step, undo or redo. A line is on
+/// the disk before append() returns. Only one process can write a journal.
 ///
 ///     <16 hexadecimal digits: XXH64 of the rest of the line> {"rebake_journal": 3}
 ///     <digits> {"n": 1, "edit": {"op": "import", …}}
-///     <digits> {"n": 2, "edits": [{"op": "hide", …}, {"op": "hide", …}]}     made together
-///     <digits> {"n": 3, "undo": 2}     so many edits; true: one
-///     <digits> {"n": 4, "edit": {"op": "cage", …}, "replaces": 1}     made of the scene before the last edit
+///     <digits> {"n": 2, "edits": [{"op": "hide", …}, {"op": "hide", …}]}     one step of several edits
+///     <digits> {"n": 3, "undo": 2}     undoes 2 edits; true: 1
+///     <digits> {"n": 4, "edit": {"op": "cage", …}, "replaces": 1}     applied to the scene before the last edit
+///     <digits> {"n": 5, "adjust": {"undo": 1, "edits": [{…}]}}     replaces the last edit; undo cannot return to it
 ///
-/// Version 1 had no lines of several edits, version 2 no "replaces"; both are still read.
+/// Version 1 had no lines with several edits, version 2 no "replaces"; both are still read.
 class Journal {
  public:
-  /// Begins a journal with these lines, all on the disk before this returns. Throws FileError when there is a file
-  /// already (it may hold work) or it cannot be written.
+  /// Creates a journal with these entries, all on the disk on return. Throws FileError if the file exists (it may
+  /// contain unsaved work) or cannot be written.
   static Journal create(const std::filesystem::path& path, const std::vector<nlohmann::json>& entries);
-  /// Opens a journal to go on where it ends: what is torn behind the last whole line is cut off. One that is damaged is
-  /// left as it is, and takes no more entries. No other process can write it meanwhile. Throws FileError as read()
-  /// does.
+  /// Opens a journal for appending: truncates a torn last line. A damaged journal is left unchanged and refuses further
+  /// entries. Locks the file. Throws FileError as read() does, and if another process has locked it.
   struct Contents;
   static Journal resume(const std::filesystem::path& path, Contents& contents);
 
@@ -33,30 +33,31 @@ class Journal {
   Journal(Journal&&) noexcept;
   Journal& operator=(Journal&&) noexcept;
 
-  /// Appends one entry and waits until it is on the disk. Throws FileError, also when another file has taken its path;
-  /// the journal then ends before the entry.
+  /// Appends one entry and syncs it. Throws FileError if that fails or if the path leads to another file by now; the
+  /// journal then ends before the entry.
   void append(const nlohmann::json& entry);
   const std::filesystem::path& path() const;
-  /// Removes the file: the work is safe elsewhere. Leaves a file that has taken its path. Throws FileError.
+  /// Removes the file, after the work was saved elsewhere; does nothing if the path leads to another file by now.
+  /// Throws FileError.
   void discard();
 
-  /// What a journal holds, in order.
+  /// Parsed lines of a journal.
   struct Contents {
-    bool current = true;               ///< written in this version's format: older programs refuse lines added to it
-    std::vector<std::string> entries;  ///< as JSON: all that are whole, before the first that is not
-    bool torn = false;                 ///< something followed that was being written when the program ended
-    std::size_t damaged_line = 0;      ///< the first that is not what was written, from 1; 0 for none
+    bool current = true;               ///< has the current format version; only then may lines be added
+    std::vector<std::string> entries;  ///< JSON of the intact lines before any damage, without line 1
+    bool torn = false;                 ///< the last line is incomplete: the program ended while writing
+    std::size_t damaged_line = 0;      ///< number of the first damaged line, from 1; 0: none
     struct Line {
-      std::size_t number;
-      std::string entry;  ///< as JSON
+      std::size_t number;  ///< line number in the file, from 1
+      std::string entry;   ///< its JSON
     };
-    std::vector<Line> after;  ///< whole lines behind the damage
+    std::vector<Line> after;  ///< intact lines behind the damage
   };
-  /// Whether the file begins as a journal does, whole or damaged.
+  /// Whether the file's first line is that of a journal, even with a wrong checksum.
   static bool is_journal(const std::filesystem::path& path);
-  /// Whether another process is writing it now.
+  /// Whether a process has locked it for writing.
   static bool in_use(const std::filesystem::path& path);
-  /// Throws FileError for a file that is no journal or is from a newer version.
+  /// Parses a journal. Throws FileError for a file that is no journal or has a newer version.
   static Contents read(const std::filesystem::path& path);
 
  private:
@@ -65,10 +66,10 @@ class Journal {
   std::unique_ptr<File> file_;
 };
 
-/// Steps of history that a journal's whole lines leave done. Edits of one line are one step.
+/// Steps that are done, not undone, after all intact lines of a journal. The edits of one line are one step.
 struct StepsDone {
-  std::vector<std::size_t> lines;  ///< of each step, as an index into Contents::entries
-  bool partly = false;             ///< after them some edits of one more step are done
+  std::vector<std::size_t> lines;  ///< index into Contents::entries of each step
+  bool partly = false;             ///< one more step is done in part: undo or redo counted single edits
 };
 StepsDone steps_done(const Journal::Contents& contents);
 

@@ -24,7 +24,7 @@ std::string checksum(json root) {
   return hash_text(content_hash(root.dump()));
 }
 
-// Where links lead: relative paths mean the same however the file is named.
+// The file's folder with symbolic links resolved, so that relative paths mean the same whatever name it is opened by.
 fs::path real_folder_of(const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)).parent_path(); }
 
 fs::path source_path(const fs::path& folder, const json& name) {
@@ -122,7 +122,7 @@ void read_project(const fs::path& path, const EachEdit& each, const Relinked& li
         throw FileError(path, fmt::format("joined: there is no edit {} that could be", k));
       joined[k - 1] = true;
     }
-    // Scenes that a later edit starts from, by the number of edits before.
+    // Scenes that a later edit with "replaces" starts from, by the number of edits before them.
     std::map<std::size_t, Scene> bases;
     std::vector<std::size_t> replaced(joined.size(), 0);
     for (const json& one : root.value("replaces", json::array())) {

@@ -10,16 +10,16 @@
 
 namespace rebake {
 
-/// A project: which sources were imported and what was done with them, as edits (named views among them). Sources are
-/// named relative to the folder that the project's file really lies in, and by the hash of their content, so that a
-/// moved or changed one is found out. The checksum tells damage; who changes the file by hand takes it out.
+/// A project file lists imported sources and all edits (stored views are edits too). Each source has a path relative to
+/// the file's real folder and a content hash, which detects moved and changed sources. The checksum detects damage;
+/// remove it to edit the file by hand.
 ///
 ///     {"rebake_project": 3,
 ///      "sources": [{"path": "scenes/ficus", "content": "<16 hexadecimal digits>"}],
 ///      "edits": [{"op": "import", "path": "scenes/ficus", …}, …],
-///      "joined": [3],                 numbers, from 1, of edits that were made together with the one before
+///      "joined": [3],                 edits, from 1, that belong to the same step as the one before
 ///      "replaces": [[5, 1], …],       edit 5 replaces 1 edit before it: it was applied to the scene after edit 3
-///      "checksum": "<digits: XXH64 of all else, as JSON without blanks>"}
+///      "checksum": "<digits: XXH64 of all else, as JSON without whitespace>"}
 ///
 /// Version 1 had no checksum, version 2 no "replaces"; both are still read. Projects without "replaces" are written as
 /// version 2.
@@ -27,17 +27,16 @@ namespace rebake {
 /// True for a regular file whose name ends in .rebake.
 bool is_project_file(const std::filesystem::path& path);
 
-/// Writes the project whole or not at all, on the disk when this returns. Imports must be completed(). Throws
-/// FileError, also where the file would lie in one of `guard`'s sources. Returns a warning for each source that is not
-/// as it was: without it the project cannot be opened.
+/// Writes the project atomically and syncs it. Imports must be completed(). Returns a warning for each missing or
+/// changed source, without which the project cannot be opened. Throws FileError, also if `guard` protects the path.
 std::vector<std::string> write_project(const std::filesystem::path& path, const std::vector<History::Entry>& entries,
                                        const SourceGuard& guard, const Progress& progress = {});
 
-/// An edit of a project that is read, and the scene after it.
+/// Receives each edit of a project while it is read, and the scene after it.
 using EachEdit = std::function<void(const History::Entry& entry, const Scene& after)>;
-/// Carries a project out, one edit after the other. Holds the last scene, and scenes that a later edit starts from.
-/// Throws FileError for a file that is no project, is damaged or from a newer version, SourcesGone where sources moved
-/// or changed (all of them are named), Cancelled.
+/// Replays a project edit by edit. Memory holds only the last scene and those that a later edit starts from. Throws
+/// FileError for a file that is no project, is damaged or has a newer version; SourcesGone, naming all missing and
+/// changed sources; Cancelled.
 void read_project(const std::filesystem::path& path, const EachEdit& each, const Relinked& links = {},
                   const Progress& progress = {});
 

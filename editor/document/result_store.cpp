@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t header_bytes = 16;  // of the checksum that a file begins with
+constexpr std::size_t header_bytes = 16;  // length of the checksum at the start of a file, in hexadecimal digits
 constexpr const char* extension = ".result";
 
 }  // namespace
@@ -58,10 +58,11 @@ void ResultStore::keep(const std::string& key, std::string_view bytes) {
     write_file_atomically(folder_ / (key + extension), hash_text(content_hash(bytes)) + std::string(bytes), {});
     fit_limit();
   } catch (const std::exception&) {
-    // A full disk or a folder that nobody may write: it is made again next time.
+    // A full disk or a read-only folder: the result is computed again next time.
   }
 }
 
+// Removes the least recently used files until the rest fits.
 void ResultStore::fit_limit() const {
   struct Kept {
     fs::file_time_type used;
@@ -75,7 +76,7 @@ void ResultStore::fit_limit() const {
     const fs::directory_entry& entry = *at;
     std::error_code gone;
     const auto used = entry.last_write_time(gone);
-    // What a killed program was writing; nobody writes for an hour.
+    // A temporary file of a killed program: no write takes an hour.
     if (!gone && entry.path().extension() == ".partial" &&
         fs::file_time_type::clock::now() - used > std::chrono::hours(1))
       fs::remove(entry.path(), gone);

@@ -9,21 +9,22 @@
 
 namespace rebake {
 
-/// Results in a folder, a checksummed file each, of at most so many bytes together: those that were not used for
-/// longest go first. Several programs may share it, and it may be deleted at any time. What is damaged counts as not
-/// there.
+/// Content-addressed cache in a folder: one checksummed file per result, with least-recently-used eviction. Several
+/// processes may share the folder, and it may be deleted at any time. A damaged file counts as missing.
 class ResultStore final : public Results {
  public:
-  static constexpr std::uint64_t default_limit = std::uint64_t{512} << 20;
+  static constexpr std::uint64_t default_limit = std::uint64_t{512} << 20;  ///< bytes
+  /// `limit`: maximum size of all files together, in bytes.
   explicit ResultStore(std::filesystem::path folder, std::uint64_t limit = default_limit);
 
-  /// In $REBAKE_RESULTS, else the user's cache folder; null where there is neither, or REBAKE_RESULTS is empty.
+  /// The store in $REBAKE_RESULTS, else in the user's cache folder. Null if REBAKE_RESULTS is empty or there is no home
+  /// folder.
   static std::shared_ptr<ResultStore> of_user();
 
   std::optional<std::string> find(const std::string& key) override;
   void keep(const std::string& key, std::string_view bytes) override;
 
-  std::size_t found() const { return found_; }  ///< how often find() found something
+  std::size_t found() const { return found_; }  ///< number of hits of find()
 
  private:
   void fit_limit() const;

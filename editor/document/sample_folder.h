@@ -4,8 +4,7 @@
 
 namespace rebake {
 
-/// Where the scenes lie that ship with Rebake: beside the installed program, else in the source tree. Empty when
-/// neither is there.
+/// Folder of the sample scenes: that of the installed program, else that of the source tree. Empty if neither exists.
 std::filesystem::path sample_folder();
 
 }  // namespace rebake

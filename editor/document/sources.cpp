@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The way from a folder to a source in it, "." for itself; nothing for one elsewhere.
+// Relative path from a folder to a source in it, "." for the folder itself; nothing if the source is elsewhere.
 std::optional<fs::path> way_to(const fs::path& source, const fs::path& folder) {
   const fs::path rest = absolute_path(source).lexically_relative(absolute_path(folder));
   return rest.empty() || *rest.begin() == ".." ? std::nullopt : std::optional(rest);
@@ -28,7 +28,7 @@ std::optional<fs::path> way_to(const fs::path& source, const fs::path& folder) {
 
 namespace {
 
-// The old path that says most about where a source lies: the longest.
+// The most specific (longest) old path among the links that contain a source; null if there is none.
 const fs::path* old_path_of(const fs::path& source, const Relinked& links) {
   const fs::path* chosen = nullptr;
   for (const Relinked::value_type& link : links)
@@ -36,6 +36,7 @@ const fs::path* old_path_of(const fs::path& source, const Relinked& links) {
   return chosen;
 }
 
+// Whether a file or scene folder with this content hash is at the path.
 bool holds(const fs::path& path, const std::string& content) {
   std::error_code error;
   if (!fs::exists(path, error)) return false;
@@ -74,7 +75,7 @@ void check_links(const Relinked& links, const std::vector<fs::path>& sources) {
 
 namespace {
 
-// A light that is switched off needs no picture.
+// A light with effects "none" reads no picture.
 bool has_picture(const LightEdit& light) {
   return !light.picture.empty() && light.effects != std::vector<std::string>{"none"};
 }
@@ -117,7 +118,7 @@ Edit completed(const Edit& edit) {
   if (!source) return edit;
   const std::string path = absolute_path(source->path).string();
   const auto content = [&](bool there) {
-    // What is not there is reported by the edit itself.
+    // The edit itself reports a missing source.
     return source->content.empty() && there ? hash_text(content_at(path)) : source->content;
   };
   std::error_code error;

@@ -14,50 +14,52 @@
 
 namespace rebake {
 
-/// Where sources lie now that were moved: old path → new path; folders stand for all in them. An old path may have
-/// several new ones, for sources that were read from it with different contents.
+/// New locations of moved sources: old path → new path of a source or of a folder that contains sources. An old path
+/// may have several new ones, for sources with different contents.
 using Relinked = std::multimap<std::filesystem::path, std::filesystem::path>;
 
-/// Where a source with this content lies: of the new paths of the longest old path that holds it, and then of its own
-/// path, the first with that content; else the first new path.
+/// Present location of a source with this content hash. Candidates are the new paths of the longest matching old path,
+/// then the source's own path. The first with that content is taken, else the first candidate.
 std::filesystem::path relinked(const std::filesystem::path& source, const std::string& content, const Relinked& links);
-/// Throws FieldError, naming the sources there are, for a link whose old path none of them lies at or in.
+/// Throws FieldError, which lists the sources, for a link whose old path is neither a source nor contains one.
 void check_links(const Relinked& links, const std::vector<std::filesystem::path>& sources);
 
-/// What an edit reads: a folder that is imported, or the picture of a light that is on.
+/// External input of an edit: an imported folder, or the environment map of a light.
 struct EditSource {
   std::filesystem::path path;
-  std::string content;  ///< hash of what is there
+  std::string content;  ///< content hash, hexadecimal; may be empty
 };
+/// Nothing for edits that read no source.
 std::optional<EditSource> source_of(const Edit& edit);
-/// Hash of what lies there now: a file, or a folder's scene. Throws FileError.
+/// Hash of the present content: of a file, or of all files of a scene folder. Throws FileError.
 std::uint64_t content_at(const std::filesystem::path& path);
-/// Where an edit's JSON says it; null for an edit that reads nothing.
+/// The field of an edit's JSON that contains the path of its source; null if it has none.
 nlohmann::json* source_field(nlohmann::json& edit);
 
-/// Sources that are not as they were: moved, removed or changed.
+/// Thrown if sources of a project are missing or changed; lists all of them.
 class SourcesGone : public FileError {
  public:
   struct Source {
-    std::filesystem::path path;  ///< as it was imported
-    std::string content;         ///< hash of it, as it was
-    std::string trouble;         ///< what is wrong with it
+    std::filesystem::path path;  ///< path as imported
+    std::string content;         ///< content hash as imported
+    std::string trouble;         ///< reason, for people
   };
   SourcesGone(const std::filesystem::path& file, const std::string& message, std::vector<Source> gone)
       : FileError(file, message), sources(std::move(gone)) {}
   std::vector<Source> sources;
 };
 
-/// What is wrong with a source of this content where the links say it lies; empty when it is as it was.
+/// Reason why a source with this content hash, relinked, is unusable (missing or changed), for people; empty if it is
+/// unchanged.
 std::string trouble_with(const std::filesystem::path& source, const std::string& content, const Relinked& links);
 
-/// The edit with everything it needs to be repeated later: its source's absolute path and the hash of what lies there
-/// now. Throws FileError.
+/// The edit with the absolute path and the present content hash of its source, as replay needs them. Throws FileError,
+/// and FieldError for an import without a path.
 Edit completed(const Edit& edit);
 
-/// Adds what edits read.
+/// Protects the sources of edits.
 void add_sources(SourceGuard& guard, const std::vector<Edit>& edits);
-/// Adds the folders that a scene's objects were read from.
+/// Protects the folders that a scene's objects were read from.
 void add_sources(SourceGuard& guard, const Scene& scene);
 
 }  // namespace rebake

@@ -1,13 +1,13 @@
 #pragma once
 
-// What an edit's own .cpp includes to describe it.
+// Describes an edit's fields to the framework. Included only by the edit's own .cpp.
 
 #include "editor/edits/edit.h"
 #include "editor/fields/visitors.h"
 
 namespace rebake::described {
 
-/// Collects the nodes that an edit's fields name.
+/// Field visitor that collects the nodes in an edit's fields.
 struct NamedNodes {
   std::vector<NodeId> nodes;
   void operator()(const char*, const NodeRef& node, Need, const char*, Unit = Unit::none) { nodes.push_back(node.id); }
@@ -21,7 +21,8 @@ struct NamedNodes {
   void operator()(const char*, const T&, Need, const char*, Unit = Unit::none) {}
 };
 
-/// `Describe` is a lambda that holds nothing: (edit, visit) visits the edit's fields.
+/// Builds the EditType of the edit struct T. `Describe` is a captureless lambda (edit, visit) that calls `visit(name,
+/// member, need, help, unit)` for each field.
 template <class T, class Describe>
 EditType type_of(const char* help, Describe) {
   EditType type{};
@@ -65,7 +66,8 @@ EditType type_of(const char* help, Describe) {
 
 }  // namespace rebake::described
 
-/// Defines edit_type<Type>(): its help, then (auto& edit, auto& visit) with its fields.
+/// Defines edit_type<Type>(). Arguments: the struct, one sentence of help, and (auto& edit, auto& visit) {…} that
+/// visits the fields.
 #define REBAKE_DESCRIBE_EDIT(Type, help, ...)                                    \
   template <>                                                                    \
   const EditType& edit_type<Type>() {                                            \

@@ -15,39 +15,41 @@ namespace rebake {
 class Edit;
 struct FieldLine;
 
-/// What an edit did, in sentences for people.
+/// Messages for people about the effect of an edit.
 struct Report {
   std::vector<std::string> lines;
 };
 
-/// What an edit makes of a scene.
+/// Result of an edit.
 struct Outcome {
   Scene scene;
   Report report;
 
-  Outcome(Scene made) : scene(std::move(made)) {}  // most have nothing to say
+  Outcome(Scene made) : scene(std::move(made)) {}  // most edits report nothing
   Outcome(Scene made, Report said) : scene(std::move(made)), report(std::move(said)) {}
 };
 
-/// A kind of edit: a line of the one table (table.cpp). Each is a struct of its own, described in its own file by
-/// REBAKE_DESCRIBE_EDIT (describe.h); nobody else knows its fields' names.
+/// Type-erased description of one kind of edit; table.cpp lists all. Each kind is a struct in its own file, described
+/// there by REBAKE_DESCRIBE_EDIT (describe.h), the only place that names its fields.
 struct EditType {
-  const char* op;    ///< its name in scripts, journals and Python
+  const char* op;    ///< name in scripts, journals and Python
   const char* help;  ///< one sentence
-  bool selects;      ///< it does nothing but change the selection
+  bool selects;      ///< changes nothing but the selection
 
-  std::vector<FieldLine> (*fields)();
+  std::vector<FieldLine> (*fields)();  ///< names, types, defaults and help
+  /// The functions below as read_edit(), to_json() and apply(); `edit` points to the struct.
   Edit (*read)(const nlohmann::json& object, const Scene& scene);
   nlohmann::json (*write)(const void* edit);
   Outcome (*apply)(const Scene& scene, const void* edit, const Progress& progress);
+  /// Nodes in the edit's fields.
   std::vector<NodeId> (*named_nodes)(const void* edit);
 };
 
-/// The type of an edit's struct; each specialises this.
+/// The EditType of an edit struct; specialised per edit.
 template <class T>
 const EditType& edit_type();
 
-/// Anything that changes a scene, as data: a value of one of the structs in the table.
+/// A change of a scene as data: an immutable, shared value of one of the edit structs. Copying is cheap.
 class Edit {
  public:
   template <class T>
@@ -55,7 +57,7 @@ class Edit {
   Edit(T edit) : type_(&edit_type<T>()), value_(std::make_shared<const T>(std::move(edit))) {}
 
   const EditType& type() const { return *type_; }
-  /// Null when it is another kind of edit.
+  /// The struct; null if the edit is of another kind.
   template <class T>
   const T* as() const {
     return type_ == &edit_type<T>() ? static_cast<const T*>(value_.get()) : nullptr;
@@ -64,6 +66,7 @@ class Edit {
   bool is() const {
     return as<T>() != nullptr;
   }
+  /// Pointer to the struct, for the functions of type().
   const void* value() const { return value_.get(); }
 
  private:
@@ -71,22 +74,23 @@ class Edit {
   std::shared_ptr<const void> value_;
 };
 
-/// All kinds of edits, in the order of help.
+/// All kinds of edits, in help order.
 std::span<const EditType* const> edit_types();
 
-/// Pure and deterministic: the scene after the edit, and what it did. Throws Error and leaves nothing changed;
-/// Cancelled when `progress` says so.
+/// Applies an edit: pure and deterministic. Report lines are prefixed with the edit's name. Throws Error if the edit is
+/// impossible, and Cancelled.
 Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress);
-/// The same. For an Edit only: no edit's own struct becomes one here, so that each is found by its own apply().
+/// The same as carry_out(). Accepts only Edit itself, without implicit conversion, so that calls with an edit struct
+/// find that struct's own apply().
 template <std::same_as<Edit> E>
 Outcome apply(const Scene& scene, const E& edit, const Progress& progress = {}) {
   return carry_out(scene, edit, progress);
 }
 
-/// Reads an edit from its JSON object. Names of nodes are looked up in `scene`. Throws FieldError.
+/// Parses an edit from its JSON object; node names are looked up in `scene`. Throws FieldError.
 Edit read_edit(const nlohmann::json& object, const Scene& scene);
 
-/// One JSON object, node numbers in place of names.
+/// The edit as one JSON object, with node ids instead of names.
 nlohmann::json to_json(const Edit& edit);
 
 }  // namespace rebake

@@ -6,7 +6,7 @@
 
 namespace rebake {
 
-/// Where this program keeps them, null for nowhere: set once, before the first edit.
+/// The process-wide cache of expensive results; null: no cache. Set it once, before the first edit.
 void keep_results_in(std::shared_ptr<Results> results);
 std::shared_ptr<Results> kept_results();
 

@@ -12,7 +12,7 @@ namespace rebake {
 
 namespace {
 
-// Digits count as numbers.
+// Natural sort order: runs of digits compare as numbers.
 bool counts_before(const std::string& a, const std::string& b) {
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   std::size_t i = 0, j = 0;

@@ -7,10 +7,10 @@
 
 namespace rebake {
 
-/// The stored view of that name. Throws FieldError for `field`, naming those there are.
+/// The stored view with this name. Throws FieldError for `field`, which lists the stored views, if there is none.
 const Camera& stored_view(const Scene& scene, const std::string& name, const char* field = "view");
 
-/// Names of the stored views as people count: "view 2" before "view 10".
+/// Names of the stored views in natural order: "view 2" before "view 10".
 std::vector<std::string> view_names(const Scene& scene);
 
 }  // namespace rebake

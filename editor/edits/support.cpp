@@ -53,7 +53,7 @@ std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<N
       continue;
     }
     if (!placed.node->object || !placed.node->selection || count(*placed.node->selection) == 0) continue;
-    // What is hidden or locked is changed only where it is named, and then refused if it is locked.
+    // Hidden and locked objects are skipped unless they are named; a named locked object is refused.
     if ((!node || of_group) && (placed.locked || !placed.visible)) continue;
     editable(scene, placed.node->id);
     result.push_back(std::move(placed));
@@ -88,7 +88,7 @@ std::shared_ptr<const BakedObject> triangles_of(const BakedObject& object, const
     const std::size_t total = set.soup.triangle_count();
     std::size_t chosen = 0;
     for (std::size_t f = first; f < first + total; ++f) chosen += (flags[f] != 0) == wanted ? 1 : 0;
-    // Sets that keep all their triangles stay shared, so that they are exported as they were read.
+    // Sets that keep all their triangles stay shared, so that export copies their source files.
     if (chosen == total)
       sets.push_back(set);
     else if (chosen > 0)
@@ -129,7 +129,7 @@ Scene with_only(const Scene& scene, const std::vector<NodeRef>& nodes) {
   if (nodes.empty()) return scene;
   std::set<NodeId> wanted;
   for (const NodeRef& node : nodes) wanted.insert(present(scene, node.id).node->id);
-  // Groups stay around what is wanted: it stands in them.
+  // Groups above a wanted node stay, because their transforms place it.
   const std::function<NodePtr(const NodePtr&)> kept = [&](const NodePtr& node) -> NodePtr {
     if (wanted.contains(node->id)) return node;
     Node around = *node;

@@ -10,62 +10,63 @@
 
 namespace rebake {
 
-/// The node, where it may be edited. Throws EditError when it is absent, or locked (itself or a group above it).
+/// The node, if it may be edited. Throws EditError if it is missing, or if it or a group above it is locked.
 PlacedNode editable(const Scene& scene, NodeId id);
 
-/// As editable(), and throws EditError where a node inside it is locked.
+/// As editable(); also throws EditError if a node inside it is locked.
 PlacedNode editable_with_children(const Scene& scene, NodeId id);
 
-/// The node, locked or not. Throws EditError when it is absent.
+/// The node, locked or not. Throws EditError if it is missing.
 PlacedNode present(const Scene& scene, NodeId id);
 
-/// Editable objects with selected triangles: the given object, the objects in a group, or all objects. Hidden and
-/// locked objects are skipped unless named. Throws EditError when nothing is selected.
+/// Objects with selected triangles: the given object, the objects in the given group, or all objects. Hidden and locked
+/// objects are skipped unless named. Throws EditError if nothing is selected or the named node is locked.
 std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<NodeRef>& node);
-/// The same of one object. Throws EditError for a group.
+/// The object `node`. Throws EditError if it is a group, is locked, or has no selected triangle.
 PlacedNode object_with_selection(const Scene& scene, const NodeRef& node);
 
-/// A copy of the object with other sets; turns into null when no triangle is left.
+/// A copy of the object with these texture sets, without empty ones; null if no triangle is left.
 std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vector<TextureSet> sets);
 
-/// The object's selected (or, with `wanted` false, unselected) triangles; null when there are none.
+/// The object with only its flagged triangles, or with `wanted` false the unflagged ones; null if there are none.
+/// `flags`: one per triangle, set by set.
 std::shared_ptr<const BakedObject> triangles_of(const BakedObject& object, const TriangleSet& flags, bool wanted);
 
-/// Keeps the triangles of a node whose flag is `wanted`, in its object and its saved selections; nothing is selected
-/// then.
+/// Keeps the node's triangles whose flag equals `wanted`, in its object and its stored selections. Clears the
+/// selection.
 void keep_triangles(Node& node, const TriangleSet& flags, bool wanted);
 
-/// The node and its children without ids and selections, to be added as new ones.
+/// A copy of the node and its children without ids and selections, for adding as new nodes.
 Node without_ids(const Node& node);
 
-/// Where a node hangs: its parent (none at the top) and its index there.
+/// Position of a node in the tree.
 struct OutlinePlace {
-  NodeId parent;
-  std::size_t index;
+  NodeId parent;      ///< none for roots
+  std::size_t index;  ///< among the parent's children
 };
 OutlinePlace place_of(const Scene& scene, NodeId id);
 
-/// The scene without objects that are neither one of the nodes nor inside one; all of it where none is named. Throws
-/// EditError when a node is absent.
+/// The scene with only these nodes, their children, and the groups above them; the whole scene if `nodes` is empty.
+/// Throws EditError if a node is missing.
 Scene with_only(const Scene& scene, const std::vector<NodeRef>& nodes);
 
-/// World box of a node's and its children's triangles.
+/// World box of the triangles of a node and its children; hidden children do not count.
 Box subtree_bounds(const Scene& scene, NodeId id);
 /// World box of a node's selected triangles.
 Box selection_bounds(const PlacedNode& placed);
 
-/// Throws EditError when a node below `id` (itself included) is flattened or lies beyond what numbers hold, and when
-/// groups nest too deep.
+/// Throws EditError if `id` or a node below it has a singular transform or non-finite bounds, or if groups are nested
+/// more than `deepest_group` deep.
 void check_subtree(const Scene& scene, NodeId id);
 
-/// Sets the scene's ground, and up for its sky light.
+/// Sets the ground plane, and with its normal the up direction of the sky light.
 void set_ground(Scene& scene, const Ground& ground);
 
-/// Throws EditError when the transform flattens what it moves.
+/// Throws EditError for a singular transform.
 void checked_turn(const Affine& transform);
 
-/// Throws FieldError for a box in a new edit's JSON whose min lies above its max: nothing would be inside. What
-/// journals and projects hold is not asked.
+/// Throws FieldError for a box in a new edit's JSON that is empty because min is above max. Journals and projects are
+/// not checked, so that old ones still open.
 void check_boxes(const nlohmann::json& edit);
 
 }  // namespace rebake

@@ -5,7 +5,7 @@
 #include "editor/edits/edit.h"
 #include "mesh_ops/base/error.h"
 
-// The one table of edits, in the order of help. An edit is a line here and a file of its own.
+// Table of all edits, in help order. Each edit has a line here and its own file.
 // clang-format off
 #define REBAKE_EDITS(X) \
   X(Import) \
@@ -80,7 +80,7 @@ Edit read_edit(const nlohmann::json& object, const Scene& scene) {
 
 namespace {
 
-// Counts what commands that name no node change.
+// Report of selecting edits. Counts visible, unlocked nodes: those that edits without a named node change.
 std::string selected_line(const char* op, const Scene& scene) {
   std::size_t triangles = 0, selected = 0, others = 0;
   for (const PlacedNode& placed : placed_nodes(scene)) {
@@ -97,7 +97,7 @@ std::string selected_line(const char* op, const Scene& scene) {
 Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress) {
   Outcome outcome = edit.type().apply(scene, edit.value(), progress);
   std::vector<std::string> lines;
-  // What is done to hidden nodes is not seen.
+  // Notes that a named node is hidden, because the change is then invisible.
   for (const NodeId id : edit.type().named_nodes(edit.value()))
     if (const auto before = find_placed(scene, id); before && !before->visible)
       if (const auto placed = find_placed(outcome.scene, id); placed && !placed->visible)

@@ -10,7 +10,7 @@
 
 namespace rebake {
 
-/// What a field holds, for whoever reads, shows or asks for one.
+/// Kinds of fields, for forms and parsers.
 enum class FieldKind {
   flag,
   whole_number,
@@ -19,22 +19,24 @@ enum class FieldKind {
   choice,
   node,
   nodes,
-  other  ///< written as JSON
+  other  ///< a JSON value
 };
+/// Type of a field, as help, forms and Python show it.
 struct FieldType {
   FieldKind kind = FieldKind::other;
-  std::string words;                 ///< how it is written, for people
-  std::string python;                ///< its type in Python
-  std::vector<std::string> choices;  ///< of a choice: all that it can be
+  std::string words;                 ///< notation, for help texts: "[x, y, z]"
+  std::string python;                ///< type annotation in Python
+  std::vector<std::string> choices;  ///< allowed words, if kind is choice
 };
-/// A choice of words.
+/// The type of a field that takes one of these words.
 FieldType choice_type(std::vector<std::string> choices);
 
-/// How a type of field is written in JSON, and what it is. Reading throws Error with what was expected. What write()
-/// gives is read back to the same bits.
+/// Conversion of a field type to and from JSON, specialised per type. read() throws Error with the expected form; it
+/// reads the result of write() back to the same bits. `scene` resolves node names.
 template <class T>
 struct Codec;
 
+/// Declares the specialisation Codec<Type>.
 #define REBAKE_CODEC(Type)                                             \
   template <>                                                          \
   struct Codec<Type> {                                                 \
@@ -70,7 +72,7 @@ REBAKE_CODEC(Axes);
 REBAKE_CODEC(Layout);
 REBAKE_CODEC(Camera);
 
-/// The word of `known` that is most like `word`, for suggestions; empty when none is.
+/// The most similar word of `known` by Levenshtein distance, for suggestions; empty if none is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace rebake

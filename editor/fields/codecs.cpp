@@ -365,10 +365,10 @@ json Codec<std::vector<int>>::write(const std::vector<int>& value) { return valu
 
 Rotation::Rotation(const Eigen::Quaterniond& turn) : quaternion_(turn) {
   if (!turn.coeffs().allFinite()) throw Error("a rotation must be finite");
-  // What normalising leaves lies within this of length 1, so that doing it again would change nothing.
+  // A normalised quaternion has length 1 within this rounding error. It is not normalised again, to keep its bits.
   constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
   if (std::abs(turn.squaredNorm() - 1) <= rounding) return;
-  // Neither squares of 1e200 nor of 1e-200 are numbers.
+  // Scales by a power of two first, since squares of 1e200 overflow and those of 1e-200 underflow.
   const double largest = turn.coeffs().cwiseAbs().maxCoeff();
   if (!(largest > 0)) throw Error("a quaternion of length 0 is no rotation");
   int exponent = 0;
@@ -430,7 +430,7 @@ void FieldLister::add(const char* name, FieldType type, const json& initial, Nee
 void FieldReader::finish() const {
   for (const auto& [name, value] : object_.items()) {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    // Of similar names the one that is missing was meant.
+    // Prefers the name of a missing required field as the suggestion.
     const std::string meant = nearest_word(name, missing_), near = meant.empty() ? nearest_word(name, known_) : meant;
     throw FieldError(name, near.empty() ? fmt::format("is not known here (known: {})", fmt::join(known_, ", "))
                                         : fmt::format("is not known here; did you mean \"{}\"?", near));
@@ -440,7 +440,8 @@ void FieldReader::finish() const {
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   std::string best;
-  // Less than half of a short word may be another, of two letters one.
+  // Exclusive maximum of the distance: about a third of a long word's letters, less than half of a short word's, one
+  // letter of two.
   std::size_t best_distance = std::max(std::size_t{2}, std::min(word.size() / 3 + 2, (word.size() + 1) / 2));
   for (const std::string& candidate : known) {
     std::vector<std::size_t> row(candidate.size() + 1);

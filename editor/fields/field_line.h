@@ -6,19 +6,19 @@
 
 namespace rebake {
 
-/// One field of an edit or action, as help, forms and the Python module show it.
+/// Description of one field of an edit or action, for help, forms and the Python module.
 struct FieldLine {
   std::string name;
   FieldType type;
-  std::string initial;  ///< as JSON; empty for none
+  std::string initial;  ///< default value as JSON; empty: none
   std::string help;
   Unit unit = Unit::none;
   bool required = false;
 };
 
-/// In words; empty for none.
+/// Name of the unit, for people; empty for Unit::none.
 const char* to_string(Unit unit);
-/// What a field takes, with its unit: "number, in degrees".
+/// Notation of the field's value with its unit: "number, in degrees".
 std::string words_of(const FieldLine& field);
 
 }  // namespace rebake

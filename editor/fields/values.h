@@ -11,17 +11,17 @@
 
 namespace rebake {
 
-/// A node named in a field: by its name, or by its number as the journal writes it.
+/// A node in a field. JSON contains its name, or its id as journals write it.
 struct NodeRef {
   NodeId id = NodeId::none;
 };
 
-/// A rotation: a quaternion of length 1, made so once, here. Making one of another's quaternion keeps its bits, so that
-/// what is written and read back turns alike.
+/// A rotation as a unit quaternion. The constructor normalises; a quaternion that is already normalised keeps its bits,
+/// so that a rotation that is written and read back is the same.
 class Rotation {
  public:
   Rotation() = default;
-  /// Throws Error for a quaternion that is not finite or has no length.
+  /// Throws Error for a quaternion that is not finite or is zero.
   explicit Rotation(const Eigen::Quaterniond& turn);
   explicit Rotation(const Eigen::AngleAxisd& turn) : Rotation(Eigen::Quaterniond(turn)) {}
 
@@ -32,46 +32,49 @@ class Rotation {
   Eigen::Quaterniond quaternion_ = Eigen::Quaterniond::Identity();
 };
 
-/// A scale as one number or three.
+/// Scale factors along x, y and z; never 0. JSON contains one number or three.
 struct Scale {
   Vec3 value{1, 1, 1};
 };
 
-/// A line through points in the world; none: no line.
+/// An open polyline in world space; may be empty.
 struct PolyLine {
   std::vector<Vec3> points;
 };
 
-/// Corners of a polygon in pixels, x to the right and y down.
+/// A closed polygon in a picture: corners in pixels, x to the right and y down.
 struct PixelPolygon {
   std::vector<Vec2> corners;
 };
-/// A round brush drawn through points, in pixels.
+/// A stroke of a round brush through points in a picture; points and radius in pixels.
 struct BrushStroke {
   std::vector<Vec2> points;
   double radius = 0;
 };
-/// Numbers from min to max.
+/// Closed interval [min, max].
 struct Interval {
   double min = 0, max = 0;
 };
-/// Whole numbers from 0 on, as ranges that include both ends.
+/// A set of non-negative integers, as ranges [first, last] with both ends included.
 struct NumberRanges {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;
 };
+/// Size of a picture in pixels, 1 … 16384 each.
 struct PixelSize {
   int width = 800, height = 800;
 };
 
-/// Width of a decoder's hidden layers; none: found out.
+/// Width of a fused decoder's hidden layers; nothing: chosen automatically.
 struct FuseWidth {
   std::optional<int> neurons;
 };
 
+/// Combination of a new selection with the present one.
 enum class SelectMode { set, add, remove, intersect };
 
-/// How a struct describes a field: `visit(name, member, need, help)`, and a unit where it has one.
+/// Arguments of a field's description: `visit(name, member, need, help)`, and a unit if it has one.
 enum class Need { required, optional };
+/// length: scene units; object_length: units of the object's own space; share: 0 … 1; factor: a ratio.
 enum class Unit { none, degrees, length, object_length, pixels, share, factor };
 
 }  // namespace rebake

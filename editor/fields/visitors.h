@@ -11,6 +11,7 @@
 
 namespace rebake {
 
+/// An absent value is written as null, which FieldWriter omits.
 template <class T>
 struct Codec<std::optional<T>> {
   static FieldType type() { return Codec<T>::type(); }
@@ -20,7 +21,8 @@ struct Codec<std::optional<T>> {
   }
 };
 
-/// Reads the fields that a struct describes from one JSON object. Node names are looked up in `scene`.
+/// Field visitor that reads a struct from one JSON object. Absent fields keep their defaults. Node names are looked up
+/// in `scene`.
 class FieldReader {
  public:
   FieldReader(const nlohmann::json& object, const Scene& scene) : object_(object), scene_(scene) {}
@@ -38,12 +40,12 @@ class FieldReader {
       throw FieldError(name, error.what());
     }
   }
-  /// Throws FieldError for a field that nothing has read, suggesting the nearest known one, and for a required field
-  /// that is missing. To be called when all fields are read.
+  /// Call after all fields are visited. Throws FieldError for an unknown field, with the most similar known one as a
+  /// suggestion, and for a missing required field.
   void finish() const;
 
  private:
-  // Null when it is left out.
+  // The field's value; null if it is absent.
   const nlohmann::json* find(const char* name, Need need);
 
   const nlohmann::json& object_;
@@ -51,7 +53,7 @@ class FieldReader {
   std::vector<std::string> known_{"op"}, missing_;
 };
 
-/// Writes all fields that have a value.
+/// Field visitor that writes a struct to a JSON object, without null values.
 class FieldWriter {
  public:
   explicit FieldWriter(nlohmann::json& object) : object_(object) {}
@@ -65,7 +67,7 @@ class FieldWriter {
   nlohmann::json& object_;
 };
 
-/// Lists fields, for help and forms.
+/// Field visitor that lists fields with types, defaults and help.
 class FieldLister {
  public:
   explicit FieldLister(std::vector<FieldLine>& lines) : lines_(lines) {}

@@ -37,7 +37,7 @@ class Reader {
       return read(value.attr("tolist")(), depth + 1);
     if (py::isinstance<py::sequence>(value)) {
       json list = json::array();
-      // By its iterator: a length may lie.
+      // Uses the iterator, because len() may be wrong.
       for (const auto& entry : value) list.push_back(read(entry, depth + 1));
       return list;
     }
@@ -61,8 +61,8 @@ class Reader {
       throw FieldError(field_, "is a whole number beyond 64 bits");
     }
   }
-  std::string field_ = "value";  // that is being read
-  std::size_t count_ = 0;
+  std::string field_ = "value";  // top-level field that is being read, for messages
+  std::size_t count_ = 0;        // number of values read
 };
 
 }  // namespace

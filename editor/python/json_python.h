@@ -6,11 +6,12 @@
 
 namespace rebake {
 
-/// Fields given in Python as JSON: numbers, text, paths, arrays, lists and dicts of them, nested 32 deep at most and of
-/// at most ten million values together, so that what contains itself or never ends is refused. Throws FieldError, and
-/// TypeError for what is nothing of these.
+/// Converts Python numbers, strings, paths, arrays, sequences and dicts to JSON; drops dict entries that are None.
+/// Throws FieldError beyond 32 levels or ten million values, which stops cyclic and endless input, and TypeError for
+/// other types.
 nlohmann::json to_json(const pybind11::handle& value);
 
+/// Converts JSON to Python objects.
 pybind11::object to_python(const nlohmann::json& value);
 
 }  // namespace rebake

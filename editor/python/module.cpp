@@ -1,4 +1,4 @@
-// The Python module: a document, its edits as methods, and its arrays as NumPy views.
+// The Python module: class Document with a method per edit, and its arrays as NumPy views.
 #include <fmt/format.h>
 #include <pybind11/eval.h>
 #include <pybind11/numpy.h>
@@ -38,7 +38,7 @@ namespace rebake {
 
 namespace {
 
-// A read-only view of rows that `owner` keeps alive.
+// A read-only NumPy view; the array owns `owner`, which keeps the data alive.
 template <class T, class Owner>
 py::array view_of(const T* data, std::vector<py::ssize_t> shape, Owner owner) {
   const py::capsule keeper(new Owner(std::move(owner)), [](void* kept) { delete static_cast<Owner*>(kept); });
@@ -47,16 +47,16 @@ py::array view_of(const T* data, std::vector<py::ssize_t> shape, Owner owner) {
   return array;
 }
 
-// A document may be used from any thread. What works on it takes the lock, after Python's own was let go; what only
-// looks copies the scene, which is cheap.
+// A session that Python may use from any thread. All access releases the GIL before it locks the mutex. Readers copy
+// the scene, which is cheap.
 class PyDocument {
  public:
   PyDocument() = default;
   explicit PyDocument(Document document) { session_.document = std::move(document); }
 
-  py::object progress = py::none();  ///< called while something long is done
+  py::object progress = py::none();  ///< progress callback, or None
 
-  /// Does work on the session; see do_work(). What the callback asks of the document waits until the work is done.
+  /// Runs `job` with do_work(). If the callback uses this document, it waits until the job is done.
   void work(const std::function<void(Session&)>& job) {
     do_work(progress, [&](const Progress& on_the_way) {
       const std::scoped_lock lock(mutex_);
@@ -199,7 +199,8 @@ py::array texture_of(PyDocument& document, const py::object& name, std::size_t i
   return result;
 }
 
-// Carries out the edit `op`; fields that are None are left out. Returns the selections where it changes them.
+// Applies the edit `op`; fields that are None are omitted. Returns the selections of all objects if the edit changes
+// them.
 py::object edit_with(PyDocument& document, const std::string& op, const py::dict& fields) {
   json line = to_json(fields);
   line["op"] = op;
@@ -228,7 +229,8 @@ py::object select_mask(PyDocument& document, const py::object& node, const py::a
   return selections_of(document);
 }
 
-// An n × 3 array of the kinds of numbers that dtype letters name; wrong types and shapes are named by the argument.
+// Checks that an argument is an n × 3 array whose dtype kind is one of `kinds`. Throws FieldError for the argument
+// `name`.
 py::array table_of(const py::object& given, const char* name, const char* kinds, const char* numbers) {
   const py::array array = py::array::ensure(given);
   if (!array) PyErr_Clear();
@@ -367,7 +369,7 @@ std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journa
 }  // namespace
 
 PYBIND11_MODULE(rebake, module) {
-  py::module_::import("numpy");  // here, since two threads must not be the first to want it
+  py::module_::import("numpy");  // here, because two threads must not import it first at the same time
   keep_results_in(ResultStore::of_user());
   module.doc() = "Edit and compose baked NeRF scenes (MobileNeRF format).";
   const auto& error = py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
@@ -504,7 +506,7 @@ PYBIND11_MODULE(rebake, module) {
   type.def("select_mask", &select_mask, py::arg("node"), py::arg("mask"), py::arg("mode") = "set",
            "Selects an object's triangles by a mask, as selection() gives one; recorded as select_triangles.");
   type.def("_edit", &edit_with);
-  // The edits as methods with names, types and defaults that help() and inspect show.
+  // Edits as methods whose names, types and defaults are visible to help() and inspect.
   py::dict scope;
   scope["__builtins__"] = py::module_::import("builtins");
   scope["__name__"] = "rebake";

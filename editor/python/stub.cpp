@@ -21,7 +21,7 @@ std::string python_value(const nlohmann::json& value) {
   return value.dump();
 }
 
-// The parameters of one edit: required ones first, as Python wants them.
+// Parameters of one edit in Python's order (required ones first), and a help line per field.
 struct Signature {
   std::vector<std::string> required, optional, lines;
   explicit Signature(const std::vector<FieldLine>& fields) {
@@ -157,7 +157,7 @@ class Document:
         """The same in one piece, height × width × 8; a copy."""
 )";
 
-// One edit as a typed method, with further parameters last; indented as inside a class.
+// Source of a typed method for an edit, indented as in a class. `last`: a further parameter, such as **unknown.
 std::string method(const EditType& edit, const char* last = nullptr) {
   const Signature signature(edit.fields());
   std::vector<std::string> parameters = signature.required;
@@ -183,7 +183,7 @@ std::string python_methods() {
     std::string fields;
     for (const FieldLine& field : type->fields())
       fields += fmt::format("\"{}\": {}, ", field.name, python_name(field.name));
-    // Fields that it does not know go along, so that the error can suggest what was meant.
+    // Unknown fields are passed on, so that the error can suggest a similar name.
     out += method(*type, "**unknown") +
            fmt::format("        return self._edit(\"{}\", {{{}**unknown}})\n", type->op, fields);
   }

@@ -5,14 +5,14 @@
 
 namespace rebake {
 
-/// The type stub of the Python module, rebake.pyi: the edits come from the one table, so that editors know each one's
-/// fields, types and defaults.
+/// The type stub of the Python module, rebake.pyi: a fixed part, and a method per edit with its fields, types and
+/// defaults.
 std::string python_stub();
 
-/// Python source of a class Edits whose methods call self._edit(op, fields), one an edit.
+/// Python source of a class Edits with a method per edit, which calls self._edit(op, fields).
 std::string python_methods();
 
-/// A name as it stands in Python: words of the language get an underscore.
+/// The name in Python: `as`, `from` and `import`, which are keywords, get a trailing underscore.
 std::string python_name(std::string_view name);
 
 }  // namespace rebake

@@ -20,7 +20,7 @@ namespace rebake {
 
 namespace {
 
-std::atomic<pid_t> worked_in = 0;
+std::atomic<pid_t> worked_in = 0;  // process that called do_work() first; 0: none
 
 void refuse_forked() {
   const pid_t here = ::getpid();
@@ -31,7 +31,7 @@ void refuse_forked() {
         "multiprocessing's \"spawn\", or fork before rebake is first used");
 }
 
-// The threads that are inside the module, and the cancel flags of those that work.
+// State of all InsideModule guards: one entry in `flags` per guard, the cancel flag or null.
 struct Running {
   std::mutex mutex;
   std::condition_variable changed;
@@ -43,7 +43,7 @@ Running& running() {
   return one;
 }
 
-// What Python raised while work went on that was done nevertheless.
+// Handles an exception that Python raised during work that succeeded nevertheless.
 void keep_quiet(py::error_already_set& raised) {
   if (raised.matches(PyExc_KeyboardInterrupt))
     PyErr_SetInterrupt();
@@ -65,7 +65,7 @@ InsideModule::~InsideModule() {
 }
 
 void end_all_work() {
-  // Threads do not come along with a fork, and may have held the mutex.
+  // In a forked process there are no worker threads, and one may have held the mutex during the fork.
   if (worked_in != 0 && worked_in != ::getpid()) return;
   const py::gil_scoped_release others;
   std::unique_lock lock(running().mutex);
@@ -101,7 +101,7 @@ void do_work(const py::object& callback, const std::function<void(const Progress
     ended = true;
     changed.notify_all();
   });
-  // What Python raised meanwhile.
+  // Ctrl+C, or an exception of the callback.
   std::optional<py::error_already_set> raised;
   for (bool done = false; !done;) {
     std::optional<std::pair<std::string, double>> now;

@@ -9,16 +9,17 @@
 
 namespace rebake {
 
-/// Does work that takes no Python object, on a thread of its own, while other Python threads go on. The calling thread
-/// tells `callback` (None, or called with what is done and the share) how far it is, ten times a second at most, and
-/// asks the work to stop when Ctrl+C was pressed or the callback raises. When the work stops, that is raised; when it
-/// was done already, the result stands: an interrupt is raised behind the call, and the callback's exception goes to
-/// sys.unraisablehook. Throws what the work throws, and Error in a process that was forked off one that worked (threads
-/// do not come along) or while the interpreter ends.
+/// Runs `work`, which must not use Python objects, on another thread without the GIL, so that other Python threads
+/// continue. Calls `callback(task, share 0 … 1)` from the calling thread, at most ten times per second; None: no calls.
+///
+/// Ctrl+C or an exception of the callback cancels the work and is raised. If the work succeeds nevertheless, its result
+/// is valid: the interrupt is raised after the call, and the callback's exception goes to sys.unraisablehook. Throws
+/// exceptions of `work`. Throws Error during interpreter shutdown, and in a process forked from one that has called
+/// do_work(), because threads do not survive a fork.
 void do_work(const pybind11::object& callback, const std::function<void(const Progress&)>& work);
 
-/// Stands for a thread that is inside the module without the interpreter's lock. `flag`, where not null, is set when
-/// the interpreter ends. Throws Error when it is ending already.
+/// RAII guard that registers a thread that is inside the module without the GIL, so that shutdown waits for it. `flag`,
+/// if not null, is set to true at shutdown. The constructor throws Error if shutdown has begun.
 class InsideModule {
  public:
   explicit InsideModule(std::atomic<bool>* flag = nullptr);
@@ -30,9 +31,8 @@ class InsideModule {
   std::atomic<bool>* flag_;
 };
 
-/// Asks all work to stop, waits until no thread is inside (5 seconds at most, then ends the process), and refuses
-/// more. For atexit: a thread that wants
-/// the interpreter back when it has ended would abort the process.
+/// Cancels all work, refuses new work, and waits until no InsideModule is left; ends the process after 5 s. To be
+/// registered with atexit: a thread that requests the GIL after shutdown would abort the process.
 void end_all_work();
 
 }  // namespace rebake

@@ -83,7 +83,7 @@ std::string_view command_text(std::string_view line) {
 }
 
 json read_line(std::string_view text) {
-  // Deeper lines mean nothing and could exhaust the stack.
+  // No command is nested deeper, and deep nesting could exhaust the stack.
   static constexpr int deepest = 32;
   return json::parse(text.begin(), text.end(), [](int depth, json::parse_event_t, json&) {
     if (depth > deepest) throw Error(fmt::format("nests deeper than {} levels", deepest));

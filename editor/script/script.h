@@ -13,35 +13,37 @@
 
 namespace rebake {
 
+/// One line of a script.
 using ScriptCommand = std::variant<Edit, Action>;
 
-/// A script error; says the file, the line and the field.
+/// Error in a script; the message contains the file, the line and, if known, the field.
 class ScriptError : public Error {
  public:
   using Error::Error;
 };
 
-/// Reads one command. Names of nodes are looked up in `scene`. Throws Error.
+/// Parses one command from its JSON object; node names are looked up in `scene`. Throws Error.
 ScriptCommand read_command(const nlohmann::json& line, const Scene& scene);
 
-/// Puts variables into all texts of a line: "{name}" becomes the value. Throws Error for one that has no value.
+/// Replaces "{name}" by the variable's value in all strings of a JSON value. Throws Error for an unknown variable.
 nlohmann::json with_variables(nlohmann::json line, const std::map<std::string, std::string>& variables);
 
-/// What is wrong with a text that is no JSON, without the library's own name for it.
+/// Message of a JSON parse error, without the library's error code.
 std::string said_by(const std::exception& error);
 
-/// The JSON of a line of a script, without a byte order mark; empty for blank lines and comments.
+/// The JSON text of a script line, without a byte order mark; empty for blank lines and comments.
 std::string_view command_text(std::string_view line);
 
-/// Parses one line of JSON, nested 32 levels at most. Throws Error, and nlohmann's exceptions for what is not JSON.
+/// Parses one line of JSON. Throws Error if it is nested deeper than 32 levels, and nlohmann::json::exception if it is
+/// not JSON.
 nlohmann::json read_line(std::string_view text);
 
-/// Runs a script: one JSON object a line; blank lines and lines that begin with # or // are skipped. Throws
-/// ScriptError; what was written before the line in error stays.
+/// Runs a script: one JSON object per line. Blank lines and lines that begin with # or // are skipped. Throws
+/// ScriptError at the first faulty line; edits and files of earlier lines stay. `name`: file name for messages.
 void run_script(Session& session, std::string_view text, const std::filesystem::path& name,
                 const std::map<std::string, std::string>& variables);
 
-/// Markdown: every command with its fields, types and defaults.
+/// Reference of all edits and actions as Markdown: fields, types, units and defaults.
 std::string command_reference();
 
 }  // namespace rebake

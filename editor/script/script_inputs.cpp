@@ -26,7 +26,7 @@ std::vector<ScriptInput> script_inputs(std::string_view text, const std::map<std
       if (const auto mesh = object.find("mesh"); mesh != object.end() && mesh->is_string())
         inputs.push_back({mesh->get<std::string>(), false});
     } catch (const std::exception&) {
-      // Running the line reports it.
+      // run_script() reports the error.
     }
   }
   return inputs;

@@ -8,14 +8,14 @@
 
 namespace rebake {
 
-/// A scene folder or file that a script reads.
+/// A file or scene folder that a script reads.
 struct ScriptInput {
   std::filesystem::path path;
-  bool content_known;  ///< its line says which content it expects
+  bool content_known;  ///< its line has the field `content`, a hash of the expected content
 };
 
-/// All inputs of a script (imports, pictures of light, cage meshes), with variables filled in, in the order of its
-/// lines. Lines that run_script() would refuse are left out.
+/// All inputs of a script (imports, environment maps, cage meshes) in the order of its lines, with variables replaced.
+/// Invalid lines are skipped.
 std::vector<ScriptInput> script_inputs(std::string_view text, const std::map<std::string, std::string>& variables);
 
 }  // namespace rebake

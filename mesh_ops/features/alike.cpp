@@ -21,10 +21,10 @@ using Features = TexelColors::Features;
 struct Patch {
   std::size_t set, patch;
   TexelRect rect;
-  std::uint64_t mask = 0;  // hash of which texels are opaque
-  std::size_t opaque = 0;
-  // Mean weighted features of the rectangle's quarters, each by the root of its share of the opaque texels: patches'
-  // features differ by at least as much in the mean square (Jensen's inequality).
+  std::uint64_t mask = 0;  // hash of the opacity mask
+  std::size_t opaque = 0;  // number of opaque texels
+  // Mean weighted features of the rectangle's quarters, scaled by the root of each quarter's share of the opaque
+  // texels. Their squared distance is a lower bound of the mean squared difference of features (Jensen's inequality).
   std::array<double, 32> quarters{};
 };
 
@@ -32,7 +32,7 @@ struct SetTexels {
   std::unique_ptr<const TexelReader> reader;
   AlphaCode code;
 };
-using Texels = std::vector<SetTexels>;  // a set each
+using Texels = std::vector<SetTexels>;  // per set
 
 template <class Visit>
 void for_each_opaque(const Texels& texels, const Patch& patch, Visit visit) {
@@ -43,11 +43,11 @@ void for_each_opaque(const Texels& texels, const Patch& patch, Visit visit) {
         visit(x, y, decode_features(texel, texels[patch.set].code));
 }
 
-// By how much colours change, in the mean square, with each feature: central differences at a sample of texels.
+// Sensitivity of colours to each feature: root mean square of central differences at a sample of texels.
 Features weights_of(const Texels& texels, const std::vector<Patch>& patches, const TexelColors& looks) {
   constexpr std::size_t most_samples = 256;
   constexpr double step = 0.02;
-  std::vector<Features> moved;  // of each sample up and down in each feature
+  std::vector<Features> moved;  // per sample and feature: one step up, then one down
   const std::size_t every = std::max<std::size_t>(1, patches.size() / most_samples);
   for (std::size_t k = 0; k < patches.size(); k += every) {
     bool taken = false;
@@ -93,12 +93,13 @@ double squared_distance(const Patch& a, const Patch& b) {
   return sum;
 }
 
-// Mean square of what colours differ by; part of it, more than `most`, where that is found to be so.
+// Mean squared difference of colours. Stops early above `most` with a partial sum above `most`; infinite if opacity
+// differs.
 double color_loss(const Texels& texels, const TexelColors& looks, const Patch& a, const Patch& b, double most) {
   const SetTexels &first = texels[a.set], &second = texels[b.set];
   const double values = 3.0 * static_cast<double>(a.opaque * looks.directions());
   constexpr std::size_t at_once = 4 * network_lanes;
-  std::vector<Features> features;  // of one and the other in turn
+  std::vector<Features> features;  // alternating: of a, of b
   std::vector<Color> colors(2 * at_once * looks.directions());
   double sum = 0;
   const auto add = [&] {
@@ -161,7 +162,8 @@ AlikePatches alike_patches(const BakedObject& object, double squared_loss, const
   const Features weights = weights_of(texels, patches, looks);
   tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t k) { describe(texels, weights, patches[k]); });
 
-  // Those of one size and opacity, by the quarter's feature that varies most among all.
+  // Representatives per size and opacity mask, sorted by the quarter's feature with the largest variance over all
+  // patches.
   std::size_t key = 0;
   double widest = -1;
   for (std::size_t q = 0; q < 32; ++q) {
@@ -175,7 +177,8 @@ AlikePatches alike_patches(const BakedObject& object, double squared_loss, const
   }
   using Kind = std::tuple<int, int, std::uint64_t>;
   std::map<Kind, std::multimap<double, std::size_t>> leaders;
-  // Weights are means: where a patch's features do less than usual, more of a difference passes.
+  // Weights are means over a sample, so the search radius is larger than the allowed loss: a patch's features may
+  // matter less than the average.
   constexpr double reach = 4;
   constexpr std::size_t most_decoded = 8;
   double lost = 0, opaque = 0;

@@ -16,6 +16,7 @@ namespace rebake {
 
 namespace {
 
+// Destination of a patch.
 struct Place {
   std::size_t set, patch;
   std::size_t page = 0;
@@ -26,11 +27,11 @@ struct Page {
   int width = 0, height = 0;
 };
 
-// Texels that move together from one texture to another.
+// A rectangle of texels that is copied to another texture.
 struct Move {
   std::shared_ptr<const FeatureTexture> from;
   TexelRect rect;    // in `from`
-  int x = 0, y = 0;  // where its corner comes to lie
+  int x = 0, y = 0;  // destination of its top left texel
 };
 
 // A part of a move that lies in one tile of its source.
@@ -40,7 +41,7 @@ struct TilePart {
   TexelRect rect;
 };
 
-// The parts of moves whose texels come to lie in rows `first` … `first + count - 1`, one source tile after the other.
+// The parts of moves whose destination is in rows `first` … `first + count - 1`, grouped by source tile.
 std::vector<TilePart> parts_in_rows(const std::vector<Move>& moves, int first, int count) {
   std::vector<TilePart> parts;
   for (const Move& move : moves) {
@@ -64,7 +65,7 @@ TexelRows moved_texels(const Page& page, AlphaCode code, std::vector<Move> moves
   return {
       page.width, page.height, [shared, code, width = page.width](int first, int count, Texel* rows) {
         std::fill_n(rows, static_cast<std::ptrdiff_t>(width) * count, empty_texel(code));
-        // Every source tile is unpacked once.
+        // Each source tile is unpacked once.
         std::shared_ptr<const TexelTile::Texels> texels;
         const TilePart* unpacked = nullptr;
         const std::vector<TilePart> parts = parts_in_rows(*shared, first, count);
@@ -140,7 +141,7 @@ std::vector<PackedPage> packed_pages(const std::vector<TextureSet>& sets, int la
   std::stable_sort(places.begin(), places.end(), [&](const Place& a, const Place& b) {
     return std::pair(rect_at(a).height(), rect_at(a).width()) > std::pair(rect_at(b).height(), rect_at(b).width());
   });
-  // Nearly square pages, a whole number of the widest patch across.
+  // Nearly square pages, whose width is a multiple of the widest patch.
   const auto side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(area))));
   const int width = std::min(largest_side / widest * widest, std::max(1, (side + widest - 1) / widest) * widest);
   std::vector<Page> pages(1);
@@ -190,7 +191,8 @@ std::vector<PackedPage> packed_pages(const std::vector<TextureSet>& sets, int la
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const Soup& soup = sets[s].soup;
     const double old_width = sets[s].texels->width(), old_height = sets[s].texels->height();
-    // A vertex lies in one patch: faces that share it share its texel. So one pass over the vertices keeps their order.
+    // A vertex belongs to one patch, because the faces that share it share its texel. So one pass over the vertices
+    // preserves their order.
     std::vector<std::size_t> patch_of_vertex(soup.positions().size(), absent);
     for (std::size_t f = 0; f < soup.faces().size(); ++f)
       for (const std::uint32_t vertex : soup.faces()[f]) patch_of_vertex[vertex] = patches[s].of_face[f];

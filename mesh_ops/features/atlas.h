@@ -16,13 +16,13 @@ struct PackedSets {
   std::uint64_t texel_area = 0;  ///< width × height over all new textures
 };
 
-/// A repacked texture that is not created yet, and the triangles that use it.
+/// A repacked texture before its creation, with the triangles that use it.
 struct PackedPage {
   Soup soup;
   TexelRows texels;  ///< reads from the sets' textures, which it owns
 };
 
-/// Identifies a patch of a set.
+/// Identifies a patch of texels (texel_patches) in a list of texture sets.
 struct PatchNumber {
   std::size_t set = 0, patch = 0;
   bool operator==(const PatchNumber&) const = default;
@@ -31,9 +31,9 @@ struct PatchNumber {
 using ShownBy = std::vector<std::vector<PatchNumber>>;
 
 /// Moves the used patches of texels bit for bit into new textures and drops the rest. UVs move by whole texels, so
-/// nearest sampling finds the same texels. Positions, rotations and the order of faces within a texture are kept.
-/// Textures with another alpha code are converted to `code` (from plain to halved loses the lowest bit of alpha, as in
-/// the published exporter). `shown_by` replaces patches by representatives. Throws Error for a patch larger than
+/// nearest sampling finds the same texels. Positions, rotations and the order of faces within a texture are preserved.
+/// Textures with another alpha code are converted to `code`; plain to halved loses the lowest bit of alpha, as in the
+/// published exporter. `shown_by` replaces patches by representatives. Throws Error for a patch larger than
 /// `largest_side` and for UVs outside [0, 1].
 PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code, const ShownBy& shown_by = {});
 

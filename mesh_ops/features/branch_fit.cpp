@@ -16,17 +16,17 @@ namespace rebake {
 
 namespace {
 
-// Squared error of pixels along a texel of border between branches, in display colours. From 0.001 to 0.01 the bent
-// ficus comes out the same; 0.03 loses 0.2 dB, and 0 (each sixteen texels for themselves) 1.7.
+// Smoothness cost: squared error in display colours per texel of border between two branches, whose pixels mix. On the
+// bent ficus, 0.001 to 0.01 give the same result, 0.03 loses 0.2 dB, and 0 (no smoothness) loses 1.7 dB.
 constexpr double mixed_error = 0.01;
-// What is not to be.
+// Cost of a branch that a block must not use.
 constexpr double never = 1e6;
-// Of a block, to tell its branch by.
+// Numbers of groups and of directions per block that are sampled to choose its branch.
 constexpr std::size_t groups_looked_at = 4, directions_looked_along = 8;
 
-// Blocks that texels of both may be mixed in one pixel of, and what that costs.
+// Pairs of adjacent blocks, whose texels may be mixed in one pixel, with the cost of different branches.
 std::vector<LabelBorder> borders_of(const Composition& composition) {
-  // Of all pages' triangles: their corners' places, whatever patches they are of, and their blocks.
+  // The triangles of all pages: their welded corners, across patches, and the blocks of each.
   BakedObject all;
   all.sets = composition.pages;
   std::vector<std::shared_ptr<const WeldedSet>> welded;
@@ -59,14 +59,14 @@ std::vector<LabelBorder> borders_of(const Composition& composition) {
       const std::array<Vec2, 3> corners = texel_corners(all.sets[page], f - first[page]);
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec2 &from = corners[k], &to = corners[(k + 1) % 3], middle = (from + to) / 2;
-        // The block that lies at the edge.
+        // The block nearest to the middle of the edge.
         const std::uint32_t block = *std::min_element(
             blocks.begin(), blocks.end(),
             [&](std::uint32_t a, std::uint32_t b) { return distance(a, middle) < distance(b, middle); });
         const auto [low, high] = std::minmax(places[3 * f + k], places[3 * f + (k + 1) % 3]);
         sides.push_back({low, high, block, (to - from).norm()});
       }
-      // Blocks that one patch was cut into: beside each other, not at a corner only.
+      // Blocks of one patch are adjacent if they share a side, not only a corner.
       for (std::size_t i = 0; i < blocks.size(); ++i)
         for (std::size_t j = i + 1; j < blocks.size(); ++j) {
           const TexelRect &a = composition.blocks[blocks[i]].rect, &b = composition.blocks[blocks[j]].rect;
@@ -111,7 +111,7 @@ void BranchFit::fit(std::uint32_t branch, const Composition::Part& part, const T
                     const std::vector<Sighting>& sightings, const TexelFit& how, Lanes* features, Lanes* error,
                     Lanes* work) const {
   const bool exact = shown_exactly(student_, part);
-  // In the branch's own features, of which none lies in another's sector.
+  // Fitted in the branch's own features, which are always stored within its sector.
   fit_own(branch, group, sightings, exact ? 0 : how.iterations, features, error, work);
   store_in(student_.branches[branch], features);
   TexelFit rounding = how;
@@ -124,7 +124,7 @@ void BranchFit::fit(std::uint32_t branch, const Composition::Part& part, const T
 std::vector<std::optional<std::uint32_t>> BranchFit::choose(const Sightlines& sightlines, std::size_t iterations,
                                                             const Progress& progress) const {
   std::vector<std::optional<std::uint32_t>> result(composition_.blocks.size());
-  // Only side by side are branches apart.
+  // Only side-by-side students have separate branches.
   if (student_.encoder) return result;
   const auto branches_of = [&](const Composition::Block& block) -> const std::vector<std::uint32_t>& {
     return branches_of_[composition_.parts[block.part].teacher];
@@ -138,7 +138,7 @@ std::vector<std::optional<std::uint32_t>> BranchFit::choose(const Sightlines& si
     const Composition::Part& part = composition_.parts[block.part];
     const std::vector<std::uint32_t>& branches = branches_of(block);
     if (branches.empty()) {
-      // It is fitted in any, and has no say in its neighbours'.
+      // The teacher has no branch: any branch will do, and neighbours are not influenced.
       costs[b].assign(student_.branches.size(), 0);
       return;
     }
@@ -167,7 +167,7 @@ std::vector<std::optional<std::uint32_t>> BranchFit::choose(const Sightlines& si
       }
     }
   };
-  // Between these it can be stopped.
+  // Number of blocks between checks for cancellation.
   constexpr std::size_t at_once = 128;
   for (std::size_t first = 0; first < costs.size(); first += at_once) {
     progress.at("choosing branches", static_cast<double>(first) / static_cast<double>(costs.size()));

@@ -7,18 +7,19 @@
 
 namespace rebake {
 
-/// Fits texels within the branches of a side-by-side student. A pixel that mixes texels of two branches shows the
-/// colours of neither, and so does a texel whose features leave the sector of its branch.
+/// Fits texels within the branches of a side-by-side student. Every texel is stored by one branch, because two things
+/// show wrong colours: a pixel that mixes texels of two branches, and a texel whose features leave the sector of its
+/// branch.
 class BranchFit {
  public:
-  /// Both must outlive this object.
+  /// Both references must outlive this object.
   BranchFit(const Composition& composition, const Student& student);
 
-  /// Per block: the branch that stores its texels; nothing if any may. Neighbours on the surface get the same branch if
-  /// that costs little.
+  /// Chooses a branch per block; nothing if any branch may store its texels. Neighbours on the surface get the same
+  /// branch if that costs little. `iterations`: Gauss–Newton iterations per trial.
   std::vector<std::optional<std::uint32_t>> choose(const Sightlines& sightlines, std::size_t iterations,
                                                    const Progress& progress) const;
-  /// Fits the features of a group in a branch; results as NetworkKernels::fit_texels().
+  /// Fits the features of a group to its observations within a branch; outputs as NetworkKernels::fit_texels().
   void fit(std::uint32_t branch, const Composition::Part& part, const TexelGroup& group,
            const std::vector<Sighting>& sightings, const TexelFit& how, Lanes* features, Lanes* error,
            Lanes* work) const;
@@ -29,8 +30,8 @@ class BranchFit {
 
   const Composition& composition_;
   const Student& student_;
-  std::vector<FeatureNetwork> networks_;                 ///< per branch
-  std::vector<std::vector<std::uint32_t>> branches_of_;  ///< per teacher; rigid branches first
+  std::vector<FeatureNetwork> networks_;                 ///< per branch: its teacher, with the branch's rotation
+  std::vector<std::vector<std::uint32_t>> branches_of_;  ///< per teacher: indices of its branches, the rigid one first
 };
 
 }  // namespace rebake

@@ -20,13 +20,13 @@ namespace rebake {
 namespace {
 
 constexpr const char* part_attribute = "part";
-// Where a vertex lies in its part's light chart, as LightChart::places.
+// Vertex attribute: position in the part's light chart, as LightChart::places.
 constexpr const char* light_attribute = "light place";
 
-// Rays that differ by more than this angle's chord (10°) want texels of their own.
+// Frobenius distance of two rotations (about 10°) above which triangles need separate copies of their texels.
 constexpr double turned_apart = 0.25;
 
-// The triangles of one class of a set, in world space.
+// The flagged triangles of a set in world space, with their part number and, if lit, their places in the light chart.
 TextureSet in_world(const TextureSet& set, const TriangleSet& flags, const Affine& to_world, const Mat3& node_turn,
                     bool bent, std::uint32_t part, const LightMap* light) {
   Soup whole = set.soup;
@@ -55,7 +55,7 @@ Mat3 turn_of(const Soup& soup, std::uint32_t vertex) {
   return soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*soup.rotations())[vertex].matrix();
 }
 
-// Sets in which no texel is used by triangles that are turned far apart.
+// Splits a set so that no texel is used by triangles whose rotations differ by more than turned_apart.
 std::vector<TextureSet> without_clashes(const TextureSet& set) {
   if (set.soup.rotations() == nullptr) return {set};
   const auto& faces = set.soup.faces();
@@ -88,7 +88,7 @@ std::uint32_t part_of(const TextureSet& page, std::size_t face) {
   return parts == nullptr ? 0 : (*parts)[face];
 }
 
-// How the triangles of a teacher are turned on the whole: not at all where some are not bent.
+// Mean rotation of a teacher's triangles; the identity if one of its parts is not bent.
 Mat3 frame_of(const Composition& composition, const std::vector<TextureSet>& sets, std::size_t teacher) {
   Mat3 sum = Mat3::Zero();
   for (const TextureSet& set : sets) {
@@ -100,7 +100,7 @@ Mat3 frame_of(const Composition& composition, const std::vector<TextureSet>& set
   return local_rotation(sum).rotation;
 }
 
-// Texels that a sample on a face can find, within a rectangle: their centres lie at most a texel outside.
+// The texels within a rectangle that nearest sampling on a face may read: its bounding box with a margin of one texel.
 TexelRect near_texels(const std::array<Vec2, 3>& corners, const TexelRect& within) {
   const Vec2 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).array() - 1,
              high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).array() + 1;
@@ -124,7 +124,7 @@ void add_blocks(Composition& result, std::uint32_t number) {
   constexpr int side = Composition::block_side;
   const auto columns = [](const TexelRect& rect) { return (rect.width() + side - 1) / side; };
   const std::size_t before = result.blocks.size();
-  std::vector<std::size_t> first_block;  // of a patch, row by row
+  std::vector<std::size_t> first_block;  // per patch; its blocks are row-major
   for (const TexelRect& rect : patches.rects) {
     first_block.push_back(result.blocks.size());
     for (int top = rect.top; top <= rect.bottom; top += side)
@@ -137,7 +137,7 @@ void add_blocks(Composition& result, std::uint32_t number) {
              0,
              0});
   }
-  // The blocks that a face comes near: counted first, then listed.
+  // Visits the blocks that a face may read: first to count them, then to list them.
   const auto for_each_block = [&](std::size_t face, auto&& visit) {
     const std::size_t patch = patches.of_face[face];
     const TexelRect& rect = patches.rects[patch];
@@ -161,7 +161,7 @@ void add_blocks(Composition& result, std::uint32_t number) {
       result.faces[block.first_face + block.face_count++] = static_cast<std::uint32_t>(f);
     });
   tbb::parallel_for(before, result.blocks.size(), [&](std::size_t b) {
-    // What no face comes near is never seen.
+    // Texels that no face reads are never visible.
     if (result.blocks[b].face_count > 0)
       result.blocks[b].opaque = opaque_texels_in(*page.texels, result.blocks[b].rect);
   });
@@ -204,7 +204,7 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
     }
     result.forward = result.forward && object.axes == Axes::forward;
     const TurnGroups groups = turn_groups(object);
-    // What light changes is a part of its own, set by set.
+    // Triangles with a light map form a separate part per texture set.
     std::map<std::pair<std::uint32_t, const LightMap*>, std::uint32_t> part_of_group;
     std::size_t first = 0;
     for (std::size_t s = 0; s < object.sets.size(); ++s) {
@@ -254,7 +254,7 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
     if (part.light && !part.bent) {
       sets.push_back(whole);
     } else if (!part.bent) {
-      // Copies that one decoder shows alike go on sharing their texels.
+      // Copies of an object that use the same decoder share their texels.
       const auto [it, fresh] = shared.try_emplace({whole.texels.get(), part.teacher}, sets.size());
       if (fresh)
         sets.push_back(whole);
@@ -283,8 +283,8 @@ std::vector<TexelSite> sites_of(const Composition& composition, const Compositio
   const TextureSet& page = composition.pages[block.page];
   const TexelRect& rect = block.rect;
   const int width = rect.width(), height = rect.height();
-  // For each texel the triangle that its centre lies in, or else the nearest: what a sample finds may lie half a texel
-  // outside of it.
+  // Per texel: the triangle that contains its centre, else the nearest one, because nearest sampling may read texels
+  // whose centre is half a texel outside.
   constexpr auto none = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> face_at(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), none);
   std::vector<double> outside(face_at.size(), std::numeric_limits<double>::infinity());

@@ -33,7 +33,7 @@ Vec3 nearest_weights(const std::array<Vec2, 3>& p, const Vec2& at) {
   return best;
 }
 
-// Visits the opaque texels whose square the triangle may meet.
+// Visits the opaque texels that the triangle may overlap.
 template <class Visit>
 void for_each_opaque_texel_touched(const FeatureTexture& texels, const std::array<Vec2, 3>& p, Visit visit) {
   const auto texel = [](double v, int size) { return static_cast<int>(std::clamp(std::floor(v), 0.0, size - 1.0)); };
@@ -43,7 +43,7 @@ void for_each_opaque_texel_touched(const FeatureTexture& texels, const std::arra
       if (!texels.opaque(x, y)) continue;
       const Vec2 centre(x + 0.5, y + 0.5);
       const Vec3 w = nearest_weights(p, centre);
-      // The nearest point, clamped as sampling clamps it, must lie in the texel's square.
+      // The nearest point, clamped to the texture like a sample, must lie in the texel's square.
       const Vec2 place = (p[0] * w[0] + p[1] * w[1] + p[2] * w[2])
                              .cwiseMax(Vec2(0, 0))
                              .cwiseMin(Vec2(texels.width(), texels.height()));

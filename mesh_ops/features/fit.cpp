@@ -14,10 +14,10 @@ namespace rebake {
 
 namespace {
 
-constexpr std::size_t lanes = network_lanes;  // observations that are evaluated at once
-constexpr std::size_t block_texels = 64;      // gradients are summed a block at a time, in a fixed order
+constexpr std::size_t lanes = network_lanes;  // observations per SIMD batch
+constexpr std::size_t block_texels = 64;      // texels per partial sum of gradients, which are added in a fixed order
 constexpr std::size_t batch_texels = 1024;
-constexpr std::size_t seen_a_pass = 8;  // observations of a texel in one pass
+constexpr std::size_t seen_a_pass = 8;  // observations per texel and epoch
 
 float decoded(const std::array<std::uint8_t, 8>& bytes, std::size_t c) {
   return c % 4 == 3 ? static_cast<float>(2 * bytes[c] - 255) / 255 : static_cast<float>(bytes[c]) / 255;
@@ -49,7 +49,7 @@ class Fitter {
     if (!problem.hints.empty() && problem.hints.size() != problem.texel_count)
       throw std::invalid_argument("a fit needs a hint for each texel, or none");
     randomise(net_, options.seed);
-    // Texels start at their mean colour, so that like texels have like features.
+    // Features 0–2 start at the texel's mean colour, so that similar texels get similar features.
     for (std::size_t t = 0; t < problem.texel_count; ++t) {
       for (std::size_t c = 0; c < 8; ++c) {
         float mean = 0.5F;
@@ -99,7 +99,8 @@ class Fitter {
   }
   float rate_at(double share) const { return static_cast<float>(options_.learning_rate) * falling_rate(share); }
 
-  // Squared error of one group of observations; adds to the network's gradient and writes the inputs', where wanted.
+  // Squared error of one batch of observations. Adds to the network's `gradient` and writes `input_gradient`, unless
+  // they are null.
   float evaluate(const std::array<Lanes, decoder_inputs>& input, const std::array<Lanes, 3>& target, Lanes* gradient,
                  Lanes* input_gradient, Lanes* work) const {
     const NetworkKernels& kernels = network_kernels();
@@ -121,7 +122,7 @@ class Fitter {
     return fixed_.empty() ? 1 / (1 + std::exp(-logits_[texel * 8 + c])) : decoded(fixed_[texel], c);
   }
 
-  // One pass over all texels, some observations each; returns the mean squared error.
+  // One epoch over all texels, with a random sample of their observations. Returns the mean squared error.
   double pass(int epoch, float rate, bool move_texels) {
     std::mt19937 random(options_.seed * 9176U + static_cast<unsigned>(epoch));
     std::shuffle(order_.begin(), order_.end(), random);
@@ -143,7 +144,8 @@ class Fitter {
           for (std::size_t l = 0; l < lanes; ++l) {
             texel[l] = order_[std::min(group + l / seen_a_pass, last - 1)];
             const std::size_t seen = texel[l] * problem_.observations_a_texel + pick() % problem_.observations_a_texel;
-            // A fifth is shown as at an edge, where the rule scales features and directions by coverage.
+            // A fifth of the observations is at an edge, where the rendering rule scales features and directions by
+            // coverage.
             const auto dice = pick() % 15;
             coverage.at[l] = dice < 3 ? 0.25F * static_cast<float>(dice + 1) : 1.0F;
             for (std::size_t c = 0; c < 8; ++c) input[c].at[l] = coverage.at[l] * feature(texel[l], c);

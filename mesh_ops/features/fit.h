@@ -9,12 +9,12 @@
 
 namespace rebake {
 
-/// Observed colours of texels, with an equal number of observations per texel.
+/// Input of fit(): observed colours of texels along view directions, with an equal number of observations per texel.
 struct FitProblem {
   std::size_t texel_count = 0;
   std::size_t observations_a_texel = 0;
-  std::vector<std::array<float, 3>> fed_directions;  ///< texel-major, unit length, in the decoder's axes
-  std::vector<std::array<float, 3>> colors;          ///< texel-major, display colours 0 … 1
+  std::vector<std::array<float, 3>> fed_directions;  ///< [texel][observation], unit, in the decoder's axes
+  std::vector<std::array<float, 3>> colors;          ///< [texel][observation], display colours 0 … 1
   std::vector<std::array<float, 5>>
       hints;  ///< empty, or per texel initial values 0 … 1 of features 3–7, such as its normal
 };
@@ -29,8 +29,8 @@ struct FitOptions {
 struct FitResult {
   Decoder decoder;
   std::vector<std::array<std::uint8_t, 8>>
-      features;                             ///< quantised as in split folders: halved alpha, feature 0 at least 1
-  std::vector<double> mean_squared_error;   ///< per epoch, over the observations used
+      features;  ///< [texel][feature], quantised as in split folders: halved alpha, feature 0 at least 1
+  std::vector<double> mean_squared_error;   ///< per epoch, over the sampled observations
   double quantised_mean_squared_error = 0;  ///< over all observations, after quantisation
 };
 

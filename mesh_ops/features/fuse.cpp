@@ -23,7 +23,7 @@ constexpr std::size_t fitted_directions = 24, judged_directions = 8;
 
 double psnr_of(double mean_square) { return mean_square > 0 ? std::min(100.0, -10 * std::log10(mean_square)) : 100; }
 
-// How many texels have which error, by tenths of a decibel.
+// Histogram of the texels' errors, in bins of 0.1 dB PSNR.
 struct Histogram {
   static constexpr std::size_t bins = 1001;
   std::vector<std::uint64_t> count = std::vector<std::uint64_t>(bins);
@@ -63,7 +63,7 @@ double weight_of(const std::vector<Sighting>& sightings) {
   return sum;
 }
 
-// Mean squared error of a group's texels over some sightings.
+// Mean squared error of a group's texels over some observations.
 double error_over(const Student& student, const std::vector<Sighting>& sightings, std::size_t texels, Lanes* features,
                   Lanes* work) {
   Lanes error;
@@ -75,12 +75,13 @@ double error_over(const Student& student, const std::vector<Sighting>& sightings
 
 struct Judgement {
   double psnr_db = 100;
-  std::string node;  ///< whose PSNR it is
+  std::string node;  ///< the worst node
 };
 
-// PSNR over the sample of the node that suffers most, about as fitting would leave it (side by side, that keeps to one
-// branch per block): of texels alone or as pixels mix them, whichever is worse. A picture shows the one or the other,
-// by its distance. Texels are averaged within a node only: a node of few texels may fill the picture.
+// Estimates the PSNR of the worst node after fitting, on the sample: of single texels or of texels mixed as in pixels,
+// whichever is lower, because pictures show either, depending on distance. Errors are averaged within a node only,
+// because a node of few texels may fill a picture. A fit of a side-by-side student also keeps to one branch per block,
+// which is ignored here.
 Judgement judged(const Student& student, const Composition& composition, const TexelSample& sample,
                  const FuseOptions& options, const Progress& progress) {
   const std::vector<FeatureNetwork> teachers = networks_of(composition);
@@ -111,7 +112,7 @@ Judgement judged(const Student& student, const Composition& composition, const T
     errors[k] = {error_over(student, alone, piece.group.count, features, work.data()),
                  error_over(student, mixed, piece.group.count, features, work.data())};
   });
-  // A part counts by its texels, whatever its share of the sample.
+  // Parts are weighted by their texels, not by their share of the sample.
   std::vector<double> texels(composition.parts.size()), pieces(texels.size());
   std::vector<Errors> sums(texels.size());
   for (const Composition::Block& block : composition.blocks) texels[block.part] += block.opaque;
@@ -143,11 +144,12 @@ Judgement judged(const Student& student, const Composition& composition, const T
   return worst;
 }
 
-// The teacher of most texels, or of most of those that a node shows rigidly.
+// The teacher with most texels, or with Keep::node the one with most unbent triangles of that node. Throws FieldError
+// if there are none.
 std::size_t base_of(const Composition& composition, const FuseOptions& options) {
   std::vector<std::uint64_t> texels(composition.teachers.size());
   const bool one = options.keep == FuseOptions::Keep::node;
-  // Texels that copies share count as the first one's: so what a node shows is told by its triangles.
+  // Shared texels count for the first copy only, so the teachers of a node are ranked by triangles.
   if (one)
     for (const Composition::Part& part : composition.parts)
       if (part.node == options.keep_node && !part.bent) texels[part.teacher] += part.triangles;
@@ -167,7 +169,7 @@ int width_of(const Student& student) {
 struct FittedBlock {
   std::vector<TexelSite> sites;
   std::vector<std::array<std::uint8_t, texel_features>> bytes;
-  std::vector<float> errors;  // mean squared, a texel
+  std::vector<float> errors;  // mean squared error per texel
 };
 
 FittedBlock fitted(const Composition& composition, const Sightlines& sightlines, const Student& student,
@@ -232,7 +234,7 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   TrainingOptions training = options.training;
   if (options.seconds > 0) {
     plan.until = after(options.seconds);
-    // A third of the time for decoders: features gain more by what is left.
+    // A third of the time is for training decoders: the fit of features gains more from the rest.
     training.until = after(options.seconds / 3);
   }
   const auto late = [&] { return training.until && Clock::now() > *training.until; };
@@ -271,7 +273,8 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   };
   const auto reaches = [&](const FuseCandidate& c) { return c.trial.psnr_db >= options.psnr_db; };
   const auto any_reaches = [&] { return std::any_of(candidates.begin(), candidates.end(), reaches); };
-  // Quickest to make, so first; more turns of bent parts only where they are needed.
+  // Side-by-side students are built first, because they are quickest. More rotations of bent parts are added only until
+  // the target is reached.
   const auto beside = [&](std::size_t first, std::size_t last) {
     for (std::size_t bent_turns = first; bent_turns <= last && wants(FuseWay::side_by_side) && !any_reaches();
          ++bent_turns) {
@@ -298,7 +301,8 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   const bool kept_is_enough =
       !candidates.empty() && candidates.back().trial.way == FuseWay::keep && reaches(candidates.back());
   beside(2, most_branches - 1);
-  // Doubling a width gains about 2 dB: where the narrower one is far off, the next need not be tried.
+  // Doubling the width gains about 2 dB. Once a candidate reaches the target, further widths are tried only while the
+  // last one was within 6 dB of it.
   constexpr double hopeless = 6;
   double last = options.psnr_db;
   std::vector<int> widths{16, 24, 32};
@@ -315,7 +319,7 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
       begun = Clock::now();
       last = consider(adapted(*kept, composition, sample, wide, training, progress), FuseWay::train, begun);
     }
-    // Of one teacher's texels none is strange to its decoder.
+    // Training from scratch is skipped for a single teacher, whose decoder already suits all texels.
     if (wants(FuseWay::scratch) && (composition.teachers.size() > 1 || candidates.empty() || options.way)) {
       begun = Clock::now();
       last = std::max(last,
@@ -325,12 +329,12 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   }
   if (candidates.empty())
     throw FieldError("width", fmt::format("is {}, but the decoder to be trained has {}", *options.width, base_width));
-  // When nobody said what to reach, 50 dB are worth a wider decoder.
+  // Unless `until_psnr` is set, a candidate of 50 dB is preferred even if it is wider.
   constexpr double as_good_as_exact = 50;
   const auto excels = [&](const FuseCandidate& c) {
     return !options.until_psnr && c.trial.psnr_db >= std::max(as_good_as_exact, options.psnr_db);
   };
-  // The narrowest that is good enough, or else the best.
+  // Prefers the narrowest that is good enough, else the best.
   const auto better = [&](const FuseCandidate& a, const FuseCandidate& b) {
     if (!options.width) {
       if (excels(a) != excels(b)) return excels(a);
@@ -355,11 +359,11 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
   std::vector<std::optional<FeatureTexture::Change>> pages;
   for (const TextureSet& page : composition.pages) pages.emplace_back(*with_alpha_code(page.texels, code));
 
-  // Halving alphas that were plain takes their lowest bit: such texels are rounded anew, and measured.
+  // Converting plain to halved alpha loses the lowest bit, so these texels are rounded again and measured.
   const auto kept = [&](const Composition::Part& part) {
     return stays(student, part) && !(part.plain_alpha && code == AlphaCode::halved);
   };
-  // The blocks to fit, in the order in which they are.
+  // The blocks to fit, in fitting order.
   std::vector<std::size_t> order;
   for (std::size_t b = 0; b < composition.blocks.size(); ++b)
     if (!kept(composition.parts[composition.blocks[b].part])) order.push_back(b);
@@ -369,7 +373,7 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
   std::vector<std::vector<float>> errors(composition.blocks.size());
   const BranchFit branches(composition, student);
   const auto branch_of = branches.choose(sightlines, static_cast<std::size_t>(options.iterations), progress);
-  // False where time ended it.
+  // Fits the blocks in `order`. Returns false if the time limit ended it.
   const auto pass = [&](const TexelFit& fit, const char* what, bool may_stop) {
     constexpr std::size_t at_once = 128;
     std::vector<FittedBlock> results;
@@ -398,7 +402,8 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
     return true;
   };
   if (options.iterations > 0 && (plan.until || options.until_psnr)) {
-    // A guess of all first; then the worst, as long as there is need and time.
+    // First an initial guess of all blocks. Then the worst blocks are fitted first, until the target or the time limit
+    // is reached.
     pass({0, levels.data(), false}, "guessing features", false);
     std::vector<double> mean(errors.size());
     for (const std::size_t b : order)
@@ -420,7 +425,7 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
     report.fitted_texels += errors[b].size();
     if (kept(composition.parts[block.part])) histogram.add_exact(block.opaque);
   }
-  // By node: of its bent and its rigid parts what is kept and what is fitted.
+  // Errors per node, separately for kept and fitted texels.
   std::vector<std::pair<NodeId, bool>> keys;
   std::vector<Histogram> of_key;
   for (std::size_t p = 0; p < of_part.size(); ++p) {

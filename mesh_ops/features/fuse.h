@@ -10,21 +10,24 @@
 
 namespace rebake {
 
+/// Options of plan_fuse() and fuse().
 struct FuseOptions {
-  /// Maximum width of the hidden layers, 4 … 256; nothing: the narrowest that reaches `psnr_db`, else the best. Widths
-  /// 16, 24 and 32 are trained while improvement is possible; other methods are as wide as their sources.
+  /// Maximum width of the hidden layers, 4 … 256. Nothing: the narrowest that reaches `psnr_db`, else the best. Trained
+  /// decoders have widths 16, 24 and 32, as long as improvement is possible; other methods are as wide as their
+  /// sources.
   std::optional<int> width;
   enum class Keep { automatic, none, node };
-  /// The node whose texels and decoder stay bit for bit. `automatic`: the one with most texels, if that is better
-  /// overall.
+  /// Which texels and decoder stay bit for bit: those of `keep_node`, none, or with `automatic` the decoder with most
+  /// texels, if that is better overall.
   Keep keep = Keep::automatic;
   NodeId keep_node = NodeId::none;
-  std::optional<FuseWay> way;  ///< nothing: the best
-  double psnr_db = 40;
-  bool until_psnr = false;  ///< fit texels, worst first, only until `psnr_db` is reached
-  /// Time limit if above 0; all texels get at least an initial guess. The resulting bytes then depend on timing.
+  std::optional<FuseWay> way;  ///< the method; nothing: the best
+  double psnr_db = 40;         ///< target PSNR of texels, above 0 and at most 100
+  bool until_psnr = false;     ///< fit texels, worst first, only until `psnr_db` is reached
+  /// Time limit in seconds; 0: none. All texels get at least an initial guess. With a limit, the resulting bytes depend
+  /// on timing.
   double seconds = 0;
-  int iterations = 5;          ///< Gauss–Newton iterations per texel; 0: features of the fitted map
+  int iterations = 5;          ///< Gauss–Newton iterations per texel; 0: features are only guessed and rounded
   bool search = true;          ///< search neighbouring bytes for better ones
   int bits = 8;                ///< bits per feature, 4 … 8
   std::size_t sample = 16384;  ///< number of texels for training and scoring decoders
@@ -32,13 +35,13 @@ struct FuseOptions {
   Layout layout = Layout::split;
 };
 
-/// Score of a method on a sample of the texels: PSNR of the worst node over held-out directions, of single texels or of
-/// texels mixed as in pixels, whichever is lower.
+/// Score of a method on a sample of the texels: PSNR of the worst node over held-out directions. The lower value of
+/// single texels and of texels mixed as in pixels.
 struct FuseTrial {
   int width = 0;  ///< width of the wider hidden layer
   FuseWay way = FuseWay::keep;
   double psnr_db = 0;
-  std::string worst_node{};  ///< the worst node; empty if all nodes are exact
+  std::string worst_node{};  ///< name of the node with the lowest PSNR; empty if all nodes are exact
   double seconds = 0;        ///< training and scoring time
   double fit_seconds = 0;    ///< estimated time of fitting all texels
 };
@@ -47,15 +50,16 @@ struct FuseTrial {
 struct TexelErrors {
   std::uint64_t texels = 0;
   double psnr_db = 100;        ///< PSNR of the mean squared error, at most 100
-  double worst_psnr_db = 100;  ///< reached by 99 % of the texels
+  double worst_psnr_db = 100;  ///< PSNR that 99 % of the texels reach, at most 100
 };
 
+/// Result of a fit, per node and overall.
 struct FuseReport {
   struct Part {
     std::string node;
     bool kept = false;  ///< texels stay bit for bit
     TexelErrors errors;
-    std::string shares{};  ///< for a copy without texels of its own: the node that counts them
+    std::string shares{};  ///< for a copy without texels of its own: the node that its texels are counted for
   };
   std::vector<Part> parts;  ///< nodes in drawing order; those with both kept and fitted texels appear twice
   TexelErrors whole;
@@ -71,6 +75,7 @@ struct FuseCandidate {
   Student student;
   FuseTrial trial;
 };
+/// All candidates and the chosen one.
 struct FusePlan {
   std::vector<FuseCandidate> candidates;
   std::size_t chosen = 0;
@@ -83,8 +88,9 @@ struct FusePlan {
 FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines, const FuseOptions& options,
                    const Progress& progress = {});
 
+/// Result of fuse().
 struct Fused {
-  std::shared_ptr<const BakedObject> object;  ///< in world space; shows the whole composition
+  std::shared_ptr<const BakedObject> object;  ///< the fused object, in world space
   FuseReport report;
 };
 
@@ -93,7 +99,7 @@ struct Fused {
 Fused fuse(const Composition& composition, const Sightlines& sightlines, const FusePlan& plan,
            const FuseOptions& options, const Progress& progress = {});
 
-/// Throws FieldError.
+/// Validates the options. Throws FieldError that names the invalid one.
 void check(const FuseOptions& options);
 
 }  // namespace rebake

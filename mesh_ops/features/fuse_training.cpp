@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t encoder_hidden0 = 64, encoder_hidden1 = 32;
 constexpr std::size_t trained_directions = 48, held_out_directions = 16;
-// Gradients are summed in this many parts, whatever the number of threads, and then in order.
+// Number of partial sums of gradients. They are added in order, so that results do not depend on the number of threads.
 constexpr std::size_t gradient_parts = 8;
 
 struct Gradients {
@@ -35,7 +35,7 @@ struct Gradients {
   }
 };
 
-// What each lane's share of the slopes of means is.
+// Transpose of mixed(): distributes the gradient of the means over the lanes.
 void unmix(const Lanes& slopes, std::uint32_t way, Lanes& to) {
   for (std::size_t l = 0; l < network_lanes; ++l) {
     const auto other = [&](std::size_t k) { return slopes.at[(l + network_lanes * way - k * way) % network_lanes]; };
@@ -49,12 +49,12 @@ void set_direction(const Vec3& direction, float coverage, Lanes* input) {
                 coverage * static_cast<float>(direction[static_cast<Eigen::Index>(axis)]));
 }
 
-// Everything that a step needs beside the networks.
+// Training data: a sample with its teachers and signatures.
 struct Lesson {
   const Composition& composition;
   const TexelSample& sample;
   std::vector<FeatureNetwork> teachers = networks_of(composition);
-  std::vector<std::vector<Lanes>> signatures;  // of each piece
+  std::vector<std::vector<Lanes>> signatures;  // per piece
 
   Lesson(const Composition& c, const TexelSample& s) : composition(c), sample(s), signatures(s.pieces.size()) {
     tbb::parallel_for(std::size_t{0}, signatures.size(), [&](std::size_t k) {
@@ -73,7 +73,7 @@ struct Lesson {
   }
 };
 
-// Decoder (unless it is frozen) and encoder together: colours through the features between them.
+// Trains the encoder, and the decoder if `decoder_moves`, end to end on the error of colours.
 void train_together(Student& student, const Lesson& lesson, int steps, bool decoder_moves, double rate,
                     const TrainingOptions& options, const Progress& progress) {
   const NetworkKernels& kernels = network_kernels();
@@ -164,12 +164,12 @@ TexelSample sampled(const Composition& composition, const Sightlines& sightlines
   for (std::uint32_t part = 0; part < composition.parts.size(); ++part) {
     if (texels_of_part[part] == 0) continue;
     const auto share = static_cast<double>(texels_of_part[part]) / static_cast<double>(composition.opaque_texels);
-    // A small part may fill the picture: each has at least a share of an eighth of the sample.
+    // A small part may fill a picture, so an eighth of the sample is divided equally among the parts.
     const std::size_t least = std::min<std::size_t>(wanted / (8 * composition.parts.size()),
                                                     static_cast<std::size_t>(texels_of_part[part]) / network_lanes);
     const std::size_t groups =
         std::max({std::size_t{2}, least, static_cast<std::size_t>(std::lround(share * static_cast<double>(wanted)))});
-    // Evenly along the part's texels, so that none of it is missed.
+    // Stratified along the part's texels, so that no region is missed.
     std::uint64_t passed = 0;
     std::size_t at = 0;
     const double offset = dice.share();
@@ -231,7 +231,7 @@ Student adapted(const Student& student, const Composition& composition, const Te
   Student result = student;
   result.keeps = result.exact = false;
   result.decoder = widened(student.decoder, width, options.seed + 5);
-  // Gently, so that what it can already is not lost.
+  // Half the learning rate, so that the decoder does not forget its teacher.
   train_together(result, Lesson(composition, sample), options.steps, true, options.rate / 2, options, progress);
   return result;
 }
@@ -251,7 +251,7 @@ std::array<FeatureLevels, texel_features> feature_levels(int bits, AlphaCode cod
     const int dropped = std::max(8 - bits, alpha && code == AlphaCode::halved ? 1 : 0), step = 1 << dropped,
               highest = 256 / step - 1;
     levels[c] = {static_cast<float>(step - 1) / 255, static_cast<float>(step) / 255, 0, static_cast<float>(highest)};
-    // Red 0 would be transparent.
+    // Byte 0 of feature 0 means transparent.
     if (c == 0 && dropped == 0) levels[c].lowest = 1;
   }
   return levels;
@@ -271,7 +271,7 @@ void store_in(const Student::Branch& branch, Lanes* features) {
 void first_guess(const Student& student, const FeatureNetwork& teacher, const Composition::Part& part,
                  const TexelGroup& group, const std::vector<Sighting>& sightings, Lanes* features, Lanes* work) {
   const NetworkKernels& kernels = network_kernels();
-  // All of a group start alike, so that they average well.
+  // All texels of a group get the same kind of guess, so that their features can be averaged.
   float least = std::numeric_limits<float>::infinity();
   const auto consider = [&](const Lanes* guess) {
     Lanes tried[texel_features], error;

@@ -7,25 +7,26 @@
 
 namespace rebake {
 
-/// A sample of a composition's texels, even over its blocks, with visible directions.
+/// A sample of a composition's texels, even over its blocks, with directions from which they are visible.
 struct TexelSample {
+  /// One group of a part.
   struct Piece {
     TexelGroup group;
     std::uint32_t part;
-    std::vector<Vec3> directions;  ///< for training
-    std::vector<Vec3> held_out;    ///< for scoring
+    std::vector<Vec3> directions;  ///< visible directions for training
+    std::vector<Vec3> held_out;    ///< other visible directions, for scoring
   };
   std::vector<Piece> pieces;
 };
-/// Samples about `texels` texels, per part in proportion to its texels, with at least two groups and an eighth of the
-/// sample each.
+/// Samples about `texels` texels. Each part gets groups in proportion to its texels, but at least two, and at least an
+/// equal share of an eighth of the sample.
 TexelSample sampled(const Composition& composition, const Sightlines& sightlines, std::size_t texels,
                     std::uint64_t seed, const Progress& progress);
 
-/// The decoder of a fused folder, with initial guesses of texels' features.
+/// The one decoder of a fused object, with maps that guess its features from those of the original decoders (teachers).
 struct Student {
   FeatureNetwork decoder;  ///< takes world directions
-  /// Maps a signature to features, if trained.
+  /// Maps a texel's signature() to features; nothing for side-by-side students.
   std::optional<FeatureNetwork> encoder;
   /// A teacher that the decoder contains, or was initialised from.
   struct Branch {
@@ -36,33 +37,34 @@ struct Student {
     Eigen::Matrix<double, 8, 1> offset = Eigen::Matrix<double, 8, 1>::Zero();
   };
   std::vector<Branch> branches;
-  std::uint32_t selectors = 0;  ///< bit mask of the features that select a branch
-  bool keeps = false;           ///< the decoder is that of its only branch, whose texels stay bit for bit
-  bool exact = false;           ///< the decoder equals its branches' teachers up to the rounding of features
+  std::uint32_t selectors = 0;  ///< bit mask of the features that select a branch; 0 if there are none
+  bool keeps = false;           ///< whether the decoder is that of its only branch, whose texels stay bit for bit
+  bool exact = false;           ///< whether the decoder equals its branches' teachers up to the rounding of features
 };
 
-/// Whether a part's texels stay unchanged.
+/// Whether a part's texels stay unchanged, bit for bit.
 bool stays(const Student& student, const Composition::Part& part);
-/// Whether a part's texels only need rounding.
+/// Whether a part's texels need no fit, only rounding.
 bool shown_exactly(const Student& student, const Composition::Part& part);
 
 struct TrainingOptions {
-  int steps = 8000;    ///< Adam steps on decoder and encoder together; more gains little
+  int steps = 8000;    ///< Adam steps on decoder and encoder together; more steps gain little
   double rate = 0.02;  ///< initial rate of Adam for a new decoder
   std::uint64_t seed = 1;
-  /// Deadline of training; the result so far is used.
+  /// Deadline of training; if it is exceeded, the result so far is used.
   std::optional<std::chrono::steady_clock::time_point> until = std::nullopt;
 };
 
 /// The teachers as networks.
 std::vector<FeatureNetwork> networks_of(const Composition& composition);
 
-/// Keeps the decoder of `base` and trains an encoder for it.
+/// The decoder of teacher `base`, unchanged, with a trained encoder for the texels of other teachers.
 Student keeping(const Composition& composition, const TexelSample& sample, std::size_t base,
                 const TrainingOptions& options, const Progress& progress);
 /// Puts the teachers side by side in one decoder: each keeps its own neurons, and the plane of the two least important
 /// features is cut into a sector per branch, outside of which the branch is silenced. Averages of texels of a branch
-/// stay in its sector, and so do partly covered pixels. Bent parts get branches for `bent_turns` rotations each.
+/// stay in its sector, and so do partly covered pixels. Teachers of bent parts get up to `bent_turns` branches, one per
+/// rotation.
 Student side_by_side(const Composition& composition, const TexelSample& sample, std::size_t bent_turns);
 /// Maximum number of sectors.
 inline constexpr std::size_t most_branches = 4;

@@ -11,7 +11,7 @@ namespace {
 
 using Branch = Student::Branch;
 
-// The two features by which colours change least, over the sample and its teachers.
+// The two features to which colours are least sensitive, over the sample.
 std::array<Eigen::Index, 2> least_features(const Composition& composition, const TexelSample& sample) {
   const std::vector<FeatureNetwork> teachers = networks_of(composition);
   std::array<double, texel_features> change{};
@@ -22,7 +22,7 @@ std::array<Eigen::Index, 2> least_features(const Composition& composition, const
     const Vec3& direction = piece.directions.front();
     teach(teacher, piece.group, direction, 1, 0, colors, work.data());
     for (std::size_t c = 0; c < texel_features; ++c) {
-      // By as much as rounding moves it: the alpha channels of split folders have one bit less.
+      // A step of the size of rounding errors: alpha channels of split folders have one bit less.
       TexelGroup other = piece.group;
       const float step = (c % 4 == 3 ? 4.0F : 2.0F) / 255;
       for (float& value : other.features[c].at) value += value > 0.5F ? -step : step;
@@ -41,7 +41,8 @@ std::array<Eigen::Index, 2> least_features(const Composition& composition, const
   return {std::min(order[0], order[1]), std::max(order[0], order[1])};
 }
 
-// Rotations that stand for those of a teacher's bent texels: k-means, from the farthest ones.
+// Up to `wanted` representative rotations of a teacher's bent texels: k-means with farthest-point initialisation, with
+// `known` as fixed centres.
 std::vector<Mat3> typical_turns(const Composition& composition, const TexelSample& sample, std::size_t teacher,
                                 std::vector<Mat3> known, std::size_t wanted) {
   std::vector<Mat3> turns;
@@ -65,7 +66,7 @@ std::vector<Mat3> typical_turns(const Composition& composition, const TexelSampl
       if (known.empty()) return false;
       return (known[nearest(a)] - a).squaredNorm() < (known[nearest(b)] - b).squaredNorm();
     });
-    // Nothing is left to stand for.
+    // All rotations are represented.
     if (!known.empty() && (known[nearest(*far)] - *far).norm() < 0.02) break;
     known.push_back(local_rotation(*far).rotation);
     for (int round = 0; round < 10; ++round) {
@@ -78,7 +79,8 @@ std::vector<Mat3> typical_turns(const Composition& composition, const TexelSampl
   return {known.begin() + static_cast<std::ptrdiff_t>(fixed), known.end()};
 }
 
-// The teachers, most texels first, each with the turns of its bent texels behind it.
+// Up to most_branches branches: first the teachers of rigid texels, most texels first; then up to `bent_turns`
+// rotations per teacher of bent texels.
 std::vector<Branch> chosen_branches(const Composition& composition, const TexelSample& sample, std::size_t bent_turns) {
   struct Wanted {
     std::uint64_t rigid = 0, bent = 0;
@@ -103,18 +105,19 @@ std::vector<Branch> chosen_branches(const Composition& composition, const TexelS
     for (const Mat3& turn : typical_turns(composition, sample, k, known, bent_turns))
       if (branches.size() < most_branches) branches.push_back({k, turn});
   }
-  // Of bent texels none of which was sampled.
+  // All texels are bent and none was sampled.
   if (branches.empty()) branches.push_back({order.front(), composition.frames[order.front()].transpose()});
   return branches;
 }
 
-// Border j of n sectors of the positive quadrant: corners of equal steps around the unit square.
+// Border j of n sectors of the positive quadrant: a direction to one of n equal steps along the unit square's outer
+// sides.
 Vec2 border(std::size_t j, std::size_t n) {
   const double along = 2 * static_cast<double>(j) / static_cast<double>(n);
   return {std::min(1.0, 2 - along), std::min(1.0, along)};
 }
 
-// The least determinant of two borders beside each other.
+// Smallest determinant of two adjacent borders.
 double narrowest(std::size_t n) {
   double least = 1;
   for (std::size_t j = 0; j < n; ++j) {
@@ -124,7 +127,7 @@ double narrowest(std::size_t n) {
   return least;
 }
 
-// How far a layer's sums can be from 0 when its inputs are at most `largest`.
+// Bound of the absolute sums of a layer whose inputs are at most `largest`.
 Eigen::VectorXd reach(const Eigen::MatrixXd& weights, const Eigen::VectorXd& bias, const Eigen::VectorXd& largest) {
   return weights.cwiseAbs().transpose() * largest + bias.cwiseAbs();
 }
@@ -142,7 +145,7 @@ Student side_by_side(const Composition& composition, const TexelSample& sample, 
   const auto [c, e] = least_features(composition, sample);
   const std::size_t n = branches.size();
   if (n > 1) student.selectors = 1U << c | 1U << e;
-  // Every texel lies so far inside its sector that rounding to bytes cannot bring it near a border.
+  // Distance of texels from the borders of their sector, so that rounding to bytes cannot bring them near a border.
   const double inside = 5.0 / 255 / narrowest(n);
   std::vector<Decoder> decoders;
   Eigen::Index first = static_cast<Eigen::Index>(2 * (n - 1)), second = static_cast<Eigen::Index>(n - 1);
@@ -161,7 +164,7 @@ Student side_by_side(const Composition& composition, const TexelSample& sample, 
     }
     Decoder decoder =
         fold_turn(*composition.teachers[branch.teacher], branch.turn.transpose(), Axes::forward, Axes::forward);
-    // It is fed encode⁻¹ · (features − offset).
+    // The teacher's input is encode⁻¹ · (features − offset).
     decoder.weights0.topRows<8>() = branch.encode.inverse().transpose() * decoder.weights0.topRows<8>();
     decoder.bias0 -= decoder.weights0.topRows<8>().transpose() * branch.offset;
     const Eigen::VectorXd inner = reach(decoder.weights0, decoder.bias0, Eigen::VectorXd::Ones(decoder_inputs));
@@ -177,7 +180,7 @@ Student side_by_side(const Composition& composition, const TexelSample& sample, 
   all.bias1 = Eigen::VectorXd::Zero(second);
   all.weights2 = Eigen::MatrixXd::Zero(second, 3);
   all.bias2 = decoders.front().bias2;
-  // What lies 2/255 inside its sector, a quarter covered, must silence all others.
+  // A texel 2/255 inside its sector must silence all other branches, even at a coverage of a quarter.
   const double gain = std::sqrt(most / (0.25 * 2 / 255));
   for (std::size_t j = 1; j < n; ++j) {
     const Vec2 ray = border(j, n);
@@ -199,7 +202,7 @@ Student side_by_side(const Composition& composition, const TexelSample& sample, 
       if (k + 1 < n) all.weights1.row(static_cast<Eigen::Index>(2 * k + 1)).segment(from, count).setConstant(-gain);
     };
     silence(at1, d.hidden1());
-    // What its own bias adds to the first one's.
+    // A constant neuron adds the difference between this branch's output bias and the first branch's.
     if (k > 0) {
       const auto constant = static_cast<Eigen::Index>(k - 1);
       all.bias1[constant] = 1;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t probes = 128;
 
-// Evenly over the sphere, pole to pole along a spiral (Swinbank & Purser 2006).
+// Fibonacci lattice on the sphere (Swinbank & Purser 2006).
 const std::array<Vec3, probes>& fibonacci_sphere() {
   static const std::array<Vec3, probes> points = [] {
     std::array<Vec3, probes> result;
@@ -62,13 +62,13 @@ std::vector<Vec3> Sightlines::directions(const std::vector<TexelSite>& sites, st
   if (sites.empty() || count == 0) return {};
   Box box;
   for (const TexelSite& site : sites) box.extend(site.position);
-  // Nothing nearer than half a texel hides: the surface's own neighbours are there.
+  // Hits nearer than half a texel do not occlude: they are neighbours on the surface itself.
   const double texel = box.diagonal().norm() / std::sqrt(static_cast<double>(sites.size()));
   const double near = 0.5 * texel + 1e-6 * size_;
   Dice dice(phase * 0x2545f4914f6cdd1dU + 1);
   const auto& sphere = fibonacci_sphere();
   std::array<double, probes> weight{};
-  // The rays of one texel go much the same way from much the same place: eight at once.
+  // Packets of eight coherent rays from one texel.
   for (int round = 0; round < 2; ++round)
     for (std::size_t first = 0; first < probes; first += 8) {
       const TexelSite& site = sites[dice.below(sites.size())];
@@ -97,7 +97,7 @@ std::vector<Vec3> Sightlines::directions(const std::vector<TexelSite>& sites, st
   for (std::size_t k = 0; k < count; ++k) {
     const double wanted = total * (static_cast<double>(k) + offset) / static_cast<double>(count);
     while (passed < wanted && at + 1 < probes) passed += weight[++at];
-    // Anywhere in the probe's cell, which is about 0.3 wide.
+    // Jittered within the probe's cell, which is about 0.3 wide.
     Vec3 outwards = sphere[at];
     for (Eigen::Index axis = 0; axis < 3; ++axis) outwards[axis] += 0.3 * (dice.share() - 0.5);
     result.push_back(-outwards.normalized());
@@ -162,7 +162,7 @@ void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& d
       for (std::size_t k = 0; k < 9; ++k)
         turn(static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3)) =
             static_cast<double>(group.turn[k].at[l]);
-      // Corners that are turned by half a turn against each other have no direction between them: 0 then.
+      // Zero if the corners' rotations differ by half a turn and have no mean.
       d = (turn * direction).stableNormalized();
     }
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -186,7 +186,7 @@ void teach(const FeatureNetwork& teacher, const TexelGroup& group, const Vec3& d
       if (gain.at[l] == 1 && offset.at[l] == 0) continue;
       const double linear = static_cast<double>(gain.at[l]) * to_linear(static_cast<double>(colors[c].at[l])) +
                             static_cast<double>(offset.at[l]);
-      // Brighter than white no folder shows.
+      // A folder cannot store colours brighter than white.
       colors[c].at[l] = static_cast<float>(to_display(std::clamp(linear, 0.0, 1.0)));
     }
   }
@@ -219,7 +219,7 @@ std::vector<Sighting> sightings_of(const FeatureNetwork& teacher, const TexelGro
     teach(teacher, group, directions[k], kind.coverage, kind.mix, sighting.target, work);
     sighting.coverage = kind.coverage;
     sighting.mix = kind.mix;
-    // What a pixel is covered by a half shows half of the error.
+    // A pixel of which half is covered shows half of the error.
     sighting.weight = kind.coverage * kind.coverage;
   }
   return result;

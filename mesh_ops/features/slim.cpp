@@ -20,7 +20,8 @@ namespace rebake {
 
 namespace {
 
-// Rays that got through, after which a triangle is known to be seen; one more than tells openings apart.
+// Number of unoccluded rays after which a triangle counts as visible. More than one ray tells openings of different
+// size apart.
 constexpr int enough = 4;
 
 Vec3 random_direction(Dice& dice) {
@@ -29,12 +30,12 @@ Vec3 random_direction(Dice& dice) {
   return {r * angle.cosine, r * angle.sine, z};
 }
 
-// Where a triangle shows something.
+// Random opaque points of a triangle.
 class ShownPoints {
  public:
   ShownPoints(const TextureSet& set, std::size_t f) : texels_(*set.texels), uv_(texel_corners(set, f)) {
     for (std::size_t k = 0; k < 3; ++k) corners_[k] = set.soup.positions()[set.soup.faces()[f][k]];
-    // Texels whose centre lies inside, and those that reach in from beside: their nearest points.
+    // Opaque texels that overlap the triangle, each represented by the triangle's point nearest to its centre.
     const Vec2 low = uv_[0].cwiseMin(uv_[1]).cwiseMin(uv_[2]), high = uv_[0].cwiseMax(uv_[1]).cwiseMax(uv_[2]);
     if (!(low.allFinite() && high.allFinite())) return;
     Dice dice(f);
@@ -43,9 +44,9 @@ class ShownPoints {
       for (int x = texel_within(low.x(), texels_.width()); x <= texel_within(high.x(), texels_.width()); ++x) {
         if (!texels_.opaque(x, y)) continue;
         const Vec2 nearest = nearest_inside({x + 0.5, y + 0.5});
-        // As far as a texel's corners reach.
+        // Half a texel's diagonal, squared.
         if ((nearest - Vec2(x + 0.5, y + 0.5)).squaredNorm() > 0.5) continue;
-        // An even choice of all (reservoir sampling, Vitter 1985).
+        // Reservoir sampling: a uniform choice of all (Vitter 1985).
         const Vec3 place = at(barycentric(uv_, nearest));
         if (places_.size() < most_places)
           places_.push_back(place);
@@ -56,7 +57,7 @@ class ShownPoints {
   }
 
   bool none() const { return places_.empty(); }
-  /// Half of them anywhere on it, half of them a texel's.
+  /// A random opaque point: with probability ½ uniform over the triangle, else the point of a random texel.
   Vec3 random(Dice& dice) const {
     if (dice.below(2) == 0) {
       double a = dice.share(), b = dice.share();
@@ -105,12 +106,12 @@ Texel rounded(Texel texel, const FeatureBits& bits) {
     texel.feat0[k] = rounded(texel.feat0[k], bits[k]);
     texel.feat1[k] = rounded(texel.feat1[k], bits[k + 4]);
   }
-  // 0 would be transparent: the lowest step that is not.
+  // Byte 0 of feature 0 would be transparent: the lowest step above it.
   if (texel.feat0[0] == 0) texel.feat0[0] = bits[0] >= 8 ? 1 : rounded(255, bits[0]) / ((1 << bits[0]) - 1);
   return texel;
 }
 
-// `change(x, y, texel)` says what a texel becomes.
+// The texture with each texel replaced by change(x, y, texel); the same pointer if no texel differs.
 template <class Change>
 std::shared_ptr<const FeatureTexture> changed(const std::shared_ptr<const FeatureTexture>& texels, Change change) {
   std::atomic<bool> any = false;
@@ -129,7 +130,7 @@ std::shared_ptr<const FeatureTexture> changed(const std::shared_ptr<const Featur
   return texels;
 }
 
-// Texels of an object and how they look along a few directions.
+// A sample of an object's texels, with their colours along a few directions.
 struct ColorSample {
   struct One {
     Texel texel;
@@ -137,7 +138,7 @@ struct ColorSample {
   };
   std::vector<One> texels;
   std::vector<Vec3> directions;
-  std::vector<Color> colors;  ///< texel after texel
+  std::vector<Color> colors;  ///< [texel][direction]
 };
 
 ColorSample sampled_colors(const BakedObject& object) {
@@ -176,7 +177,7 @@ std::vector<Color> colors_of(const ColorSample& sample, const TexelColors& looks
   return colors;
 }
 
-// Mean square difference of colours with fewer bits.
+// Mean squared error of colours at these numbers of bits.
 double squared_loss(const ColorSample& sample, const TexelColors& looks, const FeatureBits& bits) {
   const std::vector<Color> colors = colors_of(sample, looks, bits);
   double sum = 0;
@@ -194,7 +195,7 @@ Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_r
   const auto tree = rays_of(object);
   const double size = object.bounds().diagonal().norm();
   struct Sent {
-    std::size_t set, face;  ///< the set's
+    std::size_t set, face;  ///< index of the set; of the face within it
     int rays = 0, through = 0;
     bool shows = true;
   };
@@ -205,7 +206,7 @@ Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_r
     Sent& sent = all[triangle];
     const ShownPoints points(object.sets[sent.set], sent.face);
     sent.shows = !points.none();
-    // Other dice each time it is called.
+    // A different random sequence for each call.
     Dice dice(triangle * 64 + static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(sent.rays))));
     while (sent.shows && sent.rays < until && sent.through < enough) {
       const Vec3 point = points.random(dice);
@@ -220,14 +221,14 @@ Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_r
         eye = point + 1.5 * size * random_direction(dice);
       }
       ++sent.rays;
-      // Stops short of the point by more than the tree's rounding.
+      // The ray ends before the point by more than the tree's rounding error.
       const Vec3 way = point - eye;
       const double distance = way.norm();
       if (distance > 0 && tree->blocked(eye, way, 0, 1 - 1e-5 * size / distance)) continue;
       ++sent.through;
     }
   };
-  std::vector<std::size_t> open(all.size());  // not known to be seen
+  std::vector<std::size_t> open(all.size());  // triangles that no ray has reached yet
   std::iota(open.begin(), open.end(), std::size_t{0});
   constexpr int first_rays = 1024;
   int until = std::min(first_rays, most_rays);
@@ -241,7 +242,8 @@ Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_r
         progress.at("looking for what is seen", static_cast<double>(now) / static_cast<double>(open.size()));
     });
     std::erase_if(open, [&](std::size_t k) { return all[k].through > 0 || !all[k].shows; });
-    // The first round finds what is plainly seen; only what a further one does not find either is taken as unseen.
+    // The first round finds the clearly visible triangles. The rest counts as unseen after a further round that finds
+    // nothing.
     more = !open.empty() && until < most_rays && (found > 0 || until == first_rays);
     if (more) until = std::min(2 * until, most_rays);
   }
@@ -296,7 +298,7 @@ std::shared_ptr<const FeatureTexture> with_empty_rest(const TextureSet& set) {
     const std::array<Vec2, 3> uv = texel_corners(set, f);
     const Vec2 low = uv[0].cwiseMin(uv[1]).cwiseMin(uv[2]), high = uv[0].cwiseMax(uv[1]).cwiseMax(uv[2]);
     if (!(low.allFinite() && high.allFinite())) return set.texels;
-    // With a texel of room, for rounding.
+    // With a margin of one texel for rounding.
     const int left = texel_within(low.x() - 1, width), right = texel_within(high.x() + 1, width);
     for (int y = texel_within(low.y() - 1, height); y <= texel_within(high.y() + 1, height); ++y)
       std::fill_n(shown.begin() + static_cast<std::ptrdiff_t>(y) * width + left, right - left + 1, 1);

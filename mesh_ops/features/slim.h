@@ -10,7 +10,7 @@
 
 namespace rebake {
 
-/// Eye positions: these standpoints, or anywhere in a box, or, with neither, all around the object.
+/// Possible eye positions: these standpoints, else anywhere in the box, else all around the object.
 struct EyeRegion {
   std::vector<Standpoint> standpoints;  ///< in object space
   std::optional<Box> box;               ///< in world space
@@ -19,24 +19,26 @@ struct EyeRegion {
 
 /// Visibility of triangles, from rays between random opaque texels and random eyes.
 struct Sightings {
-  TriangleSet unseen;
+  TriangleSet unseen;      ///< triangles that no ray reached
   int rays_each = 0;       ///< rays per unseen triangle
   std::uint64_t rays = 0;  ///< total number of rays
-  /// Smallest share of unoccluded rays among the visible triangles: the smallest opening found. 1 if none is visible.
+  /// Smallest share of unoccluded rays among the visible triangles: the narrowest opening that was found. 1 if no
+  /// triangle is visible.
   double smallest_opening = 1;
-  std::size_t seen_once = 0;  ///< triangles reached by a single ray
+  std::size_t seen_once = 0;  ///< number of triangles that a single ray reached
 };
 
-/// Traces rays from each triangle until four are unoccluded. For triangles that a thousand rays do not reach, the
-/// number is doubled until a doubling finds nothing new or `most_rays` are traced. Triangles without an opaque texel
-/// are unseen. Only opaque texels occlude. The same at any number of threads.
+/// Traces rays between random eyes and each triangle until four are unoccluded. For triangles that 1024 rays do not
+/// reach, the number of rays is doubled until a doubling finds nothing new or `most_rays` are traced. Triangles without
+/// an opaque texel are unseen. Only opaque texels occlude. The same result at any number of threads.
 Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_rays, const Progress& progress = {});
 /// Upper bound, with 95 % confidence, of the unoccluded share of lines of sight of any of `triangles` triangles that
 /// `rays` rays each did not reach: (1 - share)^rays = 0.05 / triangles.
 double most_missed(std::size_t triangles, int rays);
 
-/// Number of bits per feature; 8: unchanged.
+/// Number of bits per feature, 1 … 8; 8: unchanged.
 using FeatureBits = std::array<int, 8>;
+/// Result of fewest_bits().
 struct BitsFound {
   FeatureBits bits{8, 8, 8, 8, 8, 8, 8, 8};
   double psnr_db = 0;  ///< of texels' display colours over directions; infinite if nothing is lost

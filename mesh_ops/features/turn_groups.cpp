@@ -4,7 +4,7 @@ namespace rebake {
 
 namespace {
 
-// Turns that differ by less show the same colours to the last bit.
+// Rotations that differ by less give the same colours to the last bit.
 constexpr double same_to_the_eye = 1e-9;
 
 }  // namespace
@@ -31,7 +31,7 @@ TurnGroups turn_groups(const BakedObject& object) {
       ++result.groups[last].faces;
       result.group_of.push_back(last);
     }
-  // Beside bent faces a few that happen to be turned alike are no part of their own.
+  // If there are bent faces, small groups of equal rotation among them are not a part of their own.
   if (result.any_bent)
     for (std::uint32_t& group : result.group_of)
       if (group != TurnGroups::bent && result.groups[group].faces * 100 < result.group_of.size())

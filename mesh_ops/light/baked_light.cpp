@@ -95,7 +95,8 @@ std::vector<SiteLight> BakedLight::among(const std::vector<Occluder>& others, in
     OpenRays open = kept_open_rays(sites.now, sides, occluders.front(), light->suns, rays, results, progress);
     return open_.emplace(rays, std::move(open)).first->second;
   };
-  // Of so many rays flags would take more room than tracing them again takes time.
+  // Above this size, visibility flags would take too much memory: the own object is then traced again for every set of
+  // occluders.
   constexpr std::uint64_t most_bytes = std::uint64_t{1} << 26;
   const bool few = OpenRays::memory_for(sites.size(), rays, light->suns.size()) <= most_bytes;
   auto lit = kept_light(sites.now, sides, occluders, *light, Mat3::Identity(), rays, results, progress,

@@ -11,28 +11,29 @@
 namespace rebake {
 
 /// Light data of an object that does not depend on its placement: sites, their colours, and the light it was baked in.
-/// Shared by all nodes of the object.
+/// All nodes of the object share it.
 class BakedLight {
  public:
   /// `options` must outlive this object.
   BakedLight(std::shared_ptr<const BakedObject> object, const SceneLight& settings, const LightingOptions& options,
              const Progress& progress);
 
-  std::vector<std::shared_ptr<const LightChart>> charts;
-  LightSites sites;
-  std::vector<Radiance> colors;  ///< linear, per site; the same for both sides
-  std::vector<float> facing;
-  std::vector<std::uint8_t> sides;  ///< visible sides per site, as the `wanted` of traced_light()
-  std::shared_ptr<const Light> light;
-  double confidence = 0;     ///< of `light` if it was estimated, 0 … 1
-  Radiance albedo{1, 1, 1};  ///< upper bound for 90 % of the sites
+  std::vector<std::shared_ptr<const LightChart>> charts;  ///< per texture set
+  LightSites sites;                                       ///< at the nodes of all charts
+  std::vector<Radiance> colors;                           ///< per site: linear colour, the mean over both sides
+  std::vector<float> facing;                              ///< per site: facing_of()
+  std::vector<std::uint8_t> sides;     ///< per site: visible sides, as the `wanted` of traced_light()
+  std::shared_ptr<const Light> light;  ///< the light as baked, given or estimated
+  double confidence = 0;               ///< of the estimated `light`, 0 … 1; 1 if it was given
+  Radiance albedo{1, 1, 1};            ///< per channel: 90 % of the sites stay below this
 
-  /// Specular fit; available for objects with a single, unrotated body.
+  /// Specular fit, computed on the first call. Only for objects for which may_mirror() holds.
   const std::shared_ptr<const GlossFit>& gloss();
+  /// Whether the object has a single body, in its original place.
   bool may_mirror() const { return bodies_.size() == 1 && bodies_.front().to_object.matrix().isIdentity(0); }
-  /// Colours of the visible sides.
+  /// Linear colour of each site, averaged over its visible sides.
   const std::vector<Radiance>& shown_colors();
-  /// Light on the `wanted` sides as baked; on all sides if `wanted` is empty.
+  /// Light on the `wanted` sides as baked; on all sides if `wanted` is empty. `rays`: per half space.
   std::vector<SiteLight> as_baked(const std::vector<std::uint8_t>& wanted, int rays, const Progress& progress);
   const std::shared_ptr<const BakedObject>& object() const { return object_; }
   /// Whether the object's geometry is the one that its light was baked on.
@@ -51,15 +52,15 @@ class BakedLight {
   std::vector<BakedBody> bodies_;
   bool untouched_;
   const LightingOptions& options_;
-  std::vector<SiteLight> roughly_;  ///< light as baked, traced with few rays
+  std::vector<SiteLight> roughly_;  ///< light on both sides as baked, traced with 64 rays
   std::shared_ptr<const GlossFit> gloss_;
   std::vector<Radiance> shown_colors_;
-  std::map<int, std::vector<SiteLight>> of_shown_;  ///< light of the visible sides as baked, by number of rays
-  std::map<int, OpenRays> open_;                    ///< visibility of the visible sides, by number of rays
+  std::map<int, std::vector<SiteLight>> of_shown_;  ///< light on the visible sides as baked, by number of rays
+  std::map<int, OpenRays> open_;                    ///< rays of visible sides that pass the object, by number of rays
 };
 
-/// Light data of all objects of a scene: created on first request, shared by objects that were read from the same
-/// files.
+/// BakedLight of all objects of a scene, created on first request. Objects that were read from the same files share
+/// one.
 class BakedLights {
  public:
   BakedLights(const SceneLight& settings, const LightingOptions& options) : settings_(settings), options_(options) {}

@@ -51,7 +51,8 @@ BodyImage body_image(const BakedObject& object, const std::vector<LightSite>& si
                      double coarseness, const Progress& progress) {
   BodyImage image;
   const TriangleList opaque = opaque_triangles(object);
-  // Fine wraps of loose parts fall into pieces, of which one can be laid out.
+  // A fine wrap of loose parts has several components, but only one can be parametrised. The wrap is coarsened until
+  // its largest component has 90 % of the vertices.
   constexpr double one_piece = 0.9, coarser = 1.4, coarsest = 0.3;
   for (double size = coarseness;; size = std::min(coarser * size, coarsest)) {
     const Cage whole = wrap(opaque, size, progress);
@@ -67,7 +68,7 @@ BodyImage body_image(const BakedObject& object, const std::vector<LightSite>& si
     double least = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < sites.size(); ++i) {
       const Vec3 normal = facing[i] == 0.0F ? Vec3(-sites[i].normal) : sites[i].normal;
-      // Leaves lie between others that face away: as far off as twice the distance counts one that does.
+      // Leaves overlap leaves of opposite orientation, so such a site counts as twice as far away.
       const double distance =
           (sites[i].position - around[v].position).squaredNorm() * (2.5 - 1.5 * normal.dot(around[v].normal));
       if (!(distance < least)) continue;

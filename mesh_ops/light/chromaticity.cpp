@@ -8,7 +8,7 @@
 namespace rebake {
 
 std::vector<std::uint32_t> chromaticity_clusters(const std::vector<Radiance>& colors) {
-  constexpr double cell = 0.15, radius = 0.3;  // of logarithms of ratios
+  constexpr double cell = 0.15, radius = 0.3;  // in natural logarithms of r / g and b / g
   std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells;
   for (std::uint32_t i = 0; i < colors.size(); ++i) {
     const Radiance c = colors[i].cwiseMax(1e-4);

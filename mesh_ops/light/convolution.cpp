@@ -1,4 +1,4 @@
-// Compiled for several kinds of processors (mesh_ops/CMakeLists.txt).
+// Compiled once per instruction set (mesh_ops/CMakeLists.txt).
 #include "mesh_ops/light/convolution.h"
 
 #include <cstring>
@@ -23,7 +23,7 @@ void REBAKE_CONVOLVE_NAME(const Convolution& convolution, const float* input, Pl
   const float* weights = convolution.weights +
                          static_cast<std::size_t>(block) * static_cast<std::size_t>(convolution.inputs) * taps * lanes;
   for (int x = 0; x < width; x += lanes) {
-    // A sum a plane of the block, each over lanes columns.
+    // One vector of sums per output plane of the block; its lanes are adjacent columns.
     Vector sums[lanes];
     for (int o = 0; o < lanes; ++o) sums[o] = Vector{} + convolution.bias[block * lanes + o];
     const float* w = weights;
@@ -33,7 +33,7 @@ void REBAKE_CONVOLVE_NAME(const Convolution& convolution, const float* input, Pl
                           (row + dy) * static_cast<std::ptrdiff_t>(layout.pitch) + x;
         for (int dx = -reach; dx <= reach; ++dx, w += lanes) {
           Vector values;
-          std::memcpy(&values, at + dx, sizeof values);  // at any alignment
+          std::memcpy(&values, at + dx, sizeof values);  // unaligned load
           for (int o = 0; o < lanes; ++o) sums[o] += w[o] * values;
         }
       }

@@ -22,7 +22,7 @@ using Kernel = CGAL::Simple_cartesian<double>;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Border = layout::Square_border_arc_length_parameterizer_3<Mesh>;
 
-// On the square, negative where it is turned over.
+// Signed area of a face on the unit square; negative if the face is flipped.
 double area_of(const DiskChart& chart, const Face& face) {
   const Vec2 e = chart.uvs[face[1]] - chart.uvs[face[0]], f = chart.uvs[face[2]] - chart.uvs[face[0]];
   return (e.x() * f.y() - e.y() * f.x()) / 2;
@@ -41,7 +41,7 @@ void lay_out(Mesh& mesh, DiskChart& chart) {
   if (code != layout::OK)
     throw Error(fmt::format("the mesh cannot be laid out on a square: {}", layout::get_error_message(code)));
   for (const auto v : mesh.vertices()) chart.uvs[v] = {uvs[v].x(), uvs[v].y()};
-  // CGAL walks round the border the other way than its triangles.
+  // CGAL orders the border against the orientation of the triangles; mirroring restores the orientation.
   double area = 0;
   for (const Face& face : chart.faces) area += area_of(chart, face);
   if (area < 0)

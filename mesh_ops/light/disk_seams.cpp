@@ -17,12 +17,13 @@ namespace {
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 Edge edge_of(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
+// The faces at an edge.
 struct Sides {
   std::vector<std::uint32_t> faces;
-  int balance = 0;  // of directions that faces run along it
+  int balance = 0;  // number of faces that traverse the edge forwards, minus backwards
 };
 
-// Checked: each edge has one or two faces, which run along it in opposite directions.
+// The edges and their faces. Throws Error unless the mesh is connected, manifold and consistently oriented.
 std::map<Edge, Sides> edges_of(const ProxyMesh& mesh) {
   std::map<Edge, Sides> edges;
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
@@ -46,7 +47,7 @@ std::map<Edge, Sides> edges_of(const ProxyMesh& mesh) {
   return edges;
 }
 
-// Vertices as far from each other as can be, along edges.
+// At least two vertices by farthest-point sampling, with distances along edges (Dijkstra).
 std::set<std::uint32_t> farthest_vertices(const ProxyMesh& mesh, const std::map<Edge, Sides>& edges, int count) {
   std::vector<std::vector<std::uint32_t>> around(mesh.vertices.size());
   for (const auto& [edge, sides] : edges) {
@@ -92,13 +93,14 @@ std::vector<Edge> seams_of(const ProxyMesh& mesh, int tips) {
     return (mesh.vertices[face[1]] - a).cross(mesh.vertices[face[2]] - a).stableNormalized();
   };
   bool border = false;
-  std::vector<std::pair<double, Edge>> flat;  // least bent first
+  std::vector<std::pair<double, Edge>> flat;  // interior edges by dihedral angle, flattest first
   for (const auto& [edge, sides] : edges) {
     border = border || sides.faces.size() == 1;
     if (sides.faces.size() == 2) flat.emplace_back(-normal(sides.faces[0]).dot(normal(sides.faces[1])), edge);
   }
   std::stable_sort(flat.begin(), flat.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  // Faces joined over the flattest edges are a disk; what is not crossed, its border (tree and cotree: Eppstein 2003).
+  // A spanning tree of the faces over the flattest edges is a disk. The other edges form the cut graph (tree–cotree
+  // decomposition, Eppstein 2003).
   UnionFind joined(mesh.faces.size());
   std::set<Edge> graph;
   for (const auto& [bend, edge] : flat) {
@@ -111,7 +113,7 @@ std::vector<Edge> seams_of(const ProxyMesh& mesh, int tips) {
       ++degree[edge.first];
       ++degree[edge.second];
     }
-  // Branches that end nowhere are not needed, but for those that end in a tip.
+  // Prune dangling branches of the cut graph, except those that end at a tip.
   const std::set<std::uint32_t> kept = border ? std::set<std::uint32_t>{} : farthest_vertices(mesh, edges, tips);
   for (bool any = true; any;) {
     any = false;
@@ -133,7 +135,7 @@ std::vector<Edge> seams_of(const ProxyMesh& mesh, int tips) {
 DiskChart cut_along(const ProxyMesh& mesh, const std::vector<Edge>& seams) {
   const std::map<Edge, Sides> edges = edges_of(mesh);
   const std::set<Edge> cut(seams.begin(), seams.end());
-  // Corners of a vertex are one copy where their faces meet over an edge that is not cut.
+  // Corners of a vertex share one copy if their faces are adjacent across an uncut edge.
   UnionFind corners(mesh.faces.size() * 3);
   const auto corner = [&](std::uint32_t f, std::uint32_t v) {
     for (std::uint32_t k = 0; k < 3; ++k)

@@ -19,7 +19,7 @@ GeometryImage::GeometryImage(const DiskChart& chart, int side) : side_(side), ch
     const std::array<Vec2, 3> corners{last * chart.uvs[face[0]], last * chart.uvs[face[1]], last * chart.uvs[face[2]]};
     const Vec2 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]),
                high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
-    // A texel whose centre rounding leaves between triangles takes the nearest.
+    // Half a texel of margin: a texel centre that rounding leaves outside all triangles uses the nearest one.
     constexpr double room = 0.5;
     for (int y = std::max(0, static_cast<int>(std::ceil(low.y() - room)));
          y <= std::min(side - 1, static_cast<int>(std::floor(high.y() + room))); ++y)
@@ -72,7 +72,7 @@ double GeometryImage::undersampled(const ProxyMesh& mesh) const {
   for (std::size_t f = 0; f < areas.size(); ++f) {
     const Face& face = chart_.faces[f];
     const Vec2 e = chart_.uvs[face[1]] - chart_.uvs[face[0]], g = chart_.uvs[face[2]] - chart_.uvs[face[0]];
-    // Of the square, whose area is 1.
+    // Share of the unit square's area.
     const double share = std::abs(e.x() * g.y() - e.y() * g.x()) / 2;
     if (areas[f] > 2 * all * share) sparse += areas[f];
   }

@@ -20,11 +20,12 @@ struct DiskChart {
 /// on the boundary of the square.
 class GeometryImage {
  public:
+  /// `side`: texels per side.
   GeometryImage(const DiskChart& chart, int side);
 
   struct Texel {
-    std::array<std::uint32_t, 3> vertices;  ///< mesh vertices
-    Eigen::Vector3f weights;
+    std::array<std::uint32_t, 3> vertices;  ///< indices of mesh vertices
+    Eigen::Vector3f weights;                ///< barycentric weights of the vertices
   };
   int side() const { return side_; }
   const DiskChart& chart() const { return chart_; }
@@ -39,7 +40,7 @@ class GeometryImage {
   int side_;
   DiskChart chart_;
   std::vector<Texel> texels_;
-  std::vector<Vec2> places_;  ///< per mesh vertex: the UV of one of its copies
+  std::vector<Vec2> places_;  ///< per mesh vertex: the UV of one of its copies, in texels
 };
 
 /// The chart of a regular grid of `side`² vertices in row-major order.

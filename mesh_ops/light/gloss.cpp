@@ -16,7 +16,7 @@ namespace rebake {
 
 namespace {
 
-// Of a dielectric of index 1.5, seen along its normal.
+// Reflectance of a dielectric of index 1.5 at normal incidence.
 constexpr double facing_reflectance = 0.04;
 
 double fresnel(double cosine) {
@@ -36,21 +36,21 @@ Radiance mirrored_suns(const Gloss& gloss, const Vec3& mirror, double sharpness)
   return sum;
 }
 
-// How a site's colours change with the eye, less their mean, and what of that mirrors would do, a direction and
-// channel.
+// View dependence of a site: its colours, and the reflections of the sky and of suns that may explain them. One value
+// per channel and direction, minus the mean over the directions of a side.
 struct Views {
   std::uint32_t material;
   Eigen::ArrayXd colors, sky;
-  std::vector<Eigen::ArrayXd> suns;  // by sharpness
+  std::vector<Eigen::ArrayXd> suns;  // per candidate sharpness
 };
 
-// Duller lobes are told from a surface's own colour by chance only.
+// Candidate exponents. Broader lobes cannot be distinguished from diffuse colour.
 constexpr std::array<double, 7> sharpnesses{4, 8, 16, 32, 64, 128, 256};
 constexpr int views_a_side = 24;
 constexpr std::size_t most_sites = 6000;
 constexpr double few_sites = 50;
 
-// Least squares of one material: normal equations.
+// Normal equations of the least-squares fit of one material.
 struct Equations {
   Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
   Eigen::Vector2d aims = Eigen::Vector2d::Zero();
@@ -67,7 +67,7 @@ struct Equations {
       const Eigen::Vector2d both = products.inverse() * aims;
       if (both.minCoeff() >= 0) return both;
     }
-    // One alone: the one that accounts for more.
+    // Otherwise a single term, the one that explains more.
     Eigen::Vector2d best = Eigen::Vector2d::Zero();
     double most = 0;
     for (Eigen::Index k = 0; k < 2; ++k) {
@@ -113,7 +113,7 @@ Radiance mirrored(const Gloss& gloss, const Vec3& direction, const Vec3& normal,
 Openness shown_openness(const SiteLight& lit, float facing) {
   Openness result(facing * lit.open[0] + (1 - facing) * lit.open[1], 0);
   if (facing > 0) result[1] = lit.sunny[0];
-  // A sun lies above one side only.
+  // A sun is above one side only.
   if (facing < 1) result[1] = std::max(result[1], lit.sunny[1]);
   return result;
 }
@@ -152,9 +152,9 @@ GlossFit found_gloss(const BakedObject& object, const std::vector<std::shared_pt
     if (!set.texels->opaque(x, y)) return;
     const auto features = decode_features(TexelReader(*set.texels).at(x, y), set.texels->alpha_code());
     const Openness open = shown_openness(baked[i], facing[i]);
-    // What no picture shows the decoder was not fitted to.
+    // Occluded directions are skipped: the decoder was not fitted to them.
     std::vector<Vec3> directions;
-    std::vector<Eigen::Index> sides{0};  // where directions of a side end
+    std::vector<Eigen::Index> sides{0};  // end of each side's directions
     for (const bool back : {false, true}) {
       if ((back ? 1 - facing[i] : facing[i]) == 0) continue;
       const SiteFrame frame(sites.baked[i], i, back);
@@ -189,7 +189,7 @@ GlossFit found_gloss(const BakedObject& object, const std::vector<std::shared_pt
               suns[c];
       }
     }
-    // What does not change with the eye is the surface's own colour. Each side has its own.
+    // The mean over the directions of a side is diffuse colour, so it is subtracted.
     const auto less_mean = [&](Eigen::ArrayXd& values) {
       for (Eigen::Index c = 0; c < 3; ++c)
         for (std::size_t side = 1; side < sides.size(); ++side)
@@ -215,7 +215,7 @@ GlossFit found_gloss(const BakedObject& object, const std::vector<std::shared_pt
     double accounted = 0;
     std::vector<Eigen::Vector2d> amounts;
     for (const Equations& e : equations) {
-      // Few sites say what all say.
+      // Regularisation: clusters of few sites follow the fit of all sites.
       Equations held = e;
       held.products += few_sites / static_cast<double>(views.size()) * together.products;
       held.aims += few_sites / static_cast<double>(views.size()) * together.aims;
@@ -250,7 +250,8 @@ std::shared_ptr<const GlossMap> gloss_map(const LightChart& chart, const LightSi
   for (std::size_t n = 0; n < chart.nodes.size(); ++n) {
     const std::size_t i = first + n, texel = chart.nodes[n].texel;
     Vec3 as_baked = sites.baked[i].normal, as_is = now[i].normal;
-    // Triangles face either way; between nodes normals are interpolated. Mirrors do not tell their sides.
+    // Normals are interpolated between nodes, but triangles of a soup may face either way. Reflection does not depend
+    // on the normal's sign, so the sign follows that of a neighbour in the patch.
     const auto beside = [&](std::size_t other) {
       return map.before.normals[other].head<3>().dot(as_baked.cast<float>());
     };

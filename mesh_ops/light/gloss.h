@@ -9,12 +9,12 @@
 
 namespace rebake {
 
-/// Environment for specular reflection: the sky as spherical harmonics, suns as Phong lobes.
+/// Environment light for specular reflection: the sky as spherical harmonics, suns as Phong lobes.
 struct Gloss {
   std::array<sh::Coefficients, 3> sky{sh::Coefficients::Zero(), sh::Coefficients::Zero(), sh::Coefficients::Zero()};
   std::vector<Sun> suns;
   double sharpness = 0;  ///< exponent of the suns' lobes (Phong 1975)
-  /// Number of suns, strongest first, that shaders have room for.
+  /// Maximum number of suns in shaders; the strongest are used.
   static constexpr std::size_t most_suns = 4;
 };
 
@@ -28,7 +28,7 @@ Radiance mirrored(const Gloss& gloss, const Vec3& direction, const Vec3& normal,
 /// Specular amounts of sites, fitted to view-dependent colours.
 struct GlossFit {
   Gloss gloss;
-  std::vector<Eigen::Vector2f> amounts;  ///< per site: of the sky and of suns, both unoccluded
+  std::vector<Eigen::Vector2f> amounts;  ///< per site: specular amounts for the sky and for suns, without occlusion
   double explained = 0;                  ///< explained share of the view dependence of colours, 0 … 1
   bool any() const { return explained > 0; }
 };
@@ -42,6 +42,7 @@ GlossFit found_gloss(const BakedObject& object, const std::vector<std::shared_pt
 
 /// Visibility at a site: shares of the sky and of suns, 0 … 1.
 using Openness = Eigen::Vector2f;
+/// Visibility at the visible surface of a site; `facing`: facing_of().
 Openness shown_openness(const SiteLight& lit, float facing);
 
 /// Change of the specular reflection of a texture set: normal and amounts per chart texel, as baked and as edited.
@@ -60,12 +61,13 @@ std::shared_ptr<const GlossMap> gloss_map(const LightChart& chart, const LightSi
                                           const std::shared_ptr<const GlossFit>& fit,
                                           const std::vector<Openness>& before, const std::vector<Openness>& after);
 
-/// Data of one place of a map. gloss_change() returns what to add to linear colours along the view direction `now`, if
-/// their light is multiplied by `gain`; `baked` is the view direction relative to the surface as baked.
+/// Specular reflection at one point of a GlossMap: normals with sky amounts, and sun amounts, as baked and as edited.
 struct GlossPlace {
   Eigen::Vector4f before = Eigen::Vector4f::Zero(), after = Eigen::Vector4f::Zero();
   float suns_before = 0, suns_after = 0;
 };
+/// Radiance to add to a linear colour after it was multiplied by `gain`: the reflection as edited, minus `gain` times
+/// the reflection as baked. `now`: unit view direction; `baked`: the same relative to the surface as baked.
 Radiance gloss_change(const Gloss& gloss, const GlossPlace& place, const Radiance& gain, const Vec3& baked,
                       const Vec3& now);
 

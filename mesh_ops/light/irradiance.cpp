@@ -30,14 +30,15 @@ SiteBundles::MayPass may_pass(const SiteBundles& bundles, const OpenRays* known,
   };
 }
 
-// So many sets have enough directions together that none matters to what sites of a part have in common.
+// Number of direction sets. Together they have about 512 directions, so that their common error is small over a part of
+// a surface; each set has at least 32 sites.
 std::size_t sets_for(int rays, std::size_t sites) {
   constexpr std::size_t enough = 512, least_sites = 32;
   return std::clamp<std::size_t>(enough / static_cast<std::size_t>(std::max(1, rays)), 1,
                                  std::max<std::size_t>(1, sites / least_sites));
 }
 
-// Directions to a sun's disk.
+// Directions to points of a sun's disk, in the sites' space.
 std::vector<Vec3> sun_directions(const Sun& sun, const Mat3& to_light, const std::vector<DiskPoint>& disk,
                                  std::size_t set) {
   const double r = std::tan(sun.radius), cosine = std::cos(own_angle(set)), sine = std::sin(own_angle(set));
@@ -50,7 +51,8 @@ std::vector<Vec3> sun_directions(const Sun& sun, const Mat3& to_light, const std
   return directions;
 }
 
-// Adds what sides see of some suns. `known` and `found`, which may be null, count their rays from `first_ray` on.
+// Adds irradiance by the suns to `lit`, and sets the suns' visibility. `known` and `found` may be null; their flags for
+// suns start at ray `first_ray`.
 void add_suns(std::vector<SiteLight>& lit, const SiteBundles& bundles, const Light& light, const Mat3& to_light,
               const std::vector<DiskPoint>& disk, const OpenRays* known, OpenRays* found, std::size_t first_ray,
               const Progress& progress, double from) {
@@ -58,11 +60,11 @@ void add_suns(std::vector<SiteLight>& lit, const SiteBundles& bundles, const Lig
   for (const Sun& sun : light.suns) all += sun.irradiance.sum();
   const auto count = static_cast<double>(disk.size());
   const double step = (1 - from) / static_cast<double>(light.suns.size());
-  std::vector<double> seen(bundles.sides().size(), 0);  // of suns, by their irradiance
+  std::vector<double> seen(bundles.sides().size(), 0);  // per side: visible irradiance, summed over suns and channels
   for (std::size_t s = 0; s < light.suns.size(); ++s) {
     const Sun& sun = light.suns[s];
     const std::size_t offset = first_ray + s * disk.size();
-    // Few rays to a sun would leave most processors idle: all sets at once.
+    // A sun has few rays per set, so the sets run in parallel too.
     tbb::parallel_for(std::size_t{0}, bundles.sets(), [&](std::size_t set) {
       const std::vector<Vec3> directions = sun_directions(sun, to_light, disk, set);
       bundles.send(set, directions, SiteBundles::Ways::forward, may_pass(bundles, known, offset), progress,
@@ -105,16 +107,16 @@ std::vector<SiteLight> traced_light(std::span<const LightSite> sites, std::span<
   const SiteBundles bundles(sites, wanted, around, sets_for(options.rays, sites.size()));
   struct Sum {
     Radiance light = Radiance::Zero();
-    double open = 0, all = 0;  // cosines
+    double open = 0, all = 0;  // sums of cosines: of unoccluded rays, of all rays
   };
   std::vector<Sum> sums(bundles.sides().size());
   const auto rays = static_cast<double>(options.rays),
              sun_rays = static_cast<double>(light.suns.size() * rays_to_sun(options.rays));
   const double share = rays / (rays + sun_rays), step = share / static_cast<double>(bundles.sets());
   for (std::size_t set = 0; set < bundles.sets(); ++set) {
-    // They stand in the light's space: what turns with its light sees the same.
+    // Directions are fixed in the light's space, so that an object that rotates with its light gets the same result.
     std::vector<Vec3> axes = even_axes(options.rays, set);
-    std::vector<std::array<Radiance, 2>> sky;  // along and against each
+    std::vector<std::array<Radiance, 2>> sky;  // sky radiance along and against each axis
     for (Vec3& axis : axes) {
       sky.push_back({light.sky.at(axis), light.sky.at(-axis)});
       axis = to_light.transpose() * axis;

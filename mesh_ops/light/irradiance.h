@@ -14,18 +14,18 @@ namespace rebake {
 
 /// Light on the two sides of a site; [0] is the side that the normal points to.
 struct SiteLight {
-  std::array<Radiance, 2> irradiance{Radiance(0, 0, 0), Radiance(0, 0, 0)};  ///< divided by π
-  std::array<float, 2> open{0, 0};   ///< cosine-weighted visibility of the half space, 0 … 1
-  std::array<float, 2> sunny{0, 0};  ///< visible share of the suns' irradiance, 0 … 1
+  std::array<Radiance, 2> irradiance{Radiance(0, 0, 0), Radiance(0, 0, 0)};  ///< per side: irradiance / π, linear
+  std::array<float, 2> open{0, 0};   ///< per side: cosine-weighted visibility of the half space, 0 … 1
+  std::array<float, 2> sunny{0, 0};  ///< per side: visible share of the suns' irradiance, 0 … 1
 };
 
 /// Share of the first side in the visible surface (1, ½ or 0), from the visibility of both sides. A side counts as
-/// hidden if it is nearly closed or a tenth as visible as the other: the inside of a body with cracks or without a
-/// bottom.
+/// hidden if its visibility is below 0.03 or below a tenth of the other's. Such a side is the inside of a body that has
+/// cracks or no bottom.
 double facing_by_openness(double first, double second);
 
-/// Visibility flags of rays from sites past one object, in the order of traced_light(): the rays over each half space,
-/// then those to each sun.
+/// Visibility flags of rays from sites past one object: one bit per ray, in the order of traced_light(). Per side first
+/// the rays over the half space, then those to each sun.
 class OpenRays {
  public:
   OpenRays(std::size_t sites, int rays, std::size_t suns);
@@ -49,7 +49,7 @@ class OpenRays {
 };
 
 struct IrradianceOptions {
-  int rays = 256;  ///< per half space; a quarter of it per sun
+  int rays = 256;  ///< per half space; a quarter of it, at least 4, per sun
   /// Visibility of the same rays past occluders that `around` does not contain.
   const OpenRays* known = nullptr;
   OpenRays* found = nullptr;  ///< receives the visibility; no flag may be set yet

@@ -39,7 +39,7 @@ void append_place(std::string& bytes, const Sun& sun) {
   append(bytes, &sun.radius, sizeof(double));
 }
 
-// Ten floats a site, five a side.
+// Serialised light: per side irradiance (3 floats), open and sunny; two sides per site.
 constexpr std::size_t site_floats = 10, side_floats = 5;
 
 std::string bytes_of_light(const std::vector<SiteLight>& lit) {
@@ -125,7 +125,7 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
   const std::string key = result_key("light4", inputs);
   if (const auto bytes = results->find(key); bytes && bytes->size() == sites.size() * site_floats * sizeof(float))
     return light_of_bytes(*bytes);
-  // Read back, so that it is the same whether it was kept or not.
+  // Converted through the rounded bytes, so that a cache miss gives the same result as a hit.
   const std::string bytes = bytes_of_light(trace());
   results->keep(key, bytes);
   return light_of_bytes(bytes);
@@ -228,7 +228,8 @@ LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t
     append(inputs, &code, sizeof(code));
   }
   const std::string key = result_key("lightestimate6", inputs);
-  // Numbers in this order; the sky last.
+  // Layout in doubles: sky side, confidence, bounce (3), sun direction (3), sun radius, sun irradiance (3), then the
+  // sky's texels (3 each).
   constexpr std::size_t fixed = 12;
   if (const auto bytes = results->find(key); bytes && bytes->size() > fixed * sizeof(double)) {
     std::vector<double> n(bytes->size() / sizeof(double));
@@ -242,7 +243,7 @@ LightEstimate kept_estimate(const BakedObject& body, double spacing, std::size_t
       estimate.sun = n[8] > 0;
       if (estimate.sun) estimate.light.suns.push_back({{n[5], n[6], n[7]}, n[8], {n[9], n[10], n[11]}});
       std::size_t at = fixed;
-      // SkyMap asks texel by texel, in order.
+      // SkyMap calls this once per texel, in order.
       estimate.light.sky = SkyMap(side, [&](const Vec3&) -> Radiance {
         at += 3;
         return {n[at - 3], n[at - 2], n[at - 1]};
@@ -292,7 +293,7 @@ GlossFit kept_gloss(const BakedObject& object, const std::vector<std::shared_ptr
   }
   append(inputs, &object.axes, sizeof(object.axes));
   const std::string key = result_key("gloss1", inputs);
-  // Two numbers, then two for each site.
+  // Layout: sharpness and explained share as doubles, then two floats per site.
   if (const auto bytes = results->find(key);
       bytes && bytes->size() == 2 * sizeof(double) + sites.size() * sizeof(Eigen::Vector2f)) {
     GlossFit fit;

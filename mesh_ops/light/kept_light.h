@@ -13,7 +13,7 @@
 
 namespace rebake {
 
-/// traced_light() through the cache `results`, which may be null; cached results are rounded to floats.
+/// traced_light() with the cache `results`, which may be null; cached results are rounded to floats.
 /// `first_lets_through`, if given, is called on a cache miss and returns kept_open_rays() of the first occluder for the
 /// same sites, sides, suns and rays, with `to_light` the identity; the first occluder is not traced then.
 std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
@@ -21,7 +21,7 @@ std::vector<SiteLight> kept_light(const std::vector<LightSite>& sites, const std
                                   int rays, Results* results, const Progress& progress,
                                   const std::function<const OpenRays&()>& first_lets_through = {});
 
-/// Visibility of rays past an occluder, cached; suns are in the sites' space.
+/// Visibility of rays past one occluder, cached. Sun directions are in the sites' space.
 OpenRays kept_open_rays(const std::vector<LightSite>& sites, const std::vector<std::uint8_t>& wanted,
                         const Occluder& occluder, const std::vector<Sun>& suns, int rays, Results* results,
                         const Progress& progress);

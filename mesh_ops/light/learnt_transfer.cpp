@@ -27,7 +27,7 @@ Eigen::MatrixXd with_one(const Eigen::MatrixXd& coordinates) {
   return result;
 }
 
-// Weights w with w · inputs ≈ outputs, a sample a column.
+// Ridge regression: weights w with w · inputs ≈ outputs, one sample per column.
 Eigen::MatrixXd ridge(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& outputs, double share) {
   Eigen::MatrixXd squares = inputs * inputs.transpose();
   squares.diagonal().array() += share * static_cast<double>(inputs.cols());
@@ -87,23 +87,23 @@ LearntTransfer LearntTransfer::learnt(const TransferTraining& training, const Op
   const Eigen::MatrixXf products = away * away.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(products.cast<double>());
   Eigen::Index rank = 0;
-  // Below a millionth of the largest is the rounding of floats.
+  // Eigenvalues below a millionth of the largest are rounding errors of floats.
   while (rank < std::min<Eigen::Index>(options.rank, poses) &&
          eigen.eigenvalues()[poses - 1 - rank] > 1e-6 * eigen.eigenvalues()[poses - 1])
     ++rank;
   const Eigen::MatrixXd vectors = eigen.eigenvectors().rightCols(rank).rowwise().reverse();
   if (rank == 0) {
-    // Nothing departs from the mean, whatever the pose.
+    // Transfer does not depend on the pose: the mean is the prediction.
     model.linear.setZero(0, coordinates.rows() + 1);
     model.components.resize(rows.cols(), 0);
     return model;
   }
   const Eigen::VectorXd sizes = eigen.eigenvalues().tail(rank).reverse().cwiseMax(0.0).cwiseSqrt();
   model.components = away.transpose() * (vectors * sizes.cwiseInverse().asDiagonal()).cast<float>();
-  const Eigen::MatrixXd scores = sizes.asDiagonal() * vectors.transpose();  // a pose a column
+  const Eigen::MatrixXd scores = sizes.asDiagonal() * vectors.transpose();  // one column per pose
 
   progress.at("weights", 0.6);
-  // Every eighth pose tells which of the choices is best; then all are used.
+  // Every eighth pose is held out to select the hyperparameters; then all poses are fitted.
   std::vector<Eigen::Index> kept, held;
   for (Eigen::Index k = 0; k < poses; ++k) (k % 8 == 7 ? held : kept).push_back(k);
   const Eigen::MatrixXd inputs = with_one(coordinates);
@@ -135,7 +135,7 @@ LearntTransfer LearntTransfer::learnt(const TransferTraining& training, const Op
         best_width = width * unit;
         best_noise = noise;
       }
-    // Where the kernel explains nothing more there is none.
+    // Kernels are used only if they reduce the held-out error.
     if (best_width > 0) {
       model.width = best_width;
       model.centers = coordinates;

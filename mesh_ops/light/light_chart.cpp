@@ -16,21 +16,21 @@ namespace {
 
 struct Patch {
   TexelRect rect;
-  int columns, rows;      // nodes
-  int left = 0, top = 0;  // in the light texture
+  int columns, rows;      // numbers of nodes
+  int left = 0, top = 0;  // position in the grid, in nodes
   std::vector<std::uint32_t> faces;
 
   double step_x() const { return static_cast<double>(rect.width()) / std::max(1, columns - 1); }
   double step_y() const { return static_cast<double>(rect.height()) / std::max(1, rows - 1); }
 };
 
-// Surfaces that show the same texels lie in other light: for each face a number of what hangs together within its patch
-// of texels, by edges, in space and in the texture.
+// Surfaces that share texels may be lit differently. Returns per face an identifier of its connected component within
+// its patch, over edges that are equal in space and in the texture.
 std::vector<std::size_t> surfaces_of(const TextureSet& set, const TexelPatches& found) {
   std::vector<std::vector<std::uint32_t>> faces(found.rects.size());
   for (std::uint32_t f = 0; f < found.of_face.size(); ++f) faces[found.of_face[f]].push_back(f);
   UnionFind surfaces(found.of_face.size());
-  using Corner = std::array<double, 5>;  // place and UV
+  using Corner = std::array<double, 5>;  // position and UV
   struct Edge {
     std::array<Corner, 2> ends;
     std::uint32_t face;
@@ -38,7 +38,8 @@ std::vector<std::size_t> surfaces_of(const TextureSet& set, const TexelPatches& 
   std::vector<Edge> edges;
   std::vector<std::array<std::array<double, 2>, 3>> triangles;
   for (const std::vector<std::uint32_t>& patch : faces) {
-    // Only where triangles lie on others in the texture; all else is one surface, wherever its parts have been moved.
+    // Only patches with coincident triangles in the texture are split. Any other patch is one surface, even if its
+    // parts have been moved.
     triangles.clear();
     for (const std::uint32_t f : patch) {
       auto& corners = triangles.emplace_back();
@@ -53,7 +54,7 @@ std::vector<std::size_t> surfaces_of(const TextureSet& set, const TexelPatches& 
       for (const std::uint32_t f : patch) surfaces.join(f, patch.front());
       continue;
     }
-    // A vertex has one place in the light.
+    // Faces that share a vertex share its place in the chart.
     std::map<std::uint32_t, std::uint32_t> face_of;
     for (const std::uint32_t f : patch)
       for (const std::uint32_t v : set.soup.faces()[f]) surfaces.join(f, face_of.try_emplace(v, f).first->second);
@@ -68,7 +69,7 @@ std::vector<std::size_t> surfaces_of(const TextureSet& set, const TexelPatches& 
       }
       for (std::size_t k = 0; k < 3; ++k) {
         const Corner &a = corners[k], &b = corners[(k + 1) % 3];
-        // Around a pole triangles that have nothing in common share an edge without length.
+        // Zero-length edges at a pole would join unrelated triangles.
         if (!std::equal(a.begin(), a.begin() + 3, b.begin())) edges.push_back({{std::min(a, b), std::max(a, b)}, f});
       }
     }
@@ -81,7 +82,7 @@ std::vector<std::size_t> surfaces_of(const TextureSet& set, const TexelPatches& 
   return result;
 }
 
-// Rows of patches, one below the other.
+// Shelf packing of the patches into the grid.
 void place(std::vector<Patch>& patches, LightChart& chart) {
   std::uint64_t area = 0;
   int widest = 1;
@@ -105,7 +106,7 @@ void place(std::vector<Patch>& patches, LightChart& chart) {
   chart.height = std::max(1, y + tallest);
 }
 
-// Weights of the corners at the triangle's point that is nearest in weights.
+// Barycentric weights of `at`, clamped into the triangle. `outside`: the largest clamped amount.
 Vec3 nearest_weights(const std::array<Vec2, 3>& corners, const Vec2& at, double& outside) {
   Vec3 w = barycentric(corners, at);
   outside = std::max(0.0, -w.minCoeff());
@@ -131,7 +132,7 @@ LightChart light_chart(const TextureSet& set, double spacing) {
   const TexelPatches found = texel_patches(set);
   std::vector<Patch> patches;
   const auto nodes = [&](int texels) { return std::max(2, 1 + static_cast<int>(std::ceil((texels - 1) / spacing))); };
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> known;  // number of a patch of texels on a surface
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> known;  // (patch of texels, surface) → index in `patches`
   const std::vector<std::size_t> surfaces = surfaces_of(set, found);
   for (std::uint32_t f = 0; f < found.of_face.size(); ++f) {
     const auto [it, fresh] = known.try_emplace({found.of_face[f], surfaces[f]}, patches.size());

@@ -11,15 +11,15 @@ namespace rebake {
 /// A coarse grid of light nodes over a texture set. Each patch of texels has its own nodes, so light is never
 /// interpolated across patches.
 struct LightChart {
-  Soup::Uvs uvs;                        ///< the UVs it was made from
-  int width = 0, height = 0;            ///< of the grid, in nodes
+  Soup::Uvs uvs;                        ///< UV array of the texture set that the chart was built for
+  int width = 0, height = 0;            ///< size of the grid in nodes
   std::vector<Eigen::Vector2f> places;  ///< per vertex: position in the grid, y down; nodes are at integers + ½
 
   /// A node that opaque texels use: a point of a triangle.
   struct Node {
-    std::uint32_t texel;  ///< y · width + x
-    std::uint32_t face;   ///< face of the set
-    Eigen::Vector3f weights;
+    std::uint32_t texel;      ///< index in the grid: y · width + x
+    std::uint32_t face;       ///< face of the texture set
+    Eigen::Vector3f weights;  ///< barycentric weights of the face's corners
     std::uint32_t patch = 0;  ///< patch number; adjacent texels may belong to different patches
   };
   std::vector<Node> nodes;

@@ -26,7 +26,7 @@ std::vector<Vec3> sphere_points(int count) {
   return points;
 }
 
-// Lobes around directions, which sum to 1 everywhere.
+// Spherical Gaussians about even directions, normalised to sum to 1 everywhere.
 class Lobes {
  public:
   explicit Lobes(int count) : centers_(sphere_points(count)), sharpness_(count / 4.0) {}
@@ -48,11 +48,12 @@ struct Sample {
   std::uint32_t site;
   double facing = 0.5;
   std::uint32_t cluster = 0;
-  std::uint32_t part = 0;  // of the surface, that hangs together
-  Eigen::VectorXd column;  // what a lobe of radiance 1 gives it; last: what hides the sky
+  std::uint32_t part = 0;  // connected component (LightSites::part)
+  Eigen::VectorXd column;  // irradiance / π by each lobe of radiance 1; last: by occluders of radiance 1
 };
 
-// Least |A x − b|² with x ≥ 0, given AᵀA and Aᵀb, by coordinate descent (Franc, Hlaváč and Navara 2005).
+// Non-negative least squares: minimises |A x − b|² over x ≥ 0, given AᵀA and Aᵀb, by coordinate descent (Franc, Hlaváč
+// and Navara 2005).
 Eigen::VectorXd non_negative(const Eigen::MatrixXd& squares, const Eigen::VectorXd& right, Eigen::VectorXd x) {
   Eigen::VectorXd slope = squares * x - right;
   for (int sweep = 0; sweep < 400; ++sweep) {
@@ -77,14 +78,15 @@ double median(std::vector<double> values) {
   return *at;
 }
 
-// How much neighbouring lobes hold to each other, against what a usual lobe weighs.
+// Weight of the smoothness between neighbouring lobes, relative to the mean weight of a lobe.
 constexpr double smooth = 3;
 
+// Alternating fit of the light (lobes, occluders, suns) and of one albedo per chromaticity cluster.
 class Fit {
  public:
   Fit(const std::vector<Sample>& samples, const std::vector<Radiance>& colors, const Lobes& lobes)
       : samples_(samples), colors_(colors) {
-    // Each lobe against the mean of its six nearest.
+    // Smoothness: difference of each lobe from the mean of its six nearest.
     const auto n = static_cast<Eigen::Index>(lobes.size());
     Eigen::MatrixXd differences = Eigen::MatrixXd::Identity(n, n);
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -110,7 +112,7 @@ class Fit {
     weight_.assign(samples.size(), 1);
   }
 
-  // Light and albedos in turn; `suns`: a further column each.
+  // Alternates between light and albedos for `rounds` rounds. `suns`: one sun_column() per sun.
   void run(const std::vector<Eigen::VectorXd>& suns, int rounds) {
     suns_ = suns;
     const Eigen::Index n = samples_.front().column.size() + static_cast<Eigen::Index>(suns.size());
@@ -124,17 +126,17 @@ class Fit {
   }
   Radiance light(Eigen::Index k) const { return {x_[0][k], x_[1][k], x_[2][k]}; }
 
-  // From now on parts may differ in tone.
+  // Enables a brightness factor, the tone, per connected component.
   void tell_parts_apart() { toned_ = true; }
 
-  // Weighted squared error of the colours' sum.
+  // Weighted sum of the squared errors of all samples.
   double error() const {
     double sum = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) sum += weight_[i] * residual(i).squaredNorm();
     return sum;
   }
-  // The same when one more sun may shine, light refitted; albedos stay. Many suns are tried, so that what is the same
-  // with all of them is worked out once: hold_still() before.
+  // error() with one more sun, after refitting the light with fixed albedos. hold_still() must be called first: it
+  // computes the terms that all candidate suns share.
   double error_with(const Eigen::VectorXd& sun) const {
     double sum = 0;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -158,7 +160,7 @@ class Fit {
     for (std::size_t c = 0; c < 3; ++c) held_[c] = equations(static_cast<int>(c));
   }
   double explained() const {
-    // Against one radiance a cluster, in its parts' tones.
+    // Baseline: one constant colour per cluster, scaled by the tones of its parts.
     std::vector<Radiance> mean(albedo_.size(), Radiance::Zero());
     std::vector<double> count(albedo_.size(), 0);
     for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -183,10 +185,10 @@ class Fit {
       r[own.size() + static_cast<Eigen::Index>(s)] = suns_[s][static_cast<Eigen::Index>(i)];
     return r;
   }
-  // Of one channel, with the weights and albedos there are.
+  // Least-squares system of one channel, for the current weights and albedos.
   struct Equations {
-    Eigen::MatrixXd rows, squares;         // squares: with what holds lobes together and away from infinity
-    Eigen::VectorXd scale, wanted, right;  // scale: of each row, against what light gives the sample
+    Eigen::MatrixXd rows, squares;         // squares: rowsᵀ · rows, with smoothness and damping
+    Eigen::VectorXd scale, wanted, right;  // scale: per row, √weight · albedo; wanted: √weight · colour
     double damping = 0;
   };
   Equations equations(int c) const {
@@ -217,8 +219,8 @@ class Fit {
     return Radiance(r.dot(x_[0]), r.dot(x_[1]), r.dot(x_[2])).cwiseProduct(albedo_of(samples_[i]));
   }
   Radiance residual(std::size_t i) const { return colors_[samples_[i].site] - predicted(i); }
-  // Errors count relative to what is expected, since albedos vary by factors; beyond the usual less (Huber): what lies
-  // far off is a highlight, or of another albedo.
+  // Weights errors relative to the predicted colour, because albedos vary by factors. Outliers (highlights, other
+  // albedos) get Huber weights.
   void reweigh() {
     std::vector<double> expected, sizes;
     double mean = 0;
@@ -235,8 +237,8 @@ class Fit {
       weight_[i] = std::min(1.0, usual / std::max(usual, sizes[i])) * mean * mean / (expected[i] * expected[i]);
   }
   Radiance albedo_of(const Sample& sample) const { return albedo_[sample.cluster] * tone_[sample.part]; }
-  // Each part's brightness beside its cluster's, drawn towards 1 as far as parts differ less than what lies within them
-  // (after DerSimonian and Laird 1986, about 1 instead of their mean).
+  // Tone of each part: its brightness relative to its cluster, shrunk towards 1 by the ratio of the variance within
+  // parts to that between parts (after DerSimonian and Laird 1986, with 1 as mean).
   void tones() {
     std::vector<double> top(tone_.size(), 0), bottom(tone_.size(), 0);
     for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -278,7 +280,7 @@ class Fit {
       sum += albedo_[sample.cluster];
       count += 1;
     }
-    // Scale is free: albedos are ½ on the whole.
+    // The scale is undetermined: the mean albedo is set to ½.
     const Radiance scale = (sum / count * 2).cwiseInverse();
     for (Radiance& a : albedo_) a = a.cwiseProduct(scale);
     for (int c = 0; c < 3; ++c) x_[c] /= scale[c];
@@ -288,15 +290,15 @@ class Fit {
   const std::vector<Radiance>& colors_;
   std::vector<Eigen::VectorXd> suns_;
   std::array<Eigen::VectorXd, 3> x_{Eigen::VectorXd::Zero(0), Eigen::VectorXd::Zero(0), Eigen::VectorXd::Zero(0)};
-  std::vector<Radiance> albedo_;  // of each cluster
-  std::vector<double> tone_;      // of each part, against its cluster's albedo
+  std::vector<Radiance> albedo_;  // per cluster
+  std::vector<double> tone_;      // per part: brightness relative to its cluster
   bool toned_ = false;
   std::vector<double> weight_;
   Eigen::MatrixXd smoothness_;
   std::array<Equations, 3> held_;
 };
 
-// What a sun of irradiance 1 gives each sample.
+// Per sample: its shadowed irradiance, in units of Sun::irradiance.
 Eigen::VectorXd sun_column(const std::vector<Sample>& samples, const LightSites& sites, const SceneRays& body,
                            const Vec3& direction, double radius, int rays, const Progress& progress) {
   Eigen::VectorXd column = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(samples.size()));
@@ -332,7 +334,7 @@ struct FoundSun {
 LightEstimate estimated_light(const LightSites& sites, const std::vector<Radiance>& colors, const SceneRays& body,
                               const EstimateOptions& options, const Progress& progress) {
   LightEstimate result;
-  // Spread over all of them.
+  // The samples are spread evenly over the usable sites.
   std::vector<Sample> samples;
   std::vector<std::uint32_t> usable;
   for (std::uint32_t i = 0; i < sites.size(); ++i)
@@ -375,7 +377,8 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
   }
   Fit fit(samples, colors, lobes);
   fit.run({}, 12);
-  // Before a sun is looked for: brighter leaves would pass for lit ones, and lead it astray by degrees.
+  // Tones are fitted before the search for a sun: otherwise bright leaves count as sunlit, and the sun is off by
+  // degrees.
   fit.tell_parts_apart();
   fit.run({}, 12);
   progress.at("estimating light", 0.7);
@@ -411,7 +414,7 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
       other.error = fit.error_with(other.column);
       if (other.error < best.error) best = other;
     }
-    // It must be worth it: lobes alone explain soft light as well.
+    // A sun must reduce the error by 3 %, because lobes alone explain soft light.
     if (best.error < 0.97 * without) sun = best;
   }
   if (sun) fit.run({sun_column(samples, sites, body, sun->direction, sun->radius, 48, progress)}, 12);

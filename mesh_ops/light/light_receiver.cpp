@@ -15,9 +15,9 @@ namespace rebake {
 
 namespace {
 
-// The steepest that display colours rise over linear light.
+// Largest slope of display colour over linear light (sRGB).
 constexpr double steepest = 12.92;
-// Sites by which changes are estimated.
+// Number of sites per estimate of a change.
 constexpr std::size_t sampled_places = 2048;
 
 struct Sphere {
@@ -35,7 +35,8 @@ bool similarity(const Mat3& m) {
   return (squares - scale * Mat3::Identity()).cwiseAbs().maxCoeff() <= 1e-9 * scale;
 }
 
-// What was separated and then moved is another object, and so is a copy elsewhere.
+// Whether two nodes share a body at the same place in the world. Parts that were separated and then moved are other
+// objects, and so are copies elsewhere.
 bool share_body(const PlacedNode& a, const PlacedNode& b) {
   const std::vector<BakedBody> first = bodies_of(*a.node->object), second = bodies_of(*b.node->object);
   const auto same_place = [&](const BakedBody& x, const BakedBody& y) {
@@ -54,7 +55,7 @@ bool any_displaced(const BakedObject& object) {
   });
 }
 
-// The object's triangles where they were when their light was baked.
+// The object with its triangles at their baked positions.
 std::shared_ptr<const BakedObject> at_baked_places(const BakedObject& object) {
   auto result = std::make_shared<BakedObject>(object);
   for (TextureSet& set : result->sets) {
@@ -75,7 +76,7 @@ LightReceiver::LightReceiver(const std::vector<PlacedNode>& objects, std::size_t
     : objects_(objects), own_(own), settings_(settings), options_(options), known_(known) {
   for (std::size_t k = 0; k < objects_.size(); ++k)
     if (k == own_ || share_body(placed(), objects_[k])) relatives_.push_back(k);
-  // What was joined of several shades each other as it was not baked to.
+  // Merged objects occlude each other, which their baked light does not include.
   moved_ = any_displaced(object()) || object().bodies.size() > 1;
   missing_ = anything_missing();
 }
@@ -86,10 +87,11 @@ bool LightReceiver::related(std::size_t other) const {
 
 Mat3 LightReceiver::turn() const { return orthogonal_factor(to_world().linear()); }
 
-// Light is traced in the object's own space, where nothing is rounded that did not move, unless that is sheared.
+// Light is traced in object space, so that unmoved objects have no rounding differences; in world space if the node is
+// sheared.
 bool LightReceiver::in_world() const { return !similarity(to_world().linear()); }
 
-// Turns directions of the space that light is traced in into those of the light that it was baked in.
+// Rotation from the space of tracing to the space of the object's baked light.
 Mat3 LightReceiver::to_own_light() const { return in_world() ? Mat3(turn().transpose()) : Mat3(Mat3::Identity()); }
 
 std::shared_ptr<const Light> LightReceiver::light(const Progress& progress) {
@@ -116,7 +118,8 @@ double LightReceiver::cast_bound(std::size_t other, const Shared& shared, const 
   const Sphere mine = around(placed()), its = around(objects_[other]);
   const double distance = (its.center - mine.center).norm() - mine.radius;
   const double sine = distance > its.radius ? its.radius / distance : 1;
-  // Without a light to be found: a sun of a degree is ten thousand times as bright as what it lights.
+  // Early exit before the light is known, with a bound on any radiance: a sun of one degree is about 10⁴ times as
+  // bright as the surfaces that it lights.
   constexpr double brightest_sun = 1e5;
   if (const double at_most = sine * sine * brightest_sun * steepest; at_most < settings_.budget / 1000) return at_most;
   prepare(progress);
@@ -124,7 +127,7 @@ double LightReceiver::cast_bound(std::size_t other, const Shared& shared, const 
   const Mat3 to_space = shared.light != nullptr ? Mat3(shared.to_light.transpose()) : turn();
   double most = 0;
   for (int c = 0; c < 3; ++c) {
-    // What hides the sky sends its own light instead.
+    // Occluders replace the sky's radiance by their own.
     double taken = sine * sine * std::max(shining.sky.brightest()[c], shining.bounce[c]);
     for (const Sun& sun : shining.suns) {
       const Vec3 towards = to_space * sun.direction, way = its.center - mine.center;
@@ -155,7 +158,7 @@ ChangeEstimate LightReceiver::sampled_change(bool self, bool removed, const Prog
     const Radiance e0 = shown(i, before), e1 = shown(i, after);
     for (int c = 0; c < 3; ++c) {
       const double color = baked_->colors[i][c];
-      // What was baked in the dark counts with the common albedo, as it is lit.
+      // Sites that were baked in the dark use the object's albedo.
       const double albedo = e0[c] > 0 ? std::min(color / e0[c], 4 * baked_->albedo[c]) : baked_->albedo[c];
       const double changed = std::clamp(color + albedo * (e1[c] - e0[c]), 0.0, 1.0);
       most = std::max(most, std::abs(to_display(changed) - to_display(color)));
@@ -181,7 +184,7 @@ std::string LightReceiver::why_matte(const Shared& shared) const {
 ChangeEstimate LightReceiver::mirrored_change(const GlossFit& fit) const {
   const LightSites& sites = baked_->sites;
   const std::vector<Vec3> directions = even_directions(24);
-  // Where nothing turned, or nothing is mirrored, nothing changes.
+  // Only sites that rotated and reflect can change.
   std::vector<std::uint8_t> turned(sites.size());
   for (std::size_t i = 0; i < sites.size(); ++i)
     turned[i] = sites.baked[i].normal != sites.now[i].normal && !fit.amounts[i].isZero(0) ? 1 : 0;
@@ -216,7 +219,7 @@ LightReceiver::Change LightReceiver::change(bool self, bool removed, const std::
   const int rays = options_.rays > 0 ? options_.rays : settings_.rays;
   std::vector<SiteLight> before, after;
   if (!casters.empty() && shared.light == nullptr && baked_->untouched() && relatives_.size() == 1 && !in_world()) {
-    // It shades itself as it was baked, which is traced once for both.
+    // Self-occlusion is as baked, so it is traced once for both.
     std::vector<Occluder> others;
     for (const std::size_t k : casters) others.push_back(occluder(k));
     before = baked_->among({}, rays, progress);
@@ -242,7 +245,7 @@ std::vector<std::shared_ptr<const LightMap>> LightReceiver::maps(const Change& c
                     change.mirrors ? &*change.mirrors : nullptr);
 }
 
-// What was learnt of its body; what cannot be read was never kept.
+// The cached model of the object's body; null if there is none or it cannot be parsed.
 std::shared_ptr<const TransferModel> LightReceiver::kept_model() const {
   const std::vector<BakedBody> bodies = bodies_of(object());
   if (options_.results == nullptr || bodies.size() != 1 || !bodies.front().to_object.matrix().isIdentity(0))
@@ -260,7 +263,7 @@ std::shared_ptr<const TransferModel> LightReceiver::kept_model() const {
 
 std::shared_ptr<const TurnedLight> LightReceiver::turned(const Change& change, const std::vector<std::size_t>& casters,
                                                          const Shared& shared, const Progress& progress) const {
-  // Sheared objects are traced in the world, which their triangles do not turn in.
+  // Sheared objects are traced in world space, in which their triangles do not rotate rigidly.
   if (in_world() || !settings_.self) return nullptr;
   TurnedLight::Start start{
       placed().node->object, charts_, baked_->sites, baked_->facing, change.colors, change.before, change.after, {}, {},
@@ -297,7 +300,7 @@ void LightReceiver::prepare(const Progress& progress) {
     charts_.push_back(baked_->charts[s]);
     const Soup::Uvs uvs = object().sets[s].soup.shared_uvs();
     if (charts_[s]->uvs == uvs) continue;
-    // It was read again, from the same files.
+    // The object was read again from the same files: its UV array is another one with the same content.
     LightChart own = *charts_[s];
     own.uvs = uvs;
     charts_[s] = std::make_shared<const LightChart>(std::move(own));
@@ -333,7 +336,7 @@ std::vector<Occluder> LightReceiver::relatives() const {
   return occluders;
 }
 
-// Without `self`, triangles count as baked where they are now.
+// Without `self`, the present positions of triangles count as those at baking.
 std::vector<SiteLight> LightReceiver::light_before(bool self, bool removed, const std::vector<std::uint8_t>& wanted,
                                                    int rays, const Progress& progress) const {
   if (moved_ && !self)
@@ -367,7 +370,7 @@ std::vector<SiteLight> LightReceiver::light_after(const std::vector<std::size_t>
   const std::vector<BakedBody> bodies = bodies_of(object());
   if (bodies.size() == 1)
     return baked_->traced(now(), wanted, occluders, *baked_->light, to_own_light(), rays, progress);
-  // Each body's light turned with it when it was joined.
+  // The light of each body rotated with it when it was merged.
   std::vector<SiteLight> result(baked_->sites.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Mat3 to_body = orthogonal_factor(bodies[b].to_object.linear()).transpose() * to_own_light();

@@ -35,14 +35,14 @@ class LightReceiver {
   /// Upper bound of the shadow of another object on this one, in display colours. A sun counts if a ray to it may meet
   /// the other's bounding sphere.
   double cast_bound(std::size_t other, const Shared& shared, const Progress& progress);
-  /// Estimated change by an effect, from 2048 sites with 64 rays each.
+  /// Estimated change by the self-shadow and the removed shadow, from up to 2048 sites with 64 rays each.
   ChangeEstimate sampled_change(bool self, bool removed, const Progress& progress);
   /// Specular fit if triangles have rotated; null if nothing is reflected, if the object was merged from others, or if
   /// it uses a light other than its own.
   std::shared_ptr<const GlossFit> gloss(const Shared& shared, const Progress& progress);
-  /// The reason why gloss() is null.
+  /// Wording of the reason why gloss() is null.
   std::string why_matte(const Shared& shared) const;
-  /// Estimated change of the reflection by rotation, from 2048 sites with 24 view directions each.
+  /// Estimated change of the reflection by rotation, from up to 2048 sites with 24 view directions each.
   ChangeEstimate mirrored_change(const GlossFit& fit) const;
   /// Irradiance (divided by π) of the sites as baked and with the running effects, and their colours.
   struct Change {
@@ -52,7 +52,7 @@ class LightReceiver {
   /// `gloss`: null if highlights stay as baked.
   Change change(bool self, bool removed, const std::vector<std::size_t>& casters, const Shared& shared,
                 const std::shared_ptr<const GlossFit>& gloss, const Progress& progress);
-  /// The correction of colours, a map per texture set; null entries change nothing.
+  /// The correction of colours: one map per texture set; null entries change nothing.
   std::vector<std::shared_ptr<const LightMap>> maps(const Change& change) const;
   /// The correction in a form that follows dragged triangles; null if not possible.
   std::shared_ptr<const TurnedLight> turned(const Change& change, const std::vector<std::size_t>& casters,
@@ -73,7 +73,7 @@ class LightReceiver {
   bool in_world() const;
   Mat3 to_own_light() const;
   void prepare(const Progress& progress);
-  /// Sites in the space of tracing.
+  /// Sites as edited, in the space of tracing (object space, or world space for sheared nodes).
   const std::vector<LightSite>& now() const;
   Radiance shown(std::size_t i, const std::vector<SiteLight>& lit) const;
   Occluder occluder(std::size_t k) const;
@@ -92,7 +92,7 @@ class LightReceiver {
   BakedLights& known_;
   // Set by prepare():
   std::shared_ptr<BakedLight> baked_;
-  std::vector<std::shared_ptr<const LightChart>> charts_;  ///< charts of its own arrays
+  std::vector<std::shared_ptr<const LightChart>> charts_;  ///< the object's charts, with its own UV arrays
   std::vector<LightSite> in_world_;                        ///< sites in world space, for sheared nodes
 };
 

@@ -13,22 +13,22 @@ namespace rebake {
 
 namespace {
 
-// Corners of an object's triangles at one of their two places, and what surfaces are like there.
+// An object's triangles as baked or as edited, with their normals and roughness.
 struct Surface {
-  std::vector<std::array<Vec3, 3>> corners;
-  std::vector<Vec3> normals;  // twice the area long
-  std::vector<std::array<Vec3, 3>> smooth;
-  // Of a corner, over both sides: by how much facets around it stick out of the smooth surface, as a sine.
+  std::vector<std::array<Vec3, 3>> corners;  // per face: positions
+  std::vector<Vec3> normals;                 // per face; length: twice the area
+  std::vector<std::array<Vec3, 3>> smooth;   // per corner: unit smooth normal
+  // Per corner and side: deviation of the surrounding facets from the smooth surface, as the root mean square of sines.
   std::vector<std::array<std::array<double, 2>, 3>> roughness;
-  std::vector<double> pitch;  // size of the facets
+  std::vector<double> pitch;  // per face: size, the square root of twice the area
 };
 
-// Faces whose normals differ by less than this are one surface: beyond it there is an edge.
+// Cosine (60°) between normals of adjacent faces above which they are one smooth surface. Below it there is an edge.
 constexpr double smooth_cosine = 0.5;
-// Of a face's size: what rises less at an edge hides next to nothing.
+// Height of a face beyond an edge, relative to its size, below which it occludes next to nothing.
 constexpr double stands_up = 0.1;
 
-// The faces around each welded corner.
+// The faces around each welded vertex, as compressed rows.
 struct FacesAround {
   std::vector<std::uint32_t> first, faces;
   std::span<const std::uint32_t> of(std::uint32_t place) const {
@@ -66,11 +66,12 @@ void smooth_normals(const WeldedCorners& welded, const FacesAround& around, Surf
   });
 }
 
-// A facet of a smooth surface lies across the mean of its corners' normals, however that is curved; one of a ragged
-// surface does not. What stands up at an edge would be met by all rays that start below it.
+// A facet of a smooth surface is perpendicular to the mean normal of its corners, even if the surface is curved. A
+// facet of a ragged surface is not. Faces that rise at an edge count as roughness 1, because they block all rays that
+// start below their top.
 void find_roughness(const WeldedCorners& welded, const FacesAround& around, Surface& surface) {
   const std::size_t faces = surface.corners.size();
-  std::vector<double> ragged(faces, 0);  // squared sines
+  std::vector<double> ragged(faces, 0);  // per face: squared sine between its normal and the mean normal of its corners
   tbb::parallel_for(std::size_t{0}, faces, [&](std::size_t f) {
     const Vec3 own = surface.normals[f].stableNormalized(),
                mean = (surface.smooth[f][0] + surface.smooth[f][1] + surface.smooth[f][2]).stableNormalized();
@@ -122,11 +123,12 @@ Surface surface_of(const WeldedCorners& welded, std::vector<std::array<Vec3, 3>>
   return surface;
 }
 
-// Rays start above what a facet departs from the smooth surface: hardly where that is smooth, a whole facet where it is
-// ragged (a soup would shade itself).
+// Offset of ray origins in facet sizes: small on smooth surfaces, up to half a facet on ragged ones, because a soup
+// would occlude itself.
 constexpr double least_offset = 0.02, offset_a_sine = 0.5;
 
-// `rough` is the same surface where its light was baked: bending makes nothing ragged.
+// The site at barycentric weights `w` of a face. `rough`: the surface as baked; its roughness counts, because bending
+// adds none.
 LightSite site_at(const Surface& surface, const Surface& rough, std::size_t face, const Vec3& w) {
   const auto& corners = surface.corners[face];
   LightSite site{};

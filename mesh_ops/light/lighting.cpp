@@ -16,10 +16,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// The light that all objects are to stand in.
+// The common light that an object is placed in (SceneLight::match).
 struct MatchedLight {
-  std::shared_ptr<const Light> light;  // null: the object stays in its own
-  Mat3 to_light = Mat3::Identity();    // turns the world's directions into the light's
+  std::shared_ptr<const Light> light;  // null: the object keeps its own light
+  Mat3 to_light = Mat3::Identity();    // rotates world directions into the light's space
   std::string why;
 };
 std::vector<MatchedLight> matched_lights(const SceneLight& settings, std::vector<LightReceiver>& receivers,
@@ -28,13 +28,14 @@ std::vector<MatchedLight> matched_lights(const SceneLight& settings, std::vector
   if (!settings.match || receivers.empty()) return result;
   LightReceiver& first = receivers.front();
   if (settings.source != SceneLight::Source::estimated) {
-    // A given light stands in the world.
+    // A given light is fixed in world space.
     for (MatchedLight& match : result) match = {first.light(progress), Mat3::Identity(), "the given light"};
     return result;
   }
   const Radiance common = first.light(progress)->mean_irradiance();
   for (std::size_t k = 1; k < receivers.size(); ++k) {
-    // Colours tell how a light is spread, not how bright it is and of what tint beside their albedos: those stay.
+    // Colours determine the distribution of a light, but not its brightness and tint, which are ambiguous with albedo.
+    // Those are not matched.
     const Radiance own = receivers[k].light(progress)->mean_irradiance();
     if (!((common.array() > 0).all() && (own.array() > 0).all())) {
       result[k].why = "no light in all three channels could be told from colours of " +
@@ -92,7 +93,8 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
   const auto light_for = [&](std::size_t k) {
     return LightReceiver::Shared{matches[k].light.get(), matches[k].to_light};
   };
-  // Of an object that moved in itself and lost parts both shadows are traced as one; the line that follows another.
+  // If an object deformed and also lost parts, both shadows are traced together. Maps the self-shadow's decision to the
+  // removed shadow's decision, which it follows.
   std::map<std::size_t, std::size_t> follows;
   std::vector<std::shared_ptr<const GlossFit>> gloss(receivers.size());
   std::vector<std::optional<std::size_t>> own_line(receivers.size());
@@ -135,7 +137,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
                               Candidate::Kind::cast, other});
     }
   }
-  // The least changes are left out while their sum stays within the budget.
+  // The smallest changes are omitted while their sum stays within the budget.
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -144,7 +146,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
   for (const std::size_t k : order) {
     LightDecision& decision = result.decisions[candidates[k].decision];
     const double sum = result.left_out + decision.change;
-    // In another light all of an object's own changes count.
+    // In a matched light, an object's own shadows are never omitted.
     const bool in_other_light =
         (candidates[k].kind == Candidate::Kind::self || candidates[k].kind == Candidate::Kind::removed) &&
         matched(candidates[k].receiver);
@@ -161,7 +163,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     result.decisions[line].runs = result.decisions[other].runs;
     result.decisions[line].why = "together with the removed shadow";
   }
-  // What is mirrored follows from how triangles moved, as their shadows do: both are worked out.
+  // Highlights are traced together with the self-shadow: if they run, both run.
   for (const Candidate& candidate : candidates) {
     if (candidate.kind != Candidate::Kind::highlights || !result.decisions[candidate.decision].runs) continue;
     LightDecision& own = result.decisions[*own_line[candidate.receiver]];
@@ -207,7 +209,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       result.decisions.back().runs = true;
       running.push_back(result.decisions.size() - 1);
     }
-    // An object's effects are traced as one.
+    // An object's effects are traced together, so they share the time.
     for (const std::size_t decision : running) {
       result.decisions[decision].seconds = seconds / static_cast<double>(running.size());
       result.decisions[decision].took =
@@ -251,7 +253,7 @@ std::optional<Lighting> turned_lighting(const Scene& start_scene, const Lighting
     }
     result.lights.try_emplace(b.node->id, turning->second->start().lights.front().light);
     const std::string name = "self-shadow " + b.node->name;
-    // In place of what was decided where it started.
+    // Replaces the decision from the start of the drag.
     std::erase_if(result.decisions, [&](const LightDecision& decision) { return decision.name == name; });
     result.decisions.push_back(
         {"self-shadow", name, true, 0, seconds, why, fmt::format("took {:.0f} ms", 1000 * seconds)});

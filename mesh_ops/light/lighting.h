@@ -19,11 +19,11 @@ struct Lighting {
   std::map<NodeId, std::vector<std::shared_ptr<const LightMap>>> maps;
   std::map<NodeId, std::shared_ptr<const Light>> lights;  ///< the light each affected node was baked in
   std::vector<LightDecision> decisions;
-  std::vector<LightDecision> summary;                            ///< summary of `decisions` for people
-  std::map<NodeId, std::shared_ptr<const TurnedLight>> turning;  ///< drag light of LightingOptions::turning
+  std::vector<LightDecision> summary;                            ///< summed_up(decisions)
+  std::map<NodeId, std::shared_ptr<const TurnedLight>> turning;  ///< previews during drags (LightingOptions::turning)
   double left_out = 0;  ///< sum of the bounds and estimates of omitted effects, in display colours
-  /// Whether an effect was omitted on an estimate: a few places may change more (ChangeEstimate); in pictures at most a
-  /// share most_beyond of the pixels.
+  /// Whether an effect was omitted because of an estimate: a few places may change more (ChangeEstimate). In pictures
+  /// these are at most a share most_beyond of the pixels.
   bool estimated = false;
   static constexpr double most_beyond = 0.01;
 
@@ -41,8 +41,9 @@ struct LightingOptions {
   std::set<NodeId> turning{};  ///< nodes whose triangles are about to be dragged
 };
 
-/// The light effects that a scene calls for (none if Scene::light is null): decides by bounds, estimates unknown
-/// lights, traces light before and after edits. Deterministic. Throws EditError for a node with a singular transform.
+/// Computes the light effects that a scene calls for (none if Scene::light is null): decides by bounds, estimates
+/// unknown lights, traces light before and after edits. Deterministic. Throws EditError for a node with a singular
+/// transform.
 Lighting lighting_of(const Scene& scene, const LightingOptions& options = {}, const Progress& progress = {});
 
 /// Updates `start` for a scene in which only triangles of nodes in start.turning have moved since; nothing is traced.

@@ -24,7 +24,7 @@ static std::uint64_t memory_of(const Reach&) { return sizeof(Reach); }
 
 namespace {
 
-// In a scene of many objects each shades all the others.
+// Per-object results: in a scene of many objects, each occludes all the others.
 ArrayCache& cache() {
   static ArrayCache cache(std::uint64_t{1} << 20);
   return cache;
@@ -41,7 +41,8 @@ ArrayCache::Arrays arrays_of(const BakedObject& object) {
   return arrays;
 }
 
-// How far away an object's parts shade anything.
+// Ray length beyond which the object does not occlude: three times the distance of most triangles from their median, if
+// some are much farther away (a backdrop); else infinite.
 double found_reach(const BakedObject& object) {
   std::vector<Vec3> centers;
   for (const TextureSet& set : object.sets)

@@ -9,10 +9,10 @@
 
 namespace rebake {
 
-/// An occluding object, and its placement in the space of tracing.
+/// An object that occludes light.
 struct Occluder {
   std::shared_ptr<const BakedObject> object;
-  Affine to_frame;
+  Affine to_frame;  ///< from object space to the space in which light is traced
 };
 
 /// A ray tracer over the occluders. Triangles much farther away than most of their object, such as a backdrop, do not

@@ -32,7 +32,7 @@ PoseSpace::PoseSpace(std::vector<Vec3> at_rest, const std::vector<std::vector<Ve
   for (Eigen::Index k = 0; k < count; ++k) rows.row(k) = displacement(poses[static_cast<std::size_t>(k)]);
   mean = count > 0 ? Eigen::VectorXd(rows.colwise().mean()) : Eigen::VectorXd::Zero(rows.cols());
   rows.rowwise() -= mean.transpose();
-  // Axes below a thousandth of the first are what rounding leaves.
+  // Axes below a thousandth of the first are rounding errors.
   constexpr double least = 1e-3;
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& values = svd.singularValues();

@@ -20,17 +20,19 @@ class PoseSpace {
   /// Probe positions at rest and in each training pose.
   PoseSpace(std::vector<Vec3> rest, const std::vector<std::vector<Vec3>>& poses);
 
+  /// A pose in this space.
   struct Place {
-    Eigen::VectorXd coordinates;
-    /// Up to 1 within the training range, by the distance from the mean pose and by the residual of the projection (a
-    /// twentieth of the largest displacement is allowed).
+    Eigen::VectorXd coordinates;  ///< one per axis, in standard deviations
+    /// At most 1 within the training range, by the distance from the mean pose and by the residual of the projection,
+    /// which may be up to a twentieth of the largest displacement.
     double range;
   };
+  /// The place of a pose, given its probe positions.
   Place place(const std::vector<Vec3>& probes) const;
   Eigen::Index dimensions() const { return axes.rows(); }
 
   // Stored in files:
-  std::vector<Vec3> rest;
+  std::vector<Vec3> rest;      ///< probe positions at rest
   double size = 1;             ///< size of the body, the unit of displacements
   Eigen::VectorXd mean;        ///< mean displacements, three per probe
   Eigen::MatrixXd axes;        ///< rows: unit principal components divided by their standard deviation

@@ -9,7 +9,7 @@ namespace rebake {
 
 namespace {
 
-// Two edges and the normal, which is as long as the edges are.
+// Columns: two edges and the normal, which is scaled to the size of the edges.
 Mat3 frame_of(const ProxyMesh& mesh, const Face& face) {
   const Vec3 e = mesh.vertices[face[1]] - mesh.vertices[face[0]], f = mesh.vertices[face[2]] - mesh.vertices[face[0]];
   const Vec3 normal = e.cross(f);
@@ -54,7 +54,7 @@ std::vector<Mat3> vertex_turns(const ProxyMesh& rest, const ProxyMesh& posed) {
 
 std::vector<LightSite> vertex_sites(const ProxyMesh& rest, const ProxyMesh& posed, const std::vector<Mat3>& turns) {
   const std::vector<Vec3> normals = vertex_normals(posed), before = vertex_normals(rest);
-  // A cell is about as wide as the longest of the edges that meet in the vertex, as far as it is stretched.
+  // Width of a mesh cell: the longest posed edge at the vertex.
   std::vector<double> cells(posed.vertices.size(), 0);
   for (const Face& face : posed.faces)
     for (std::size_t k = 0; k < 3; ++k) {

@@ -15,12 +15,12 @@ struct ProxyMesh {
 
 Box bounds(const ProxyMesh& mesh);
 
-/// Rotation of the surface around each vertex between two poses with the same faces: the rotation of the area-weighted
-/// mean of the motions of its triangles.
+/// Rotation of the surface around each vertex between two poses with the same faces: the rotation part of the
+/// area-weighted mean motion of its triangles.
 std::vector<Mat3> vertex_turns(const ProxyMesh& rest, const ProxyMesh& posed);
 
-/// Sites at the vertices, with smooth normals; tangents rotate with the surface. Rays start one mesh cell above it,
-/// where a mesh represents a smooth surface.
+/// Sites at the vertices, with smooth normals; tangents rotate with the surface. Rays start one mesh cell above the
+/// mesh, because it only approximates the surface.
 std::vector<LightSite> vertex_sites(const ProxyMesh& rest, const ProxyMesh& posed, const std::vector<Mat3>& turns);
 
 /// The mesh as an opaque object.

@@ -14,13 +14,14 @@ namespace rebake {
 
 namespace {
 
-// Of the common irradiance: below it, albedos of the whole part count.
+// Share of the typical irradiance; sites with less use the albedo of their part.
 constexpr double dark_share = 0.3;
 
-// Beyond this all is white; half floats hold it.
+// Limit of gains and offsets. Beyond it everything is white; half floats can store it.
 constexpr double largest = 1e4;
 
-// How far a part's colours are from one albedo under such light: the median departure of log(colour / light).
+// Deviation of a part's colours from a single albedo under its light: the median absolute deviation of log(colour /
+// light).
 double unevenness(const std::vector<std::uint32_t>& part, const std::vector<SiteLight>& baked,
                   const std::vector<Radiance>& colors, double facing) {
   std::vector<double> logs;
@@ -54,7 +55,7 @@ std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLigh
   std::vector<float> facing(sites.size());
   for (const std::vector<std::uint32_t>& part : parts) {
     if (part.empty()) continue;
-    // What three sites of five exceed: rims and cracks do not count.
+    // Visibility that three of five sites exceed, so that rims and cracks do not count.
     std::array<float, 2> common{};
     for (std::size_t side = 0; side < 2; ++side) {
       std::vector<float> values;
@@ -65,7 +66,7 @@ std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLigh
     }
     auto best = static_cast<float>(facing_by_openness(static_cast<double>(common[0]), static_cast<double>(common[1])));
     if (best == 0.5F) {
-      // Both may show: colours tell, if they do so clearly.
+      // Both sides may be visible: decided by colours if their difference is clear.
       constexpr double clearly = 0.8, byte_step = 0.01;
       double least = unevenness(part, baked, colors, 0.5);
       least = least > byte_step ? clearly * least : 0;
@@ -105,7 +106,7 @@ std::vector<Radiance> site_colors(const BakedObject& object,
       const Vec2 at = node.weights[0] * corners[0] + node.weights[1] * corners[1] + node.weights[2] * corners[2];
       const LightSite& site = sites.baked[i];
       const Vec3 across = site.normal.cross(site.tangent);
-      // Four directions to each side.
+      // Four view directions per side.
       std::array<Vec3, 8> fed;
       for (std::size_t k = 0; k < fed.size(); ++k) {
         const double tilt = 0.7;
@@ -150,8 +151,8 @@ std::vector<Radiance> site_colors(const BakedObject& object,
 
 namespace {
 
-// The largest albedo that well-lit sites of an object show, per part and channel: the 99th percentile of colour over
-// irradiance. Parts with few such sites take the object's; infinite if the object has few.
+// Largest albedo of well-lit sites, per part and channel: the 99th percentile of colour / irradiance. Parts with few
+// such sites use the object's; infinite if the object has few.
 std::vector<Radiance> largest_albedos(const LightSites& sites, const std::vector<Radiance>& colors,
                                       const std::vector<Radiance>& before, const Radiance& lambda, std::size_t parts) {
   constexpr std::size_t least_sites = 16;
@@ -179,9 +180,9 @@ std::vector<Radiance> largest_albedos(const LightSites& sites, const std::vector
   return result;
 }
 
-// The brightest that a site of colour `color` may become: what `albedo` makes of the new light, and what the colour had
-// beyond it in the old light, which fades as light grows: a surface that was never lit was never fitted, and its colour
-// says nothing. At unchanged light it is at least the colour itself.
+// Upper bound of a site's new colour: `albedo` times the new light, plus the part of the old colour beyond `albedo`
+// times the old light. That part fades as light grows, because the colours of surfaces that were never lit were never
+// fitted. At unchanged light the bound is at least the colour itself.
 double brightest(double color, double e, double after, double albedo, double root_lambda) {
   const double beyond = std::max(0.0, color - albedo * e), dark = 0.1 * root_lambda;
   return albedo * after + beyond * std::min(1.0, (e + dark) / (after + dark));
@@ -194,7 +195,7 @@ std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::s
                                                         const std::vector<Radiance>& before,
                                                         const std::vector<Radiance>& after,
                                                         const std::vector<LightSite>& now, const Mirrors* mirrors) {
-  // What is common: the irradiance that nine sites of ten do not reach.
+  // λ from the typical irradiance, its 90th percentile over the sites.
   Radiance lambda = Radiance::Zero();
   for (int c = 0; c < 3 && !before.empty(); ++c) {
     std::vector<double> values;
@@ -222,7 +223,7 @@ std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::s
       const std::uint32_t texel = charts[s]->nodes[i - sites.first[s]].texel;
       for (int c = 0; c < 3; ++c) {
         const double e = before[i][c], change = after[i][c] - e, part = ee[sites.part[i]][c];
-        // Without an area it had no light that could be changed.
+        // A site without a normal received no light that could change.
         if (change == 0 || !(e * e + lambda[c] > 0) || sites.baked[i].normal.isZero(0)) continue;
         any = true;
         const double albedo = part > 0 ? ce[sites.part[i]][c] / part : 0;

@@ -33,8 +33,8 @@ Value interpolated(const LightChart& chart, const std::vector<Value>& values, co
 }
 GlossPlace interpolated(const LightChart& chart, const GlossMap& map, const Eigen::Vector2f& place);
 
-/// Mean linear colour of each site over the directions from which it is visible; `facing` is the share of its first
-/// side.
+/// Mean linear colour of each site, over the 3×3 texels around it and four view directions per visible side. `facing`:
+/// facing_of().
 std::vector<Radiance> site_colors(const BakedObject& object,
                                   const std::vector<std::shared_ptr<const LightChart>>& charts, const LightSites& sites,
                                   const std::vector<float>& facing);
@@ -44,8 +44,9 @@ std::vector<Radiance> site_colors(const BakedObject& object,
 std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLight>& baked,
                              const std::vector<Radiance>& colors);
 
-/// The visible sides as the `wanted` of traced_light(); and the light on the visible surface.
+/// The visible sides, as the `wanted` of traced_light().
 std::uint8_t shown_sides(float facing);
+/// Irradiance / π of the visible surface.
 Radiance shown_light(const SiteLight& lit, float facing);
 
 /// Specular fit of sites, and their visibility as baked and as edited.

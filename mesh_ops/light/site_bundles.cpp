@@ -40,7 +40,8 @@ SiteBundles::SiteBundles(std::span<const LightSite> sites, std::span<const std::
 void SiteBundles::send(std::size_t set, std::span<const Vec3> directions, Ways ways, const MayPass& may_pass,
                        const Progress& progress, std::string_view what, double from, double to,
                        const std::function<void(std::size_t side, const Batch& batch)>& visit) const {
-  // Of sides at once: what each thread keeps of them is a few megabytes.
+  // Rays per batch (the bits of Batch::passes), sides per visiting task, and sides per tracing task: a few megabytes of
+  // scratch per thread.
   constexpr std::size_t most = 64, sides_at_once = 256, chunk = std::size_t{1} << 17;
   const std::size_t begin = first_[set], size = first_[set + 1] - begin, chunks = (size + chunk - 1) / chunk;
   std::vector<std::vector<std::uint8_t>> hidden(std::min(most, directions.size()));

@@ -12,7 +12,7 @@
 
 namespace rebake {
 
-/// Rays from sides of sites that share directions.
+/// Occlusion tests of parallel rays from sides of sites: all sides of a set share the same directions.
 class SiteBundles {
  public:
   struct Side {
@@ -27,7 +27,7 @@ class SiteBundles {
               std::size_t sets = 1);
 
   std::size_t sets() const { return first_.size() - 1; }
-  /// Grouped by set.
+  /// All sides, grouped by set.
   const std::vector<Side>& sides() const { return sides_; }
   enum class Ways {
     outwards,  ///< along the direction or its opposite, whichever leads away from the surface
@@ -35,7 +35,7 @@ class SiteBundles {
   };
   /// Known visibility: whether a ray may be unoccluded. Null: all may.
   using MayPass = std::function<bool(std::size_t side, std::size_t ray)>;
-  /// `passes`: bits of the unoccluded rays among the `count` rays from index `first`.
+  /// The results of up to 64 rays of one side: bit k of `passes` is set if ray first + k is unoccluded.
   struct Batch {
     std::size_t first, count;
     std::uint64_t passes;

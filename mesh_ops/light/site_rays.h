@@ -51,7 +51,9 @@ class SiteFrame {
   const Vec3& normal() const { return normal_; }
   /// Origin of rays.
   const Vec3& from() const { return from_; }
+  /// A sample point, rotated by own_angle().
   DiskPoint turned(const DiskPoint& p) const { return {cosine_ * p.x - sine_ * p.y, sine_ * p.x + cosine_ * p.y}; }
+  /// The unit direction above a point of the disk.
   Vec3 direction(const DiskPoint& point) const {
     const DiskPoint p = turned(point);
     return p.x * tangent_ + p.y * across_ + std::sqrt(std::max(0.0, 1 - p.x * p.x - p.y * p.y)) * normal_;

@@ -52,7 +52,7 @@ Coefficients windowed(const Coefficients& c, Window window) {
 
 namespace {
 
-// The recurrence of Ivanic and Ruedenberg, in their terms: R of degree 1, M of the degree below.
+// The recurrence of Ivanic and Ruedenberg in their notation: r is the block of degree 1, `below` that of degree l − 1.
 class Recurrence {
  public:
   Recurrence(const Eigen::MatrixXd& first, const Eigen::MatrixXd& below, int degree)
@@ -65,7 +65,7 @@ class Recurrence {
     const double u = std::sqrt((l_ + m) * (l_ - m) / denominator);
     const double v = 0.5 * std::sqrt((1 + d) * (l_ + magnitude - 1) * (l_ + magnitude) / denominator) * (1 - 2 * d);
     const double w = -0.5 * std::sqrt((l_ - magnitude - 1) * (l_ - magnitude) / denominator) * (1 - d);
-    // Terms whose factor is 0 would ask for elements that are not there.
+    // Terms with factor 0 are skipped: they would index outside the blocks.
     return (u != 0 ? u * term_u(m, n) : 0) + (v != 0 ? v * term_v(m, n) : 0) + (w != 0 ? w * term_w(m, n) : 0);
   }
 

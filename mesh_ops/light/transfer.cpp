@@ -25,18 +25,18 @@ Transfer traced_transfer(std::span<const LightSite> sites, const SceneRays& arou
   result.sites.assign(sites.size(), sh::Coefficients::Zero());
   std::vector<sh::Coefficients> half = result.sites;
   const std::vector<Vec3> axes = even_axes(rays);
-  // Along and against each. The few rays of a batch are summed in floats.
+  // Basis functions along and against each axis. The up to 64 rays of a batch are summed in floats.
   using Floats = Eigen::Matrix<float, sh::count, 1>;
   std::vector<std::array<Floats, 2>> bases;
   for (const Vec3& axis : axes) bases.push_back({sh::basis(axis).cast<float>(), sh::basis(-axis).cast<float>()});
   const std::vector<std::uint8_t> first_sides(sites.size(), 1);
   const SiteBundles bundles(sites, first_sides, around);
-  // All take the same directions: at 64 rays what they are off by matters less than the time that more sets take.
-  std::vector<std::array<double, 2>> cosines(bundles.sides().size(), {0, 0});  // of odd and even rays
+  // One direction set for all sites: at 64 rays, the error that more sets would remove is not worth their time.
+  std::vector<std::array<double, 2>> cosines(bundles.sides().size(), {0, 0});  // sums per side: odd rays, even rays
   bundles.send(0, axes, SiteBundles::Ways::outwards, {}, progress, "tracing transfer", 0, 1,
                [&](std::size_t i, const SiteBundles::Batch& batch) {
                  const auto& [site, side, normal] = bundles.sides()[i];
-                 std::array<Floats, 2> sums{Floats::Zero(), Floats::Zero()};  // of odd and even rays
+                 std::array<Floats, 2> sums{Floats::Zero(), Floats::Zero()};  // over odd and over even rays
                  for (std::size_t k = 0; k < batch.count; ++k) {
                    const std::size_t ray = batch.first + k, even = ray % 2 == 0 ? 1 : 0;
                    const double above = normal.dot(axes[ray]), cosine = std::abs(above);
@@ -54,8 +54,7 @@ Transfer traced_transfer(std::span<const LightSite> sites, const SceneRays& arou
     result.sites[site] = (result.sites[site] + half[site]) / (odd + even);
     half[site] /= even;
   }
-  // What a lattice is off by goes with the number of its points to the power of −¾ (as its discrepancy: Brauchart and
-  // Dick 2012).
+  // The error of a lattice of n points falls as n^−¾, like its discrepancy (Brauchart and Dick 2012).
   result.relative_error = std::pow(2, -0.75) * relative_difference(half, result.sites);
   return result;
 }

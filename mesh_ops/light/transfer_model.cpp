@@ -22,7 +22,7 @@ constexpr const char* kind = "rebake transfer model 1";
 constexpr int image_side = 64;
 constexpr const char* kind_with_net = "rebake transfer model 2";
 
-// Numbers one after the other, written or read in the same order.
+// Binary writer and reader, called by the visit functions in the same order.
 class Writer {
  public:
   template <class T>
@@ -50,7 +50,7 @@ struct Sizes {
   std::uint64_t keys, probes, dimensions, components;
 };
 
-// All that is numbers, sized already.
+// Visits all arrays and numbers of a model whose containers already have their sizes.
 template <class Model, class Visit>
 void visit_numbers(Model& model, Visit& visit) {
   auto& learnt = model.learnt;
@@ -82,7 +82,7 @@ void visit_net(State& state, Visit& visit) {
   visit(&state.scale, 1);
 }
 
-// Every eighth pose is held back, as linear models do.
+// Every eighth pose is held out, as in LearntTransfer::learnt().
 bool held_back(int pose) { return pose % 8 == 7; }
 
 double relative(double squared_error, double squares) { return squares > 0 ? std::sqrt(squared_error / squares) : 0; }
@@ -112,7 +112,7 @@ TransferModel learnt_model(const TurnedLight& start,
     model.keys = image.sites;
     images.emplace(std::move(image.mesh), GeometryImage(image.chart, image_side));
   } else {
-    // Those that lie far from each other; of as many places as there are all.
+    // Farthest-point sampling; all sites if there are at most `keys`.
     model.keys = PoseSpace::probes_of(places, options.keys);
   }
   std::vector<Vec3> key_places;
@@ -127,7 +127,7 @@ TransferModel learnt_model(const TurnedLight& start,
     std::vector<LightSite> sites;
   };
   std::vector<Held> held;
-  Eigen::VectorXf at_rest;  // transfer of the keys where nothing moved, which turning alone predicts
+  Eigen::VectorXf at_rest;  // transfer of the keys at rest, which rotation alone would predict
   for (int k = -1; k < options.poses; ++k) {
     progress.at("tracing poses", std::max(0.0, static_cast<double>(k) / options.poses));
     const std::shared_ptr<const BakedObject> posed = k < 0 ? from.object : pose(k);
@@ -163,9 +163,9 @@ TransferModel learnt_model(const TurnedLight& start,
   }
   model.tracing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   const PoseSpace seen(training.rest_probes, training.posed_probes);
-  constexpr double least = 1e-6;  // of the body's size: rounding moves it about as far
+  constexpr double least = 1e-6;  // of the body's size; smaller displacements are rounding errors
   if (!(seen.largest > least)) throw Error("nothing moves in these poses: the edit must move triangles of the object");
-  // By `rebake study transfer` kernels gain nothing over it.
+  // Kernels would gain nothing (`rebake study transfer`).
   model.learnt = LearntTransfer::learnt(training, {.way = TransferWay::turned_linear}, progress);
   double off = 0, turned = 0, all = 0;
   for (int k = 0; k < options.poses; ++k) {
@@ -242,11 +242,11 @@ TransferModel transfer_model_of(std::string_view bytes) {
     model.tracing_seconds = head.at("tracing_seconds");
     model.learnt.seconds = head.at("learning_seconds");
     model.learnt.held_back_error = head.at("held_back_error");
-    // Older files had it of nets only, beside what is said of these.
+    // Older files have it for networks only, in the member "net".
     model.turning_error = head.value("turning_error", 0.0);
     model.learnt.way = TransferWay::turned_linear;
     const Sizes n{head.at("keys"), head.at("probes"), head.at("dimensions"), head.at("components")};
-    // What is promised must be there before room is made for it; in doubles, which do not overflow.
+    // The stated sizes are checked against the file before memory is allocated; in doubles, which do not overflow.
     const auto fits = [&](double values, std::size_t size) {
       return values * static_cast<double>(size) <= static_cast<double>(bytes.size());
     };

@@ -11,11 +11,11 @@
 
 namespace rebake {
 
-/// A trained model of one body's transfer at some of its sites, the keys; other sites interpolate the keys.
+/// A trained model of one body's transfer at a subset of its sites, the keys; other sites interpolate the keys.
 struct TransferModel {
   std::uint64_t body = 0;   ///< surface_hash() of the body
   std::uint64_t sites = 0;  ///< number of sites
-  std::string poses_from;   ///< the deforming edit, for people
+  std::string poses_from;   ///< description of the deforming edit, for users
   int poses = 0, rays = 0;  ///< training poses, and rays per site
   double tracing_seconds = 0;
   std::vector<std::uint32_t> keys;  ///< site indices
@@ -47,7 +47,7 @@ TransferModel learnt_model(const TurnedLight& start,
                            const std::function<std::shared_ptr<const BakedObject>(int k)>& pose,
                            const TransferModelOptions& options, const Progress& progress = {});
 
-/// Serialised form: a line of JSON for people, then numbers, then a hash over all.
+/// Serialised form: a line of human-readable JSON, then numbers, then a hash over all.
 std::string bytes_of(const TransferModel& model);
 /// Parses the serialised form. Throws Error that states the fault.
 TransferModel transfer_model_of(std::string_view bytes);

@@ -12,11 +12,11 @@ namespace rebake {
 
 namespace {
 
-// Of what counts as a rotation; NaNs do not.
+// Smallest determinant of a matrix that counts as a rotation; comparisons with it reject NaN.
 constexpr double least_volume = 0.5;
 
-// Orthonormal axes that go with a triangle: its normal and the bisectors of two edges' directions, which stretching
-// turns least. Not a rotation where there is no area.
+// Orthonormal frame of a triangle: its normal, and the bisectors of two edge directions, which stretching rotates
+// least. Not a rotation if the triangle has no area.
 Mat3 frame_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 e = (b - a).stableNormalized(), f = (c - a).stableNormalized();
   Mat3 frame;
@@ -24,10 +24,11 @@ Mat3 frame_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return frame;
 }
 
-// The nearest rotation to a mean of rotations that differ little, to second order.
+// The rotation nearest to a mean of similar rotations, to second order: one Newton–Schulz step of the polar
+// decomposition.
 Mat3 rotation_near(const Mat3& mean) { return 0.5 * mean * (3 * Mat3::Identity() - mean.transpose() * mean); }
 
-// The same chart of a soup with the same triangles, of which vertices may be others.
+// The chart for a soup with the same triangles but possibly other vertices.
 std::shared_ptr<const LightChart> of_vertices(const std::shared_ptr<const LightChart>& chart, const Soup& from,
                                               const Soup& to) {
   if (from.shared_uvs() == to.shared_uvs()) return chart;
@@ -51,7 +52,7 @@ std::vector<Mat3> node_turns(const TextureSet& from, const TextureSet& to, const
   std::vector<Mat3> turns(chart.nodes.size(), Mat3::Identity());
   if (from.soup.shared_positions() == to.soup.shared_positions()) return turns;
   const auto *before = from.soup.rotations(), *after = to.soup.rotations();
-  // Previews of large cages move vertices only: their rotations are those of before.
+  // Previews of large cages move vertices only and do not update their rotations.
   const bool kept = after != nullptr && after != before;
   tbb::parallel_for(std::size_t{0}, chart.nodes.size(), [&](std::size_t i) {
     const LightChart::Node& node = chart.nodes[i];
@@ -63,7 +64,7 @@ std::vector<Mat3> node_turns(const TextureSet& from, const TextureSet& to, const
         mean += before != nullptr ? Mat3(weight * (*after)[now[k]].matrix() * (*before)[face[k]].matrix().transpose())
                                   : Mat3(weight * (*after)[now[k]].matrix());
       }
-      // Corners turned by half a turn against each other have nothing between them.
+      // Corners whose rotations differ by half a turn have no mean rotation.
       if (const Mat3 turn = rotation_near(mean); turn.determinant() > least_volume) turns[i] = turn;
       return;
     }
@@ -108,7 +109,7 @@ std::vector<LightSite> TurnedLight::sites_on(const BakedObject& object,
   return sites;
 }
 
-// Irradiance over π that suns give each site.
+// Irradiance / π of each site by the suns.
 std::vector<Radiance> TurnedLight::suns_on(const BakedObject& object, const std::vector<LightSite>& sites) const {
   std::vector<Radiance> result(sites.size(), Radiance::Zero());
   if (std::all_of(start_.lights.begin(), start_.lights.end(), [](const BodyLight& b) { return b.light->suns.empty(); }))
@@ -136,7 +137,7 @@ void TurnedLight::prepare_model() {
   const PoseSpace::Place place = model.learnt.space.place(probes_on(*start_.object));
   if (!(place.range <= LearntTransfer::trusted_range)) return;
   learnt_ = model.predict(place, keys_of(model, start_.sites.now));
-  // Of the keys that are near and face much the same way, the nearest four.
+  // Interpolation from the nearest four keys with a similar normal and the same visible side.
   const auto shown_normal = [&](std::size_t i, float facing) -> Vec3 {
     return facing == 0.0F ? Vec3(-start_.sites.baked[i].normal) : start_.sites.baked[i].normal;
   };
@@ -150,10 +151,10 @@ void TurnedLight::prepare_model() {
       const std::uint32_t other = model.keys[k];
       const double distance = (start_.sites.baked[other].position - at).squaredNorm();
       if (!(distance < least[3])) continue;
-      // Vertices of nets may stand for the same site.
+      // Several vertices of a U-Net's proxy may be represented by one site.
       const auto same = [&](std::size_t j) { return std::isfinite(least[j]) && model.keys[share.keys[j]] == other; };
       if (same(0) || same(1) || same(2) || same(3)) continue;
-      // What shows may be another side than in the light that it was learnt in.
+      // The visible side is derived from the light, which may differ from that in training.
       if (start_.facing[i] != model.facing[k] || shown_normal(other, model.facing[k]).dot(normal) < 0.5) continue;
       std::size_t place_in = 3;
       for (; place_in > 0 && distance < least[place_in - 1]; --place_in) {
@@ -190,12 +191,12 @@ std::optional<double> TurnedLight::range_of(const BakedObject& object) const {
   return start_.model->learnt.space.place(probes_on(object)).range;
 }
 
-// What the model says beside turning, where it was learnt for such poses.
+// Adds the change that the model predicts beyond rotation, if the pose is within the trusted range.
 void TurnedLight::add_learnt(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
                              const std::vector<LightSite>& sites, std::vector<Radiance>& light) const {
   if (shares_.empty()) return;
   const PoseSpace::Place place = start_.model->learnt.space.place(probes_on(object));
-  // Less and less of it towards the end of its range, so that nothing jumps there.
+  // The prediction fades out towards the end of the range, so that nothing jumps.
   constexpr double fades = 0.5;
   const double share = std::min(1.0, (LearntTransfer::trusted_range - place.range) / fades);
   if (!(share > 0)) return;
@@ -217,7 +218,7 @@ bool TurnedLight::same_triangles(const BakedObject& first, const BakedObject& se
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const TextureSet& x, const TextureSet& y) {
     if (x.texels != y.texels || x.soup.triangle_count() != y.soup.triangle_count()) return false;
     if (x.soup.shared_uvs() == y.soup.shared_uvs() && x.soup.shared_faces() == y.soup.shared_faces()) return true;
-    // Where part of a surface moves, vertices at its border become two.
+    // Deforming a part of a surface duplicates the vertices at its border.
     const auto corners = [](const Face& f, const Soup& soup, std::size_t k) { return soup.uvs()[f[k]]; };
     for (std::size_t f = 0; f < x.soup.triangle_count(); ++f)
       for (std::size_t k = 0; k < 3; ++k)

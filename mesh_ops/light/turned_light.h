@@ -13,40 +13,43 @@ namespace rebake {
 
 struct TransferModel;
 
-/// Light of an object during a drag that starts where light was traced last. Each site's transfer rotates with the
-/// surface around it, and a few rays test visibility of the suns. Only the change is added to the traced light, so
-/// nothing jumps when a drag begins. New mutual occlusion is not included; tracing adds it after the drag.
+/// Preview of an object's light during a drag, without tracing. Each site's transfer rotates with the surface around
+/// it, and a few rays test visibility of the suns. Only the change is added to the last traced light, so nothing jumps
+/// when a drag begins. New mutual occlusion is not included; tracing adds it after the drag.
 class TurnedLight {
  public:
+  /// The light of one body.
   struct BodyLight {
     std::shared_ptr<const Light> light;
     Mat3 to_light;  ///< rotates object directions into the light's space
   };
+  /// The state at the start of the drag, as traced.
   struct Start {
     std::shared_ptr<const BakedObject> object;  ///< the object as traced
     std::vector<std::shared_ptr<const LightChart>> charts;
     LightSites sites;
     std::vector<float> facing;  ///< per site: facing_of()
-    std::vector<Radiance> colors, before,
-        after;  ///< per site: colour as baked; irradiance / π as baked; the same as traced
-    std::vector<sh::Coefficients> transfer;      ///< transfer of the visible surface, in object space
-    std::vector<BodyLight> lights;               ///< per body
-    std::shared_ptr<const TransferModel> model;  ///< trained model of its body; may be null
+    /// Per site: linear colour as baked, irradiance / π as baked, irradiance / π as last traced.
+    std::vector<Radiance> colors, before, after;
+    std::vector<sh::Coefficients> transfer;      ///< per site: transfer of the visible surface, in object space
+    std::vector<BodyLight> lights;               ///< light of each body
+    std::shared_ptr<const TransferModel> model;  ///< trained model of the body; may be null
     std::vector<Occluder> others;                ///< other occluders, in object space
     std::optional<Mirrors> mirrors;              ///< reflection as traced
   };
   explicit TurnedLight(Start start);
 
-  /// Whether an object has the same triangles, at any position.
+  /// Whether an object has the same triangles as the start, at any positions: only such objects fit.
   bool fits(const BakedObject& object) const { return same_triangles(*start_.object, object); }
+  /// Whether two objects have the same texels and, corner by corner, the same UVs.
   static bool same_triangles(const BakedObject& first, const BakedObject& second);
-  /// Correction of colours of an object that fits, a map per texture set; null entries change nothing.
+  /// Correction of the colours of a fitting object: one map per texture set; null entries change nothing.
   std::vector<std::shared_ptr<const LightMap>> maps(const BakedObject& object) const;
-  /// Rotation of the surface around each site since the start, per texture set.
+  /// Rotation of the surface around each site since the start, [texture set][node].
   std::vector<std::vector<Mat3>> turns_on(const BakedObject& object) const;
-  /// Irradiance / π per site.
+  /// Irradiance / π per site of a fitting object.
   std::vector<Radiance> light_on(const BakedObject& object) const;
-  /// The sites after these rotations.
+  /// The sites of a fitting object, given turns_on() of it.
   std::vector<LightSite> sites_on(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns) const;
   /// PoseSpace::Place::range of the pose; nothing without a model, or if the drag started outside its range.
   std::optional<double> range_of(const BakedObject& object) const;
@@ -63,16 +66,16 @@ class TurnedLight {
                   const std::vector<LightSite>& sites, std::vector<Radiance>& light) const;
 
   Start start_;
-  /// Interpolation of a site from keys.
+  /// Interpolation of a site from four keys of the model; weights sum to 1, or are all 0.
   struct Share {
     std::array<std::uint32_t, 4> keys;
     std::array<float, 4> weights;
   };
-  std::vector<Share> shares_;                ///< empty without a model
+  std::vector<Share> shares_;                ///< per site; empty without a model
   std::vector<Mat3> since_baked_;            ///< per site: rotation since baking
   Eigen::VectorXf learnt_;                   ///< prediction of the model at the start
   std::vector<TurnedProduct> products_;      ///< per body
-  std::vector<Radiance> unturned_, sunlit_;  ///< per site, at the start
+  std::vector<Radiance> unturned_, sunlit_;  ///< per site, at the start: irradiance / π by the sky and by the suns
 };
 
 /// Rotation of the surface around each node of a chart between two positions of a set's vertices: from the vertices'

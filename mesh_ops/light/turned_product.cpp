@@ -8,7 +8,8 @@ namespace rebake {
 
 namespace {
 
-// Of a degree l the first 2l + 1 span its harmonics, with condition numbers of at most 2.7 (found by a random search).
+// Axes of zonal harmonics: the first 2l + 1 span the harmonics of degree l, with condition numbers of at most 2.7
+// (found by random search).
 const std::array<Vec3, 2 * sh::degrees - 1>& lobe_axes() {
   static const std::array<Vec3, 2 * sh::degrees - 1> axes{Vec3(7, 0, -1).normalized(),  Vec3(-1, -5, 4).normalized(),
                                                           Vec3(0, -7, -2).normalized(), Vec3(1, -1, -1).normalized(),

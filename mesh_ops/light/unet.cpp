@@ -21,7 +21,7 @@ ConvolveRow convolve_row() {
 #endif
 }
 
-// Planes in a border of zeros.
+// Square planes with a zero border, as in PlaneLayout.
 struct Planes {
   int count, side;
   PlaneLayout layout;

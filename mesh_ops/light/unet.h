@@ -14,16 +14,18 @@ class Unet {
   /// Throws std::invalid_argument if `side` is not a positive multiple of 64 or the number of weights does not fit.
   Unet(int side, int channels, std::vector<float> weights);
 
-  /// Input 6 planes, output 16 planes, as [channel][row][column]. The same bits on every processor.
+  /// Evaluates the network: 6 input planes to 16 output planes, both as [channel][row][column]. The same bits on every
+  /// processor.
   std::vector<float> run(std::span<const float> image) const;
   int side() const { return side_; }
   int channels() const { return channels_; }
   const std::vector<float>& weights() const { return weights_; }
 
  private:
+  /// A layer in the layout of Convolution.
   struct Packed {
     UnetLayer layer;
-    std::vector<float> weights, bias;  ///< in the layout of Convolution
+    std::vector<float> weights, bias;
   };
   int side_, channels_;
   std::vector<float> weights_;

@@ -14,7 +14,7 @@ namespace rebake {
 
 namespace {
 
-// How it is trained, and null where the module is not there.
+// The training function; null, with the problem, if the module is missing.
 const ModuleSymbol& module() {
   static const ModuleSymbol found = [] {
     ModuleSymbol result = module_symbol("librebake_unet.so", train_unet_symbol);
@@ -60,7 +60,7 @@ Unet trained_unet(const UnetImages& images, const UnetTraining& training, const 
                         try {
                           to.progress.at(fmt::format("training, loss {:.4f}", loss), done);
                         } catch (...) {
-                          // No exception crosses the border.
+                          // Exceptions must not cross the module's boundary.
                           to.thrown = std::current_exception();
                           return false;
                         }

@@ -7,25 +7,27 @@
 
 namespace rebake {
 
-/// Poses as images that a Unet learns from, all of one side.
+/// Training set of a Unet: one geometry image and its target per pose.
 struct UnetImages {
-  int side = 64;
+  int side = 64;  ///< pixels per side
   std::size_t poses = 0;
-  std::vector<float> images;   ///< [pose][6][row][column]
-  std::vector<float> targets;  ///< [pose][16][row][column]
+  std::vector<float> images;   ///< inputs: [pose][6][row][column]
+  std::vector<float> targets;  ///< expected outputs: [pose][16][row][column]
 };
 
+/// Training parameters. `channels`: those of the finest level, a multiple of 8; `batch`: poses per step.
 struct UnetTraining {
   int channels = 16, epochs = 30, batch = 8;
-  double rate = 2e-3;  ///< of learning, at first; it falls along half a cosine
+  double rate = 2e-3;  ///< initial learning rate; decays along a cosine to a hundredth
   std::uint64_t seed = 1;
 };
 
-/// Whether the module that trains is there: it is built where LibTorch is (samples/install_packages brings it).
+/// Whether the training module is available. It is built if LibTorch is installed (samples/install_packages).
 bool can_train_unet();
-/// Throws Error, which says what to do, where it is not.
+/// Throws Error with instructions if the training module is not available.
 void need_unet_training();
-/// Throws Error where the module is not there or fails.
+/// Trains a Unet. Throws Error if the module is missing or fails, and std::invalid_argument for sizes that do not
+/// match.
 Unet trained_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress = {});
 
 }  // namespace rebake

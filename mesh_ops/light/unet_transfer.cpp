@@ -11,7 +11,8 @@ namespace rebake {
 
 namespace {
 
-// Positions in half diagonals of the body at rest from its middle, and normals.
+// Appends the six input planes: positions relative to the centre of the body at rest, in half diagonals of its box, and
+// unit normals.
 void append_image(const GeometryImage& image, const Box& box, const std::vector<LightSite>& sites,
                   std::vector<float>& planes) {
   const std::size_t texels = image.texels().size(), first = planes.size();
@@ -42,7 +43,7 @@ void check(const UnetTransfer::State& state) {
       static_cast<std::size_t>(state.mean.size()) == vertices * sh::count && !state.box.isEmpty() &&
       state.box.min().allFinite() && state.box.max().allFinite() && state.mean.allFinite() &&
       std::isfinite(state.scale) && all(state.weights, [](float weight) { return std::isfinite(weight); }) &&
-      // Each vertex has a place in the image.
+      // Each vertex must have a place in the image.
       !state.chart.source.empty() &&
       *std::max_element(state.chart.source.begin(), state.chart.source.end()) + 1 == vertices &&
       all(state.chart.uvs,
@@ -76,7 +77,7 @@ UnetTransfer UnetTransfer::Training::learnt(const UnetTraining& options, const P
     return Eigen::Map<const Eigen::VectorXf>(local_.data() + p * own, static_cast<Eigen::Index>(own));
   };
   for (std::size_t p = 0; p < poses_; ++p) mean += of_pose(p) / static_cast<float>(poses_);
-  // One scale for all, so that large coefficients count most, as they do in pictures.
+  // One scale for all coefficients, so that large ones count most, as they do in pictures.
   UnetImages images{image_.side(), poses_, images_, {}};
   images.targets.reserve(poses_ * unet_outputs * texels);
   double squares = 0;

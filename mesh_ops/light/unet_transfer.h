@@ -11,7 +11,7 @@ namespace rebake {
 /// space; in rotated frames the network need not learn the rotation.
 class UnetTransfer {
  public:
-  /// Training set that is filled pose by pose. learnt() throws Error without LibTorch.
+  /// Training set that is filled pose by pose. learnt() trains a network on it and throws Error without LibTorch.
   class Training {
    public:
     Training(ProxyMesh rest, GeometryImage image);

@@ -10,7 +10,7 @@ namespace rebake::bakery {
 
 namespace {
 
-constexpr int cell = 17;
+constexpr int cell = 17;  // side of a quad's patch in texels
 
 struct TexelSite {
   std::size_t patch;
@@ -87,15 +87,15 @@ std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField&
   tbb::parallel_for(std::size_t{0}, sites.size(), [&](std::size_t t) {
     const TexelSite& site = sites[t];
     const Vec3 point = model.patches[site.patch].point(site.u, site.v);
-    // The direction that sees the sun mirrored: a highlight is where the fed direction is near to it, which few neurons
-    // can tell.
+    // Hint: the view direction that sees the sun reflected. Highlights are at fed directions near it, which few neurons
+    // can detect.
     const Vec3 normal = field.normal(site.patch, site.u, site.v), sun = model.sun.normalized();
     const Vec3 mirrored = axes * (sun - 2 * normal.dot(sun) * normal);
     for (std::size_t c = 0; c < 3; ++c)
       problem.hints[t][c] = static_cast<float>(0.5 + 0.5 * mirrored[static_cast<Eigen::Index>(c)]);
     for (std::size_t c = 0; c < 2; ++c)
       problem.hints[t][3 + c] = static_cast<float>(field.openness(site.patch, site.u, site.v)[c]);
-    // All texels are seen by the same eyes: what is then off is off alike in neighbours, and does not show as grain.
+    // All texels are observed by the same eyes, so that errors of neighbours are similar and do not look like grain.
     std::vector<Vec3> directions;
     for (const Vec3& eye : eyes)
       if (field.visible(eye, site.patch, site.u, site.v)) directions.push_back((point - eye).normalized());

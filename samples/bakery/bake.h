@@ -5,12 +5,14 @@
 
 namespace rebake::bakery {
 
+/// Options of bake().
 struct BakeOptions {
-  int epochs = 40;
-  int observations = 48;  ///< eyes that texels are seen from
+  int epochs = 40;        ///< FitOptions::epochs
+  int observations = 48;  ///< number of eyes that observe the texels
 };
 
-/// Quads of 17×17 texels over the model's patches, with features and decoder fitted to the field.
+/// Bakes a model into quads of 17×17 texels over its patches, with features and a decoder fitted to the colours of
+/// `field`.
 std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField& field, const BakeOptions& options,
                                         const Progress& progress);
 

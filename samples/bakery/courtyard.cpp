@@ -3,7 +3,7 @@
 
 #include "samples/bakery/surface.h"
 
-// An unbounded scene: seen from within, with a far backdrop; coordinates within ±16.
+// An unbounded scene, seen from within, with a far backdrop; coordinates within ±16.
 
 namespace rebake::bakery {
 
@@ -59,7 +59,7 @@ Model courtyard() {
                          return {0.2 * std::sin(pi * v) + 1e-4, 1.28 - 0.2 * std::cos(pi * v)};
                        }),
                        16, 10, stone({0.6, 0.3, 0.2})});
-  // The backdrop is lit by its own colour: hills, haze and sky.
+  // The backdrop is emissive: hills, haze and sky.
   Patch sky{"backdrop",
             [](double u, double v) -> Vec3 {
               const double e = -0.05 + 1.25 * v;

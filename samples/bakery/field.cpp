@@ -14,7 +14,7 @@ using std::numbers::pi;
 
 namespace {
 
-constexpr int finer = 4;  // tessellation of each quad's side
+constexpr int finer = 4;  // tessellation cells per side of a quad
 constexpr int sky_rays = 192;
 constexpr int sun_rays = 48;
 constexpr double sun_radius = 0.09;  // radians; soft shadows
@@ -30,9 +30,9 @@ double encode(double linear) {
 }
 
 struct Light {
-  Vec3 irradiance = Vec3::Zero();  // over π
-  double open = 0;                 // share of the sky that is seen
-  double sun = 0;                  // share of the sun that is seen
+  Vec3 irradiance = Vec3::Zero();  // divided by π
+  double open = 0;                 // visible share of the sky
+  double sun = 0;                  // visible share of the sun
 };
 
 Mat3 basis(const Vec3& n) {
@@ -44,8 +44,9 @@ Mat3 basis(const Vec3& n) {
   return m;
 }
 
+// The tessellation of a patch, with light at its vertices.
 struct Grid {
-  int columns, rows;  // of cells
+  int columns, rows;  // numbers of cells
   std::vector<Light> light;
   const Patch* patch;
 
@@ -54,7 +55,7 @@ struct Grid {
                  v1 = std::min(1.0, v + h);
     Vec3 n = (patch->point(u1, v) - patch->point(u0, v)).cross(patch->point(u, v1) - patch->point(u, v0));
     if (n.norm() < 1e-14) {
-      // At a pole one derivative vanishes: look a little aside.
+      // At a pole one derivative vanishes: evaluate slightly beside it.
       const double w = v < 0.5 ? v + 1e-2 : v - 1e-2;
       n = (patch->point(u1, w) - patch->point(u0, w))
               .cross(patch->point(u, std::min(1.0, w + h)) - patch->point(u, std::max(0.0, w - h)));
@@ -82,7 +83,7 @@ struct PatchUv {
 };
 
 PatchUv uv_of(const Grid& grid, unsigned prim, double a, double b) {
-  // Two triangles a cell: (0, 1, 2) and (3, 2, 1).
+  // Two triangles per cell: (0, 1, 2) and (3, 2, 1).
   const int cell = static_cast<int>(prim / 2), i = cell % grid.columns, j = cell / grid.columns;
   const double x = prim % 2 == 0 ? a : 1 - a, y = prim % 2 == 0 ? b : 1 - b;
   return {(i + x) / grid.columns, (j + y) / grid.rows};
@@ -249,7 +250,7 @@ class RadianceField::Impl {
       const double r2 = (k + 0.5) / sky_rays, phi = 2 * pi * std::fmod(k * 0.6180339887498949, 1.0), r = std::sqrt(r2);
       const Vec3 d = frame * Vec3(r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r2));
       const bool open = !occluded(from, d, 12);
-      // What is hidden sends back a little light of its own: one bounce, grey.
+      // Occluders send back a constant grey radiance, for one bounce.
       light.irradiance += (open ? sky(d) : Vec3(0.13, 0.12, 0.11)) / sky_rays;
       light.open += open ? 1.0 / sky_rays : 0;
     }

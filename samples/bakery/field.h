@@ -10,31 +10,33 @@
 
 namespace rebake::bakery {
 
-/// The model's radiance: direct light of a soft sun, sky with occlusion, one bounce and glossy highlights. Surfaces are
-/// traced as fine tessellations of the procedural patches (several times finer than the quads baked from them); shadow
-/// and occlusion are traced once at their vertices, so that the field is free of noise, and highlights are closed-form.
+/// Radiance of a procedural model: direct light of a soft sun, sky with occlusion, one bounce and glossy highlights.
+/// Shadow and occlusion are traced once, at the vertices of tessellations that are four times finer than the baked
+/// quads, so the field is free of noise. Highlights are closed-form.
 class RadianceField {
  public:
+  /// `model` must outlive this object.
   explicit RadianceField(const Model& model);
   ~RadianceField();
   RadianceField(const RadianceField&) = delete;
   RadianceField& operator=(const RadianceField&) = delete;
 
-  /// Display colour of a patch's point seen along `direction` (from the eye, unit length).
+  /// Display colour of a patch's point (u, v) along the unit view `direction`, from the eye to the point.
   Color color(std::size_t patch, double u, double v, const Vec3& direction) const;
-  /// Unit normal, outwards.
+  /// Unit normal at a patch's point, outwards.
   Vec3 normal(std::size_t patch, double u, double v) const;
-  /// Share of sky and sun that reach the point.
+  /// Visible shares of the sky and of the sun at a patch's point, 0 … 1.
   std::array<double, 2> openness(std::size_t patch, double u, double v) const;
-  /// How far above surfaces rays for their light start, where the patch does not say.
+  /// Height above surfaces at which light rays start if Patch::clearance is 0.
   double clearance() const;
-  /// Irradiance over π.
+  /// Irradiance / π at a patch's point, linear.
   Vec3 irradiance(std::size_t patch, double u, double v) const;
-  /// False when something opaque lies between the eye and the point.
+  /// Whether nothing opaque is between the eye and a patch's point.
   bool visible(const Vec3& eye, std::size_t patch, double u, double v) const;
-  /// A picture with 64 rays a pixel, composited over white in display colours as the format's rule does.
+  /// Ray-traced picture with 64 rays per pixel, composited over white in display colours, as the format's rendering
+  /// rule does.
   Image trace(const Camera& camera, int width, int height) const;
-  /// The same surfaces with other display colours: `color(patch, u, v, direction)`.
+  /// The same with other display colours: `color(patch, u, v, direction)`.
   using Shade = std::function<Color(std::size_t patch, double u, double v, const Vec3& direction)>;
   Image trace(const Camera& camera, int width, int height, const Shade& color) const;
 

@@ -3,7 +3,7 @@
 
 #include "samples/bakery/surface.h"
 
-// A glossy enamel kettle: strong view dependence.
+// A glossy enamel kettle with strong view dependence.
 
 namespace rebake::bakery {
 

@@ -18,22 +18,23 @@
 #include "samples/bakery/bake.h"
 #include "samples/bakery/field.h"
 
-// How near corrected light comes to the truth: edited scenes are traced under the light that they were baked with.
+// Measures the accuracy of corrected light: edited scenes are traced under the light that they were baked in.
 
 namespace {
 
 using namespace rebake;
 using namespace rebake::bakery;
 
-constexpr int picture = 400;  // pixels a side
+constexpr int picture = 400;  // side of the pictures in pixels
 
-// Four cameras around a place.
+// Four cameras around a model, from its camera function.
 std::vector<Camera> around_it(const std::function<Camera(double, double)>& camera) {
   std::vector<Camera> cameras;
   for (int k = 0; k < 4; ++k) cameras.push_back(camera((k + 0.5) / 4, std::fmod(0.3 + k * 0.618, 1.0)));
   return cameras;
 }
 
+// A baked quad of a model.
 struct QuadOf {
   std::size_t patch;
   int column, row;
@@ -55,26 +56,27 @@ std::vector<QuadOf> quads_of(const Model& model) {
   return quads;
 }
 
-// Which patch each triangle of a sample was baked from.
+// Per triangle of a sample: the patch that it was baked from.
 std::vector<std::size_t> patch_of_triangles(const Model& model) {
   std::vector<std::size_t> patch_of;
   for (const QuadOf& quad : quads_of(model)) patch_of.insert(patch_of.end(), 2, quad.patch);
   return patch_of;
 }
 
+// An edited scene and its procedural model.
 struct Case {
   std::string name;
   Scene scene;
   Model edited;
-  RadianceField::Shade carried;  // of the edited model's patches: the light that was baked
-  std::function<Vec3(std::size_t patch, double u, double v)> irradiance;  // over π, as it was baked
+  RadianceField::Shade carried;  // display colours of the edited model's patches under the light as baked
+  std::function<Vec3(std::size_t patch, double u, double v)> irradiance;  // irradiance / π as baked
   std::vector<Camera> cameras;
-  std::vector<QuadOf> quads;                        // of the edited model
-  std::vector<std::vector<std::size_t>> number_of;  // of each object's triangles among them
+  std::vector<QuadOf> quads;                        // quads of the edited model
+  std::vector<std::vector<std::size_t>> number_of;  // [object][triangle]: 2 · index in `quads` + its half
 };
 
-// A picture of baked surfaces in other colours, 16 rays a pixel over white: so that edges of opacity, which baking
-// rounds to texels, are the same in pictures that are compared.
+// Picture of the baked surfaces with the colours of `shade`, 16 rays per pixel over white. All compared pictures have
+// the same opacity edges, which baking rounds to texels.
 Image painted(const Case& c, const Camera& camera, const RadianceField::Shade& shade) {
   constexpr int side = picture;
   std::vector<PlacedNode> objects;
@@ -122,12 +124,13 @@ Image painted(const Case& c, const Camera& camera, const RadianceField::Shade& s
   return image;
 }
 
-// Squared errors over pixels where the truth changes by more than 4 of 255, and how far others move.
+// Sums of squared errors over pixels whose true colour changes by more than 4 of 255, and the errors of all other
+// pixels.
 struct Sums {
   std::size_t changed = 0;
-  double change = 0, ruled = 0, known = 0, estimated = 0;  // of what light changes
-  double drawn = 0, drawn_known = 0, drawn_estimated = 0;  // of whole pictures, with what baking loses
-  std::vector<double> still[2];
+  double change = 0, ruled = 0, known = 0, estimated = 0;  // the true change; errors of changes by rule and light
+  double drawn = 0, drawn_known = 0, drawn_estimated = 0;  // errors of whole pictures, including baking losses
+  std::vector<double> still[2];                            // errors of the other pixels: known light, estimated light
 
   double rms(double sum) const { return changed > 0 ? std::sqrt(sum / 3 / static_cast<double>(changed)) : 0; }
   static double most_of_99(std::vector<double> values) {
@@ -260,7 +263,7 @@ Case cut_ficus(const Scene& ficus_scene, const RadianceField& rest, const Model&
   return c;
 }
 
-// Two samples, the second moved.
+// Two samples in one scene; the second is placed by `motion`.
 Case beside(const std::string& name, const Scene& first_scene, const RadianceField& first_field, const Model& first,
             const Scene& second_scene, const RadianceField& second_field, const Model& second, const Affine& motion,
             std::vector<Camera> cameras) {
@@ -317,7 +320,7 @@ void measure(Renderer& renderer, const Case& c, const Model& light, const std::f
     view.camera = c.cameras[k];
     view.width = view.height = picture;
     const auto truth = [&](std::size_t p, double u, double v, const Vec3& d) { return field.color(p, u, v, d); };
-    // The rule with the true irradiances at each point: highlights still go with their surface.
+    // The correction rule with the true irradiance at each point. Highlights still move with their surface.
     const auto ruled = [&](std::size_t p, double u, double v, const Vec3& d) {
       Color color = c.carried(p, u, v, d);
       const Vec3 before = c.irradiance(p, u, v), after = field.irradiance(p, u, v);
@@ -386,7 +389,7 @@ int main(int argc, char** argv) {
             beside("kettle beside the ficus", plant_scene, plant_field, plant, pot_scene, pot_field, pot, place,
                    around_it(plant.camera)),
             plant, out, 3);
-    // The courtyard's sun stands elsewhere: the kettle is baked anew in it.
+    // The courtyard has another sun, so the kettle is baked again under it.
     Model lit_pot = pot;
     lit_pot.sun = yard.sun;
     const RadianceField yard_field(yard), lit_field(lit_pot);

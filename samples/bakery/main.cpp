@@ -25,8 +25,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Bakes one model, writes it, reads nothing back: the picture is of what was written. Returns the mean PSNR of the
-// held-out views.
+// Bakes a model, writes it, and renders it from memory. Returns the mean PSNR of the held-out views in dB.
 double make(const Model& model, const std::filesystem::path& out, const BakeOptions& options,
             const std::filesystem::path& pictures) {
   const auto start = std::chrono::steady_clock::now();
@@ -43,7 +42,7 @@ double make(const Model& model, const std::filesystem::path& out, const BakeOpti
   double sum = 0, least = 1e9;
   for (int k = 0; k < held_out_views; ++k) {
     View view;
-    // Low-discrepancy places between those that the fit drew at random.
+    // Low-discrepancy cameras that differ from those of the fit.
     view.camera = model.camera((k + 0.5) / held_out_views, std::fmod(0.5 + k * 0.6180339887498949, 1.0));
     view.width = view.height = model.picture;
     const Image truth = field.trace(view.camera, view.width, view.height), drawn = renderer.render(scene, view);

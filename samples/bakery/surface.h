@@ -9,46 +9,46 @@
 
 namespace rebake::bakery {
 
-/// A procedural surface over (u, v) in the unit square. Its normal is ∂P/∂u × ∂P/∂v, which should point outwards.
+/// A procedural surface over (u, v) in the unit square. Its normal is ∂P/∂u × ∂P/∂v and should point outwards.
 struct Patch {
   std::string name;
   std::function<Vec3(double u, double v)> point;
-  int columns = 1, rows = 1;                                          ///< quads that it is baked into
-  std::function<Vec3(double u, double v, const Vec3& point)> albedo;  ///< linear
+  int columns = 1, rows = 1;                                          ///< numbers of baked quads along u and v
+  std::function<Vec3(double u, double v, const Vec3& point)> albedo;  ///< linear albedo
   std::function<bool(double u, double v)> opaque = [](double, double) { return true; };
-  double reflectance = 0;  ///< at normal incidence; 0: matte
+  double reflectance = 0;  ///< reflectance at normal incidence; 0: matte
   double sharpness = 20;   ///< exponent of the highlight
-  bool thin = false;       ///< seen and lit from both sides, such as a leaf
-  double clearance = 0;    ///< how far above it rays for its light start; 0: a share of the model's size
+  bool thin = false;       ///< whether both sides are seen and lit, as those of a leaf
+  double clearance = 0;    ///< height above the surface at which light rays start; 0: RadianceField::clearance()
 };
 
-/// What a sample is baked from.
+/// A procedural model that a sample scene is baked from.
 struct Model {
   std::string name;
   std::vector<Patch> patches;
   Axes axes = Axes::y_up;
   Layout layout = Layout::split;
   Vec3 sun{0.5, 0.8, 0.45};                          ///< direction towards the light, any length
-  std::function<Camera(double s, double t)> camera;  ///< training and held-out cameras, s and t in [0, 1)
-  int picture = 400;                                 ///< pixels a side of the held-out views
+  std::function<Camera(double s, double t)> camera;  ///< training and held-out cameras for s and t in [0, 1)
+  int picture = 400;                                 ///< side of the held-out views in pixels
 };
 
-/// A surface of revolution about the y axis: `profile(v)` is (radius, height) from bottom to top.
+/// A surface of revolution about a vertical axis through `centre`: `profile(v)` is (radius, height) from bottom to top.
 std::function<Vec3(double, double)> revolved(std::function<Vec2(double)> profile, const Vec3& centre = Vec3::Zero());
 
-/// A tube around a curve.
+/// A tube around a curve, with a radius along it.
 std::function<Vec3(double, double)> tube(std::function<Vec3(double)> curve, std::function<double(double)> radius);
 
 /// A flat parallelogram.
 std::function<Vec3(double, double)> plane(const Vec3& corner, const Vec3& along_u, const Vec3& along_v);
 
-/// Smooth repeatable noise in [0, 1].
+/// Smooth deterministic value noise in [0, 1].
 double noise(const Vec3& p);
 
-/// Cameras around `target` at `distance`, between two elevations in degrees.
+/// Cameras at `distance` from `target`: s is the azimuth, t the elevation between `lowest` and `highest`, in degrees.
 std::function<Camera(double, double)> around(const Vec3& target, double distance, double lowest, double highest);
 
-/// The model's surfaces elsewhere: `warp(patch, point)`; colours stay with them.
+/// The model with its surfaces moved by `warp(patch, point)`; albedos move with them.
 Model warped(const Model& model, const std::function<Vec3(std::size_t patch, const Vec3& point)>& warp);
 
 Model ficus();

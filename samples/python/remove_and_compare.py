@@ -4,7 +4,7 @@
 
 Run it cell by cell in an editor that knows `# %%`, or as a whole.
 """
-# %% Open a baked scene. Everything done to it below is an edit that undo() takes back.
+# %% Open a baked scene. Every change below is an edit that undo() reverts.
 import sys
 from pathlib import Path
 
@@ -22,19 +22,19 @@ for node in document.nodes:
 vertices, faces = document.vertices("ficus"), document.faces("ficus")
 print("box:", vertices.min(axis=0), vertices.max(axis=0))
 
-# %% Select what looks like the topmost triangle: a leaf.
+# %% Select all triangles whose colour is similar to the topmost one, a leaf.
 before = document.render(400, 400)
 centres = vertices[faces].mean(axis=1)
 top = centres[centres[:, 1].argmax()]
 mask = document.select_like(point=top, color=0.15)["ficus"]
 print(f"{mask.sum()} triangles are like the topmost one")
 
-# %% Remove them, and see how much of the picture changed.
+# %% Remove them, and measure how much of the picture changed.
 document.delete()
 after = document.render(400, 400)
 print(f"{100 * (before != after).any(axis=2).mean():.1f} % of the pixels changed")
 
-# %% Export in the same format, keep the work as a project.
+# %% Export in the same format, and save the work as a project.
 out.mkdir(parents=True, exist_ok=True)
 for note in document.export(out / "bare_ficus"):
     print("note:", note)

@@ -12,14 +12,14 @@ namespace rebake {
 
 namespace {
 
-constexpr int cell = 17;  // texels a side of a quad's patch
+constexpr int cell = 17;  // side of a quad's patch in texels
 
-// Random numbers by what they are for and which they are: no state, so that sets can be made side by side.
+// Stateless random numbers in [0, 1), addressed by purpose and indices, so that sets can be created in parallel.
 class Numbers {
  public:
   Numbers(unsigned seed, std::uint64_t purpose) : seed_(seed), purpose_(purpose) {}
   double operator()(std::uint64_t which, std::uint64_t part) const {
-    // Twice: once, numbers of neighbouring parts go together.
+    // Mixed twice: after one pass, numbers of neighbouring parts are correlated.
     return static_cast<double>(mixed(mixed(which, seed_ * 64 + purpose_, part), part, 7) >> 11) * 0x1p-53;
   }
   double between(double low, double high, std::uint64_t which, std::uint64_t part) const {
@@ -30,18 +30,18 @@ class Numbers {
   std::uint64_t seed_, purpose_;
 };
 
-// A piece of a grid of 2 or 3 by 2 quads in space.
+// A grid of 2×2 or 3×2 quads in space.
 struct Piece {
   Vec3 corner, right, up;
   int columns = 2;
 };
 
-// Four in five lie around the middle, the others on a backdrop. Pieces of 2 columns have 16 vertices at 9 places, those
-// of 3 have 24 at 12: the share of each gives the number of vertices a place.
+// Four of five pieces are around the middle, the others on a backdrop. Pieces of 2 columns have 16 vertices at 9
+// positions, those of 3 columns have 24 at 12; their mixture gives vertices_a_point.
 Piece piece_of(const LargeSceneOptions& options, std::uint64_t number) {
   const Numbers random(options.seed, 1);
   const double narrow_places = 9, wide_places = 12;
-  // vertices = 16 (1 − s) + 24 s, places = 9 (1 − s) + 12 s.
+  // s is the share of wide pieces: vertices = 16 (1 − s) + 24 s, positions = 9 (1 − s) + 12 s.
   const double r = options.vertices_a_point,
                wide = std::clamp((r * narrow_places - 16) / (8 - r * (wide_places - narrow_places)), 0.0, 1.0);
   const Vec3 direction =
@@ -61,18 +61,20 @@ Piece piece_of(const LargeSceneOptions& options, std::uint64_t number) {
   return piece;
 }
 
-// Smooth over a quad, and noise of some steps, as trained features have.
+// A texel of a quad: features that are smooth over the quad, with noise of up to two quantisation steps, like trained
+// features.
 Texel texel_of(const LargeSceneOptions& options, std::uint64_t quad, int x, int y) {
   const Numbers random(options.seed, 2), noise(options.seed, 3);
   const double u = static_cast<double>(x) / cell - 0.5, v = static_cast<double>(y) / cell - 0.5;
-  // Half planes through the quad leave the asked share opaque: those that cut it take a quarter of it on average.
+  // Quads are fully opaque or cut by a random half plane, which leaves half of them opaque on average. The mixture
+  // gives opaque_share.
   const double angle = random.between(0, 6.283185307179586, quad, 16);
   const double edge = random.between(-0.5, 0.5, quad, 17);
   const double whole = random(quad, 18);
   const double of_quads = options.opaque_share * options.texture_side * options.texture_side *
                           static_cast<double>(options.sets) * 2 /
                           (static_cast<double>(options.triangles) * cell * cell);
-  const double full = 2 * of_quads - 1;  // the others are half opaque on average
+  const double full = 2 * of_quads - 1;  // share of fully opaque quads
   if (whole >= std::max(0.0, full) && std::cos(angle) * u + std::sin(angle) * v > edge)
     return empty_texel(AlphaCode::halved);
   Texel texel;
@@ -120,7 +122,7 @@ TextureSet set_of(const LargeSceneOptions& options, std::size_t number, std::siz
   return {Soup(std::move(positions), std::move(uvs), std::move(faces)), std::move(texels)};
 }
 
-// Weights of both signs, so that colours vary over their whole range.
+// Random weights of both signs, so that colours cover their whole range.
 Decoder decoder_of(const LargeSceneOptions& options) {
   const Numbers random(options.seed, 4);
   std::uint64_t next = 0;

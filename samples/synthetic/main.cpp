@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   try {
     AtomicFolder out(argv[1], {}, refuse_foreign_content);
     std::vector<std::string> notes;
-    // Sets stay as they were made: an export would lay them out again.
+    // Write the sets unchanged; an export would pack them again.
     constexpr bool as_made = true;
     write_baked_folder(out, {}, *large_synthetic_scene(options), Layout::chunked, notes, {}, as_made);
     out.commit();

@@ -4,13 +4,14 @@
 
 namespace rebake {
 
-/// Bends triangles along an axis into an arc: the axis keeps its length, what lies beyond the limits follows.
+/// Bends triangles so that the axis becomes a circular arc of the same length (ClosedForm). Parts beyond the limits
+/// follow rigidly or stay.
 struct Bend {
   static constexpr const char* op = "bend";
   DeformTarget target;
   DeformAxis axis;
-  double degrees = 0;
-  Vec3 direction{1, 0, 0};
+  double degrees = 0;       ///< angle between both limits
+  Vec3 direction{1, 0, 0};  ///< bends towards it; only its part orthogonal to the axis counts
 };
 template <>
 const EditType& edit_type<Bend>();

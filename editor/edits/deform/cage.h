@@ -4,14 +4,15 @@
 
 namespace rebake {
 
-/// Deforms triangles by a cage around them: its points move, what is inside follows, colours turn along.
+/// Cage-based deformation: moved cage vertices deform the triangles inside by generalised barycentric coordinates.
+/// View-dependent colours rotate with the surface.
 struct CageDeform {
   static constexpr const char* op = "cage";
   DeformTarget target;
   CageSource cage;
-  CageMoves moves;
+  CageMoves moves;  ///< applied one after another
   CageCoordinates coordinates = CageCoordinates::mean_value;
-  int resolution = 32;
+  int resolution = 32;  ///< harmonic: grid cells along the cage's longest side, 8 … 256
 };
 template <>
 const EditType& edit_type<CageDeform>();

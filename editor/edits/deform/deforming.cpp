@@ -17,6 +17,7 @@ namespace rebake {
 
 namespace {
 
+// Calls visit(world position) for each finite corner of the flagged triangles.
 template <class Visit>
 void for_corners(const PlacedNode& placed, const TriangleSet& flags, Visit visit) {
   std::size_t f = 0;
@@ -51,7 +52,7 @@ TriangleList DeformSet::opaque_triangles() const {
     const BakedObject& object = *nodes[k].node->object;
     std::size_t f = 0;
     for (const TextureSet& set : object.sets) {
-      // Every triangle that may show a texel when drawn.
+      // Includes each triangle that may show an opaque texel when drawn.
       const std::vector<std::uint8_t> shows = faces_with_opaque_texels(set);
       std::size_t in_set = 0;
       const auto base = static_cast<std::uint32_t>(list.points.size());
@@ -119,7 +120,7 @@ Outcome with_deformed(const Scene& scene, const DeformSet& set, double falloff, 
                       "mean_value, or "
                       "a coarser wrap or a larger cage",
                       made.report.opaque_outside, made.report.points, set.nodes[k].node->name));
-    // Pictures and files hold positions as float.
+    // Renderer and files store positions as float.
     constexpr double farthest = 1e30;
     if (const Box box = transformed(made.object->bounds(), set.nodes[k].to_world);
         !box.isEmpty() && !(box.min().cwiseAbs().maxCoeff() < farthest && box.max().cwiseAbs().maxCoeff() < farthest))
@@ -170,7 +171,7 @@ FieldType Codec<Cage>::type() {
           {}};
 }
 Cage Codec<Cage>::read(const nlohmann::json& value, const Scene& scene) {
-  // A file's mesh goes into the edit itself, so that journals and projects need no file.
+  // The edit contains the file's mesh, so that journals and projects do not need the file.
   if (value.is_string()) return read_cage(value.get<std::string>());
   if (!value.is_object() || !value.contains("vertices") || !value.contains("faces") ||
       !value.at("vertices").is_array() || !value.at("faces").is_array())
@@ -247,7 +248,7 @@ std::vector<Vec3> moved_points(const CageMoves& moves, const Cage& cage, bool sh
     const Vec3 pivot = move.pivot.value_or(box.center());
     const Mat3 linear = move.rotate.matrix() * move.scale.value.asDiagonal();
     for (const std::uint32_t v : taken) {
-      // A pure move adds just the distance.
+      // A pure translation is exact.
       points[v] = linear.isIdentity(0) ? Vec3(points[v] + move.translate)
                                        : Vec3(pivot + linear * (points[v] - pivot) + move.translate);
       if (!points[v].allFinite()) throw FieldError("moves", "a cage point would lie beyond what numbers can hold");
@@ -267,7 +268,7 @@ std::vector<std::string> notes_on(const Cage& cage, const std::vector<Vec3>& mov
 
 namespace {
 
-// Wraps take from a tenth of a second to several.
+// wrap() with the result cache, because wraps are slow.
 Cage kept_wrap(const TriangleList& triangles, double coarseness, const Progress& progress) {
   const std::shared_ptr<Results> results = kept_results();
   if (!results) return wrap(triangles, coarseness, progress);
@@ -282,7 +283,7 @@ Cage kept_wrap(const TriangleList& triangles, double coarseness, const Progress&
     try {
       return Codec<Cage>::read(nlohmann::json::from_cbor(*bytes), {});
     } catch (const std::exception&) {
-      // Not one of ours after all.
+      // The cached bytes are not a cage: computes it again.
     }
   }
   Cage cage = wrap(triangles, coarseness, progress);
@@ -303,7 +304,7 @@ Cage cage_of(const CageSource& source, const DeformSet& set, const Progress& pro
     return kept_wrap(opaque, source.wrap.value_or(0.1), progress);
   }
   if (source.lattice.size() != 3) throw FieldError("lattice", "must be three whole numbers: cells along x, y and z");
-  // A little larger, so that no point lies on the surface.
+  // Enlarges the box by 1 % of its diagonal, so that no point lies on the cage.
   Box box = set.bounds();
   const Vec3 margin = Vec3::Constant(0.01 * box.diagonal().norm());
   box = Box(Vec3(box.min() - margin), Vec3(box.max() + margin));

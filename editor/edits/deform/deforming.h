@@ -8,13 +8,13 @@
 
 namespace rebake {
 
-/// Fields that say which triangles a deformation takes.
+/// Fields that choose the triangles to deform.
 struct DeformTarget {
-  std::optional<NodeRef> node;
-  bool selection = false;
-  std::optional<BoxRegion> box;
-  CoordinateFrame frame = CoordinateFrame::world;
-  double falloff = 0;
+  std::optional<NodeRef> node;                     ///< nothing: all objects with selected triangles
+  bool selection = false;                          ///< only selected triangles of `node`
+  std::optional<BoxRegion> box;                    ///< only triangles whose centre is inside
+  CoordinateFrame frame = CoordinateFrame::world;  ///< coordinates of `box`; if bounds, also of cage moves
+  double falloff = 0;                              ///< width of the soft border, in scene units; 0: hard
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -28,37 +28,38 @@ struct DeformTarget {
   }
 };
 
-/// Triangles to be deformed: nodes with a flag a triangle.
+/// Triangles to deform: objects with a flag per triangle.
 struct DeformSet {
   std::vector<PlacedNode> nodes;
-  std::vector<TriangleSet> flags;
+  std::vector<TriangleSet> flags;  ///< per node: a flag per triangle
 
-  /// World box of their corners.
+  /// World box of the flagged triangles.
   Box bounds() const;
-  /// In world space, those with an opaque texel only.
+  /// The flagged triangles with an opaque texel, in world space.
   TriangleList opaque_triangles() const;
-  /// Least and greatest x · axis over their corners.
+  /// Minimum and maximum of x · axis over the corners x of the flagged triangles, in world space.
   std::pair<double, double> extent_along(const Vec3& axis) const;
 };
 
-/// Throws EditError when nothing is left to deform, FieldError for a bad field.
+/// The triangles of a target. Throws EditError if there is none, FieldError for a negative falloff.
 DeformSet deform_set(const Scene& scene, const DeformTarget& target);
 
-/// The scene with them deformed, and what that did to each. Throws EditError when what shows something would stay
-/// behind because the deformation does not reach it. `notes` are said of each object.
+/// The scene with the triangles deformed, and a report line per object. `notes` are appended to each line. Throws
+/// EditError if opaque triangles lie outside the domain of the deformation, and if a result is too large for float.
 Outcome with_deformed(const Scene& scene, const DeformSet& set, double falloff, const SpaceDeformation& deformation,
                       const std::vector<std::string>& notes = {});
 
-/// Some points of a cage, and how they move.
+/// A rotation, scale and translation of some cage vertices: of those with given numbers, in a box or in a sphere.
+/// Exactly one of these must be given.
 struct CageMove {
-  NumberRanges points;
+  NumberRanges points;  ///< vertex numbers, from 0
   std::optional<BoxRegion> box;
   std::optional<SphereRegion> sphere;
-  bool nearest = false;
+  bool nearest = false;  ///< if no vertex is in the sphere: take the one nearest to its centre
   Vec3 translate{0, 0, 0};
   Rotation rotate;
   Scale scale;
-  std::optional<Vec3> pivot;
+  std::optional<Vec3> pivot;  ///< fixed point of rotation and scale; nothing: centre of the vertices' box
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -82,18 +83,19 @@ struct Codec<CageMoves> {
   static nlohmann::json write(const CageMoves& value);
 };
 
-/// The cage points that a move takes. Regions are in world units, or with `shares` in shares of the cage's box. Throws
-/// FieldError when it names a point that is not there, or takes none.
+/// Numbers of the cage vertices that a move affects. Regions are in world units, or with `shares` relative to the
+/// cage's box (0 … 1). Throws FieldError for a vertex number out of range and if there is no vertex.
 std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, bool shares);
 
-/// Where the cage's points are after all moves, in their order; each starts from where the one before left them.
+/// Positions of all cage vertices after the moves, applied one after another. Each move chooses its vertices by their
+/// original positions. Throws FieldError for non-finite results.
 std::vector<Vec3> moved_points(const CageMoves& moves, const Cage& cage, bool shares);
 
-/// How a cage is made: exactly one way.
+/// Source of a cage: at most one of lattice, wrap and mesh; by default a wrap of coarseness 0.1.
 struct CageSource {
-  std::vector<int> lattice;
-  std::optional<double> wrap;
-  Cage mesh;
+  std::vector<int> lattice;    ///< box with this number of cells along x, y and z
+  std::optional<double> wrap;  ///< coarseness of an alpha wrap of the opaque triangles, see wrap()
+  Cage mesh;                   ///< closed mesh in world space
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -111,10 +113,11 @@ struct Codec<Cage> {
   static Cage read(const nlohmann::json& value, const Scene& scene);
   static nlohmann::json write(const Cage& value);
 };
-/// What people should know of a cage that is about to move: places where it cuts through itself, before or after.
+/// Warnings for people if a cage intersects itself, before or after its vertices move to `moved`.
 std::vector<std::string> notes_on(const Cage& cage, const std::vector<Vec3>& moved);
 
-/// The cage around what is deformed, in world space. With no way given, a wrap of coarseness 0.1.
+/// The cage around the triangles, in world space. Throws FieldError for contradictory fields, EditError if there is no
+/// opaque triangle to wrap.
 Cage cage_of(const CageSource& source, const DeformSet& set, const Progress& progress = {});
 
 }  // namespace rebake

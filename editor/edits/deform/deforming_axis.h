@@ -5,12 +5,12 @@
 
 namespace rebake {
 
-/// Fields of deformations about an axis.
+/// Axis and limits of a deformation.
 struct DeformAxis {
-  Vec3 axis{0, 1, 0};
-  std::optional<Vec3> origin;
-  std::optional<double> from, to;
-  PolyLine spine;
+  Vec3 axis{0, 1, 0};              ///< direction in world space, any length but 0
+  std::optional<Vec3> origin;      ///< world point on the axis; nothing: lower end of the box, in its middle
+  std::optional<double> from, to;  ///< limits along the axis from the origin; nothing: the triangles' ends
+  PolyLine spine;                  ///< curved axis; limits are then arc lengths along it
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -26,7 +26,8 @@ struct DeformAxis {
   }
 };
 
-/// Fills in the form's axis and deforms.
+/// Completes `form` with the axis and limits, along the spine if there is one, and deforms the target. Throws as
+/// deform_set(), check() and along_curve() do.
 Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const DeformAxis& axis, ClosedForm form);
 
 }  // namespace rebake

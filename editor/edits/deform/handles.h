@@ -4,14 +4,15 @@
 
 namespace rebake {
 
-/// Deforms triangles as rigidly as possible: some points of a wrap around them are held or moved, the rest follows.
+/// As-rigid-as-possible deformation of a cage: some vertices are fixed or moved, the others follow; mean value
+/// coordinates carry the triangles along.
 struct HandlesDeform {
   static constexpr const char* op = "handles";
   DeformTarget target;
   CageSource cage;
-  CageMoves moves;
-  CageMoves fixed;
-  int iterations = 200;
+  CageMoves moves;       ///< handles: vertices with their motions
+  CageMoves fixed;       ///< vertices that keep their positions
+  int iterations = 200;  ///< maximum, 1 … 1000
 };
 template <>
 const EditType& edit_type<HandlesDeform>();

@@ -4,12 +4,12 @@
 
 namespace rebake {
 
-/// Makes triangles longer or shorter along an axis, between the limits.
+/// Stretches triangles along an axis between two limits; parts beyond move rigidly or stay.
 struct Stretch {
   static constexpr const char* op = "stretch";
   DeformTarget target;
   DeformAxis axis;
-  double factor = 1;
+  double factor = 1;  ///< new length between the limits, relative to the present one
 };
 template <>
 const EditType& edit_type<Stretch>();

@@ -4,12 +4,12 @@
 
 namespace rebake {
 
-/// Makes triangles thinner or thicker across an axis, more and more between the limits.
+/// Tapers triangles: scales them orthogonally to an axis, from 1 at the lower limit to `factor` at the upper one.
 struct Taper {
   static constexpr const char* op = "taper";
   DeformTarget target;
   DeformAxis axis;
-  double factor = 1;
+  double factor = 1;  ///< size at the upper limit, relative to the present one
 };
 template <>
 const EditType& edit_type<Taper>();

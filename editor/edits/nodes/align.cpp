@@ -15,7 +15,7 @@ namespace {
 constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 constexpr std::array<const char*, 4> align_names = {"least", "middle", "greatest", "spread"};
 
-// The number of a word among those there are.
+// Index of a word in `words`. Throws Error, which lists them, for another value.
 std::size_t read_word(const nlohmann::json& value, std::span<const char* const> words) {
   std::string expected;
   for (std::size_t k = 0; k < words.size(); ++k) {
@@ -57,7 +57,7 @@ Scene apply(const Scene& scene, const Align& edit) {
   }
   std::vector<double> ways(list.size(), 0);
   if (edit.to == AlignTo::spread) {
-    // The outermost stay; between neighbours there is the same gap.
+    // The outermost boxes stay; the gaps between neighbours become equal.
     std::vector<std::size_t> order(list.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

@@ -5,17 +5,18 @@
 
 namespace rebake {
 
+/// Axis of world space.
 enum class WorldAxis { x, y, z };
-/// Where nodes are put beside each other along an axis.
+/// Alignment along an axis: lower ends, centres or upper ends of the world boxes at those of the first node, or equal
+/// gaps between neighbours (spread).
 enum class AlignTo { least, middle, greatest, spread };
 REBAKE_CODEC(WorldAxis);
 REBAKE_CODEC(AlignTo);
 
-/// Moves nodes along an axis so that their boxes' ends or middles are at the first one's, or with the same gap between
-/// neighbours.
+/// Aligns the world boxes of nodes along an axis with the first node, or distributes them with equal gaps.
 struct Align {
   static constexpr const char* op = "align";
-  std::vector<NodeRef> nodes;
+  std::vector<NodeRef> nodes;  ///< two or more, none inside another
   WorldAxis axis = WorldAxis::x;
   AlignTo to = AlignTo::middle;
 };

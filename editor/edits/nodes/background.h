@@ -4,10 +4,10 @@
 
 namespace rebake {
 
-/// Sets the colour behind everything.
+/// Sets the scene's background colour.
 struct Background {
   static constexpr const char* op = "background";
-  Vec3 color{1, 1, 1};
+  Vec3 color{1, 1, 1};  ///< display RGB, 0 … 1
 };
 template <>
 const EditType& edit_type<Background>();

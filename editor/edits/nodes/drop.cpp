@@ -24,7 +24,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// The node and all below it in the outline.
+// Ids of the node and all its descendants.
 std::set<NodeId> subtree(const Scene& scene, NodeId id) {
   std::set<NodeId> ids = {id};
   for (const PlacedNode& placed : placed_nodes(scene))
@@ -33,12 +33,12 @@ std::set<NodeId> subtree(const Scene& scene, NodeId id) {
   return ids;
 }
 
-// Placed objects in world space: their triangles with an opaque texel, and rays through them.
+// Placed objects in world space: the triangles that contain an opaque texel, and a ray tracer.
 struct Body {
   std::vector<PlacedNode> nodes;
   SceneRays rays;
   std::vector<std::array<Vec3, 3>> triangles;
-  Box box;  ///< of the triangles, in the ground's frame
+  Box box;  ///< bounds of the triangles in the ground's frame, with y along its normal
 
   Body(std::vector<PlacedNode> of, const Mat3& to_ground) : nodes(std::move(of)), rays(rays_through(nodes)) {
     for (const PlacedNode& placed : nodes)
@@ -57,7 +57,7 @@ struct Body {
   }
 };
 
-// Edges in the ground's frame, by the cells of a grid over x and z that they pass.
+// Uniform grid over x and z of the ground's frame; each cell lists the triangle edges whose boxes overlap it.
 class EdgeGrid {
  public:
   EdgeGrid(const std::vector<std::array<Vec3, 3>>& triangles, const Mat3& to_ground, const Box& room) : room_(room) {
@@ -71,7 +71,7 @@ class EdgeGrid {
       }
   }
 
-  // Calls visit(height of the given edge, height of the other) where they cross, seen along y.
+  // Calls visit(height of the given edge, height of the other edge) for each crossing in the projection along y.
   template <class Visit>
   void each_crossing(const Vec3& from, const Vec3& to, Visit visit) const {
     each_cell(from, to, [&](std::int64_t cell) {
@@ -82,7 +82,7 @@ class EdgeGrid {
         const double area = a.x() * b.z() - a.z() * b.x();
         const double s = (between.x() * b.z() - between.z() * b.x()) / area;
         const double t = (between.x() * a.z() - between.z() * a.x()) / area;
-        // Parallel edges meet at their corners only.
+        // Parallel edges (area 0) are skipped: their contact is found by rays from their corners.
         if (s >= 0 && s <= 1 && t >= 0 && t <= 1) visit(from.y() + s * a.y(), other.from.y() + t * b.y());
       }
     });
@@ -93,7 +93,7 @@ class EdgeGrid {
     Vec3 from, to;
   };
 
-  // Cells of the edge's box; those outside of the room are left out.
+  // Visits the grid cells of the edge's bounding box inside `room_`.
   template <class Visit>
   void each_cell(const Vec3& from, const Vec3& to, Visit visit) const {
     const Vec3 low = from.cwiseMin(to).cwiseMax(room_.min()), high = from.cwiseMax(to).cwiseMin(room_.max());
@@ -108,6 +108,7 @@ class EdgeGrid {
   std::unordered_map<std::int64_t, std::vector<Edge>> cells_;
 };
 
+// The fall of a body along the ground's normal onto other objects or the ground plane.
 class Fall {
  public:
   Fall(Body body, Body others, const Ground& ground, const Progress& progress)
@@ -115,11 +116,11 @@ class Fall {
         others_(std::move(others)),
         ground_(ground),
         to_ground_(ground_frame(ground).transpose()),
-        // Bodies that touch do so within the rounding of the rays' floats.
+        // Contact is found within the float precision of the rays.
         slack_(1e-5 * body_.box.diagonal().norm()),
         progress_(progress) {}
 
-  // The motion along the normal that makes the body stand, negative where it falls; infinite if nothing is below.
+  // Signed distance along the normal by which the body must move to stand; negative if it falls.
   double run() {
     lift_ = std::max(0.0, ground_.height - body_.box.min().y());
     bool out = false, lifted = false;
@@ -130,9 +131,9 @@ class Fall {
       lift_ += more;
       lifted = lifted || more > 0;
     }
-    // Bodies count as out once they touch within the slack: the fall then ends where they touch.
+    // Bodies count as separated if they overlap by less than the slack, so that the fall ends at contact.
     if (lifted) lift_ += slack_;
-    // Above everything, in any case.
+    // Fallback: lifts the body above everything.
     if (!out) lift_ = others_.box.max().y() - body_.box.min().y();
     progress_.at("falling", 0);
     return lift_ - free_fall();
@@ -141,8 +142,8 @@ class Fall {
  private:
   static constexpr int most_rounds = 64;
 
-  // Height by which the moving body must rise so that no edge of `edges` that crosses `faces` now still does; 0 if none
-  // does. `sign`: 1 if the edges are the moving body's, -1 if the faces are.
+  // Height by which the moving body must rise so that the edges of `edges` that now cross `faces` no longer do; 0 if
+  // none crosses. `sign`: 1 if the moving body has the edges, -1 if it has the faces.
   double penetration(const Body& edges, const Body& faces, double sign) const {
     const Vec3 offset = sign * (lift_ + slack_) * ground_.normal;
     double rise = 0;
@@ -182,12 +183,12 @@ class Fall {
     throw std::logic_error("a ray hit a triangle that the object does not have");
   }
 
-  // How far the lifted body falls.
+  // Distance that the lifted body falls until first contact, vertex–face or edge–edge.
   double free_fall() const {
     const Vec3 up = ground_.normal, offset = lift_ * up;
     double way = body_.box.min().y() + lift_ - ground_.height;
     const auto stop = [&](double distance) { way = std::min(way, std::max(0.0, distance)); };
-    // The body's corners meet surfaces below them; corners below meet the body's surfaces.
+    // Vertex–face contact: the body's vertices above surfaces, and vertices of others below the body.
     for (const std::array<Vec3, 3>& triangle : body_.triangles)
       for (const Vec3& corner : triangle)
         if (const auto hit = others_.rays.nearest(corner + offset, -up, -slack_, infinite)) stop(hit->t);
@@ -199,7 +200,7 @@ class Fall {
           continue;
         if (const auto hit = body_.rays.nearest(corner - offset, up, -slack_, infinite)) stop(hit->t);
       }
-    // Edges meet edges that they cross, seen from above.
+    // Edge–edge contact: edges that cross in the projection along the normal.
     const EdgeGrid below(others_.triangles, to_ground_, body_.box);
     for (const std::array<Vec3, 3>& triangle : body_.triangles)
       for (std::size_t k = 0; k < 3; ++k)
@@ -232,7 +233,7 @@ Outcome apply(const Scene& scene, const Drop& edit, const Progress& progress) {
   const double size = body.box.diagonal().norm();
   const double rise = Fall(std::move(body), Body(others, to_ground), ground, progress).run();
   const std::string name = find(scene, edit.node.id)->name;
-  // Rays are as exact as floats: what moves by less stands already.
+  // Smaller motions are below the float precision of the rays.
   if (std::abs(rise) <= 1e-6 * size)
     return {scene, {{fmt::format("\"{}\" stands on a surface or on the ground already; nothing moved", name)}}};
   Transform move;

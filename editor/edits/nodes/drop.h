@@ -4,12 +4,12 @@
 
 namespace rebake {
 
-/// Moves a node against the ground's normal until it stands on a visible surface or on the ground plane. A node that
-/// intersects a surface or the ground is lifted out first.
+/// Lets a node fall against the ground's normal until it stands on a visible surface or on the ground plane. A node
+/// that intersects a surface or the ground is lifted out first.
 struct Drop {
   static constexpr const char* op = "drop";
   NodeRef node;
-  std::optional<double> ground;
+  std::optional<double> ground;  ///< y of a level ground plane; nothing: the scene's ground
 };
 template <>
 const EditType& edit_type<Drop>();

@@ -4,12 +4,12 @@
 
 namespace rebake {
 
-/// Adds a copy of a node and its children after it; triangles and texels stay shared.
+/// Adds a copy of a node and its children after the node. Triangles and texels are shared, not copied.
 struct Duplicate {
   static constexpr const char* op = "duplicate";
   NodeRef node;
-  std::string as;
-  Vec3 translate{0, 0, 0};
+  std::string as;           ///< name of the copy; empty: the node's name with a number
+  Vec3 translate{0, 0, 0};  ///< offset of the copy, in world space
 };
 template <>
 const EditType& edit_type<Duplicate>();

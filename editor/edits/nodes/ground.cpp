@@ -12,8 +12,8 @@ namespace rebake {
 
 namespace {
 
-// The area-weighted least-squares plane through the selected triangles, as three points on it. Its normal is the
-// covariance's eigenvector of the smallest eigenvalue; each triangle's own covariance is exact: A/12 (9 c cᵀ + Σ p pᵀ).
+// Area-weighted least-squares plane of the selected triangles. The normal is the eigenvector with the smallest
+// eigenvalue of the covariance matrix, to which each triangle contributes its exact integral: A/12 (9 c cᵀ + Σ p pᵀ).
 Ground fitted(const std::vector<PlacedNode>& nodes) {
   std::vector<std::array<Vec3, 3>> triangles;
   for (const PlacedNode& placed : nodes) {

@@ -4,13 +4,14 @@
 
 namespace rebake {
 
-/// Sets the scene's ground plane: what nodes drop onto and snap to, and up for sky light.
+/// Sets the scene's ground plane: nodes drop onto it and snap to it, and its normal is the up direction of sky light.
+/// Exactly one of the fields must be given.
 struct GroundEdit {
   static constexpr const char* op = "ground";
-  std::optional<double> height;  ///< level, at this y
-  bool foot = false;             ///< level, at the foot of everything visible
-  bool selection = false;        ///< fitted to the selected triangles
-  PolyLine points;               ///< through three points
+  std::optional<double> height;  ///< level plane at this y
+  bool foot = false;             ///< level plane at the lowest point of all visible objects
+  bool selection = false;        ///< least-squares plane of the selected triangles
+  PolyLine points;               ///< plane through three points
 };
 template <>
 const EditType& edit_type<GroundEdit>();

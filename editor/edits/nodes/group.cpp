@@ -15,11 +15,11 @@ Scene apply(const Scene& scene, const Group& edit) {
     const PlacedNode placed = editable(result, ref.id);
     Node moved = *placed.node;
     moved.to_parent = placed.to_world;
-    moved.visible = placed.visible;  // hidden by a group above stays hidden
+    moved.visible = placed.visible;  // a node hidden by a group above stays hidden
     group.children.push_back(std::make_shared<const Node>(std::move(moved)));
     result = without(result, ref.id);
   }
-  // Names of the children are free again in `result`, so they keep them.
+  // The children were removed from `result`, so they can keep their names.
   NodeId id = NodeId::none;
   result = with_added(result, std::move(group), NodeId::none, result.roots.size(), &id);
   check_subtree(result, id);

@@ -4,11 +4,11 @@
 
 namespace rebake {
 
-/// Puts nodes into a new group; they stay where they are in the world.
+/// Moves nodes into a new group at the end of the roots; their world transforms stay.
 struct Group {
   static constexpr const char* op = "group";
   std::vector<NodeRef> nodes;
-  std::string as;
+  std::string as;  ///< name of the group; empty: "group"
 };
 template <>
 const EditType& edit_type<Group>();

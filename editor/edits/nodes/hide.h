@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Hides a node and its children; they are neither drawn nor exported; save keeps them.
+/// Hides a node and its children: they are neither drawn nor exported, but saved.
 struct Hide {
   static constexpr const char* op = "hide";
   NodeRef node;

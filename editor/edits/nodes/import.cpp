@@ -31,7 +31,7 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
   }
   Scene result = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
   for (const auto& [name, camera] : read.views) result.views.try_emplace(name, camera);
-  // The first scene that is opened sets the background and the light.
+  // The first import also sets the background, the ground and the light.
   if (scene.roots.empty()) {
     if (scene.background == Scene{}.background) result.background = read.background;
     if (!scene.light) result.light = read.light;

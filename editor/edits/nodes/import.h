@@ -4,14 +4,14 @@
 
 namespace rebake {
 
-/// Reads a MobileNeRF folder or a Rebake scene into the scene.
+/// Adds the content of a MobileNeRF folder or Rebake scene as a new root.
 struct Import {
   static constexpr const char* op = "import";
-  std::string path;
-  std::string as;
-  Axes axes = Axes::y_up;
-  std::string content;
-  bool ground = false;  ///< moves the scene's ground to the lowest point of the imported objects
+  std::string path;        ///< folder to read
+  std::string as;          ///< name of the new node; empty: the folder's name
+  Axes axes = Axes::y_up;  ///< orientation of a MobileNeRF folder; scenes contain their own
+  std::string content;     ///< expected hash of the folder's files; empty: any
+  bool ground = false;     ///< moves the scene's ground to the lowest point of all visible objects
 };
 template <>
 const EditType& edit_type<Import>();

@@ -12,14 +12,14 @@ namespace rebake {
 
 namespace {
 
-// Of SceneLight::Source.
+// Names of SceneLight::Source, in its order.
 constexpr std::array<std::string_view, 4> source_words{"estimated", "uniform", "sky", "picture"};
 
 void check_light(const Vec3& color, const char* field) {
   if (!color.allFinite() || (color.array() < 0).any()) throw FieldError(field, "must be finite and not negative");
 }
 
-// Sets which effects are wanted; false where light is to stay as it was baked.
+// Sets the effects; returns false for "none": light stays as baked.
 bool choose_effects(const std::vector<std::string>& words, SceneLight& light) {
   if (words == std::vector<std::string>{"none"}) return false;
   light.self = light.cast = light.removed = light.highlights = light.match = false;
@@ -47,7 +47,7 @@ bool choose_effects(const std::vector<std::string>& words, SceneLight& light) {
   return true;
 }
 
-// Read once as long as the scene holds it.
+// The environment map; shared with the scene's present light if that has the same path and content.
 std::shared_ptr<const LightPicture> picture_of(const LightEdit& edit, const Scene& scene) {
   if (edit.picture.empty()) {
     if (edit.source == "picture") throw FieldError("picture", "is missing: name an equirectangular picture");

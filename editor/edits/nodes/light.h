@@ -4,18 +4,18 @@
 
 namespace rebake {
 
-/// Says what light does in the scene: which effects follow its edits, and where the light comes from.
+/// Sets the scene's light: the effects that follow edits (shadows, highlights), and the light source.
 struct LightEdit {
   static constexpr const char* op = "light";
-  std::vector<std::string> effects{"auto"};
-  std::string source;  ///< empty: a picture where one is named, else estimated
-  double sun_degrees = 5;
-  double budget = 1;  ///< of 255
-  std::string picture, content;
-  double picture_degrees = 0;
-  SceneLight light;  ///< the rest
+  std::vector<std::string> effects{"auto"};  ///< auto, self, cast, removed, highlights, match; or none
+  std::string source;                        ///< estimated, uniform, sky or picture; empty: see light_source()
+  double sun_degrees = 5;                    ///< angular radius of the sun
+  double budget = 1;                         ///< allowed error by omitted effects, in 1/255 of display colours
+  std::string picture, content;              ///< environment map: file, and its expected hash (empty: any)
+  double picture_degrees = 0;                ///< rotation of the environment map about the up axis
+  SceneLight light;                          ///< all other settings
 
-  /// What `source` means.
+  /// The source; by default picture if there is one, else estimated.
   std::string light_source() const { return !source.empty() ? source : picture.empty() ? "estimated" : "picture"; }
 };
 template <>
@@ -23,7 +23,7 @@ const EditType& edit_type<LightEdit>();
 
 Scene apply(const Scene& scene, const LightEdit& edit);
 
-/// The edit that makes a scene's light this.
+/// The edit that sets a scene's light to `light`.
 LightEdit light_edit(const SceneLight& light);
 
 }  // namespace rebake

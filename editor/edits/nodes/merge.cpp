@@ -18,7 +18,7 @@ namespace rebake {
 
 namespace {
 
-// All triangles of a node in the frame of another, which they are to join.
+// The texture sets of a node, transformed to the object space of `frame`.
 std::vector<TextureSet> sets_in_frame(const PlacedNode& placed, const PlacedNode& frame) {
   std::vector<TextureSet> sets = placed.node->object->sets;
   if (placed.to_world.matrix() == frame.to_world.matrix()) return sets;
@@ -30,7 +30,7 @@ std::vector<TextureSet> sets_in_frame(const PlacedNode& placed, const PlacedNode
   for (TextureSet& set : sets) {
     const Attributes::Shared displaced = set.soup.vertex_attributes().shared(Soup::displacement);
     set.soup = move_faces(set.soup, std::vector<std::uint8_t>(set.soup.triangle_count(), 1), 0, motion, turn);
-    // The frame is another one; nothing went away from where it was baked.
+    // Only the frame changes: move_faces() must not count as a displacement from the baked position.
     if (displaced) {
       std::vector<Eigen::Vector3f> turned = dynamic_cast<const Values<Eigen::Vector3f>&>(*displaced).get();
       for (Eigen::Vector3f& d : turned) d = linear * d;
@@ -42,8 +42,7 @@ std::vector<TextureSet> sets_in_frame(const PlacedNode& placed, const PlacedNode
   return sets;
 }
 
-// Adds a node's bodies, in the frame of another, to those of what it joins; faces tell theirs by number where there are
-// several.
+// Adds a node's baked bodies to `bodies`, in the object space of `frame`, and updates the body number of each face.
 void join_bodies(std::vector<BakedBody>& bodies, const PlacedNode& placed, const PlacedNode& frame,
                  std::vector<TextureSet>& sets) {
   const bool moves = placed.to_world.matrix() != frame.to_world.matrix();
@@ -66,7 +65,7 @@ void join_bodies(std::vector<BakedBody>& bodies, const PlacedNode& placed, const
   }
 }
 
-// Where a set's texels come among those that the object was read with.
+// Index of a set's texture among those that the object was read with; behind all of them for a new texture.
 std::size_t place_in_origin(const BakedObject& object, const TextureSet& set) {
   if (!object.origin) return 0;
   const auto& sources = object.origin->sets;
@@ -76,7 +75,7 @@ std::size_t place_in_origin(const BakedObject& object, const TextureSet& set) {
       sources.begin());
 }
 
-// Names of the parts' stored selections, after an empty one for the live selection.
+// Names of all stored selections of the parts, after an empty name for the present selection.
 std::vector<std::string> selection_names(const std::vector<PlacedNode>& parts) {
   std::set<std::string> stored;
   for (const PlacedNode& part : parts)
@@ -86,7 +85,7 @@ std::vector<std::string> selection_names(const std::vector<PlacedNode>& parts) {
   return names;
 }
 
-// A texture set in the making, and for each selection which of its triangles are in it.
+// A texture set, and per selection name a flag for each of its triangles.
 struct SelectedSet {
   TextureSet set;
   std::vector<TriangleSet> selections;
@@ -113,6 +112,7 @@ std::vector<SelectedSet> with_selections(std::vector<TextureSet> sets, const Nod
   return result;
 }
 
+// Joins two parts of one texture, see united() of soups.
 SelectedSet united(const SelectedSet& a, const SelectedSet& b) {
   SelectedSet result{{united(a.set.soup, b.set.soup), a.set.texels}, {}};
   const std::vector<std::uint32_t> order = faces_of_united(a.set.soup, b.set.soup);
@@ -164,7 +164,7 @@ Scene apply(const Scene& scene, const Merge& edit) {
   const PlacedNode& first = parts.front();
   if (!edit.as.empty() && edit.as != first.node->name && find(scene, edit.as) != nullptr)
     throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
-  // One object has one way to store features 3 and 7: where parts differ, the one that holds the others' values
+  // An object has one alpha code for features 3 and 7. If parts differ, `plain` is used, which represents all values
   // exactly.
   const bool any_plain = std::any_of(parts.begin(), parts.end(), [](const PlacedNode& part) {
     const auto& sets = part.node->object->sets;

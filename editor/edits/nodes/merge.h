@@ -4,12 +4,12 @@
 
 namespace rebake {
 
-/// Makes objects of one decoder one node, in place of the first; parts that were separated before fit together
-/// again as they were.
+/// Merges objects with equal decoders into one node, in place of the first. Merging separated parts restores the
+/// original object.
 struct Merge {
   static constexpr const char* op = "merge";
-  std::vector<NodeRef> nodes;
-  std::string as;
+  std::vector<NodeRef> nodes;  ///< two or more, in drawing order
+  std::string as;              ///< name of the result; empty: that of the first node
 };
 template <>
 const EditType& edit_type<Merge>();

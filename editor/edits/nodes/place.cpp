@@ -9,13 +9,13 @@ Placement placement_of(const Affine& to_parent) {
   Placement result;
   result.position = to_parent.translation();
   Mat3 turn = orthogonal_factor(to_parent.linear());
-  // A mirrored node is turned and then mirrored along x.
+  // A mirrored transform is a reflection along x followed by a rotation.
   if (turn.determinant() < 0) turn.col(0) = -turn.col(0);
   const Mat3 stretch = turn.transpose() * to_parent.linear();
   result.rotation = turn;
   result.scale = stretch.diagonal();
   const double size = stretch.cwiseAbs().maxCoeff();
-  constexpr double rounding = 1e-12;  // of products of matrices, over their size
+  constexpr double rounding = 1e-12;  // relative rounding error of matrix products
   const Mat3 rest = stretch - Mat3(stretch.diagonal().asDiagonal());
   result.sheared = rest.cwiseAbs().maxCoeff() > rounding * size;
   if (result.sheared) result.shear = stretch * result.scale.cwiseInverse().asDiagonal();
@@ -32,7 +32,7 @@ Scene apply(const Scene& scene, const Place& edit) {
     const Placement now = placement_of(to_parent);
     const Mat3 rotation = edit.rotation ? edit.rotation->matrix() : now.rotation;
     const Vec3 scale = edit.scale ? edit.scale->value : now.scale;
-    // A size along the node's own axes takes what shear there was with it.
+    // A new scale along the node's own axes removes the shear.
     const Mat3 shear = edit.scale ? Mat3(Mat3::Identity()) : now.shear;
     to_parent.linear() = rotation * shear * scale.asDiagonal();
   }

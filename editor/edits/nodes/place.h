@@ -4,18 +4,20 @@
 
 namespace rebake {
 
-/// How a node stands in its parent: its linear part is rotation · shear · diag(scale); nodes that were only moved,
-/// turned and scaled along their own axes have no shear.
+/// Decomposition of a node's transform to its parent: translation, and a linear part rotation · shear · diag(scale).
+/// Nodes that were only translated, rotated and scaled along their own axes have no shear.
 struct Placement {
   Vec3 position{0, 0, 0};
-  Mat3 rotation = Mat3::Identity();  ///< det 1
-  Vec3 scale{1, 1, 1};               ///< one is negative where the node is mirrored
-  Mat3 shear = Mat3::Identity();     ///< symmetric, with a diagonal of 1
-  bool sheared = false;              ///< by more than rounding
+  Mat3 rotation = Mat3::Identity();  ///< proper rotation, det 1
+  Vec3 scale{1, 1, 1};               ///< one factor is negative if the node is mirrored
+  Mat3 shear = Mat3::Identity();     ///< unit diagonal
+  bool sheared = false;              ///< the shear is above rounding error
 };
+/// Throws std::invalid_argument for a singular transform.
 Placement placement_of(const Affine& to_parent);
 
-/// Says where a node stands, how it is turned and how large it is, in its parent. What is left out stays.
+/// Sets a node's position, rotation and scale relative to its parent. Absent fields keep their values; at least one
+/// must be given.
 struct Place {
   static constexpr const char* op = "place";
   NodeRef node;

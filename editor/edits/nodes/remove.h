@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Takes a node and its children out of the scene.
+/// Removes a node and its children from the scene.
 struct Remove {
   static constexpr const char* op = "remove";
   NodeRef node;

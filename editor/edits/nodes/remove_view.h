@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Forgets a stored view.
+/// Removes a stored view.
 struct RemoveView {
   static constexpr const char* op = "remove_view";
   std::string name;

@@ -4,11 +4,11 @@
 
 namespace rebake {
 
-/// Gives a node another name.
+/// Renames a node.
 struct Rename {
   static constexpr const char* op = "rename";
   NodeRef node;
-  std::string name;
+  std::string name;  ///< new, unique name
 };
 template <>
 const EditType& edit_type<Rename>();

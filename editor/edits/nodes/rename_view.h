@@ -4,11 +4,11 @@
 
 namespace rebake {
 
-/// Gives a stored view another name.
+/// Renames a stored view.
 struct RenameView {
   static constexpr const char* op = "rename_view";
-  std::string name;
-  std::string to;
+  std::string name;  ///< present name
+  std::string to;    ///< new, unique name
 };
 template <>
 const EditType& edit_type<RenameView>();

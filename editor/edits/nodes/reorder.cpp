@@ -21,7 +21,7 @@ Scene apply(const Scene& scene, const Reorder& edit) {
   }
   if (parent != parent_of(scene, edit.node.id)) {
     moved.to_parent = parent_to_world.inverse() * placed.to_world;
-    moved.visible = placed.visible;  // hidden by a group above stays hidden
+    moved.visible = placed.visible;  // a node hidden by a group above stays hidden
   }
   const Scene result = with_added(rest, std::move(moved), parent, static_cast<std::size_t>(edit.index));
   check_subtree(result, edit.node.id);

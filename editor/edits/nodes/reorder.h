@@ -4,13 +4,13 @@
 
 namespace rebake {
 
-/// Moves a node within the outline, to another place or group; it stays where it is in the world.
+/// Moves a node to another position or group in the tree; its world transform stays.
 struct Reorder {
   static constexpr const char* op = "reorder";
   NodeRef node;
-  int index;
-  std::optional<NodeRef> parent;
-  bool top = false;
+  int index;                      ///< position among the new siblings, from 0
+  std::optional<NodeRef> parent;  ///< group to move into; nothing: its present group
+  bool top = false;               ///< move to the roots
 };
 template <>
 const EditType& edit_type<Reorder>();

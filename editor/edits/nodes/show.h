@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Makes a node visible again.
+/// Shows a hidden node; it stays invisible inside a hidden group.
 struct Show {
   static constexpr const char* op = "show";
   NodeRef node;

@@ -7,8 +7,9 @@
 
 namespace rebake {
 
+// The matrix of the scale along its axes.
 Mat3 scaling(const Transform& edit) {
-  // Where axes do not matter the scale stays exact.
+  // Without rotated axes, or with a uniform scale, the matrix is exact.
   const Vec3& scale = edit.scale.value;
   if (edit.scale_axes.quaternion().vec().isZero(0) || (scale.array() == scale[0]).all()) return scale.asDiagonal();
   const Mat3 axes = edit.scale_axes.matrix();
@@ -30,7 +31,7 @@ Scene apply(const Scene& scene, const Transform& edit) {
   Affine motion = Affine::Identity();
   const Mat3 linear = edit.rotate.matrix() * scaling(edit);
   motion.linear() = linear;
-  // A pure move adds just the distance: no rounding from the pivot.
+  // A pure translation is exact, without rounding errors from the pivot.
   motion.translation() = linear.isIdentity(0) ? edit.translate : Vec3(pivot + edit.translate - linear * pivot);
   if (!motion.matrix().allFinite()) throw EditError("the transform is not finite");
   if (!edit.selection) {
@@ -46,8 +47,7 @@ Scene apply(const Scene& scene, const Transform& edit) {
   }
   const Affine in_object = placed.to_world.inverse() * motion * placed.to_world;
   checked_turn(in_object);
-  // The colour belongs to the direction turned back by the orthogonal factor of all that was done, seen from the
-  // object's own frame.
+  // The decoder's view directions are rotated back by the orthogonal factor of the whole transform, in object space.
   const Mat3 turn = orthogonal_factor(placed.to_world.linear()).transpose() *
                     orthogonal_factor(motion.linear() * placed.to_world.linear());
   const Scene result = with_changed(scene, edit.node.id, [&](Node& node) {

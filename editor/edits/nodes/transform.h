@@ -4,16 +4,16 @@
 
 namespace rebake {
 
-/// Scales, then turns, then moves a node or its selected triangles about a pivot.
+/// Scales, rotates and translates, in this order, a node or its selected triangles about a pivot in world space.
 struct Transform {
   static constexpr const char* op = "transform";
   NodeRef node;
-  bool selection = false;
+  bool selection = false;  ///< only the selected triangles
   Vec3 translate{0, 0, 0};
   Rotation rotate;
   Scale scale;
-  Rotation scale_axes;
-  std::optional<Vec3> pivot;
+  Rotation scale_axes;        ///< rotation from the world axes to the axes of the scale
+  std::optional<Vec3> pivot;  ///< fixed point of rotation and scale; nothing: centre of the world box
 };
 template <>
 const EditType& edit_type<Transform>();

@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Allows edits again.
+/// Unlocks a node, so that edits may change it again.
 struct Unlock {
   static constexpr const char* op = "unlock";
   NodeRef node;

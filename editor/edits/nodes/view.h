@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Stores a camera under a name.
+/// Stores a camera as a named view; replaces a view of the same name.
 struct StoreView {
   static constexpr const char* op = "view";
   std::string name;

@@ -4,12 +4,12 @@
 
 namespace rebake {
 
-/// Adds the islands inside the selection: unselected triangles, joined through edges, that border it.
+/// Fills holes of the selection: adds edge-connected components of unselected triangles that border it.
 struct Fill {
   static constexpr const char* op = "fill";
   static constexpr bool selects = true;
-  std::optional<NodeRef> node;
-  int at_most = 1000;
+  std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
+  int at_most = 1000;           ///< largest component to add, in triangles
   WeldingField welding;
 };
 template <>

@@ -4,12 +4,12 @@
 
 namespace rebake {
 
-/// Adds the triangles that share a corner with the selection.
+/// Dilates the selection by its one-ring: adds triangles that share a vertex with it.
 struct Grow {
   static constexpr const char* op = "grow";
   static constexpr bool selects = true;
-  std::optional<NodeRef> node;
-  int steps = 1;
+  std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
+  int steps = 1;                ///< number of rings
   WeldingField welding;
 };
 template <>

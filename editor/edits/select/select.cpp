@@ -14,7 +14,7 @@ namespace rebake {
 
 namespace {
 
-// None where the object has fewer sets.
+// Flags of the triangles of one texture set; no flag is set if the object has fewer sets.
 TriangleSet triangles_of_set(const BakedObject& object, std::size_t wanted) {
   TriangleSet flags;
   for (std::size_t i = 0; i < object.sets.size(); ++i)
@@ -48,7 +48,7 @@ Scene apply(const Scene& scene, const Select& edit) {
         return placed.node->saved_selections.contains(edit.saved);
       }))
     throw FieldError("saved", fmt::format("no selection is stored under \"{}\"", edit.saved));
-  // "Connected" starts at one triangle of one of the targets.
+  // `connected` starts at one triangle of one target.
   std::optional<NearestTriangle> start;
   if (edit.connected) {
     Vec3 point = *edit.connected;

@@ -4,13 +4,13 @@
 
 namespace rebake {
 
-/// Selects the parts that hang together, across opaque texels, with the triangle nearest to a point or with the
-/// present selection.
+/// Selects the connected components of opaque surface that contain the triangle nearest to a point, or any selected
+/// triangle. Triangles are connected if they share an edge with opaque texels on both sides.
 struct SelectConnected {
   static constexpr const char* op = "select_connected";
   static constexpr bool selects = true;
-  std::optional<NodeRef> node;
-  std::optional<Vec3> point;
+  std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
+  std::optional<Vec3> point;    ///< in world space; nothing: starts from the present selection
   JoiningFields joining;
   SelectMode mode = SelectMode::set;
 };

@@ -13,7 +13,7 @@ Scene apply(const Scene& scene, const SelectFloaters& edit) {
     const auto parts = components_of(object, joining);
     const auto traits = traits_of(object);
     TriangleSet flags(object.triangle_count());
-    // What has no opaque texel is invisible, not floating.
+    // Fully transparent triangles are invisible, so they do not count as floaters.
     for (std::size_t f = 0; f < flags.size(); ++f)
       flags[f] =
           (*traits)[f].opacity > 0 && parts->triangles_in[parts->part_of[f]] <= static_cast<std::uint32_t>(edit.at_most)

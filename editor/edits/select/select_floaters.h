@@ -4,12 +4,12 @@
 
 namespace rebake {
 
-/// Selects small parts that hang together with nothing else, across opaque texels; look at the count, then delete.
+/// Selects floaters: small connected components of opaque surface, see SelectConnected.
 struct SelectFloaters {
   static constexpr const char* op = "select_floaters";
   static constexpr bool selects = true;
-  std::optional<NodeRef> node;
-  int at_most = 100;
+  std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
+  int at_most = 100;            ///< largest component to select, in triangles
   JoiningFields joining;
   SelectMode mode = SelectMode::set;
 };

@@ -4,11 +4,11 @@
 
 namespace rebake {
 
-/// Selects triangles that the last deformation of their object folded or collapsed (det J ≤ 0 at a corner).
+/// Selects triangles that the last deformation of their object folded or collapsed: det J ≤ 0 at a vertex.
 struct SelectFolded {
   static constexpr const char* op = "select_folded";
   static constexpr bool selects = true;
-  std::optional<NodeRef> node;
+  std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   SelectMode mode = SelectMode::set;
 };
 template <>

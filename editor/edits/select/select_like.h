@@ -4,15 +4,15 @@
 
 namespace rebake {
 
-/// Selects triangles that are like the picked ones: within every tolerance that is given, of the mean over the
-/// present selection or of the triangle nearest to a point.
+/// Selects triangles that are similar to a reference: the mean of the present selection, or the triangle nearest to a
+/// point. A triangle must be within all given tolerances.
 struct SelectLike {
   static constexpr const char* op = "select_like";
   static constexpr bool selects = true;
-  std::optional<NodeRef> node;
-  std::optional<Vec3> point;
-  std::optional<double> color, features, opacity, size, orientation;
-  bool contiguous = false;
+  std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
+  std::optional<Vec3> point;    ///< in world space; nothing: the present selection is the reference
+  std::optional<double> color, features, opacity, size, orientation;  ///< tolerances, see LikenessBounds
+  bool contiguous = false;  ///< only triangles connected to the reference through shared vertices
   SelectMode mode = SelectMode::set;
 };
 template <>

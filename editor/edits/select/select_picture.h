@@ -4,14 +4,14 @@
 
 namespace rebake {
 
-/// Selects triangles in a camera's picture: those seen through a pixel of the region, or with through all whose
-/// centre falls into it.
+/// Selects triangles in a region of a camera's picture: those visible at the centre of a pixel of the region, or with
+/// `through` all whose centre projects into it.
 struct SelectPicture {
   static constexpr const char* op = "select_picture";
   static constexpr bool selects = true;
-  std::optional<NodeRef> node;
+  std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   PictureFields picture;
-  bool through = false;
+  bool through = false;  ///< also occluded triangles
   SelectMode mode = SelectMode::set;
 };
 template <>

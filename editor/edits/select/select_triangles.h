@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Selects triangles of an object by their numbers, set after set as in its files.
+/// Selects triangles of an object by number, counted from 0 over its texture sets in order.
 struct SelectTriangles {
   static constexpr const char* op = "select_triangles";
   static constexpr bool selects = true;

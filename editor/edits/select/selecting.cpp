@@ -23,7 +23,7 @@ Picture picture_of(const Scene& scene, const PictureFields& fields) {
     throw FieldError("camera", "exactly one of view and camera must be given");
   Picture picture{fields.camera.value_or(Camera{}), fields.size.width, fields.size.height};
   if (!fields.view.empty()) picture.camera = stored_view(scene, fields.view);
-  // Hidden nodes may be named to be selected on.
+  // Includes hidden nodes, because a hidden node can be selected on if it is named.
   Box bounds;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.node->object) bounds.extend(transformed(placed.node->object->bounds(), placed.to_world));
@@ -53,7 +53,7 @@ std::vector<PlacedNode> selectable(const Scene& scene, const std::optional<NodeR
       if (std::find(inside.begin(), inside.end(), placed.node->id) == inside.end()) continue;
       for (const NodePtr& child : placed.node->children) inside.push_back(child->id);
     }
-    // What is hidden is selected on only where it is named itself.
+    // A hidden object counts only if it is named itself.
     const bool named = node && placed.node->id == node->id;
     if (placed.node->object && !placed.locked && (placed.visible || named)) result.push_back(std::move(placed));
   }
@@ -99,7 +99,7 @@ namespace {
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
   NearestTriangle triangle{0, 0};
-  // Of equally near triangles the first counts, in whatever order they are looked at.
+  // Order with ties broken by number, so that the result does not depend on the order of evaluation.
   bool before(const Nearest& other) const {
     return std::tie(distance, triangle.target, triangle.triangle) <
            std::tie(other.distance, other.triangle.target, other.triangle.triangle);
@@ -111,13 +111,13 @@ double distance_to(const Box& box, const Vec3& point) {
 }
 
 struct SetOfTarget {
-  double distance;  // of its bounding box
+  double distance;  // from the point to the set's bounding box
   const TextureSet* set;
-  std::size_t target, first;  // triangle
+  std::size_t target, first;  // index of the target; number of the set's first triangle in it
 };
 
-// The nearer of `best` and the nearest triangle of a set. Distances are at least those of bounding boxes, to the last
-// bit: which triangles are skipped does not change the result.
+// The nearer of `best` and the nearest triangle of a set. A distance is never below that of the bounding boxes, not
+// even by rounding, so the result does not depend on which triangles are skipped.
 Nearest nearest_of_set(const SetOfTarget& part, const Affine& to_world, const Vec3& world, bool opaque,
                        const Nearest& best) {
   const TextureSet& set = *part.set;
@@ -212,7 +212,7 @@ bool PictureRegion::may_touch(const std::array<Vec3, 3>& world) const {
   Eigen::AlignedBox2i covered;
   for (const Vec3& corner : world) {
     Projector::At at;
-    // A triangle that crosses the near plane covers pixels that its corners do not tell.
+    // A triangle that crosses the near plane may cover pixels outside the box of its projected corners.
     if (!projector_(corner, at)) return true;
     covered.extend(Eigen::Vector2i(at.x, at.y));
   }

@@ -8,46 +8,46 @@
 
 namespace rebake {
 
-/// The objects that a selection works on: those of a node and the nodes inside it, or, with none named, of every node
-/// that is visible and not locked. Throws EditError when the named node is locked or holds no object, and when there is
-/// nothing to select from.
+/// Objects that a selection works on: visible, unlocked objects at or below `node`, or in the whole scene. A hidden
+/// object is included if it is `node` itself. Throws EditError if `node` is locked or there is no such object.
 std::vector<PlacedNode> selectable(const Scene& scene, const std::optional<NodeRef>& node);
 
-/// All visible objects: what hides what in a picture.
+/// All visible objects, locked or not: the occluders of a picture.
 std::vector<PlacedNode> visible_objects(const Scene& scene);
 
-/// The scene with `found(placed)` joined to each target's selection.
+/// The scene with `found(placed)` (a flag per triangle) combined with each target's selection.
 Scene with_selected(const Scene& scene, const std::vector<PlacedNode>& targets, SelectMode mode,
                     const std::function<TriangleSet(const PlacedNode&)>& found);
 
-/// The present selection of a node, empty where nothing is selected.
+/// The present selection of an object, a flag per triangle; all 0 if nothing is selected.
 TriangleSet selection_of(const PlacedNode& placed);
 
-/// The number of the triangle that is nearest to a world point, and whose it is; with `opaque` among those that
-/// show an opaque texel. Throws EditError when there is none.
+/// A triangle of one of several targets.
 struct NearestTriangle {
-  std::size_t target;
-  std::size_t triangle;
+  std::size_t target;    ///< index of the target
+  std::size_t triangle;  ///< number in the target's object
 };
+/// The triangle nearest to a world point; with `opaque` only triangles that contain an opaque texel count. Throws
+/// EditError if there is none.
 NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const Vec3& world, bool opaque);
 
-/// The field by which corners are welded, for edits that ask what lies beside what.
+/// Welding tolerance, for edits that need the connectivity of triangles.
 struct WeldingField {
-  double tolerance = 0;
+  double tolerance = 0;  ///< vertices at most this far apart are welded, in object units; 0: only equal ones
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("tolerance", self.tolerance, Need::optional,
           "corners at most this far apart count as one; 0: only equal ones", Unit::object_length);
   }
-  /// Throws FieldError.
+  /// Throws FieldError for a negative tolerance.
   void check() const;
 };
 
-/// Fields that say when triangles hang together.
+/// Fields that define when triangles are connected, see Joining.
 struct JoiningFields {
   WeldingField welding;
-  double gap = 0;
+  double gap = 0;  ///< opaque texels at most this far apart are connected, in object units; 0: only across edges
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -58,23 +58,24 @@ struct JoiningFields {
         "connections of up to 0.6 of it are sure to be found",
         Unit::object_length);
   }
-  /// Throws FieldError.
+  /// Throws FieldError for negative values.
   Joining checked() const;
 };
 
-/// The selection of each target changed `steps` times by `change`, which is given the object's welded corners.
+/// The scene with `change` (grow or shrink by one ring) applied `steps` times to each object's selection. `change`
+/// receives the object's welded vertices and the selection. Throws FieldError for `steps` below 1.
 Scene with_selection_stepped(const Scene& scene, const std::optional<NodeRef>& node, int steps,
                              const WeldingField& welding,
                              TriangleSet (*change)(const WeldedCorners&, const TriangleSet&));
 
-/// Fields of edits that work in a camera's picture.
+/// Fields of edits that use a region of a camera's picture. Exactly one of `view` and `camera` must be given.
 struct PictureFields {
   std::optional<PixelPolygon> polygon;
   std::optional<BrushStroke> brush;
-  std::optional<Interval> depth;
-  std::string view;
+  std::optional<Interval> depth;  ///< range along the view axis, in scene units
+  std::string view;               ///< name of a stored view
   std::optional<Camera> camera;
-  PixelSize size;
+  PixelSize size;  ///< size of the picture in pixels
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -87,7 +88,8 @@ struct PictureFields {
   }
 };
 
-/// A picture region, ready to be asked. Throws FieldError for fields that contradict each other.
+/// Region of a camera's picture: a polygon, a brush stroke or all pixels, within a depth range. The constructor throws
+/// FieldError for contradictory fields.
 class PictureRegion {
  public:
   PictureRegion(const Scene& scene, const PictureFields& fields);
@@ -95,16 +97,16 @@ class PictureRegion {
   const PixelMask& mask() const { return mask_; }
   double nearest() const { return depth_.min; }
   double farthest() const { return depth_.max; }
-  /// Whether a world point falls into it, hidden or not.
+  /// Whether a world point projects into the region, occluded or not.
   bool contains(const Vec3& world) const;
-  /// False only where the triangle between world points lies outside altogether.
+  /// False only if the triangle with these world-space corners is entirely outside (conservative test).
   bool may_touch(const std::array<Vec3, 3>& world) const;
 
  private:
   Projector projector_;
   PixelMask mask_;
   Interval depth_;
-  Eigen::AlignedBox2i flagged_;  ///< of the mask
+  Eigen::AlignedBox2i flagged_;  ///< bounds of the flagged pixels
 };
 
 }  // namespace rebake

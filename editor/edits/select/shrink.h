@@ -4,12 +4,12 @@
 
 namespace rebake {
 
-/// Takes away the selected triangles that share a corner with others.
+/// Erodes the selection: removes triangles that share a vertex with unselected ones.
 struct Shrink {
   static constexpr const char* op = "shrink";
   static constexpr bool selects = true;
-  std::optional<NodeRef> node;
-  int steps = 1;
+  std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
+  int steps = 1;                ///< number of rings
   WeldingField welding;
 };
 template <>

@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Whether a triangle of the node or of one inside it is selected.
+/// Whether any triangle of the node or of a descendant is selected.
 bool any_selected(const Node& node) {
   return node.selection != nullptr || std::any_of(node.children.begin(), node.children.end(),
                                                   [](const NodePtr& child) { return any_selected(*child); });

@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Stores the present selection of all nodes under a name, for select's field saved; replaces what had the name.
+/// Stores the present selection of all nodes under a name, for Select::saved. Replaces a stored selection of that name.
 struct StoreSelection {
   static constexpr const char* op = "store_selection";
   std::string name;

@@ -13,7 +13,7 @@ Outcome apply(const Scene& scene, const DeleteSelected& edit) {
     const TriangleSet& selection = *placed.node->selection;
     removed += count(selection);
     const bool all = count(selection) == selection.size();
-    // A node without triangles stays when it groups others.
+    // A node without triangles stays if it has children.
     if (all && placed.node->children.empty()) {
       result = without(result, placed.node->id);
       continue;

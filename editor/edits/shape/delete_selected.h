@@ -4,10 +4,10 @@
 
 namespace rebake {
 
-/// Removes the selected triangles; a node that loses all goes too.
+/// Removes the selected triangles, and nodes that lose all their triangles and have no children.
 struct DeleteSelected {
   static constexpr const char* op = "delete";
-  std::optional<NodeRef> node;
+  std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
 };
 template <>
 const EditType& edit_type<DeleteSelected>();

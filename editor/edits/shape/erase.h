@@ -4,17 +4,17 @@
 
 namespace rebake {
 
-/// Clears the opacity of texels inside a region or in a picture, where an object's edge runs through triangles; all
-/// other texels stay bit for bit.
+/// Makes texels inside a region transparent, to cut through triangles. The region is a box, a sphere, a half-space or a
+/// region of a picture; exactly one must be given. All other texels stay bit for bit.
 struct Erase {
   static constexpr const char* op = "erase";
-  std::optional<NodeRef> node;
+  std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   std::optional<BoxRegion> box;
   std::optional<SphereRegion> sphere;
   std::optional<HalfSpaceRegion> half_space;
-  CoordinateFrame frame = CoordinateFrame::world;
+  CoordinateFrame frame = CoordinateFrame::world;  ///< coordinates of box, sphere and half-space
   PictureFields picture;
-  bool through = false;
+  bool through = false;  ///< in a picture: also occluded texels
 };
 template <>
 const EditType& edit_type<Erase>();

@@ -4,11 +4,11 @@
 
 namespace rebake {
 
-/// Makes the selected triangles of a node a node of its own, after it.
+/// Moves the selected triangles of a node into a new node after it.
 struct Separate {
   static constexpr const char* op = "separate";
   NodeRef node;
-  std::string as;
+  std::string as;  ///< name of the new node; empty: the node's name with a number
 };
 template <>
 const EditType& edit_type<Separate>();

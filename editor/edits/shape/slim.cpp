@@ -43,23 +43,24 @@ std::uint64_t opaque_texels(const BakedObject& object) {
   return opaque;
 }
 
-// Packed where that is worth it; nothing where it is not, or where texels cannot be moved.
+// The repacked texture sets; nothing if texels cannot be moved or less than 5 % of the texel area would be saved.
 std::optional<std::vector<TextureSet>> packed(const BakedObject& object, const ShownBy& shown_by) {
   if (!std::all_of(object.sets.begin(), object.sets.end(), can_pack)) return std::nullopt;
   int side = largest_side;
   for (const TextureSet& set : object.sets) side = std::max({side, set.texels->width(), set.texels->height()});
   BakedObject made;
   made.sets = pack(object.sets, side, object.sets.front().texels->alpha_code(), shown_by).sets;
-  // Patches in another order compress a little worse.
+  // Reordered patches compress slightly worse, so small savings are not worth it.
   constexpr double worth_it = 0.95;
   if (static_cast<double>(texel_area(made)) > worth_it * static_cast<double>(texel_area(object))) return std::nullopt;
   return made.sets;
 }
 
+// PSNR in dB of a mean squared error of colours 0 … 1, and back.
 double db_of(double squared_loss) { return -10 * std::log10(squared_loss); }
 double squared_loss_of(double db) { return std::pow(10.0, -db / 10); }
 
-// What is lost of texels' colours.
+// Lossy compression of texel colours: merged near-duplicate patches, and fewer bits per feature.
 struct Loss {
   AlikePatches alike;
   BitsFound bits;
@@ -67,7 +68,8 @@ struct Loss {
 
 int sum_of(const FeatureBits& bits) { return std::accumulate(bits.begin(), bits.end(), 0); }
 
-// Patches that look alike take a share of what may be lost, bits the rest: as leaves the fewest bits in all.
+// Splits the error budget of `psnr` dB between merging near-duplicate patches (none, a tenth or half of it) and
+// removing feature bits. Takes the split with the fewest bits in total.
 Loss best_loss(const BakedObject& object, double psnr, const Progress& progress) {
   const double may_lose = squared_loss_of(psnr);
   const auto opaque = static_cast<double>(opaque_texels(object));
@@ -103,8 +105,8 @@ std::string loss_words(const Loss& loss) {
 }
 
 struct Slimmed {
-  std::shared_ptr<const BakedObject> object;  ///< null where nothing is seen
-  TriangleSet dropped;
+  std::shared_ptr<const BakedObject> object;  ///< null if no triangle is visible
+  TriangleSet dropped;                        ///< flags of the removed triangles
   bool shows_nothing = false, reordered = false;
   std::vector<std::string> lines;
 };
@@ -116,7 +118,7 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
   const std::size_t duplicates = count(result.dropped), all = result.dropped.size();
   const std::shared_ptr<const BakedObject> single =
       duplicates == 0 ? std::make_shared<const BakedObject>(before) : triangles_of(before, result.dropped, false);
-  // All around is the same for all placements.
+  // Eyes all around the object do not depend on its placement.
   const bool around = !edit.eyes && cameras.empty();
   TriangleSet unseen(single->triangle_count(), 1);
   std::uint64_t rays = 0;
@@ -140,7 +142,7 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
   for (std::uint8_t& dropped : result.dropped)
     if (dropped == 0) dropped = unseen[number++];
   auto made = std::make_shared<BakedObject>(count(unseen) == 0 ? *single : *triangles_of(*single, unseen, false));
-  // It counts as baked without what nobody sees.
+  // The slimmed object keeps the bodies: it counts as baked without the unseen triangles.
   made->bodies = before.bodies;
   Loss loss;
   if (edit.psnr > 0) loss = best_loss(*made, edit.psnr, progress);
@@ -170,7 +172,7 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
         "only",
         rays, rays_each, 100 * most_missed(removed, rays_each), 100 * opening, once));
   if (edit.psnr > 0) result.lines.push_back(loss_words(loss));
-  // Where nothing changes, all stays shared.
+  // If nothing changed, the object stays shared.
   result.object = changed ? made : placements.front().node->object;
   return result;
 }
@@ -186,7 +188,7 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
     throw FieldError("eyes", "its min must not lie above its max");
   std::vector<Camera> cameras;
   for (const std::string& name : edit.views) cameras.push_back(stored_view(scene, name, "views"));
-  // Nodes that share an object go on sharing it: what any of them shows stays.
+  // Nodes that share an object continue to share it: a triangle that is visible in any of them stays.
   std::vector<std::vector<PlacedNode>> groups;
   for (const PlacedNode& placed : selectable(scene, edit.node)) {
     const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& other) {
@@ -217,7 +219,7 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
     for (const PlacedNode& placed : group)
       result = with_changed(result, placed.node->id, [&](Node& node) {
         deselected = deselected || node.selection != nullptr;
-        // Stored selections follow as long as triangles keep their order.
+        // Stored selections remain valid if the order of triangles does not change.
         if (count(slimmed.dropped) > 0) keep_triangles(node, slimmed.dropped, false);
         lost = lost || (slimmed.reordered && !node.saved_selections.empty());
         if (slimmed.reordered) node.saved_selections.clear();

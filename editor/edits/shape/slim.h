@@ -5,14 +5,15 @@
 
 namespace rebake {
 
-/// Removes what nobody sees of objects, and packs what is left.
+/// Makes objects smaller: removes unseen and duplicate triangles, repacks the remaining texels, and with `psnr` merges
+/// near-duplicate patches and removes feature bits. Visibility is tested per object; objects do not occlude each other.
 struct Slim {
   static constexpr const char* op = "slim";
-  std::optional<NodeRef> node;
-  std::vector<std::string> views;
-  std::optional<BoxRegion> eyes;
-  int rays = 16384;
-  double psnr = 0;
+  std::optional<NodeRef> node;     ///< nothing: all visible, unlocked objects
+  std::vector<std::string> views;  ///< eyes: these stored views
+  std::optional<BoxRegion> eyes;   ///< eyes: anywhere in this world box; without both: all around the object
+  int rays = 16384;                ///< maximum number of rays per triangle, 16 … 1048576
+  double psnr = 0;                 ///< quality of texel colours in dB, 20 … 80; 0: lossless
 };
 template <>
 const EditType& edit_type<Slim>();

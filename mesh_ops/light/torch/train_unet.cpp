@@ -14,7 +14,7 @@ namespace {
 
 using torch::Tensor;
 
-// The network of unet_layers, its convolutions followed by batch normalisation.
+// The network of unet_layers(); all convolutions but the last are followed by batch normalisation.
 struct Network : torch::nn::Module {
   explicit Network(int channels) {
     for (const rebake::UnetLayer& layer : rebake::unet_layers(channels)) {
@@ -23,7 +23,7 @@ struct Network : torch::nn::Module {
                                .padding(layer.kernel / 2);
       const std::string name = std::to_string(convolutions.size());
       convolutions.push_back(register_module("convolution" + name, torch::nn::Conv2d(options)));
-      // The last layer's values are what they are.
+      // The output layer is not normalised.
       if (layer.kernel > 1) norms.push_back(register_module("norm" + name, torch::nn::BatchNorm2d(layer.outputs)));
     }
   }
@@ -53,7 +53,7 @@ struct Network : torch::nn::Module {
     return apply(x);
   }
 
-  // Weights and biases as Unet takes them.
+  // Weights and biases in the order that Unet expects, with batch normalisation folded in.
   std::vector<float> folded() {
     std::vector<float> result;
     for (std::size_t k = 0; k < convolutions.size(); ++k) {
@@ -77,7 +77,7 @@ struct Network : torch::nn::Module {
 
 int train(const rebake::UnetTask& task, float* result) {
   torch::manual_seed(task.seed);
-  // Two are no faster on images this small, and wait for each other where the machine is busy.
+  // More threads are no faster on images this small, and slow each other down on a busy machine.
   torch::set_num_threads(1);
   const auto poses = static_cast<std::int64_t>(task.poses);
   const auto tensor = [](const float* values, const std::vector<std::int64_t>& shape) {
@@ -93,7 +93,7 @@ int train(const rebake::UnetTask& task, float* result) {
     const Tensor order = torch::randperm(poses);
     double sum = 0;
     for (std::int64_t b = 0; b < batches; ++b) {
-      // The rate falls along half a cosine (Loshchilov and Hutter 2017).
+      // Cosine decay of the learning rate to a hundredth (Loshchilov and Hutter 2017).
       const double done =
           (static_cast<double>(epoch) + static_cast<double>(b) / static_cast<double>(batches)) / task.epochs;
       static_cast<torch::optim::AdamOptions&>(adam.param_groups()[0].options())
