@@ -1,5 +1,5 @@
-// Milliseconds of the main jobs on the real mic geometry (features made up) where REBAKE_TEST_DATA holds it, else on a
-// made sphere. Not timed tests: run build/rebake_benchmarks by hand and compare within one run.
+// Benchmarks of the main jobs, on the real mic geometry with generated features if REBAKE_TEST_DATA contains it,
+// otherwise on a generated sphere. Run build/rebake_benchmarks by hand and compare times of one run only.
 #include <benchmark/benchmark.h>
 #include <tbb/parallel_for.h>
 
@@ -82,7 +82,7 @@ BENCHMARK_CAPTURE(frame, forward_buffer, Weights::buffer, Shading::forward)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-// From among nine mics.
+// A view from among the nine mics.
 View inside_view(const BakedObject& nine) {
   View view;
   view.camera.eye = nine.bounds().center() + Vec3(0, 0.6, 0.2);
@@ -92,7 +92,7 @@ View inside_view(const BakedObject& nine) {
   return view;
 }
 
-// A view turned about what it looks at.
+// A view that orbits its target.
 class Turn {
  public:
   explicit Turn(const View& view) : view_(view), away_(view.camera.eye - view.camera.target) {}
@@ -108,8 +108,8 @@ class Turn {
   Vec3 away_;
 };
 
-// Hidden triangles: drawn all the same, left out at rest, while the camera turns by a degree a frame, and in a picture
-// of which nothing is known. `inside`: nine mics, seen from among them.
+// Occlusion culling: off, with the camera at rest, while it orbits by 1° per frame, and with an unknown view in each
+// frame. `inside`: nine mics seen from among them, instead of one.
 enum class Hidden { drawn, at_rest, turning, jumping };
 void hidden_triangles(benchmark::State& state, Hidden hidden, bool inside) {
   static Renderer renderer;
@@ -149,7 +149,7 @@ BENCHMARK_CAPTURE(hidden_triangles, inside_jumping, Hidden::jumping, true)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-// A hundred thousand nodes of one object of 20 triangles.
+// 100,000 nodes of one object of 20 triangles.
 void many_instances(benchmark::State& state) {
   const auto one = made_object({.columns = 5, .rows = 2, .cell = 5, .radius = 0.03});
   Scene scene;
@@ -182,7 +182,7 @@ TriangleSet left_half(const Soup& soup) {
   return keep;
 }
 
-// Megabytes on the GPU beside the picture, of a scene and of what is left when half of its triangles are deleted.
+// GPU memory of a scene without the picture's buffers, in MB. Argument 1: with half of its triangles deleted.
 void gpu_memory(benchmark::State& state) {
   auto object = std::make_shared<BakedObject>(*subject());
   if (state.range(0) != 0) {
@@ -203,9 +203,9 @@ void gpu_memory(benchmark::State& state) {
 }
 BENCHMARK(gpu_memory)->Arg(0)->Arg(1)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-// Eight of nine mics with textures of their own and real features, seen from among them: a frame at rest and in
-// turning, and megabytes on the GPU beside the picture, of all and where half of each is deleted; texels at 8 bytes, or
-// coded.
+// Eight mics with their own textures and real features, seen from among them, with plain texels (8 bytes) or coded
+// ones: frame time, and GPU memory without the picture's buffers in MB. Arguments: 1 for half of each deleted; 1 for a
+// view that orbits.
 void many_textures(benchmark::State& state, RenderOptions::Texels texels) {
   static const std::array<std::shared_ptr<const BakedObject>, 2> objects = [] {
     std::array<std::shared_ptr<const BakedObject>, 2> made;
@@ -260,7 +260,7 @@ BENCHMARK_CAPTURE(many_textures, coded, RenderOptions::Texels::coded)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-// From an erased disk of texels to the next picture; and as if the whole texture were new.
+// Time from an eraser's stroke of 20×20 texels to the next picture.
 void erase_stroke(benchmark::State& state) {
   Renderer renderer;
   const View view;
@@ -289,8 +289,8 @@ void erase_stroke(benchmark::State& state) {
 }
 BENCHMARK(erase_stroke)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-// The first picture of an object that the camera turns to, whose decoder was not in view before; the argument says
-// whether its programs were made ahead. Drivers that keep programs on the disk must not (MESA_SHADER_CACHE_DISABLE=1).
+// First picture of an object that comes into view, with a new decoder. Argument 1: its programs were compiled in
+// advance. Run with the driver's cache of programs disabled (MESA_SHADER_CACHE_DISABLE=1).
 void first_look(benchmark::State& state) {
   Scene scene = scene_of(made_object({.seed = 1}));
   Node other;

@@ -1,5 +1,5 @@
-// Binding and dragging at the size of a real scene: 300,000 points, a cage of 324 faces. The last argument is the
-// number of threads.
+// Binding and dragging at the size of a real scene: 300,000 points, a cage of 324 faces. The first argument is the
+// number of threads, unless stated otherwise.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -25,7 +25,7 @@ struct Case {
   Cage cage;
 };
 
-// The real mic's corners, again and again slightly moved until there are 300,000, in a lattice of 324 faces.
+// The vertices of the real mic, repeated with slightly smaller scales up to 300,000 points, in a lattice of 324 faces.
 const Case& mic_case() {
   static const Case made = [] {
     auto object = mic_object();
@@ -69,7 +69,7 @@ void bind(benchmark::State& state) {
   state.counters["faces"] = static_cast<double>(mic.cage.faces.size());
 }
 
-// Weights alone, without keeping them: what the time per point is.
+// Computes weights without storing them.
 void weigh(benchmark::State& state, bool gradients) {
   const Case& mic = mic_case();
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
@@ -81,8 +81,8 @@ void weigh(benchmark::State& state, bool gradients) {
   }
 }
 
-// 3000 points on a sphere so many half diagonals from a cube's centre: beyond four halves all faces are summed by
-// quadrature, with many nodes up to eight of their lengths.
+// 3000 points on a sphere around a cube. Argument: radius in half diagonals. Beyond four, all faces are integrated by
+// quadrature; nearer than eight face extents with many nodes.
 void weigh_far(benchmark::State& state) {
   const Cage cage = lattice_cage(Box(Vec3(-0.5, -0.5, -0.5), Vec3(0.5, 0.5, 0.5)), 1, 1, 1);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -133,7 +133,7 @@ void drag_rotations(benchmark::State& state) {
   for (auto _ : state) bound().gradients.rotations(moved, out, static_cast<std::size_t>(state.range(1)));
 }
 
-// As the real soup is: corners that coincide are bound once, and written to every corner.
+// As for a real soup: coincident vertices are bound once, and the result is copied to each of them.
 void drag_corners(benchmark::State& state) {
   const Case& mic = mic_case();
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
@@ -184,8 +184,8 @@ void wrap_soup(benchmark::State& state) {
   state.counters["triangles"] = static_cast<double>(many.faces.size());
 }
 
-// What one step of a drag in the window costs beside drawing: the real mic's object with new positions, on the GPU. A
-// picture of one pixel draws next to nothing.
+// One step of a drag in the window without drawing: new positions of the real mic, uploaded to the GPU. The picture has
+// a single pixel.
 void drag_preview(benchmark::State& state) {
   auto object = mic_object();
   if (!object) object = made_object({.columns = 256, .rows = 160});

@@ -1,5 +1,6 @@
-// Selections and edits at the real mic's size (argument 1), tiled to 741,789 triangles (argument 9), and on a synthetic
-// unbounded scene of 723,000 triangles (argument 0). Without REBAKE_TEST_DATA a made sphere stands in for the mic.
+// Selections and edits on the real mic (argument 1), on nine of it with 741,789 triangles (argument 9), and on a
+// synthetic unbounded scene of 723,000 triangles (argument 0). Without REBAKE_TEST_DATA a generated sphere replaces the
+// mic.
 #include <benchmark/benchmark.h>
 
 #include "editor/document/document.h"
@@ -29,7 +30,7 @@ const BakedObject& object_of(const Scene& scene) { return *scene.roots[0]->objec
 
 Camera camera_of(const Scene& scene) { return framing(world_bounds(scene), 1, false); }
 
-// The same triangles and texels in arrays of their own, of which nothing is known yet.
+// A copy with its own arrays, for which no index is cached.
 BakedObject unknown(const BakedObject& object) {
   BakedObject fresh = object;
   fresh.decoder = std::make_shared<const Decoder>(*object.decoder);
@@ -60,7 +61,7 @@ void traits(const BakedObject& object) { traits_of(object); }
 void components(const BakedObject& object) { components_of(object); }
 void rays(const BakedObject& object) { rays_of(object); }
 
-// One edit, over and over on the same scene, with the index there.
+// One edit, repeated on the same scene with a cached index.
 void edit(benchmark::State& state, Edit (*make)(const Scene&), bool half_selected) {
   Scene scene = scene_at(state.range(0));
   prepare_index(object_of(scene));
@@ -127,7 +128,7 @@ Edit erase_sphere(const Scene&) {
   return edit;
 }
 
-// A selection on a scene that was edited just before, with the index there as it was before the edit.
+// A selection right after an edit, with the index cached from before the edit.
 void after(benchmark::State& state, Edit (*change)(const Scene&, std::int64_t), Edit (*make)(const Scene&)) {
   const Scene& scene = scene_at(state.range(0));
   prepare_index(object_of(scene));
@@ -140,7 +141,7 @@ void after(benchmark::State& state, Edit (*change)(const Scene&, std::int64_t), 
     benchmark::DoNotOptimize(rebake::apply(changed, made));
   }
 }
-// Each time another one. Tiles lie side by side: it is less than one of nine.
+// A different bend each time, of a part of three tiles.
 Edit bent(const Scene&, std::int64_t number) {
   Bend edit;
   edit.degrees = 5 + 0.01 * static_cast<double>(number);
@@ -158,7 +159,7 @@ Edit stroke(const Scene& scene, std::int64_t number) {
   return edit;
 }
 
-// Back and forth over deleting half of everything.
+// Undo and redo of deleting half of the triangles.
 void undo_and_redo(benchmark::State& state) {
   Document document(scene_at(state.range(0)));
   Select half;
@@ -171,7 +172,7 @@ void undo_and_redo(benchmark::State& state) {
     document.redo();
   }
 }
-// Letting go of half of the triangles, bent: the second argument says whether the preview had carried that out.
+// Release of a drag that bends half of the triangles. Second argument: whether the preview's result is used.
 void release(benchmark::State& state) {
   Scene scene = scene_at(state.range(0));
   Select half;
@@ -194,7 +195,7 @@ void release(benchmark::State& state) {
 BENCHMARK(release)->ArgsProduct({{1, 9}, {0, 1}})->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(undo_and_redo)->Arg(1)->Arg(9)->Arg(0)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-// One edit with its journal line on the disk.
+// One edit, with its journal line synced to disk.
 void journal_append(benchmark::State& state) {
   const TemporaryFolder folder;
   Document document;
@@ -203,7 +204,7 @@ void journal_append(benchmark::State& state) {
 }
 BENCHMARK(journal_append)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-// What is left after half of everything went, with its texels packed anew.
+// Export after deleting half of the triangles, with texels packed again.
 void export_after_delete(benchmark::State& state) {
   const TemporaryFolder folder;
   Select half;

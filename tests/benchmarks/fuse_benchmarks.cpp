@@ -1,6 +1,6 @@
-// One plain folder of two real decoders: a million texels as people export them, and ten million to see what each texel
-// takes. Memory is that of the whole program, so that only one of them should run at a time (--benchmark_filter).
-// Without REBAKE_TEST_DATA made spheres stand in for the real ones.
+// Fuses two real decoders to one plain folder: a million texels as in typical exports, and ten million for the time per
+// texel. Memory is that of the whole process, so run one benchmark at a time (--benchmark_filter). Without
+// REBAKE_TEST_DATA, generated spheres are used.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
@@ -16,7 +16,7 @@ double peak_bytes() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-// Rows of two objects, the second turned.
+// Rows of two objects, the second rotated.
 Scene two_decoders(int quads, int rows) {
   const auto object = [&](const char* name, unsigned seed) {
     const auto real = morpheus_object(name, quads);

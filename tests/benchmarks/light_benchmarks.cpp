@@ -1,5 +1,5 @@
-// Light of the committed ficus: transfer at 5,500 points on one core (the aim is 20 ms at 64 rays), the estimate, and
-// all that a bent branch calls for.
+// Light of the sample ficus: transfer at 5,500 points on one core (target: 20 ms at 64 rays), the light estimate, and
+// all effects of a bent branch.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
@@ -28,7 +28,8 @@ struct Points {
   SceneRays rays{{{rays_of(*object), Affine::Identity(), object->bounds().diagonal().norm()}}};
 };
 
-// How far off 5,500 points' transfer is (of 4096 rays), how far it says that it is, and how long it takes.
+// Traces transfer on one core. Counters: `off`, the error relative to 4096 rays, and `said`, the error that the tracer
+// states.
 void trace_on_one_core(benchmark::State& state, const std::vector<LightSite>& sites, const SceneRays& around) {
   const Transfer truth = traced_transfer(sites, around, 4096);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -52,7 +53,7 @@ BENCHMARK(TransferOfLeavesOnOneCore)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
 
-// 5,476 points and 10,658 triangles of the studies' sheet, bent by so many degrees.
+// The sheet of the studies with 5,476 points and 10,658 triangles, bent. Arguments: rays, degrees.
 void TransferOfSheetOnOneCore(benchmark::State& state) {
   const PosedBody sheet = bumpy_sheet(74);
   const ProxyMesh bent = sheet.bent(static_cast<double>(state.range(1)));
@@ -64,7 +65,7 @@ BENCHMARK(TransferOfSheetOnOneCore)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
 
-// What light sites look like from around: before light is estimated, and for every map.
+// Mean colours of light sites, needed for the light estimate and for every map.
 void SiteColors(benchmark::State& state) {
   const Points points;
   const std::vector<float> facing(points.sites.size(), 0.5F);
@@ -98,7 +99,7 @@ void BentBranch(benchmark::State& state) {
 }
 BENCHMARK(BentBranch)->Arg(16)->Arg(64)->Arg(256)->Unit(benchmark::kMillisecond)->Iterations(3);
 
-// Kettles side by side, each read anew, with all the shadows that they cast on each other and nothing kept.
+// Kettles side by side, each read separately, with all shadows between them and nothing cached.
 void ManyKettles(benchmark::State& state) {
   Scene scene;
   for (int k = 0; k < state.range(0); ++k) {
@@ -113,8 +114,7 @@ void ManyKettles(benchmark::State& state) {
 }
 BENCHMARK(ManyKettles)->Arg(4)->Arg(12)->Arg(26)->Unit(benchmark::kMillisecond)->Iterations(1)->UseRealTime();
 
-// What a drag adds to a frame, off the window's thread, and how near the traced light it comes (root mean square over
-// the sites that change, of what changes): by turning, and with what was learnt of such bends.
+// A cache of results in memory.
 struct InMemory final : Results {
   std::map<std::string, std::string> held;
   std::optional<std::string> find(const std::string& key) override {
@@ -124,6 +124,9 @@ struct InMemory final : Results {
   void keep(const std::string& key, std::string_view bytes) override { held[key] = bytes; }
 };
 
+// Time that light adds to a frame of a drag, off the window's thread. Counter `left`: root mean square error over the
+// sites that change, relative to the change. Arguments: degrees; 1 for a model trained on such bends, 0 for rotated
+// transfer.
 void DraggedBranch(benchmark::State& state) {
   const Scene rest = with(ficus(), {in_sky}), bent = with(rest, {bent_by(static_cast<int>(state.range(0)))});
   const NodeId node = rest.roots.front()->id;
@@ -156,8 +159,8 @@ BENCHMARK(DraggedBranch)
     ->ArgNames({"degrees", "learnt"})
     ->Unit(benchmark::kMillisecond);
 
-// What light adds to a frame of the window while the branch is dragged: vertices that move, and maps that are others in
-// each frame. 0: without light, 1: light that stays, 2: light that goes along.
+// Frame time of a drag in the window with moving vertices. Argument 0: without light, 1: with constant light maps, 2:
+// with new light maps in each frame.
 void DraggedFrame(benchmark::State& state) {
   const Scene rest = with(ficus(), {in_sky});
   const NodeId node = rest.roots.front()->id;

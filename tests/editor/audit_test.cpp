@@ -1,5 +1,5 @@
-// What a scene's light leaves out is never seen: the samples with every edit that moves, removes or adds something, at
-// budgets from a small one to one that leaves nearly all out, against the same with all of it worked out.
+// Audit of omitted light effects: the samples with every edit that moves, removes or adds something, at budgets from
+// small to very large, compared with all effects computed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ Scene with(Scene scene, const std::vector<json>& edits) {
   return scene;
 }
 
-// The samples side by side, the kettle by the branch that hangs over.
+// Both samples, with the kettle next to the overhanging branch of the ficus.
 Scene samples() {
   const auto import = [](const char* name) -> json {
     return {{"op", "import"}, {"path", std::string(REBAKE_SOURCE "/samples/scenes/") + name}};
@@ -65,7 +65,7 @@ const json remove_selected{{"op", "delete"}, {"node", "ficus"}};
 struct Case {
   const char* name;
   std::vector<json> edits;
-  bool leaves_out = false;  ///< something that is seen, at one of the budgets
+  bool leaves_out = false;  ///< whether a visible effect is omitted at one of the budgets
   friend void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 };
 const Case edited_samples[] = {
@@ -106,11 +106,12 @@ View view_from(const Vec3& eye) {
   return view;
 }
 
-// Draws the scene as planned for a budget, and with everything. Returns how much was left out.
+// Compares pictures with the effects planned for `budget` (in 1/255) with pictures of all effects. Returns the sum of
+// the bounds of omitted effects, in display colours 0 … 1.
 double left_out_within_bounds(const Scene& edited, double budget, const std::vector<View>& views) {
-  static InMemory results;  // what one case has traced another need not
+  static InMemory results;  // cache of traced light, shared by all cases
   static Renderer renderer;
-  // Light's nodes far apart: bounds and light are of the same ones.
+  // A coarse light chart, for speed; bounds and light use the same nodes.
   LightingOptions options{.rays = 64, .spacing = 8, .most_nodes = 6000, .results = &results};
   const Scene scene = with(edited, {{{"op", "light"}, {"source", "sky"}, {"budget", budget}}});
   const Lighting planned = lighting_of(scene, options);
@@ -123,7 +124,7 @@ double left_out_within_bounds(const Scene& edited, double budget, const std::vec
   RenderOptions all;
   all.everything = true;
   for (const View& view : views) {
-    // Both pictures are rounded.
+    // 1/255 more, because both pictures are rounded.
     const double allowed = (planned.left_out + plan(scene, view, {}, nullptr, &planned).left_out) * 255 + 1;
     const Difference off = compare(renderer.render(scene, view, {}, &planned),
                                    renderer.render(scene, view, all, &everything), static_cast<int>(allowed));
@@ -147,7 +148,7 @@ TEST_P(Audit, WhatWasLeftOutStaysWithinItsBounds) {
   EXPECT_EQ(most_left_out > 0, GetParam().leaves_out) << "the case does not test what it should";
 }
 
-// A sample alone, as studies show it, or both; then one to four edits that move, remove or add something.
+// Random scenes for the audit: one sample or both, with one to four edits that move, remove or add something.
 class RandomScript {
  public:
   explicit RandomScript(unsigned seed) : random_(seed) {}
@@ -162,7 +163,7 @@ class RandomScript {
         scene = with(scene, lines);
         said_ += json(lines).dump() + "\n";
       } catch (const Error&) {
-        // The node is not there, or has nothing there.
+        // The node does not exist, or the region is empty.
       }
     }
     return scene;

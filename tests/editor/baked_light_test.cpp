@@ -1,4 +1,4 @@
-// Edits remember what light was baked on, and saved scenes keep it.
+// Edits remember the geometry that light was baked on, and saved scenes store it.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -22,7 +22,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// What deletes, moves, erases, separates and joins: light knows what there was when it was baked.
+// Light knows the geometry at baking time after delete, transform, separate, merge, remove, erase, duplicate and bend.
 TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
   const Scene scene = with_light(table());
   EXPECT_TRUE(lighting_of(scene).maps.empty());
@@ -38,26 +38,26 @@ TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
       after(scene, {box, {{"op", "transform"}, {"node", "table"}, {"selection", true}, {"translate", {0, 2, 0}}}});
   EXPECT_TRUE(runs(lighting_of(lifted), "self-shadow table"));
   EXPECT_FALSE(runs(lighting_of(lifted), "removed shadow table"));
-  // Put back, all is as it was but for the rounding of floats.
+  // Moved back, the geometry is as baked, up to rounding to float.
   const Scene back =
       after(lifted, {{{"op", "transform"}, {"node", "table"}, {"selection", true}, {"translate", {0, -2, 0}}}});
   EXPECT_FALSE(runs(lighting_of(back), "self-shadow table"));
-  // Two nodes of one body shade each other as they were baked to.
+  // The shadows between two nodes of one body are already in the baked colours.
   const Scene apart = after(scene, {box, {{"op", "separate"}, {"node", "table"}, {"as", "box"}}});
   EXPECT_TRUE(lighting_of(apart).maps.empty());
   EXPECT_TRUE(lighting_of(after(apart, {{{"op", "merge"}, {"nodes", {"table", "box"}}}})).maps.empty());
   EXPECT_TRUE(runs(lighting_of(after(apart, {{{"op", "remove"}, {"node", "box"}}})), "removed shadow table"));
   const Scene erased = after(scene, {{{"op", "erase"}, {"box", {{"min", {-0.4, 0.3, -0.4}}, {"max", {0.4, 1, 0.4}}}}}});
   EXPECT_TRUE(runs(lighting_of(erased), "removed shadow table"));
-  // What was separated and moved away leaves its shadow behind no more, and shades where it is now.
+  // A part that was separated and moved takes away its baked shadow and casts a new one where it is now.
   const Scene beside = after(apart, {{{"op", "transform"}, {"node", "box"}, {"translate", {0.5, 0, 0}}}});
   EXPECT_TRUE(runs(lighting_of(beside), "removed shadow table"));
   EXPECT_TRUE(runs(lighting_of(beside), "cast shadow box→table"));
-  // A copy is another object; it does not stand for what was removed.
+  // A copy is another object and does not replace the removed part.
   const Scene copied = after(cut, {{{"op", "duplicate"}, {"node", "table"}, {"translate", {2.1, 0, 0}}}});
   EXPECT_TRUE(runs(lighting_of(copied), "removed shadow table"));
   EXPECT_NE(decided(lighting_of(copied), "cast shadow table.2→table"), nullptr);
-  // A little bent and then cut: both are traced as one.
+  // Bent slightly and then cut: both changes are traced together.
   const Scene both = after(
       scene, {{{"op", "bend"}, {"node", "table"}, {"degrees", 0.01}, {"axis", {1, 0, 0}}, {"direction", {0, 1, 0}}},
               box,
@@ -68,7 +68,7 @@ TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
   for (const Eigen::Vector3f& gain : of_both.maps.begin()->second.front()->gain)
     most = std::max(most, static_cast<double>(gain[0]));
   EXPECT_GT(most, 1.2);
-  // Objects that are joined in another place keep what they were baked on.
+  // Objects that are merged from different places keep the geometry that they were baked on.
   Scene two = after(scene, {{{"op", "duplicate"}, {"node", "table"}, {"translate", {50, 0, 0}}}});
   two = after(two, {{{"op", "merge"}, {"nodes", {"table", "table.2"}}}});
   const Lighting joined = lighting_of(two);
@@ -76,7 +76,7 @@ TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
   EXPECT_FALSE(runs(joined, "removed shadow table"));
 }
 
-// A saved scene knows what light was baked on: opened again, light makes the same picture of it.
+// A saved scene stores the geometry that light was baked on: read again, light gives the same picture.
 TEST_F(DocumentTest, SavedScenesKeepWhatLightWasBakedOn) {
   const Scene scene = with_light(table());
   const json box = {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}};
@@ -115,7 +115,7 @@ TEST_F(DocumentTest, SavedScenesKeepWhatLightWasBakedOn) {
     const Image lit = renderer.render(made, view, {}, &before), again = renderer.render(back, view, {}, &after);
     EXPECT_EQ(lit, again);
     EXPECT_NE(lit == renderer.render(made, view), after.maps.size() > 0) << "light is to be seen where it changes any";
-    // Written once more, it is the same, and nothing is there twice.
+    // Saved again, the files are the same, without duplicates.
     format_named("rebake").write(back, path(name + " again"), {}, {});
     EXPECT_EQ(scene_files(path(name)), scene_files(path(name + " again")));
     for (const fs::path& file : scene_files(path(name)))
@@ -129,13 +129,13 @@ TEST_F(DocumentTest, SavedScenesKeepWhatLightWasBakedOn) {
   EXPECT_EQ(folders("cut"), 2);
   EXPECT_EQ(folders("apart"), 3) << "two parts of one body";
   EXPECT_EQ(folders("joined"), 2) << "two bodies of one shape";
-  // Where light does not follow edits, nothing of that is written.
+  // If light does not follow edits, none of that is written.
   Scene unlit = apply(scene, read_edit({{"op", "light"}, {"effects", {"none"}}}, scene)).scene;
   for (const json& line : edits.at("lifted")) unlit = apply(unlit, read_edit(line, unlit)).scene;
   format_named("rebake").write(unlit, path("unlit"), {}, {});
   EXPECT_EQ(folders("unlit"), 1);
   EXPECT_FALSE(fs::exists(path("unlit/table/baked.bin")));
-  // Nor of a scene that was opened with it.
+  // Nor for a scene that was read with it.
   Scene dark = read_scene_folder(path("lifted"), {});
   dark.light = nullptr;
   format_named("rebake").write(dark, path("dark"), {}, {});
@@ -153,15 +153,15 @@ TEST_F(DocumentTest, WhatLightWasBakedOnIsReadAsFarAsItCanBe) {
       made = apply(made, read_edit(line, made)).scene;
     return made;
   };
-  // Farther than a float reaches.
+  // Beyond the range of float.
   format_named("rebake").write(moved_by(1e60), path("far"), {}, {});
   EXPECT_EQ(read_scene_folder(path("far"), {}).roots.size(), 1U);
-  // A name as long as file systems take.
+  // A name of the maximum length of file systems.
   Scene named = moved_by(1);
   named = with_changed(named, named.roots[0]->id, [](Node& node) { node.name = std::string(250, 'n'); });
   format_named("rebake").write(named, path("named"), {}, {});
   EXPECT_EQ(read_scene_folder(path("named"), {}).roots[0]->name, named.roots[0]->name);
-  // What is said to be there must be there, and be a list.
+  // Bodies that are missing or malformed are errors.
   format_named("rebake").write(moved_by(1), path("near"), {}, {});
   const json good = json::parse(read_file(path("near/scene.json")));
   const auto refused = [&](const std::string& what, const std::function<void(json & node)>& change) {

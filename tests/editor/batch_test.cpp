@@ -1,4 +1,4 @@
-// One script over many scenes: what fails harms no other, what was done is not done again.
+// Batches run one script over many scenes: failures are isolated, and finished scenes are skipped on resume.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -107,7 +107,7 @@ TEST_F(Batch, ShardsShareTheScenes) {
   options.shard = 2;
   both.merge(run());
   EXPECT_EQ(both, (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::done}, {"c", Status::done}}));
-  // A scene stays with its shard whatever else a task sees: another that appears moves none.
+  // A scene's shard depends on its own name only: new scenes do not move others to another shard.
   fs::rename(folder_.path() / "scenes/a", folder_.path() / "scenes/0");
   options.resume = true;
   options.shard = 1;
@@ -155,14 +155,14 @@ TEST_F(Batch, ShardsFindOutThatTheyExportToOneFolder) {
     for (const auto& [name, status] : run()) ++(status == Status::done ? done : failed);
   EXPECT_EQ(done, 1U);
   EXPECT_EQ(failed, 2U);
-  // And once more, by one: the folder is a single scene's again.
+  // Again with a single shard: the folder still belongs to one scene.
   options.shards = options.shard = 1;
   std::size_t still = 0;
   for (const auto& [name, status] : run()) still += status == Status::done ? 1 : 0;
   EXPECT_EQ(still, 1U);
 }
 
-// A script that exported onto another scene replaced it, and what was made of that came out wrong.
+// A script that exports onto another input scene would replace it before it is processed.
 TEST_F(Batch, NothingIsWrittenOverAnyScene) {
   const auto before = folder_bytes(folder_.path() / "scenes");
   write_text(options.script, R"({"op": "export", "out": "{to}/b"})");
@@ -189,7 +189,7 @@ TEST_F(Batch, NothingIsWrittenOverWhatAnotherScriptReads) {
   for (const auto& [name, status] : run()) EXPECT_EQ(status, Status::failed) << name;
   EXPECT_NE(messages["a"].find("a source of this scene"), std::string::npos) << messages["a"];
   EXPECT_EQ(folder_bytes(folder_.path() / "others"), before);
-  // Where each writes beside what all read, nothing is in the way, also the second time.
+  // Writing next to a folder that all scenes read is allowed, also the second time.
   write_text(options.script, R"({"op": "import", "path": "{to}/a"})"
                              "\n"
                              R"({"op": "export", "out": "{to}/new/{name}"})");
@@ -205,7 +205,7 @@ TEST_F(Batch, ReportsReplaceNoFileThatTheScriptReads) {
   EXPECT_THROW(batch_scenes(options), FileError);
 }
 
-// What a link among the batch's own files leads to is not the batch's.
+// Links in place of the batch's own files are replaced; their targets are not written to.
 TEST_F(Batch, ItsOwnFilesFollowNoLinks) {
   run();
   write_text(folder_.path() / "precious", "kept");
@@ -269,7 +269,7 @@ TEST_F(Batch, TwoScenesCannotHaveOneProject) {
 TEST_F(Batch, AResultNeverReplacesItsScene) {
   options.out = folder_.path() / "scenes";
   EXPECT_THROW(batch_scenes(options), FieldError);
-  // A folder of results among the scenes is no scene, and neither is a file beside them.
+  // A results folder or a plain file among the scenes is not taken for a scene.
   options.out = folder_.path() / "scenes/results";
   write_text(folder_.path() / "scenes/README.md", "scenes");
   run();

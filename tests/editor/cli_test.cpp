@@ -1,4 +1,4 @@
-// The program as people call it: exit codes, messages, files.
+// The command line: exit codes, messages, files.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -68,7 +68,7 @@ TEST_F(Cli, LongWorkSaysHowLongItTakesBeforeItStarts) {
   const std::string import = R"({"op": "import", "path": ")" + in("ball") + "\"}\n";
   const std::string moves = R"("moves": [{"points": [0], "translate": [1, 0, 0]}]})";
   write_text(in("fine.jsonl"), import + R"({"op": "cage", "node": "ball", "wrap": 0.019, )" + moves);
-  // Nothing kept from an earlier run.
+  // Without cached results of earlier runs.
   const Outcome fine = rebake_run("run " + in("fine.jsonl"), "REBAKE_RESULTS=");
   EXPECT_EQ(fine.code, 0) << fine.text;
   EXPECT_NE(fine.text.find("note: wrap, about "), std::string::npos) << fine.text;
@@ -76,7 +76,7 @@ TEST_F(Cli, LongWorkSaysHowLongItTakesBeforeItStarts) {
   EXPECT_EQ(rebake_run("run " + in("coarse.jsonl")).text.find("about"), std::string::npos);
 }
 
-// A journal that was opened while standard error was closed got its number, and messages were written into it.
+// If standard error is closed, a new journal must not get its file descriptor, or messages would be written into it.
 TEST_F(Cli, ClosedOrFullStreamsHarmNothing) {
   write_text(in("s.jsonl"), R"({"op": "import", "path": ")" + in("ball") + "\"}\n" +
                                 R"({"op": "select", "all": true})" + "\n" + R"({"op": "no such thing"})" + "\n");
@@ -90,7 +90,7 @@ TEST_F(Cli, ClosedOrFullStreamsHarmNothing) {
 
 TEST_F(Cli, AnEmptyJournalNameIsWrongUse) { EXPECT_EQ(rebake_run("run " + in("ball") + " --journal ''").code, 2); }
 
-// A report that is named by mistake replaces no project, mesh or scene file.
+// A wrong path for a report must not overwrite a project, mesh or scene file.
 TEST_F(Cli, ReportsReplaceNothingButReports) {
   write_text(in("m.obj"), "v 0 0 0\n");
   const std::string plain = "export " + in("ball") + " --plain -o " + in("out") + " --report ";
@@ -102,7 +102,7 @@ TEST_F(Cli, ReportsReplaceNothingButReports) {
       "batch " + in("s.jsonl") + " --scenes " + in("ball") + " -o " + in("results") + " --report ";
   EXPECT_EQ(rebake_run(batch + in("m.obj")).code, 1);
   EXPECT_EQ(read_file(in("m.obj")), "v 0 0 0\n");
-  // Nor what else has the name of one.
+  // Nor other hard links to an earlier report.
   EXPECT_EQ(rebake_run(batch + in("b.jsonl")).code, 0);
   std::filesystem::create_hard_link(in("b.jsonl"), in("kept.jsonl"));
   const std::string before = read_file(in("kept.jsonl"));
@@ -117,7 +117,7 @@ TEST_F(Cli, OutputsReplaceNothingThatTheirRunReads) {
   EXPECT_EQ(trained.code, 1);
   EXPECT_NE(trained.text.find("is a file that this run reads"), std::string::npos) << trained.text;
   EXPECT_EQ(read_file(in("m.obj")), "v 0 0 0\n");
-  // A journal inside of a scene would be one of its files.
+  // A journal inside a scene folder would become one of its files.
   const auto before = folder_bytes(in("ball"));
   write_text(in("s.jsonl"), R"({"op": "import", "path": ")" + in("ball") + R"("})");
   write_text(in("none.jsonl"), "# nothing\n");
@@ -168,7 +168,7 @@ TEST_F(Cli, PipedOutputHasNoColourOrBars) {
 TEST_F(Cli, FullDiskLeavesWhatWasThere) {
   std::filesystem::copy(folder_.path() / "ball", folder_.path() / "out");
   const auto before = folder_bytes(folder_.path() / "out");
-  // A file-size limit stands for a full disk: it holds for root too.
+  // A file size limit simulates a full disk; it applies to root too.
   const Outcome o = rebake_run("export " + in("ball") + " -o " + in("out") + " --layout unsplit", "ulimit -f 8;");
   EXPECT_EQ(o.code, 1) << o.text;
   EXPECT_NE(o.text.find("cannot be written"), std::string::npos) << o.text;
@@ -198,7 +198,7 @@ TEST_F(Cli, RecoverWritesNoProjectOfNothingAndNamesWhatIsGone) {
   EXPECT_EQ(found.code, 0) << found.text;
   EXPECT_TRUE(std::filesystem::exists(in("p.rebake")));
   EXPECT_FALSE(std::filesystem::exists(in("j")));
-  // A journal that was being begun holds nothing to get back, and stays.
+  // An empty journal (killed while it was begun) contains nothing to recover, and stays.
   write_file_atomically(in("empty"), "", {});
   EXPECT_EQ(rebake_run("recover " + in("empty") + " -o " + in("q.rebake")).code, 1);
   EXPECT_TRUE(std::filesystem::exists(in("empty")));
@@ -265,7 +265,7 @@ TEST_F(Cli, ExportSaysThatItReplaces) {
   EXPECT_NE(again.text.find("took the place of the folder that was there"), std::string::npos) << again.text;
 }
 
-// A project holds what is done, not what was undone: where that is all, the journal stays.
+// Projects do not store undone edits: a journal that contains nothing else stays.
 TEST_F(Cli, RecoverKeepsAJournalOfUndoneEdits) {
   write_file_atomically(in("s.jsonl"),
                         R"({"op": "import", "path": ")" + in("ball") + R"("})" + "\n" + R"({"op": "undo"})" + "\n" +

@@ -1,4 +1,4 @@
-// Deforming edits: what scripts can do, what they are told, and that pictures and files agree.
+// Deforming edits in scripts: results, messages, pictures and files.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -52,7 +52,7 @@ class DeformScript : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-// Ctrl+C, or Cancel in a window: each stage of a deformation stops when it is asked to, and nothing is changed.
+// Each stage of a deformation reports its progress and can be cancelled; the scene is then unchanged.
 TEST_F(DeformScript, LongDeformationsReportAndStopWhereverTheyAre) {
   const Scene before = session.scene();
   const std::string moves = R"("moves": [{"points": [0], "translate": [0.1, 0, 0]}]})";
@@ -72,7 +72,7 @@ TEST_F(DeformScript, LongDeformationsReportAndStopWhereverTheyAre) {
   }
 }
 
-// As the window's tool holds them while points are dragged: what is let go of is not solved anew, and the same.
+// While the window's tool holds the coordinates of a drag, the committed edit reuses them, with the same result.
 TEST_F(DeformScript, ACageTakesTheHarmonicCoordinatesThatAreHeld) {
   const std::string line =
       R"({"op": "cage", "node": "ball", "lattice": [2, 2, 2], "coordinates": "harmonic", "resolution": 16, )"
@@ -114,8 +114,8 @@ TEST_F(DeformScript, ARigidMotionByACageIsThatOfTheNode) {
   }
 }
 
-// The points of a box that is its own cage lie on faces, edges and corners of the cage, where rotations once were
-// wrong by up to 180°.
+// All points of a box that is its own cage lie on faces, edges and corners of the cage, where gradients are one-sided
+// limits.
 TEST_F(DeformScript, ABoxTurnedByItsOwnCageLooksAsTurned) {
   const Cage cells = lattice_cage(Box(Vec3(-0.75, -0.875, -0.625), Vec3(0.75, 0.875, 0.625)), 4, 4, 4);
   std::string text = "mtllib shape0.mtl\n";
@@ -244,7 +244,7 @@ TEST_F(DeformScript, ScenesKeepTurnsAndPlainFoldersSayWhatTheyLose) {
 }
 
 TEST_F(DeformScript, ExportKeepsWhatItCanOfTurns) {
-  // A rigid motion by a cage is no bend: the decoder takes it, as it takes a node's.
+  // A rigid motion by a cage is no bend: it is folded into the decoder, as a node's rotation is.
   run(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [[0, 7]], "rotate": {"axis": [0, 1, 0], "degrees": 90}}]})");
   const Image turned = picture();
   run(R"({"op": "export", "out": "{here}/turned"})");
@@ -252,7 +252,7 @@ TEST_F(DeformScript, ExportKeepsWhatItCanOfTurns) {
   run(R"({"op": "import", "path": "{here}/turned", "as": "read"}
 {"op": "remove", "node": "ball"})");
   EXPECT_GE(compare(picture(), turned, 2).psnr_db, 50);
-  // Beside a bend, a half that was turned exactly keeps its turn.
+  // Next to a bend, a rigidly rotated half keeps its rotation.
   run(R"({"op": "select", "node": "read", "half_space": {"point": [0, 0, 0], "normal": [0, 1, 0]}}
 {"op": "transform", "node": "read", "selection": true, "rotate": {"axis": [0, 1, 0], "degrees": 90}, "pivot": [0, 0, 0]}
 {"op": "bend", "node": "read", "degrees": 5, "box": {"min": [0, 0, 0], "max": [1, 0.1, 1]}, "frame": "bounds"})");

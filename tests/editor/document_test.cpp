@@ -1,4 +1,4 @@
-// Nothing that was done is lost: history, journal, project.
+// Document: history, journal and project. No edit is lost.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -64,7 +64,8 @@ TEST_F(DocumentTest, WhatWasCarriedOutOnAnotherGroundIsDoneAgain) {
   EXPECT_EQ(document.scene().ground.height, -3);
 }
 
-// What a preview carried out is committed as it is; of another scene or other edits it is done anew.
+// A preview's result is committed as it is if it was computed from the same scene and edits; otherwise edits are
+// applied again.
 TEST_F(DocumentTest, WhatIsCarriedOutAlreadyIsNotDoneAgain) {
   Document document;
   document.keep_journal(path("journal"));
@@ -122,7 +123,7 @@ TEST_F(DocumentTest, OldScenesAreDroppedWithinTheBudgetAndComputedAgain) {
   EXPECT_EQ(tight.history().undo_count(), 0U);
 }
 
-// Of a long project not all scenes lie in memory while it is opened, nor while one that was dropped is made again.
+// Opening a long project, or recomputing an evicted scene, must not hold all scenes on the way in memory.
 TEST_F(DocumentTest, ScenesOnTheWayAreLetGoOf) {
   Document document;
   import(document);
@@ -148,7 +149,7 @@ TEST_F(DocumentTest, ScenesOnTheWayAreLetGoOf) {
   document.undo();
   EXPECT_EQ(exported(tight.scene()), exported(document.scene()));
 
-  // Within a budget of some scenes so many are kept, however far back one goes.
+  // A budget for some scenes caches that many, however far one undoes.
   Document first;
   import(first);
   Document all(first.scene());
@@ -180,7 +181,7 @@ TEST_F(DocumentTest, AJournalGivesTheWorkBack) {
   document.undo();
   document.redo();
   const auto bytes = exported(document.scene());
-  document = Document();  // as if the program had ended
+  document = Document();  // simulates the end of the program
   const Document::Recovered recovered = Document::recover(path("j"));
   EXPECT_EQ(recovered.edits, 6U);
   EXPECT_FALSE(recovered.torn);
@@ -203,13 +204,13 @@ TEST_F(DocumentTest, EditsMadeTogetherAreOneStepEverywhere) {
   EXPECT_EQ(document.scene().roots, hidden.roots);
   EXPECT_FALSE(document.redo_step());
 
-  // Where one fails, nothing was done and nothing is forgotten.
+  // If one edit fails, nothing changes and redo stays possible.
   document.undo_step();
   EXPECT_THROW(document.edits({hide("ball"), Hide{NodeRef{static_cast<NodeId>(99)}}}), Error);
   EXPECT_EQ(document.scene().roots, before.roots);
   EXPECT_TRUE(document.redo_step());
 
-  // A script may stop in the midst of a step; what was done of it comes back as it is.
+  // A script may undo single edits of a step; redo_step() restores the rest of the step.
   EXPECT_TRUE(document.undo());
   EXPECT_TRUE(document.redo_step());
   EXPECT_EQ(document.scene().roots, hidden.roots);
@@ -235,7 +236,7 @@ TEST_F(DocumentTest, AStepThatNoJournalTakesIsNotUndone) {
              show = Show{NodeRef{find(document.scene(), "ball")->id}};
   document.edits({hide, show, hide});
   const Scene before = document.scene();
-  // As on a full disk.
+  // Simulates a full disk.
   rlimit limit{};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
   const auto handler = ::signal(SIGXFSZ, SIG_IGN);
@@ -285,10 +286,10 @@ TEST_F(DocumentTest, AJournalCutAtAnyByteLosesTheEditInFlightAtMost) {
   for (std::size_t size = last; size <= whole.size(); ++size) {
     std::ofstream(path("cut"), std::ios::binary) << whole.substr(0, size);
     Document::Recovered recovered = Document::recover(path("cut"));
-    // Without its newline alone the last line is whole.
+    // A last line that lacks only its newline is complete.
     ASSERT_EQ(recovered.edits, size + 1 >= whole.size() ? 3U : 2U) << size;
     ASSERT_EQ(recovered.torn, size > last && size + 1 < whole.size()) << size;
-    // Going on writes behind the last whole line.
+    // New edits are appended behind the last complete line.
     act(recovered.document, R"({"op": "background", "color": [0, 1, 0]})");
     const std::size_t edits = recovered.edits + 1;
     recovered.document = Document();
@@ -298,7 +299,7 @@ TEST_F(DocumentTest, AJournalCutAtAnyByteLosesTheEditInFlightAtMost) {
 }
 
 TEST_F(DocumentTest, KilledAtAnyMomentAndTwiceTheReportedEditsAreThere) {
-  // The child reports each edit that is done by a byte; both the first run and the one that goes on are killed.
+  // The child reports each finished edit by one byte. Both the first run and the recovered one are killed.
   std::mt19937 random(11);
   int in_flight = 0;
   for (int round = 0; round < cases(80, 400); ++round) {
@@ -376,7 +377,7 @@ TEST_F(DocumentTest, WhatIsNoJournalIsLeftAlone) {
     EXPECT_EQ(read_file(path("notes.txt")), bytes);
   }
   EXPECT_NE(error_of([&] { Document::recover(path("sources")); }).find("not a file"), std::string::npos);
-  // Killed while the first line was being written, nothing was done yet, and the journal can be gone on with.
+  // If the program was killed while it wrote the first line, the journal contains no edit and can be continued.
   write_text(path("empty"), "");
   Document::Recovered recovered = Document::recover(path("empty"));
   act(recovered.document, R"({"op": "background", "color": [0, 0, 1]})");
@@ -455,7 +456,7 @@ TEST_F(DocumentTest, MergedNodesKeepTheirSelections) {
   act(document, R"({"op": "select", "saved": "left"})");
   const std::size_t in_copy = count(selected_in("copy"));
   ASSERT_GT(in_copy, 0U);
-  // The parts fit together as they were, live selection and stored one.
+  // Merging restores both the live and the stored selection.
   act(document, R"({"op": "merge", "nodes": ["ball", "part"]})");
   EXPECT_EQ(selected_in("ball"), stored);
   act(document, R"({"op": "select", "none": true})");
@@ -481,7 +482,7 @@ TEST_F(DocumentTest, SeparateThenMergeGivesTheOriginalBytes) {
   EXPECT_EQ(exported(document.scene()), bytes);
 }
 
-// The folder's own name may be another where a project finds it again: behind a link, or after it was moved.
+// A node keeps its name even if a project later finds its folder under another name, through a link or after a move.
 TEST_F(DocumentTest, ImportsKeepTheNameThatTheirNodeGot) {
   std::filesystem::create_directory_symlink(path("sources/ball"), path("link"));
   Document document;

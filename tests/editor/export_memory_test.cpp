@@ -1,4 +1,4 @@
-// Opening and exporting a large texture set that an edit changed: its texels are in memory once, not once per step.
+// Memory of opening, editing and exporting a large texture set: its texels must be in memory once, not once per step.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace rebake::test {
 namespace {
 
-// Runs a script and returns the most memory that it had, in bytes.
+// Peak resident memory of the program while it runs a script, in bytes.
 double peak_memory(const std::filesystem::path& folder, const std::string& script) {
   write_text(folder / "s.jsonl", script);
   const std::string file = folder / "s.jsonl", log = folder / "log";
@@ -34,7 +34,7 @@ double peak_memory(const std::filesystem::path& folder, const std::string& scrip
   return static_cast<double>(usage.ru_maxrss) * 1024;
 }
 
-// A flat sheet of quads, each with its own patch of noise: texels that neither PNG nor LZ4 makes smaller.
+// A flat sheet of quads with random texels, which neither PNG nor LZ4 can compress.
 std::shared_ptr<const BakedObject> noisy_sheet(int side) {
   constexpr int quads = 16;
   std::vector<Vec3> positions;

@@ -1,5 +1,5 @@
-// No output of a run overwrites what the run reads or keeps safe: its journal, its script, its project, a cage's mesh,
-// a camera file; by any name.
+// Outputs of a run must not overwrite its inputs, by any path: its journal, script, project, cage meshes and camera
+// files.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ class Guards : public ::testing::Test {
  protected:
   fs::path path(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const std::string& text) const { write_file_atomically(path(name), text, {}); }
-  // The program's exit status; {} in the arguments stands for the test's folder.
+  // Exit status of the program; {} in the arguments is replaced by the test's folder.
   int program(std::string arguments) const {
     for (std::size_t at = 0; (at = arguments.find("{}", at)) != std::string::npos;)
       arguments.replace(at, 2, folder_.path().string());
@@ -106,12 +106,12 @@ TEST_F(Guards, ScenesOfLaterLinesAreReplacedAsAWholeOnly) {
   write("script.jsonl", import_line() + render + import);
   EXPECT_EQ(program("run {}/script.jsonl"), 1);
   EXPECT_EQ(read_file(path("later/mlp.json")), decoder);
-  // One that must have another content would be lost.
+  // If a later import expects other contents at that path, the export is refused, because they would be lost.
   write("script.jsonl", import_line() + exported +
                             line_of("{{\"op\": \"import\", \"path\": \"{}\", \"content\": \"0000000000000000\"}}\n"));
   EXPECT_EQ(program("run {}/script.jsonl"), 1);
   EXPECT_NE(log().find("would be written into"), std::string::npos) << log();
-  // A script may import its own export, again and again.
+  // A script may import its own export, also when it runs again.
   write("script.jsonl", import_line() + exported + import);
   EXPECT_EQ(program("run {}/script.jsonl"), 0) << log();
   EXPECT_EQ(program("run {}/script.jsonl"), 0) << log();

@@ -1,4 +1,4 @@
-// What the window is made of, without a window: keys, typed numbers, settings, the worker.
+// Parts of the window that need no display: keys, typed numbers, settings, jobs, previews.
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
@@ -129,7 +129,7 @@ TEST(Desk, CostsAreMeasuredInTheView) {
   wait();
 }
 
-// A scene of two balls, and a desk that shows it.
+// A Desk, the state of the window without its display, with a scene of two objects.
 class DeskTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -212,7 +212,7 @@ TEST_F(DeskTest, AReleaseTakesThePreviewsScene) {
     desk->show_preview({bend});
   };
   for (const double degrees : {5.0, 10.0, 20.0}) drag(degrees);
-  desk->edits({bend});  // the preview of it may still have to be made, and is waited for
+  desk->edits({bend});  // waits for the preview if it is still being computed
   wait();
   EXPECT_EQ(desk->now->done.back().as<Bend>()->degrees, 20);
   drag(30);
@@ -222,7 +222,7 @@ TEST_F(DeskTest, AReleaseTakesThePreviewsScene) {
   desk->edits({bend});
   wait();
   EXPECT_EQ(desk->scene().roots, previewed);
-  // What was not asked for is carried out.
+  // An edit that no preview was requested for is applied.
   drag(40);
   wait();
   bend.degrees = 41;
@@ -231,7 +231,7 @@ TEST_F(DeskTest, AReleaseTakesThePreviewsScene) {
   const auto* last = desk->now->done.back().as<Bend>();
   ASSERT_NE(last, nullptr);
   EXPECT_EQ(last->degrees, 41);
-  // What is dropped is waited for by nobody.
+  // A dropped preview is not waited for.
   drag(50);
   desk->drop_preview();
   bend.degrees = 50;
@@ -250,7 +250,8 @@ TEST_F(DeskTest, AReleaseThatWaitsForAPreviewCanBeStopped) {
   Hide hide;
   hide.node = NodeRef{id("box")};
   const std::size_t steps = desk->now->steps_done;
-  while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // else the next request replaces it
+  while (!begun)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // otherwise the next request would replace it
   desk->show_preview({hide});
   desk->edits({hide});
   desk->jobs.worker.cancel();
@@ -298,7 +299,7 @@ TEST(Euler, AnglesComeBackAndQuarterTurnsAreExact) {
   EXPECT_EQ(rotation_of({90, 0, 0}) * Vec3::UnitY(), Vec3::UnitZ());
   EXPECT_EQ(rotation_of({90, 90, 0}) * Vec3::UnitY(), Vec3::UnitX()) << "about X first, then about Y";
   EXPECT_EQ(rotation_of({0, 180, 0}).diagonal(), Vec3(-1, 1, -1));
-  // Where two axes fall together the angles are others, the rotation is the same.
+  // In gimbal lock the angles differ, but the rotation is the same.
   for (const double y : {90.0, -90.0}) {
     const Mat3 locked = rotation_of({25, y, 60});
     EXPECT_LT((rotation_of(euler_degrees(locked)) - locked).norm(), 1e-12);
@@ -342,7 +343,7 @@ TEST(ChildProcess, IsReadToItsEndAndEndsWithItsOwner) {
   const std::string shell = program_path("sh");
   ASSERT_FALSE(shell.empty());
   EXPECT_TRUE(program_path("no program is called so").empty());
-  // More than a pipe holds, written before anybody reads.
+  // More output than a pipe buffers, written before it is read.
   ChildProcess talks({shell, "-c", "head -c 200000 /dev/zero | tr '\\0' x; exit 3"});
   EXPECT_EQ(ended(talks), 3);
   EXPECT_EQ(talks.output(), std::string(200000, 'x'));

@@ -1,4 +1,4 @@
-// Surfaces that are turned mirror the light where it is, not where it was baked.
+// Highlights of rotated surfaces reflect the light where it is, not as it was baked.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,8 +20,8 @@ using nlohmann::json;
 
 const Vec3 sun = Vec3(0.3, 1, 0.2).normalized();
 
-// A grey plate that faces upwards, whose decoder shows a highlight where an eye meets the mirrored sun. A hidden unit
-// is linear in the direction, and so is what a flat mirror makes of it.
+// A grey plate that faces up, with a decoder that shows the specular highlight of the sun. One hidden unit is linear in
+// the view direction, as is reflection by a plane, so it can represent the highlight.
 const std::vector<LitQuad> one_patch{flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4, 4)};
 Scene unlit_plate(double highlight, const std::vector<LitQuad>& quads = one_patch) {
   auto object = std::make_shared<BakedObject>(*lit_object(quads, [](const Vec3&) { return Radiance(0.2, 0.2, 0.2); }));
@@ -65,7 +65,7 @@ Scene tilted(Scene scene, double degrees) {
   return scene;
 }
 
-// Looks at the plate's middle along `direction`.
+// A view of the plate's centre along `direction`.
 View looking(const Vec3& direction) {
   View view;
   view.camera.eye = -3 * direction;
@@ -90,7 +90,7 @@ TEST(Highlights, StayWithTheLightWhenASurfaceTurns) {
   const Mat3 turn = Eigen::AngleAxisd(radians, Vec3::UnitX()).toRotationMatrix();
   const auto mirror = [](const Vec3& d, const Vec3& n) -> Vec3 { return d - 2 * n.dot(d) * n; };
   const Vec3 up(0, 1, 0), now = turn * up;
-  // Along these an eye meets the highlight: of the sun, and of the sun as if it had turned with the plate.
+  // View directions that see the highlight: of the sun, and of a sun that had rotated with the plate.
   const Vec3 to_sun = mirror(sun, now), as_baked = turn * mirror(sun, up);
   Renderer renderer;
   for (const int samples : {1, 4}) {
@@ -98,7 +98,7 @@ TEST(Highlights, StayWithTheLightWhenASurfaceTurns) {
       View view = looking(direction);
       view.samples = samples;
       const int plain = middle(renderer.render(scene, view)), lit = middle(renderer.render(scene, view, {}, &lighting));
-      // What the library says of the place.
+      // Expected colour, by the library's gloss_change() at the same point.
       const Eigen::Vector2f place(map->chart->places.front() + map->chart->places.back());
       const GlossPlace at = interpolated(*map->chart, *map->gloss, Eigen::Vector2f(place / 2));
       const double gain = static_cast<double>(interpolated(*map->chart, map->gain, Eigen::Vector2f(place / 2))[0]);
@@ -122,14 +122,14 @@ TEST(Highlights, StayWithTheLightWhenASurfaceTurns) {
   EXPECT_TRUE(plan(scene, looking(to_sun), {}, nullptr, &lighting).runs(effects::highlights));
 }
 
-// Where an eye meets the sun in a plate that was tilted so far, about x.
+// View direction that sees the sun in a plate that is tilted about x by `degrees`.
 Vec3 towards_highlight(double degrees) {
   const Vec3 now(0, std::cos(degrees * std::numbers::pi / 180), std::sin(degrees * std::numbers::pi / 180));
   return sun - 2 * now.dot(sun) * now;
 }
 
 TEST(Highlights, OfAMirroredNodeAreThoseOfTheMirroredScene) {
-  // Across a plane that holds the sun and the axis of the tilt, which turns the other way.
+  // Mirroring at a plane that contains the sun and the axis of the tilt, which reverses the tilt.
   const Vec3 across = Vec3::UnitX().cross(sun).normalized();
   const Mat3 mirror = Mat3::Identity() - 2 * across * across.transpose();
   Scene mirrored_plate = unlit_plate(6);
@@ -148,7 +148,7 @@ TEST(Highlights, OfAMirroredNodeAreThoseOfTheMirroredScene) {
 }
 
 TEST(Highlights, OfSeveralPatchesAreThoseOfOne) {
-  // The second one's normal points the other way: both sides mirror.
+  // The second patch has the opposite normal: both sides of a surface reflect.
   const std::vector<LitQuad> two{flat_quad({-1, 0, -1}, {0, 0, 2}, {0.9, 0, 0}, 4, 2),
                                  flat_quad({-0.1, 0, -1}, {1.1, 0, 0}, {0, 0, 2}, 2, 4)};
   const Scene scene = tilted(plate(6), 45), other = tilted(in_sun(unlit_plate(6, two)), 45);
@@ -158,7 +158,7 @@ TEST(Highlights, OfSeveralPatchesAreThoseOfOne) {
   const View view = looking(towards_highlight(45));
   const Image as_one = renderer.render(scene, view, {}, &lighting),
               as_two = renderer.render(other, view, {}, &other_lighting);
-  // Left and right of the middle lie on one patch each.
+  // A pixel on the left patch and one on the right patch.
   for (const std::size_t x : {26U, 40U}) {
     const std::size_t at = (32 * 65 + x) * 3;
     EXPECT_NEAR(as_two.rgb[at], as_one.rgb[at], 3) << x;
@@ -199,7 +199,7 @@ TEST(Highlights, AreLeftOutWhereNobodyAsksForThem) {
   const Lighting lighting = lighting_of(scene);
   ASSERT_NE(decided(lighting, "highlights plate"), nullptr);
   EXPECT_EQ(decided(lighting, "highlights plate")->why, "not asked for");
-  // What did not turn mirrors what it was baked with.
+  // Without a rotation there is no decision about highlights.
   EXPECT_EQ(decided(lighting_of(plate(6)), "highlights plate"), nullptr);
 }
 
@@ -209,18 +209,18 @@ TEST(Gloss, MirrorsByFresnelTheSkyAndSuns) {
   gloss.suns = {{Vec3(0, 0, 1), 0.01, Radiance(3, 2, 1)}};
   gloss.sharpness = 10;
   const Vec3 down(0, 0, -1), up(0, 0, 1);
-  // Seen along the normal a dielectric of index 1.5 sends back 4 %, at grazing angles all of it.
+  // A dielectric of index 1.5 reflects 4 % at normal incidence and everything at grazing angles.
   EXPECT_LT((mirrored(gloss, down, up, 1, 0) - Radiance::Constant(0.08)).norm(), 1e-12);
   EXPECT_LT((mirrored(gloss, {1, 0, 0}, up, 1, 0) - Radiance::Constant(2)).norm(), 1e-12);
   EXPECT_LT((mirrored(gloss, down, up, 0, 1) - 0.04 * Radiance(3, 2, 1)).norm(), 1e-12);
-  // Both sides of a surface mirror alike, and turning all of it changes nothing.
+  // Both sides of a surface reflect alike, and rotating everything changes nothing.
   const Vec3 d = Vec3(0.3, -0.2, -0.8).normalized(), n = Vec3(0.1, 0.5, 0.9).normalized();
   EXPECT_EQ(mirrored(gloss, d, n, 1, 1), mirrored(gloss, d, -n, 1, 1));
   const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   Gloss turned = gloss;
   turned.suns[0].direction = turn * up;
   EXPECT_LT((mirrored(turned, turn * d, turn * n, 1, 1) - mirrored(gloss, d, n, 1, 1)).norm(), 1e-12);
-  // Nothing changes where nothing turned.
+  // Without a rotation nothing changes.
   GlossPlace place;
   place.before << n.cast<float>(), 0.7F;
   place.after = place.before;

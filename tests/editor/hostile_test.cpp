@@ -1,4 +1,4 @@
-// Scenes and fields that once ended the program, or drew wrong without a word.
+// Degenerate scenes and extreme fields must not crash the program or give wrong pictures without a message.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -74,7 +74,7 @@ TEST_F(Hostile, EyesAndNodesAnywhereSelectOrSaySo) {
   EXPECT_NE(find(session.scene(), "ball")->selection, nullptr);
 }
 
-// A plan that took the first texture's code for all drew the other's colours wrong, at 39.9 dB.
+// Each texture has its own alpha code: one code for all would give wrong colours (39.9 dB).
 TEST_F(Hostile, MergedObjectsOfBothAlphaCodesLookAsBefore) {
   import_object(*made_object({.columns = 16, .rows = 8, .code = AlphaCode::halved}), "a");
   import_object(*made_object({.columns = 16, .rows = 8, .code = AlphaCode::plain, .layout = Layout::unsplit}), "b");

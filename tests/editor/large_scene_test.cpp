@@ -1,4 +1,4 @@
-// The synthetic scene for measurements is like the real unbounded ones that it stands for.
+// The synthetic scene for benchmarks has the statistics of real unbounded scenes.
 #include "samples/synthetic/large_scene.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace rebake::test {
 namespace {
 
 TEST(LargeScene, IsLikeARealOneAtATenthOfItsSize) {
-  // The same shares with a tenth of the triangles and of the texels.
+  // The same ratios with a tenth of the triangles and texels.
   const LargeSceneOptions options{.triangles = 72'300, .texture_side = 1295};
   const auto object = large_synthetic_scene(options);
   EXPECT_EQ(object->sets.size(), 8U);

@@ -1,4 +1,4 @@
-// Light as an edit: it is data like the others, edits remember what light was baked on, and results are kept.
+// The light edit: JSON, environment maps as sources, cached results, plain folders and pictures.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -88,11 +88,11 @@ TEST_F(DocumentTest, PictureOfLightIsASourceLikeWhatIsImported) {
   Document document;
   document.keep_journal(path("journal"));
   import(document);
-  // Which source is meant goes without saying.
+  // The field "picture" implies the source.
   act(document, {{"op", "light"}, {"picture", path("sky.exr").string()}});
   EXPECT_EQ(document.scene().light->source, SceneLight::Source::picture);
   const SceneLight light = *document.scene().light;
-  // Turned by a quarter, +x comes to lie where −z was.
+  // Rotated by 90°, +x moves to −z.
   act(document,
       {{"op", "light"}, {"source", "picture"}, {"picture", path("sky.exr").string()}, {"picture_degrees", 90}});
   EXPECT_NEAR(given_light(*document.scene().light)->sky.at({0, 0, -1})[0], given_light(light)->sky.at({1, 0, 0})[0],
@@ -121,7 +121,7 @@ TEST_F(DocumentTest, PictureOfLightIsASourceLikeWhatIsImported) {
   EXPECT_THROW(act(document, {{"op", "light"}, {"source", "picture"}}), FieldError);
   EXPECT_THROW(act(document, {{"op", "light"}, {"source", "picture"}, {"picture", path("sky.exr").string()}}),
                FileError);
-  // Another picture of that name is not the one that was taken.
+  // Another picture at the same path is not accepted.
   write_light_picture(path("sky.exr"), 64, [](const Vec3&) { return Radiance(1, 1, 1); });
   EXPECT_THROW(last_scene(path("beside.rebake")), SourcesGone);
 }
@@ -164,13 +164,13 @@ TEST(LightEdit, APlainFolderShowsWhatLightMakesOfColours) {
   EXPECT_EQ(plain.light, nullptr);
   Renderer renderer;
   measure_pictures(renderer, scene, lighting, plain, report, {}, 200);
-  // As it was baked, the shadow of what is gone stays in the folder.
+  // For comparison: as baked, with the shadow of the deleted box.
   PlainReport baked;
   measure_pictures(renderer, scene, lighting, scene, baked, {}, 200);
-  // Partly covered pixels limit it: this steep decoder shows them otherwise in another light.
+  // Partly covered pixels limit the PSNR: their mixed features decode differently once light is fitted into them.
   EXPECT_GT(report.whole.psnr_db, 30);
   EXPECT_GT(report.whole.psnr_db, baked.whole.psnr_db + 15);
-  // Without light it needs no fit at all.
+  // Without light the plain folder is exact.
   PlainReport exact;
   plain_scene(scene, {}, {}, exact, {});
   EXPECT_TRUE(exact.exact);
@@ -190,16 +190,16 @@ TEST(LightEdit, ResultsAreFoundAgain) {
   const auto& a = *first.maps.begin()->second.front();
   const auto& b = *again.maps.begin()->second.front();
   EXPECT_EQ(a.gain, b.gain);
-  // What is kept is what is worked out without a place to keep it, but for its rounding to floats.
+  // Cached results equal uncached ones, up to rounding to float.
   const Lighting without = lighting_of(bent);
   for (std::size_t k = 0; k < a.gain.size(); ++k)
     EXPECT_LT((a.gain[k] - without.maps.begin()->second.front()->gain[k]).norm(), 1e-4F);
-  // Damaged results count as not there.
+  // Damaged results are ignored.
   for (auto& [key, bytes] : results.held) bytes.resize(bytes.size() / 2);
   EXPECT_EQ(lighting_of(bent, {.results = &results}).maps.begin()->second.front()->gain, a.gain);
 }
 
-// A picture changes where light does, and keeps its bytes where nothing was edited.
+// Light changes pictures of edited scenes; pictures of unedited scenes keep every byte.
 TEST(LightEdit, PicturesChangeWithTheLightOnly) {
   const Scene scene = with_light(table());
   const Scene cut = [&] {
@@ -220,7 +220,7 @@ TEST(LightEdit, PicturesChangeWithTheLightOnly) {
     const Lighting nothing = lighting_of(scene), light = lighting_of(cut);
     EXPECT_EQ(renderer.render(scene, view, {}, &nothing), renderer.render(scene, view));
     const Image plain = renderer.render(cut, view), lit = renderer.render(cut, view, {}, &light);
-    // The middle was in the box's shade.
+    // The centre was in the shadow of the deleted box.
     const std::size_t middle = (32 * 64 + 32) * 3;
     EXPECT_GT(lit.rgb[middle], plain.rgb[middle] + 20) << samples;
     RenderOptions deferred;

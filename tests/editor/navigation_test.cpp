@@ -1,4 +1,4 @@
-// How the viewport's camera moves: what people point at stays where they point.
+// Viewport navigation: orbit, pan, zoom to cursor, frame, axis views, projections and camera paths.
 #include "editor/gui/view/navigation.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(Navigation, OrbitingKeepsTheDistanceAndStopsAtThePoles) {
   for (int k = 0; k < 50; ++k) moved = orbited(moved, 13, 40, height);
   EXPECT_NEAR((moved.eye - moved.target).norm(), distance, 1e-12);
   EXPECT_EQ(moved.target, camera().target);
-  // Far beyond the pole it looks straight down, and is not turned over.
+  // Far beyond the pole the camera looks straight down, without flipping over.
   const Vec3 direction = (moved.eye - moved.target).normalized();
   EXPECT_GT(direction.y(), 0.9999);
   EXPECT_LT(direction.y(), 1);
@@ -41,10 +41,10 @@ TEST(Navigation, ASceneOpensOnItsDenseMiddleNotOutsideItsBackdrop) {
   const Camera inside = framing_of(scene, 1);
   EXPECT_LT((inside.eye - inside.target).norm(), 1.1 * (alone.eye - alone.target).norm());
   EXPECT_GT(inside.far_plane, 50) << "the backdrop is drawn";
-  // Two triangles have no middle that others lie around.
+  // A scene of few triangles has no dense centre.
   const auto two = made_object({.columns = 3, .rows = 1, .radius = 2});
   EXPECT_GT((framing_of(scene_of(two), 1).eye - framing_of(scene_of(two), 1).target).norm(), 2);
-  // Two things beside each other are both looked at.
+  // Two dense objects side by side are both framed.
   const Scene pair = with_changed(scene, placed_nodes(scene)[1].node->id, [](Node& node) {
     node.object = made_object({.columns = 64, .rows = 32});
     node.to_parent.translation() = Vec3(6, 0, 0);
@@ -98,7 +98,7 @@ TEST(Navigation, ZoomingKeepsThePointUnderThePointer) {
     EXPECT_LT((*Lens(moved, width, height).pixel(point) - before).norm(), 1e-7);
     EXPECT_NEAR(Lens(moved, width, height).unit(point), Lens(from, width, height).unit(point) * std::pow(0.8, 10),
                 1e-15);
-    // For ever so long: it ends before numbers do.
+    // Endless zooming ends before numbers underflow.
     for (int k = 0; k < 1000; ++k) moved = zoomed(moved, point, 0.5);
     EXPECT_NO_THROW(check(moved));
   }
@@ -126,12 +126,12 @@ TEST(Navigation, AxisViewsLookAlongThem) {
       const Vec3 direction = (moved.eye - moved.target).normalized();
       EXPECT_EQ(direction, sign * Vec3::Unit(axis)) << "exactly";
       EXPECT_NO_THROW(check(moved));
-      // Turning goes on from there, with the world's up.
+      // Orbiting continues from there, with the world's up axis.
       const Camera on = orbited(moved, 10, 10, height);
       EXPECT_EQ(on.up, Vec3(0, 1, 0));
       EXPECT_LT((on.eye - moved.eye).norm(), 0.1 * (moved.eye - moved.target).norm());
       EXPECT_EQ(along_axis(moved, sign * Vec3::Unit(axis)).eye, moved.eye);
-      // And what was at the right stays at the right.
+      // The right side of the picture stays on the right.
       EXPECT_GT(world_to_camera(on).row(0).dot(world_to_camera(moved).row(0)), 0.9);
     }
 }
@@ -145,7 +145,7 @@ TEST(Navigation, AnotherProjectionKeepsTheTargetsSizeAndComesBack) {
   const Camera back = projected_otherwise(flat);
   EXPECT_FALSE(back.orthographic());
   EXPECT_LT((back.eye - camera().eye).norm(), 1e-12);
-  // Far in and out again is where it began, depths included.
+  // Zooming in and out again restores the camera, including its depth range.
   const Box around(Vec3(-1, -1, -1), Vec3(1, 1, 1));
   const Camera begun = with_depth_for(flat, around);
   Camera there = begun;
@@ -153,7 +153,7 @@ TEST(Navigation, AnotherProjectionKeepsTheTargetsSizeAndComesBack) {
   for (int k = 0; k < 40; ++k) there = with_depth_for(zoomed(there, {0.1, 0.2, 0.3}, 1.25), around);
   EXPECT_LT((there.eye - begun.eye).norm(), 1e-9);
   EXPECT_NEAR(there.far_plane, begun.far_plane, 1e-9);
-  // However near people go, nothing is cut off before the eye's plane, and the picture stays as it is.
+  // However far one zooms in, nothing is clipped in front of the eye, and the picture stays the same.
   const Box box(Vec3(-1, -1, -1), Vec3(1, 1, 1));
   const Camera close = zoomed(flat, flat.target, 1e-3), cleared = with_depth_for(close, box);
   EXPECT_EQ(cleared.ortho_height, close.ortho_height);

@@ -1,5 +1,4 @@
-// Any scene as one plain folder, by the pictures that it then shows: the bars are those that the format's users were
-// promised.
+// Plain export of any scene: PSNR of its pictures. The thresholds are those that the documentation promises.
 #include "editor/commands/plain_scene.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +39,7 @@ PlainReport plain_report(const Scene& scene, const FuseOptions& options, int siz
   return report;
 }
 
-// Two objects side by side, the second turned.
+// Two objects side by side, the second rotated.
 Scene two(const std::shared_ptr<const BakedObject>& a, const std::shared_ptr<const BakedObject>& b) {
   Scene scene;
   Node node;
@@ -73,7 +72,7 @@ TEST(Plain, TwoRealDecodersInOneOfTheirWidthReachThirtySeven) {
   EXPECT_LE(report.hidden0, 16);
 }
 
-// The samples, edited as the README does.
+// Sample scenes with edits, as in the README.
 Scene edited(const std::vector<const char*>& lines) {
   Document document;
   for (const char* line : lines) {
@@ -93,8 +92,8 @@ TEST(Plain, SamplesComposedReachFortyFourDecibels) {
   const PlainReport report = plain_report(scene, {}, 400);
   EXPECT_GE(report.whole.psnr_db, 44);
   EXPECT_EQ(report.nodes.size(), 2U);
-  // Where one object's edge covers the other, several samples mix features of two branches, which no decoder can undo:
-  // the worst view has 36 dB. With one sample nothing mixes.
+  // At edges of one object over the other, supersampling mixes features of two branches, which no decoder can undo: the
+  // worst view has 36 dB. With one sample per pixel nothing is mixed.
   PlainReport made;
   const Scene plain = plain_scene(scene, {}, {}, made, {});
   for (View view : judging_views(scene, 400)) {
@@ -111,7 +110,7 @@ TEST(Plain, ABentBranchKeepsItsColours) {
                   "box": {"min": [0.52, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds", "falloff": 0.15})"});
   PlainReport report;
   const Scene plain = plain_scene(scene, {}, {}, report, {});
-  // As an export without a fit is judged, which has 43.5 dB over these four sides and 40.8 at the worst.
+  // Same views as for an export without a fit, which has 43.5 dB over all four and 40.8 dB in the worst.
   const Camera front = framing_of(scene, 1);
   double squares = 0, worst = 100;
   for (int side = 0; side < 4; ++side) {
@@ -128,7 +127,7 @@ TEST(Plain, ABentBranchKeepsItsColours) {
   EXPECT_GE(worst, 44);
 }
 
-// A leaf whose texels went to either of two turns was full of specks, and the report had only decibels.
+// If texels of a leaf use different branches, it is full of specks, which PSNR alone does not show.
 TEST(Plain, ABentBranchBesideAKettleHasFewSpecks) {
   REBAKE_ONLY_DEEP();
   const Scene scene =
@@ -140,12 +139,12 @@ TEST(Plain, ABentBranchBesideAKettleHasFewSpecks) {
   options.way = FuseWay::side_by_side;
   options.iterations = 2;
   const PlainReport report = plain_report(scene, options, 400);
-  // Without that, 37.8 and 0.0042.
+  // With mixed branches: 37.8 dB and a share of 0.0042.
   EXPECT_GE(report.whole.psnr_db, 39.2);
   EXPECT_LE(report.whole.far_off_share, 0.0032);
 }
 
-// Quick: where decoders fit side by side, nothing is trained for long.
+// Options for a fast export: decoders fit side by side, so training can be short.
 FuseOptions quick(Layout layout = Layout::split) {
   FuseOptions options;
   options.width = 40;
@@ -175,8 +174,8 @@ TEST(Plain, SeveralTextureSets) {
   EXPECT_GE(plain_report(two(both, made_object({.seed = 2})), quick(), 300).whole.psnr_db, 40);
 }
 
-// A square of two triangles, 2 wide, whose top-left texels show one colour of features: (152, 164, 175) by a decoder
-// that passes them through. `side` texels of texture, `opaque` of them a side; `sign` of the output weights.
+// A square of two triangles, 2 units wide, of one colour: (152, 164, 175) for `sign` 1, by a decoder that passes
+// features through. Of the `side`² texels, the top-left `opaque`² are opaque. `sign`: of the output weights.
 std::shared_ptr<const BakedObject> square(int side, int opaque, double sign) {
   Decoder decoder;
   decoder.weights0 = Eigen::MatrixXd::Zero(Decoder::inputs, 16);
@@ -201,7 +200,7 @@ std::shared_ptr<const BakedObject> square(int side, int opaque, double sign) {
   return object;
 }
 
-// An object of few texels may fill the picture: one decoder kept for the large one left the small one at 16.7 dB.
+// An object of few texels may fill the picture: the decoder of the larger object alone would show it at 16.7 dB.
 TEST(Plain, ObjectsOfFewTexelsKeepTheirColours) {
   for (const int large : is_deep ? std::vector{96, 272, 512} : std::vector{272}) {
     const auto small = square(64, 17, 1), other = square(1024, large, -1);
@@ -222,9 +221,10 @@ TEST(Plain, ObjectsOfFewTexelsKeepTheirColours) {
         scene, {}, options, []() -> Renderer& { return renderer(); }, [](const DeviceError&) { FAIL(); }, report, {});
     for (const FuseReport::Part& part : report.texels.parts)
       EXPECT_GE(part.errors.psnr_db, 60) << part.node << " beside " << large;
-    // From all sides, edges of one object over the other are mixed before the decoder instead of after it.
+    // From all sides, at edges of one object over the other, features are mixed before decoding instead of colours
+    // after it.
     for (const PlainReport::OfNode& of : report.nodes) EXPECT_GE(of.psnr_db, 40) << of.node << " beside " << large;
-    // From in front and from behind no such edge is seen.
+    // Views from the front and from the back contain no such edge.
     for (const double side : {1.0, -1.0}) {
       View view;
       view.width = view.height = 300;
@@ -241,7 +241,7 @@ TEST(Plain, ObjectsOfFewTexelsKeepTheirColours) {
   }
 }
 
-// A square with a random decoder of 4 to 8 neurons, whose texels show random features, each quarter its own.
+// A square with a random decoder of 4 to 8 neurons per layer and random features, different in each quarter.
 std::shared_ptr<const BakedObject> random_square(std::mt19937& random, int opaque) {
   auto object = std::make_shared<BakedObject>(*square(std::max(64, opaque), opaque, 1));
   const auto neurons = [&] { return 4 + static_cast<int>(random() % 5); };
@@ -263,8 +263,8 @@ std::shared_ptr<const BakedObject> random_square(std::mt19937& random, int opaqu
   return object;
 }
 
-// Whatever the two objects, and however few texels one of them has: where decoders side by side show both well, what is
-// chosen shows each of them as well.
+// For two objects with any ratio of texels: if decoders side by side reproduce both well, the chosen method must
+// reproduce each of them as well.
 TEST(Plain, ChoosesNothingWorseForEitherObjectThanSideBySide) {
   std::mt19937 random(11);
   int held = 0;
@@ -291,12 +291,12 @@ TEST(Plain, ChoosesNothingWorseForEitherObjectThanSideBySide) {
   EXPECT_GT(held, 0);
 }
 
-// By way of files, as people get it.
+// Plain export to files, as users run it.
 class PlainExport : public DocumentTest {
  protected:
   PlainExport() {
     session_.say = [this](const std::string& line) { said_ += line + "\n"; };
-    // Few texels, so that they are fitted in a moment.
+    // Few texels, for a fast fit.
     export_scene(scene_of(made_object({.columns = 4, .rows = 2})), path("sources/small"), {});
     act(session_.document, nlohmann::json{{"op", "import"}, {"path", path("sources/small").string()}, {"as", "ball"}});
     act(session_.document, R"({"op": "duplicate", "node": "ball", "translate": [2.5, 0, 0]})");
@@ -334,7 +334,7 @@ TEST_F(PlainExport, IsExactWhereOneDecoderIs) {
   EXPECT_TRUE(nlohmann::json::parse(read_file(path("report.json")))["exact"]);
 }
 
-// Turns that are too small to be seen are not taken for another orientation, nor do their triangles get lost.
+// Invisibly small rotations do not count as another orientation, and no triangle is lost.
 TEST_F(PlainExport, IsExactForTurnsThatNobodySees) {
   act(session_.document, R"({"op": "remove", "node": "ball.2"})");
   act(session_.document,
@@ -347,7 +347,7 @@ TEST_F(PlainExport, IsExactForTurnsThatNobodySees) {
 }
 
 TEST_F(PlainExport, StoppedOrRefusedLeavesWhatWasThere) {
-  action_.way = FuseWay::side_by_side;  // the quickest
+  action_.way = FuseWay::side_by_side;  // the fastest method
   run(session_, action_);
   const auto before = folder_bytes(path("plain"));
   std::atomic<bool> stop = false;
@@ -357,7 +357,7 @@ TEST_F(PlainExport, StoppedOrRefusedLeavesWhatWasThere) {
   EXPECT_THROW(run(session_, action_), Cancelled);
   session_.progress = {};
   {
-    // A disk that is full while the result is written.
+    // Simulates a disk that is full while the result is written.
     PowerLoss calls;
     calls.fail_at(8, ENOSPC);
     const ReplacedFileCalls full(calls);

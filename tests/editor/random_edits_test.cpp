@@ -1,4 +1,4 @@
-// Whatever edits follow each other, scenes stay sound, and undo leads back.
+// Random sequences of edits keep scenes valid, and undo leads back to the start.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 using RandomEdits = DocumentTest;
 
-// Every node's flags fit its triangles, ids and names are unique.
+// Checks that selections match their triangles, and that IDs and names are unique.
 void expect_sound(const Scene& scene) {
   std::set<std::uint64_t> ids;
   std::set<std::string> names;
@@ -127,7 +127,7 @@ TEST_F(RandomEdits, ThousandsOfRandomEditsKeepEveryInvariantAndUndoToTheStart) {
       act(document, line);
       ++done;
     } catch (const Error&) {
-      ++refused;  // nothing selected, nothing there: the document must stay as it is
+      ++refused;  // nothing selected or no such node: the document must not change
     }
     if (random() % 20 == 0) document.undo();
     if (random() % 40 == 0) document.redo();

@@ -1,5 +1,5 @@
-// Work is got back as far as there is any: damaged journals and projects, sources that were moved, files behind links,
-// and nothing removed before what replaces it is on the disk.
+// Recovery of work: damaged journals and projects, moved sources, files behind links. Files are removed only after
+// their replacement is on the disk.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ class Recovery : public ::testing::Test {
   fs::path path(const std::string& name) const { return folder_.path() / name; }
   static void write(const fs::path& to, const std::string& bytes) { std::ofstream(to, std::ios::binary) << bytes; }
 
-  // An import and `edits` backgrounds, kept in a journal.
+  // Writes a journal of an import and `edits` background edits; returns its bytes.
   std::string journal(int edits, const std::string& name = "journal") const {
     Document document;
     document.keep_journal(path(name));
@@ -59,7 +59,7 @@ TEST_F(Recovery, AFlippedByteAnywhereLeavesEverythingBeforeIt) {
         static_cast<std::size_t>(std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
     write(path("damaged"), damaged);
     const Document::Recovered recovered = Document::recover(path("damaged"));
-    // Lines 1 … hold edits; a first line that is damaged costs nothing. Only a lost last newline looks torn.
+    // Lines 1 … contain edits; damage to line 0 loses none. Only damage to the last newline looks like a torn write.
     EXPECT_EQ(recovered.edits, line == 0 ? 43 : line - 1) << "byte " << at;
     if (line > 0) {
       EXPECT_EQ(recovered.torn, at + 1 == bytes.size()) << at;
@@ -102,7 +102,7 @@ TEST_F(Recovery, AnAdjustedStepIsThereAsItWasOrAsItIsWhereverTheProgramEnds) {
     EXPECT_EQ(recovered.document.history().undo_count(), whole ? 2U : 3U);
     fs::remove(path("cut"));
   }
-  // What cannot be done in its place leaves it, and the journal.
+  // If the new step fails, the old one and the journal stay.
   StoreView nameless;
   EXPECT_THROW(document.adjust({nameless}), Error);
   EXPECT_EQ(document.scene().background, Vec3(0, 0, 0.75));
@@ -135,7 +135,7 @@ TEST_F(Recovery, MovedSourcesAreNamedAndFoundWhereTheyLieNow) {
     ASSERT_EQ(without.gone.size(), 1U);
     EXPECT_EQ(without.gone[0].path, path("sources/ball"));
   }
-  // By the folder itself, or one above it.
+  // Relinks the folder itself, or a folder above it.
   for (const auto& [from, to] : {std::pair("sources/ball", "elsewhere/ball"), std::pair("sources", "elsewhere")}) {
     const Document::Recovered found = Document::recover(path("journal"), {{path(from), path(to)}});
     EXPECT_EQ(found.edits, 4U) << from;
@@ -143,14 +143,14 @@ TEST_F(Recovery, MovedSourcesAreNamedAndFoundWhereTheyLieNow) {
     found.document.save(path("p.rebake"));
     EXPECT_EQ(Document::open(path("p.rebake")).history().undo_count(), 4U);
   }
-  // Of several the one that says most counts.
+  // The most specific of several links applies.
   EXPECT_EQ(
       Document::recover(path("journal"), {{path("."), path("nowhere")}, {path("sources/ball"), path("elsewhere/ball")}})
           .edits,
       4U);
   EXPECT_THROW(Document::recover(path("journal"), {{path("source"), path("elsewhere")}}), FieldError)
       << "a link that nothing uses is a slip";
-  // Another scene there is not taken for it.
+  // Another scene at the new path is not accepted.
   export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("other"), {});
   EXPECT_EQ(Document::recover(path("journal"), {{path("sources/ball"), path("other")}}).edits, 0U);
 }
@@ -172,7 +172,7 @@ TEST_F(Recovery, OnePathWithTwoContentsIsFoundInTwoPlaces) {
   EXPECT_NE(warnings[0].find("has changed since it was read"), std::string::npos) << warnings[0];
   document = Document();
   EXPECT_THROW(Document::open(path("p.rebake")), SourcesGone);
-  // The second is where it was, or moved too.
+  // The second source is at its old path, then moved too.
   Relinked links{{path("sources/ball"), path("first")}};
   EXPECT_EQ(Document::open(path("p.rebake"), links).history().undo_count(), 2U);
   fs::rename(path("sources/ball"), path("second"));
@@ -211,7 +211,7 @@ TEST_F(Recovery, AnImportThatWasUndoneNeedsNoSource) {
     EXPECT_EQ(recovered.document.scene().roots.size(), 1U);
     EXPECT_FALSE(recovered.document.keeps_journal()) << "it holds more than this history does";
   }
-  // One that is not undone is missed as before.
+  // An import that is not undone still needs its source.
   fs::rename(path("sources/ball"), path("ball"));
   EXPECT_FALSE(Document::recover(path("journal")).lost.empty());
 }
@@ -224,7 +224,7 @@ TEST_F(Recovery, ProjectsOpenUnderAnySpellingOfTheirFolder) {
   document.save(path("link/p.rebake"));
   for (const char* spelling : {"link/p.rebake", "real/projects/p.rebake", "link/.//p.rebake"})
     EXPECT_EQ(Document::open(path(spelling)).history().undo_count(), 3U) << spelling;
-  // And where the source was named through a link.
+  // Also if the source was imported through a link.
   fs::create_directory_symlink(path("sources"), path("linked"));
   Document other;
   Import import;
@@ -246,11 +246,11 @@ TEST_F(Recovery, NoFlippedBitOpensAsAnotherProject) {
     std::string damaged = bytes;
     const std::size_t at = random() % damaged.size();
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << random() % 8));
-    if (json::parse(damaged, nullptr, false) == meant) continue;  // a blank
+    if (json::parse(damaged, nullptr, false) == meant) continue;  // changed white space
     write(path("damaged.rebake"), damaged);
     EXPECT_THROW(Document::open(path("damaged.rebake")), Error) << "byte " << at << " of\n" << damaged;
   }
-  // Who changes it by hand says so.
+  // After a manual change, the checksum must be removed.
   json changed = meant;
   changed["edits"].back()["color"] = {1, 0, 0};
   write(path("hand.rebake"), changed.dump());
@@ -299,7 +299,7 @@ TEST_F(Recovery, EveryEditIsOnTheDiskBeforeItCounts) {
   EXPECT_EQ(document.history().undo_count(), 3U);
 }
 
-// Seen to pass before: each would have overwritten or soiled a source.
+// Each of these would overwrite or change a source.
 TEST_F(Recovery, SourcesAreProtectedAlsoWhileTheirImportIsUndone) {
   Document document;
   work(document, 0);
@@ -309,14 +309,14 @@ TEST_F(Recovery, SourcesAreProtectedAlsoWhileTheirImportIsUndone) {
   EXPECT_THROW(guard.check_folder(path("sources")), FileError);
   EXPECT_THROW(document.save(path("sources/ball/p.rebake")), FileError);
   EXPECT_THROW(document.keep_journal(path("sources/ball/journal")), FileError);
-  // Also when another edit has made the undone import impossible to bring back: a journal holds it still.
+  // Also if a new edit has dropped the undone import from the history, because the journal still contains it.
   Document went_on;
   work(went_on, 0);
   while (went_on.undo()) {
   }
   went_on.edit(Background{});
   EXPECT_THROW(went_on.sources().check_folder(path("sources/ball")), FileError);
-  // What lies beside a scene's files is none of its content.
+  // Other files in a scene folder are not part of its content.
   document.redo();
   document.save(path("p.rebake"));
   fs::create_directory(path("sources/ball/pictures"));

@@ -1,5 +1,5 @@
-// What was done gives the same bytes again, however it is done again: random sessions with turned, scaled, bent and
-// caged parts, repeated as a script, from the journal and from the project.
+// Replay gives the same bytes: random sessions of transforms, bends, twists and cages, repeated as a script, from the
+// journal and from the project.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ std::map<std::string, std::string> exported(const Scene& scene) {
   return folder_bytes(out.path() / "out");
 }
 
-// An edit as the window makes it: numbers straight from a drag.
+// A random edit with numbers of full precision, as drags in the window make them.
 Edit random_edit(std::mt19937& random, const Scene& scene) {
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<NodeId> objects;
@@ -126,7 +126,7 @@ TEST(Replay, ScriptJournalAndProjectGiveTheSessionsOwnBytes) {
           session.edit(random_edit(random, session.scene()));
           ++done;
         } catch (const Error&) {
-          ++done;  // nothing selected yet, or bent beyond what a cage holds
+          ++done;  // nothing selected yet, or too strongly deformed for a cage
         }
       }
       ASSERT_GT(session.document.history().undo_count(), 10U);
@@ -142,7 +142,7 @@ TEST(Replay, ScriptJournalAndProjectGiveTheSessionsOwnBytes) {
   }
 }
 
-// Accepted now means readable for ever: what no file can hold is refused before it is done.
+// An edit that no file can store, such as one with NaN, is rejected before it is applied.
 TEST(Replay, WhatCannotBeReadBackIsNotDone) {
   const TemporaryFolder folder;
   export_scene(scene_of(made_object({.columns = 4, .rows = 2})), folder.path() / "ball", {});

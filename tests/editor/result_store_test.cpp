@@ -1,4 +1,4 @@
-// Expensive results are found again, whatever happens to the folder that they lie in.
+// ResultStore, the cache of expensive results on disk: lookup, damage, eviction, unwritable folders.
 #include "editor/document/result_store.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(ResultStore, AFolderThatCannotBeWrittenIsNoTrouble) {
   EXPECT_FALSE(store.find("k"));
 }
 
-// A wrap is made once: replay, opening and undo find it, and bytes are those of a run without a store.
+// A wrap is computed once: replay, opening and redo find it, with the same bytes as without a store.
 class KeptWraps : public DocumentTest {
  protected:
   ~KeptWraps() override { keep_results_in(nullptr); }
@@ -109,13 +109,13 @@ TEST_F(KeptWraps, AreFoundByReplayOpeningAndUndo) {
   first.save(path("p.rebake"));
   EXPECT_EQ(exported(Document::open(path("p.rebake")).scene()), bytes);
   EXPECT_EQ(store->found(), 1U);
-  Document again({}, 1);  // keeps no scenes: redo computes
+  Document again({}, 1);  // caches no scenes, so that redo recomputes
   bend(again);
   again.undo();
   again.redo();
   EXPECT_EQ(exported(again.scene()), bytes);
   EXPECT_GE(store->found(), 3U);
-  // Another wrap is another result; what is no cage is made again.
+  // A stored result that is no cage is computed again.
   const auto file = fs::directory_iterator(path("results"))->path();
   const std::string key = file.stem().string();
   store->keep(key, "no cage");

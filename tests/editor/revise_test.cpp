@@ -1,4 +1,4 @@
-// Steps that revise the step before: undo, redo, journals and projects keep every one of them.
+// Document::revise(), steps that refine the step before: undo, redo, journals and projects keep each of them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TEST_F(Revise, StartsFromTheSceneBeforeTheStepThatItRevises) {
 }
 
 TEST_F(Revise, RandomStepsSurviveUndoJournalsProjectsAndASmallBudget) {
-  // Against a list of scenes, for the same steps.
+  // Compared with a list of exported scenes for the same steps.
   std::mt19937 random(7);
   for (int round = 0; round < cases(3, 30); ++round) {
     Document document({}, round % 2 == 0 ? 1 : History::default_budget);

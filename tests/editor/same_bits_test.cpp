@@ -1,5 +1,5 @@
-// The same script gives the same bytes whatever the processor: with the C library's code for processors without fused
-// multiply-adds, and at every vector width.
+// A script gives the same bytes on every processor: with the C library's code without fused multiply-adds, and at every
+// vector width.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Deforming edits, each of which once had, or could have, a function of the C library in it.
+// Deforming edits, whose formulas contain elementary functions.
 constexpr const char* deforming_script = R"(
 {"op": "import", "path": "{ficus}", "as": "ficus"}
 {"op": "bend", "node": "ficus", "degrees": 50, "axis": [1, 0.3, 0.2], "direction": [0, 1, 0]}

@@ -1,4 +1,4 @@
-// Scripts: every edit on a made scene, errors that name line and field, the same bytes at every replay.
+// Scripts: edits on a generated scene, errors that name line and field, the same bytes at every replay.
 #include "editor/script/script.h"
 #include "editor/commands/session.h"
 
@@ -72,7 +72,7 @@ TEST_F(Script, SelectInEveryFrameAndMode) {
   run(R"({"op": "select", "node": "ball", "none": true})");
   EXPECT_EQ(node("ball")->selection, nullptr);
   run(R"({"op": "select", "node": "ball", "connected": [10, 2, 0]})");
-  EXPECT_EQ(selected("ball"), 256U);  // the sphere is in one piece
+  EXPECT_EQ(selected("ball"), 256U);  // the sphere is one connected component
 }
 
 TEST_F(Script, DeleteSeparateGroupReorderRename) {
@@ -99,7 +99,7 @@ TEST_F(Script, DeleteSeparateGroupReorderRename) {
   run(R"({"op": "select", "node": "ball", "all": true})"
       "\n"
       R"({"op": "delete"})");
-  EXPECT_EQ(node("ball"), nullptr);  // nothing was left of it
+  EXPECT_EQ(node("ball"), nullptr);  // no triangle was left
 }
 
 TEST_F(Script, ThrownEditLeavesTheSceneAsItWas) {
@@ -146,7 +146,7 @@ TEST_F(Script, ANodesPlaceIsSetByNumbersWithoutShear) {
   const Mat3 turn = Eigen::AngleAxisd(EIGEN_PI / 6, Vec3::UnitZ()).toRotationMatrix();
   EXPECT_LT((node("ball")->to_parent.linear() - turn * Vec3(5, 1, 0.5).asDiagonal()).norm(), 1e-14)
       << "along its own axes";
-  // What sheared it stays while it is moved and turned, and goes with a size of its own.
+  // A shear stays when the position changes, and goes when a scale is set.
   run(R"({"op": "transform", "node": "ball", "scale": [1, 3, 1]})");
   EXPECT_TRUE(place().sheared);
   const Mat3 sheared = node("ball")->to_parent.linear();
@@ -154,7 +154,7 @@ TEST_F(Script, ANodesPlaceIsSetByNumbersWithoutShear) {
   EXPECT_EQ(node("ball")->to_parent.linear(), sheared);
   run(R"({"op": "place", "node": "ball", "scale": [1, 1, 1]})");
   EXPECT_TRUE(node("ball")->to_parent.linear().isUnitary(1e-14));
-  // A mirrored node has a place too.
+  // A mirrored node has a placement too.
   run(R"({"op": "place", "node": "ball", "scale": [-2, 1, 1], "rotation": [1, 0, 0, 0]})");
   EXPECT_EQ(Vec3(place().scale), Vec3(-2, 1, 1));
   expect_error(R"({"op": "place", "node": "ball"})", "at least one of position, rotation and scale");
@@ -162,7 +162,7 @@ TEST_F(Script, ANodesPlaceIsSetByNumbersWithoutShear) {
 }
 
 TEST_F(Script, ANodeFallsOntoWhatIsBelowAndOntoTheGround) {
-  // Spheres of radius 1 with holes are in the way of each other where they are opaque.
+  // Spheres of radius 1 with holes collide only where they are opaque.
   run(import + R"({"op": "duplicate", "node": "ball", "as": "upper"}
 {"op": "place", "node": "ball", "position": [0, 3, 0]}
 {"op": "place", "node": "upper", "position": [0.1, 9, 0]}
@@ -173,7 +173,7 @@ TEST_F(Script, ANodeFallsOntoWhatIsBelowAndOntoTheGround) {
   run(R"({"op": "drop", "node": "upper"})");
   const double gap = low("upper") - 2;
   EXPECT_LT(low("upper"), before - 4);
-  // Middles are 2 apart along a line that leans by 0.1, but for the balls' flat faces.
+  // The centres are 2 apart along a line that leans by 0.1, up to the flat faces of the balls.
   EXPECT_LT(std::abs(gap), 0.15);
   const Scene once = session.scene();
   run(R"({"op": "drop", "node": "upper"})");
@@ -188,7 +188,8 @@ TEST_F(Script, ANodeFallsOntoWhatIsBelowAndOntoTheGround) {
 }
 
 TEST_F(Script, ANodeThatIntersectsOthersIsLiftedOutBeforeItFalls) {
-  // At random offsets into a ball of radius 1 whose top is at 2: afterwards it rests on it or beside it, never inside.
+  // From random positions inside a ball of radius 1 with its top at y = 2: afterwards the node rests on the ball, not
+  // in it.
   run(import + R"({"op": "duplicate", "node": "ball", "as": "upper"}
 {"op": "place", "node": "ball", "position": [0, 1, 0]})");
   std::mt19937 random(4);
@@ -207,7 +208,7 @@ TEST_F(Script, ANodeThatIntersectsOthersIsLiftedOutBeforeItFalls) {
   }
 }
 
-// A box of that size about the origin.
+// A box of the given size, centred at the origin.
 std::shared_ptr<const BakedObject> box_object(const Vec3& size) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 2, .rows = 2}));
   const Soup quad = object->sets[0].soup;
@@ -243,7 +244,7 @@ TEST_F(Script, CrossedBoxesMeetWhereNoCornerIsAboveAFace) {
   run(R"({"op": "import", "path": "{here}/sleeper"}
 {"op": "ground", "foot": true}
 {"op": "import", "path": "{here}/beam"})");
-  for (const double y : {7.0, 0.2}) {  // from above, and crossing it
+  for (const double y : {7.0, 0.2}) {  // from above, and intersecting the sleeper
     run(fmt::format(R"({{"op": "place", "node": "beam", "position": [0.1, {}, 0.2]}})", y) + "\n" +
         R"({"op": "drop", "node": "beam"})");
     EXPECT_NEAR(find_placed(session.scene(), node("beam")->id)->to_world.translation().y(), 1, 1e-5) << y;

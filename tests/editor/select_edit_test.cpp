@@ -1,4 +1,4 @@
-// Selections as edits make them: which triangle a point means, how modes join, and several objects at once.
+// Selection edits: the triangle nearest to a point, modes, and several objects at once.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,7 +15,8 @@
 namespace rebake::test {
 namespace {
 
-// By the triangle itself: a small one close by has a nearer centre than the large one that the point lies on.
+// Distance is measured to triangles, not to their centres: points lie on the large one, near the centre of the small
+// one.
 TEST(SelectEdit, NearestTriangleIsNotTheOneWithTheNearestCentre) {
   auto object = std::make_shared<BakedObject>(*made_object());
   const std::vector<Vec3> positions{{-15, 0, -15}, {15, 0, -15}, {0, 0, 15}, {4, 0.6, 4}, {5, 0.6, 4}, {4, 0.6, 5}};
@@ -37,7 +38,7 @@ TEST(SelectEdit, NearestTriangleIsNotTheOneWithTheNearestCentre) {
   }
 }
 
-// Sets and triangles that are too far away are skipped, which must not change what is found.
+// Texture sets and triangles that are too far away are skipped; the result equals a search through all of them.
 TEST(SelectEdit, NearestTriangleIsThatOfASearchThroughAll) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 12, .rows = 6}));
   for (unsigned seed = 2; seed < 5; ++seed) {
@@ -103,7 +104,7 @@ TEST(SelectEdit, ATextureSetThatOnlySomeObjectsHave) {
   EXPECT_THROW(set(2), FieldError);
 }
 
-// Commands that start from the present selection took a group for a node without one.
+// On a group, commands that start from the present selection use all nodes in it.
 TEST(SelectEdit, AGroupIsAllThatIsInIt) {
   Scene scene = scene_of(made_object(), "ball");
   const auto act = [&](const char* line) {
@@ -127,7 +128,7 @@ TEST(SelectEdit, AGroupIsAllThatIsInIt) {
 
 TEST(SelectEdit, PlanesAreNinetyDegreesApartAtMost) {
   auto object = std::make_shared<BakedObject>(*made_object());
-  // In the planes xy, yz and xz, and without area.
+  // Triangles in the planes xy, yz and xz, and a degenerate one.
   const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   object->sets = {{Soup(positions, std::vector<Vec2>(4, Vec2(0.5, 0.5)),
                         {Face{0, 1, 2}, Face{0, 2, 3}, Face{0, 3, 1}, Face{1, 1, 1}}),

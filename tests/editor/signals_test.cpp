@@ -1,4 +1,4 @@
-// Signals end the program within a second, wherever it is, and leave files whole.
+// Signals end the program within a second at any time, and leave files complete.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class Signals : public ::testing::Test {
   }
   fs::path path(const std::string& name) const { return folder_.path() / name; }
 
-  // Runs a script, sends a signal once `ready` holds or after two seconds, and returns how long the program then lived.
+  // Runs a script and sends a signal once `ready` holds, or after two seconds. Returns how long the program then lived.
   template <class Ready>
   std::chrono::duration<double> lives_after(int signal, const std::string& script, Ready ready) {
     write_file_atomically(path("s.jsonl"), script, {});
@@ -57,14 +57,14 @@ class Signals : public ::testing::Test {
 
   TemporaryFolder folder_;
   std::map<std::string, std::string> before_;
-  bool ended_by_signal_ = false;  ///< the last run; else it was done before
+  bool ended_by_signal_ = false;  ///< whether the signal ended the last run, which otherwise had finished before
 };
 
-// A second, and what a busy machine takes to schedule the end.
+// Seconds until the end: one, plus the scheduling delays of a busy machine.
 constexpr double soon = 1.8;
 
 TEST_F(Signals, EndWorkThatCannotBeCancelled) {
-  // CGAL's alpha wrap asks nobody while it works.
+  // CGAL's alpha wrap does not check for cancellation.
   const std::string wrap =
       R"({"op": "cage", "node": "ball", "wrap": 0.008, "moves": [{"points": [0], "translate": [1, 0, 0]}]})";
   for (const int signal : {SIGTERM, SIGHUP}) {
@@ -83,7 +83,7 @@ TEST_F(Signals, LeaveExportsWholeAndNoTemporaryFiles) {
   lives_after(SIGCONT, import() + line, [] { return true; });
   const auto exported = folder_bytes(path("out"));
   ASSERT_TRUE(exported != before_);
-  // Signals at ever later moments of the writing, so that some come before and some after the folder is in place.
+  // Signals at increasing delays after writing has begun: some before, some after the folder is in place.
   for (int k = 0; k < cases(6, 40); ++k) {
     export_scene(scene_of(made_object({.seed = 2})), path("out"), {});
     const auto ready = [&] {

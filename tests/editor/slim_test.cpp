@@ -1,4 +1,4 @@
-// Slimming takes what nobody sees and nothing else: pictures from where eyes may be stay as they are.
+// Slimming removes only invisible triangles: pictures from all permitted eye positions stay the same.
 #include "editor/edits/shape/slim.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 namespace rebake::test {
 namespace {
 
-// A sphere without holes within another; `opening` leaves out so many triangles of the outer one.
+// A closed sphere inside another one, of which `opening` triangles are missing.
 std::shared_ptr<const BakedObject> nested(std::size_t opening = 0) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 32, .rows = 16, .holes = false}));
   const TextureSet inner = made_object({.columns = 16, .rows = 8, .seed = 1, .radius = 0.5, .holes = false})->sets[0];
@@ -44,14 +44,14 @@ View view_from(const Vec3& eye) {
   return view;
 }
 
-// Pixels that differ between two pictures of 160².
+// Number of pixels that differ between two pictures of 160².
 std::size_t differing(const Image& a, const Image& b) {
   std::size_t pixels = 0;
   for (std::size_t k = 0; k < a.rgb.size(); k += 3) pixels += std::equal(&a.rgb[k], &a.rgb[k] + 3, &b.rgb[k]) ? 0 : 1;
   return pixels;
 }
 
-// Of 25,600: where a silhouette's near and far triangles meet, rounding decides which one a sample shows.
+// Of 25,600 pixels: at silhouettes, rounding decides whether a sample shows the near or the far triangle.
 constexpr std::size_t most_differing = 4;
 
 std::string joined(const Report& report) {
@@ -97,7 +97,7 @@ TEST(Slim, KeepsWhatASmallOpeningShows) {
   edit.rays = 4096;
   const Scene scene = scene_of(object);
   const Scene slim = apply(scene, Edit(edit)).scene;
-  // Straight through the opening.
+  // A view straight through the opening.
   const auto whole = nested();
   const Soup& soup = whole->sets[0].soup;
   const Vec3 middle = soup.positions()[soup.faces()[outer / 2][0]].normalized();
@@ -156,7 +156,7 @@ TEST(Slim, LosesAsMuchAsItMay) {
   }
 }
 
-// A sphere all of whose patches show the first one's texels, but for a step up or down.
+// A sphere on which each patch has the texels of the first one, with one byte per texel changed by ±1.
 std::shared_ptr<const BakedObject> alike_sphere() {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 32, .rows = 16, .holes = false}));
   TextureSet& set = object->sets[0];
@@ -193,13 +193,13 @@ TEST(Slim, PatchesThatLookAlikeShareTexels) {
         compare(renderer.render(scene, view_from(eye)), renderer.render(slim.scene, view_from(eye)), 2);
     EXPECT_GE(d.psnr_db, 39);
   }
-  // Of patches that differ nothing is shared.
+  // Patches that differ do not share texels.
   const Scene other = scene_of(made_object({.columns = 16, .rows = 8, .holes = false}));
   edit.psnr = 60;
   EXPECT_EQ(joined(apply(other, Edit(edit)).report).find("look alike"), std::string::npos);
 }
 
-// Where two surfaces show the same texels, light falls on each of them.
+// Surfaces that share texels get light nodes of their own.
 TEST(Slim, SurfacesThatShareTexelsLieInTheirOwnLight) {
   Slim edit;
   edit.psnr = 40;
@@ -229,7 +229,7 @@ TEST(Slim, NodesThatShareAnObjectGoOnSharingIt) {
   scene = with_added(scene, copy, NodeId::none, 9);
   const Scene slim = apply(scene, Edit(Slim{})).scene;
   EXPECT_EQ(slim.roots[0]->object, slim.roots[1]->object);
-  // Eyes see the front of one and the back of the other: of the shared object both stay.
+  // The eyes see the front of one node and the back of the other, so both sides of the shared object stay.
   Slim front;
   front.eyes = BoxRegion{{-0.1, -0.1, 3}, {0.1, 0.1, 3.1}};
   front.rays = 512;
@@ -239,7 +239,7 @@ TEST(Slim, NodesThatShareAnObjectGoOnSharingIt) {
   EXPECT_GT(both.roots[0]->object->triangle_count(), apply(scene, Edit(one)).scene.roots[0]->object->triangle_count());
 }
 
-// Of two equal triangles one stays, whichever of them rays found.
+// One of two equal triangles stays, whichever of them rays hit.
 TEST(Slim, OfTwinsOneStays) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 32, .rows = 16, .holes = false}));
   const std::size_t single = object->triangle_count();
@@ -284,7 +284,7 @@ TEST(Slim, SaysWhatIsWrong) {
   edit.views = {"nowhere"};
   EXPECT_NE(error_of(edit).find("nowhere"), std::string::npos);
   edit = {};
-  edit.eyes = BoxRegion{{0, 0, 0}, {0, 0, 0}};  // in the middle of the inner sphere: only that is seen
+  edit.eyes = BoxRegion{{0, 0, 0}, {0, 0, 0}};  // at the centre of the inner sphere, which alone is visible
   EXPECT_EQ(error_of(edit), "");
   edit.eyes = BoxRegion{{1, 0, 0}, {0, 0, 0}};
   EXPECT_NE(error_of(edit).find("eyes"), std::string::npos);

@@ -1,4 +1,4 @@
-// What the history calls its steps.
+// Titles of the steps in the history.
 #include "editor/gui/window/titles.h"
 
 #include "tests/support/document_fixture.h"

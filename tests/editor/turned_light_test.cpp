@@ -1,4 +1,4 @@
-// Light that goes along with what is dragged: turned with its surface, and as was learnt of such poses.
+// Light during a drag: transfer rotated with its surface, or predicted by a model trained on such poses.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -40,13 +40,13 @@ TEST(LightEdit, GoesAlongWithTrianglesThatMove) {
     line["box"] = box;
     return after(rest, {line});
   };
-  // The box alone is bent: its vertices are split from what stays, and the map is of the new ones.
+  // Only the box is bent: its vertices are split from the rest, and the map belongs to the new ones.
   const Scene bent = turned_by({{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}, 60);
   const auto turned = turned_lighting(rest, start, bent);
   ASSERT_TRUE(turned);
   EXPECT_NE(turned->map_of(node, 0, bent.roots.front()->object->sets.front()), nullptr);
   EXPECT_TRUE(runs(*turned, "self-shadow table"));
-  // Where all turns together, it is what tracing says.
+  // If everything rotates together, the result is that of tracing.
   const Scene tilted = after(rest, {{{"op", "select"}, {"box", {{"min", {-9, -9, -9}}, {"max", {9, 9, 9}}}}},
                                     {{"op", "transform"},
                                      {"node", "table"},
@@ -62,14 +62,14 @@ TEST(LightEdit, GoesAlongWithTrianglesThatMove) {
   }
   EXPECT_GT(std::sqrt(all / static_cast<double>(light.size())), 0.1);
   EXPECT_LT(std::sqrt(off / all), 0.1) << "64 rays of the transfer are 4 % off";
-  // Where more than triangles moved, it says nothing.
+  // If more than triangles changed, nothing is returned.
   EXPECT_FALSE(turned_lighting(rest, start, after(rest, {{{"op", "delete"}}})));
   EXPECT_FALSE(
       turned_lighting(rest, start, after(rest, {{{"op", "transform"}, {"node", "table"}, {"translate", {1, 0, 0}}}})));
   EXPECT_FALSE(turned_lighting(rest, lighting_of(rest), bent)) << "nobody asked for this node";
 }
 
-// With what was learnt of a node, which is about to be dragged.
+// Options for a node that is about to be dragged, with the trained models in `store`.
 LightingOptions going_along(NodeId node, Results& store) {
   LightingOptions options;
   options.results = &store;
@@ -78,7 +78,7 @@ LightingOptions going_along(NodeId node, Results& store) {
 }
 
 TEST(LightEdit, WhatWasLearntIsUsedWithinItsRange) {
-  // The box is lifted: nothing turns, but the ground below sees the sky again.
+  // The box is lifted: nothing rotates, but the ground below is unoccluded again.
   Scene rest = with_light(table());
   const json box = {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}};
   rest = apply(rest, read_edit(box, rest)).scene;
@@ -116,7 +116,7 @@ TEST(LightEdit, WhatWasLearntIsUsedWithinItsRange) {
   EXPECT_NE(why(far).find("times as far out"), std::string::npos) << why(far);
   EXPECT_EQ(learnt->light_on(*far.roots.front()->object), plain->light_on(*far.roots.front()->object));
 
-  // As bytes it is the same; damaged or of something else it is refused.
+  // Models round-trip through bytes; damaged or foreign bytes are rejected.
   const TransferModel read = transfer_model_of(bytes);
   EXPECT_EQ(bytes_of(read), bytes);
   for (const std::size_t size : {std::size_t{0}, std::size_t{40}, bytes.size() / 2, bytes.size() - 1})
@@ -125,19 +125,19 @@ TEST(LightEdit, WhatWasLearntIsUsedWithinItsRange) {
   damaged[bytes.size() / 2] ^= 1;
   EXPECT_THROW(transfer_model_of(damaged), Error);
   EXPECT_THROW(transfer_model_of("P6 1 1 255\n"), Error);
-  // Of another object it is not even asked for.
+  // The model is not used for another object.
   const Scene other = with_light(scene_of(
       lit_object(box_quads({0, 0, 0}, {1, 1, 1}), [](const Vec3&) -> Radiance { return Radiance::Constant(0.4); }),
       "other"));
   LightingOptions of_other = options;
   of_other.turning = {other.roots.front()->id};
   EXPECT_EQ(lighting_of(other, of_other).turning.begin()->second->start().model, nullptr);
-  // And not learnt from an object that edits moved.
+  // Models are not trained on an object that edits have moved.
   EXPECT_THROW(learnt_model(*turning_now(moved), [&](int) { return moved.roots.front()->object; }, {.poses = 8}),
                Error);
 }
 
-// Deep transfer in the product's way: learnt from poses, kept as bytes, used in a drag.
+// A U-Net from training to use: trained on poses, stored as bytes, used in a drag.
 TEST(LightEdit, ANetLearnsAnObjectsPoses) {
   REBAKE_ONLY_DEEP();
   Scene rest = with_light(table());

@@ -1,5 +1,4 @@
-// The window's worker: jobs in order, copies out, cancelling, and what is told of jobs that were not done; its
-// previews.
+// The window's Worker: jobs in order, snapshots, cancellation, callbacks for failed jobs. Its Previews.
 #include "editor/gui/window/worker.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +70,7 @@ TEST_F(WorkerTest, CancelStopsWhatRunsAndForgetsWhatWaits) {
   EXPECT_NE(messages[0].text.find("stopped"), std::string::npos);
 }
 
-// A preview is shown until its job has ended: whoever shows one must hear of every end.
+// A preview is shown until its job has ended, so its owner must hear of every end.
 TEST_F(WorkerTest, WhoeverAskedHearsOfJobsThatFailedOrWereForgotten) {
   int done = 0, otherwise = 0;
   const auto start = [&](const char* title, Worker::Job job) {
@@ -137,7 +136,7 @@ TEST(Previews, ABetterOneFollowsWhileNothingElseIsAskedFor) {
   refining = false;
   while (previews.busy()) std::this_thread::yield();
   EXPECT_EQ(previews.take()->scene.next_id, 2U);
-  // What is asked for meanwhile stops it.
+  // A new request cancels the refinement.
   previews.request(
       {}, [&](const Progress&) { return numbered(3); },
       [&](const Progress& progress) {

@@ -1,4 +1,4 @@
-// The readers on the corpus that fuzzing left behind: no crash, no hang, only errors of ours.
+// Runs the readers on the fuzzing corpus: no crash, no hang, no exception except rebake::Error.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -17,7 +17,7 @@ namespace rebake::fuzz {
 
 namespace {
 
-// A scene that edits can work on.
+// A small scene for edits.
 Scene small_scene() {
   auto object = std::make_shared<BakedObject>();
   object->sets.push_back(
@@ -30,7 +30,7 @@ Scene small_scene() {
   return with_added({}, node, NodeId::none, 0);
 }
 
-// With a checksum that fits, else nothing but that would be tried.
+// A side file with a correct checksum, so that fuzzing reaches the code behind it.
 std::string side_file(std::string_view mark, std::string_view counted) {
   const std::uint64_t hash = content_hash(counted);
   std::string file(mark);
@@ -86,7 +86,7 @@ void read_script_bytes(std::string_view bytes) {
     try {
       const auto line = read_line(bytes.substr(begin, end - begin));
       const ScriptCommand command = read_command(with_variables(line, {{"name", "a"}}), scene);
-      // Files stay out of it: imports and actions are read, not carried out.
+      // No access to files: imports and actions are parsed, but not executed.
       if (const Edit* edit = std::get_if<Edit>(&command); edit != nullptr && !edit->is<Import>())
         scene = rebake::apply(scene, *edit).scene;
     } catch (const Error&) {

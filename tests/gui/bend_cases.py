@@ -1,4 +1,4 @@
-"""Bending: by a cage, by handles, along a spine."""
+"""Deforming: cages, handles, bends along a spine; ground and drop."""
 
 from window_case import WindowCase, FICUS, KETTLE
 
@@ -27,26 +27,26 @@ class BendTest(WindowCase):
         self.assertEqual(editor.state()["status"], "Moved 1 cage point of ficus")
         second = editor.items("cage")
         self.assertNotEqual(first, second)
-        # Undo and redo of the document go through the releases.
+        # Undo and redo go through the individual drags.
         editor.key("ctrl+z")
         self.assertEqual(editor.items("cage"), first)
         self.assertEqual(editor.state()["steps"], 2)
         editor.key("ctrl+z")
         self.assertEqual(editor.items("cage"), points)
         self.assertEqual(editor.state()["steps"], 1)
-        # One undo too many loses nothing: redo brings every release back, and the cage.
+        # Undoing further, even the import, loses nothing: redo restores every drag and the cage.
         editor.key("ctrl+z")
         self.assertEqual(editor.state()["steps"], 0)
         editor.key("ctrl+y", "ctrl+y", "ctrl+y")
         self.assertEqual(editor.state()["steps"], 3)
         self.assertEqual(editor.items("cage"), second)
-        # Its border stays adjustable, and the cage with it.
+        # The soft border can still be adjusted, and the cage stays.
         editor.click("adjust/Soft border/value")
         editor.type("0.1")
         editor.key("Return")
         self.assertEqual(editor.last_edit()["falloff"], 0.1)
         self.assertEqual(editor.items("cage"), second)
-        # However the tool is left, what was done stays; Escape takes back the present drag only.
+        # Leaving the tool keeps all steps; Escape cancels the current drag only.
         x, y, _, _ = min(editor.items("cage").values(), key=lambda box: box[1])
         editor.drag([(round(x), round(y)), (round(x) + 60, round(y))], meanwhile=lambda: editor.key("Escape"))
         self.assertEqual(editor.items("cage"), second)
@@ -63,7 +63,7 @@ class BendTest(WindowCase):
         rest = editor.items("cage")
 
         def moves():
-            """Of each point, by its number: how far it was moved."""
+            """Translation of each moved cage point, by its number."""
             found = {}
             for move in editor.last_edit()["moves"]:
                 for part in move["points"]:
@@ -72,7 +72,7 @@ class BendTest(WindowCase):
                         found[number] = move["translate"]
             return found
 
-        # A lasso around the upper row of points, seen from the front, and then a turn by one of them.
+        # A lasso around the top row of points in the front view, then a rotation by dragging one of them.
         top = min(box[1] for box in rest.values())
         row = [box for box in rest.values() if box[1] < top + 40]
         left, right = min(box[0] for box in row) - 25, max(box[0] for box in row) + 25
@@ -87,7 +87,7 @@ class BendTest(WindowCase):
         middle = [sum(move[axis] for move in turned.values()) / len(turned) for axis in range(3)]
         self.assertLess(max(map(abs, middle)), 1e-9, "they turn about their own middle")
         editor.key("ctrl+z")
-        # One point, both sides.
+        # One point with symmetry in X moves both sides.
         editor.click("options/Move")
         editor.click("options/X")
         editor.click(*corners[2])
@@ -103,7 +103,7 @@ class BendTest(WindowCase):
         editor.key("k")
         editor.click(*editor.in_viewport(0.45, 0.72))  # the pot
         editor.click("options/Pull")
-        editor.click(*editor.in_viewport(0.70, 0.33))  # the branch's end
+        editor.click(*editor.in_viewport(0.70, 0.33))  # the tip of the branch
         self.assertEqual(len(editor.items("handle")), 2)
         before = self.leaves()
         x, y = editor.where("handle/1")
@@ -112,23 +112,23 @@ class BendTest(WindowCase):
         edit = editor.last_edit()
         self.assertEqual([len(edit["moves"]), len(edit["fixed"])], [1, 1])
         self.assertGreater(edit["moves"][0]["translate"][1], 0.1)
-        # Again: the same step.
+        # Another drag revises the deformation.
         x, y = editor.where("handle/1")
         editor.drag([(x, y), (x, y - 20)])
         self.assertEqual(editor.state()["steps"], 3)
         self.assertGreater(editor.last_edit()["moves"][0]["translate"][1], edit["moves"][0]["translate"][1])
-        # Escape takes back the present drag only.
+        # Escape cancels the current drag only.
         x, y = editor.where("handle/1")
         editor.drag([(x, y), (x + 50, y)], meanwhile=lambda: editor.key("Escape"))
         self.assertEqual(editor.where("handle/1"), (x, y))
-        # Another point set on what is bent holds that, where it is.
+        # A point added to the deformed surface holds it where it is.
         editor.click("options/Hold")
         editor.click(*editor.in_viewport(0.37, 0.28))
         self.assertEqual(len(editor.items("handle")), 3)
         x, y = editor.where("handle/1")
         editor.drag([(x, y), (x, y + 10)])
         self.assertEqual(len(editor.last_edit()["moves"]) + len(editor.last_edit()["fixed"]), 3)
-        # Undo takes the releases back one by one; redo brings the points back.
+        # Undo reverts the drags one by one; redo restores the points.
         third = editor.items("handle")
         editor.key("ctrl+z", "ctrl+z", "ctrl+z")
         self.assertEqual(editor.state()["steps"], 1)
@@ -151,14 +151,14 @@ class BendTest(WindowCase):
         editor.key("End")
         self.assertEqual(editor.last_edit()["op"], "drop")
         self.assertEqual(editor.state()["status"], "Dropped kettle")
-        # It stands: nothing moves, nothing is recorded, and the status says why.
+        # The kettle is supported already: nothing moves or is recorded, and the status says why.
         steps, ops = editor.state()["steps"], editor.ops()
         editor.key("End")
         self.assertEqual((editor.state()["steps"], editor.ops()), (steps, ops))
         self.assertIn("stands on a surface or on the ground already", editor.state()["status"])
 
     def test_the_ground_is_where_the_grid_is(self):
-        """The first object stands on the ground; what is dropped beside it stands as low."""
+        """The first object stands on the ground; an object dropped beside it stands at the same height."""
         editor = self.open(FICUS, KETTLE)
         editor.until_ops("import", "import")
         self.assertTrue(editor.journal()[0]["edit"]["ground"])
@@ -204,7 +204,7 @@ class BendTest(WindowCase):
         picture = editor.viewport()
         held = (picture[..., 0] > 200) & (picture[..., 1] < 110) & (picture[..., 2] < 80)
         left = editor.state()["items"]["viewport"][0]
-        held[:, :150] = held[:, -150:] = False  # the axes' ball
+        held[:, :150] = held[:, -150:] = False  # the axis gizmo
         self.assertGreater(held.sum(), 200, "what the soft border holds is shaded")
         self.assertLess(abs(held.nonzero()[1].mean() + left - stem[0]), 0.5 * abs(x - stem[0]), "near the stem")
         before = self.leaves()
@@ -216,14 +216,14 @@ class BendTest(WindowCase):
         self.assertGreater(edit["axis"][0], 0.7)
         self.assertGreater(abs(edit["axis"][1]) + abs(edit["axis"][2]), 0.1, "along the branch, not along a world axis")
         self.assertGreater(edit["falloff"], 0, "no rip at the border")
-        # What was done last stays adjustable, without another step.
+        # The last step can be adjusted without adding a step.
         editor.click("adjust/Angle/value")
         editor.type("30")
         editor.key("Return")
         editor.until_ops("import", "select_picture", "bend", "adjust", "bend")
         self.assertEqual(editor.last_edit()["degrees"], 30)
         self.assertEqual(editor.state()["steps"], 3)
-        # A second bend goes on from the first's axis.
+        # A second bend keeps the axis of the first.
         x, y = editor.where("bend/tip")
         editor.drag([(x, y), (x - 10, y + 50)])
         self.assertEqual(editor.last_edit()["axis"], edit["axis"])
@@ -245,7 +245,7 @@ class BendTest(WindowCase):
         self.assertNotIn("origin", {name for name, value in edit.items() if value is not None})
         tip = editor.where("bend/tip")
         self.assertLess(tip[1], y - 20, "the handle went with it")
-        # A second one starts where the first ended, along the same curve.
+        # A second bend uses the same curve and starts where the first ended.
         editor.drag([tip, (tip[0] - 10, tip[1] - 30)])
         self.assertEqual(editor.ops()[-2:], ["bend", "bend"])
         self.assertEqual(editor.last_edit()["spine"], edit["spine"])
@@ -257,7 +257,7 @@ class BendTest(WindowCase):
         editor.click("options/Take the back sides too")
         self.assertGreater(editor.state()["selected"], 1.3 * seen)
         self.assertNotIn("options/Take the back sides too", editor.state()["items"])
-        # The handles follow what was bent.
+        # The handles follow the bent branch.
         x, y = editor.where("bend/tip")
         editor.drag([(x, y), (x - 10, y - 70)])
         after = editor.where("bend/tip")

@@ -1,4 +1,4 @@
-"""The editor as people use it: each test asserts the edits that arrived in the document, and what is seen.
+"""Tests of the editor with real events: each asserts the edits in the document, and the picture.
 
 editor_test.py PROGRAM runs all; editor_test.py PROGRAM bend_cases.py one file; editor_test.py PROGRAM BendTest.NAME one.
 """

@@ -1,4 +1,4 @@
-"""Files: opening, saving, exporting, recovering, and the dialogs that ask for them."""
+"""Files: opening, saving, exporting, recovering, and file dialogs."""
 
 import shutil
 import subprocess
@@ -16,7 +16,7 @@ class FileTest(WindowCase):
         project = self.folder / "plant.rebake"
         editor.key("ctrl+q")
         self.assertIsNone(editor.process.poll(), "there are unsaved changes")
-        # Save quits once it is saved; where it cannot be, it is asked for again, and nothing follows a later save.
+        # "Save" quits after saving. If saving fails, the dialog stays, and a later save does not quit.
         editor.click("dialog/Save...")
         editor.answer("/nowhere/plant.rebake")
         self.assertTrue(editor.state()["asks"], "there is no such folder: it stays open")
@@ -43,7 +43,7 @@ class FileTest(WindowCase):
         editor = self.open(project)
         editor.settle()
         self.assertEqual(editor.ops(), ["import", "select"])
-        # Another edit in place of an undone one is a change too.
+        # Replacing an undone edit by another one is an unsaved change too.
         editor.key("ctrl+z", "ctrl+i")
         editor.until_ops("import", "select", "undo", "select")
         editor.key("ctrl+q")
@@ -80,15 +80,15 @@ class FileTest(WindowCase):
         editor.key("Tab", "Return")
         editor.until_ops("import")
         self.assertTrue(editor.last_edit()["path"].endswith("scenes/plant"))
-        # The arrows walk through the list.
+        # Arrow keys move through the list.
         editor.key("ctrl+o", "Down", "Down", "Down", "Return")
         editor.until_ops("import", "import")
         self.assertTrue(editor.last_edit()["path"].endswith("scenes/pot"))
-        # Several, with Ctrl.
+        # Ctrl selects several.
         editor.key("ctrl+o")
         editor.click("dialog/entries/plant")
         editor.click("dialog/entries/mug", held="ctrl")
-        # Ctrl on one that is chosen leaves it out again.
+        # Ctrl on a selected entry deselects it.
         editor.click("dialog/entries/pot", held="ctrl")
         editor.click("dialog/entries/pot", held="ctrl")
         editor.click("dialog/Open 2")
@@ -103,7 +103,7 @@ class FileTest(WindowCase):
         editor.click("dialog/Folders...")
         editor.until_ops("import", "import")
         self.assertIn("--directory --multiple", (self.folder / "asked").read_text())
-        # What it proposes to write is still asked for here.
+        # A path that it returns for writing must still be confirmed.
         out = self.folder / "chosen"
         self.program("zenity", f"echo '{out}'")
         editor.key("ctrl+e")
@@ -121,7 +121,7 @@ class FileTest(WindowCase):
         editor.key("ctrl+e")
         editor.click("dialog/One plain folder")
         editor.click("dialog/Compare...")
-        # Escape leaves the comparison only.
+        # Escape closes the comparison only.
         editor.key("Escape")
         self.assertTrue(editor.state()["asks"], "the export's own dialog stays")
         editor.click("dialog/Compare...")
@@ -156,7 +156,7 @@ class FileTest(WindowCase):
         geometry = lambda text: [line for line in text.splitlines() if "geometry  " in line]
         self.assertEqual(geometry(told), geometry(alone), told)
         self.assertEqual(len(geometry(told)), 1)
-        # Pictures too: no leaves are in one of the kettle alone.
+        # Screenshots too: a picture of the kettle alone shows no leaves.
         both, one = self.folder / "both.png", self.folder / "one.png"
         for picture in (both, one):
             editor.key("F12")
@@ -185,7 +185,7 @@ class FileTest(WindowCase):
         editor.until(lambda state: any("File too large" in text for text in state["messages"]), "said")
         self.assertEqual(list(self.folder.glob("plant*")), [], "no half of a file")
         editor.key("Escape")
-        # What cannot be kept safe is not done.
+        # An edit that cannot be written to the journal is not applied.
         editor.key("ctrl+i")
         self.assertEqual(editor.ops(), ["import", "select"])
         editor.key("Escape")
@@ -240,9 +240,9 @@ class FileTest(WindowCase):
         editor.key("ctrl+a")
         editor.until_ops("import", "select")
         editor.kill()
-        editor = self.open(FICUS)  # the question waits while something is read
+        editor = self.open(FICUS)  # the dialog waits while a scene is read
         editor.click("dialog/Recover")
-        editor.key("shift+t")  # the tint of what is selected
+        editor.key("shift+t")  # tint of the selection
         self.assertGreater(self.leaves(), 1000, "the scene is back")
         editor.key("ctrl+i")
         until(lambda: editor.ops() == ["import", "select", "select"], "the recovered work, going on")
@@ -259,7 +259,7 @@ class FileTest(WindowCase):
         self.assertIn("dialog/sources: ficus", said)
         self.assertTrue(any("words: 3 steps, " in item and str(time.localtime().tm_year) in item for item in said), said)
         self.assertIn("dialog/thumbnail", said)
-        # One click asks; Cancel and Escape leave it.
+        # Discard asks first; Cancel and Escape keep the work.
         editor.click("dialog/Discard...")
         editor.click("dialog/Cancel")
         editor.click("dialog/Discard...")

@@ -1,4 +1,4 @@
-"""Input in the order in which it was made, and no window at all."""
+"""Order of input events, and the error without a display."""
 
 import signal
 import subprocess
@@ -18,7 +18,7 @@ class InputTest(WindowCase):
         editor.tool("key", "ctrl+p")
         editor.tool("type", "--delay", "5", "select: all")
         editor.tool("key", "Return")
-        # Motion before a press is no part of the drag.
+        # Pointer motion before the press is not part of the drag.
         corners = [editor.in_viewport(*corner) for corner in BRANCH]
         editor.tool("mousemove", *editor.in_viewport(0.1, 0.9))
         editor.tool("mousemove", *corners[0])

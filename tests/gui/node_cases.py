@@ -1,4 +1,4 @@
-"""Nodes: moved, turned, copied, grouped, picked."""
+"""Nodes: move, rotate, copy, group, pick."""
 
 import math
 
@@ -16,12 +16,12 @@ class NodeTest(WindowCase):
         moved = editor.last_edit()["translate"]
         self.assertGreater(moved[0], 0.05)
         self.assertEqual(moved[1:], [0, 0])
-        # A number typed during the drag counts in place of the pointer's way.
+        # A number typed during a drag replaces the distance of the pointer.
         x, y = editor.where("gizmo/x")
         editor.drag([(x, y), (x - 30, y)], meanwhile=lambda: editor.key("minus", "0", "period", "2", "5"))
         editor.until_ops("import", "transform", "transform")
         self.assertEqual(editor.last_edit()["translate"], [-0.25, 0, 0])
-        # Escape lets go of a drag and changes nothing.
+        # Escape cancels a drag.
         x, y = editor.where("gizmo/x")
         editor.drag([(x, y), (x + 80, y)], meanwhile=lambda: editor.key("Escape"))
         self.assertEqual(len(editor.ops()), 3)
@@ -39,10 +39,10 @@ class NodeTest(WindowCase):
         turned = type_into("Rotation/Y", "90")["rotation"]
         self.assertAlmostEqual(turned[0], math.cos(math.pi / 4), places=12)
         self.assertAlmostEqual(turned[2], math.sin(math.pi / 4), places=12)
-        # Its size is along its own axes: nothing shears.
+        # Scale is along the node's own axes, so it never shears.
         self.assertEqual(type_into("Scale/X", "2")["scale"], [2, 1, 1])
         self.assertEqual(type_into("Rotation/Y", "0")["rotation"], [1, 0, 0, 0])
-        # Tab goes on to the next; dragging scrubs.
+        # Tab moves to the next field; dragging changes a number.
         editor.click("properties/Position/X")
         editor.type("1")
         editor.key("Tab")
@@ -55,7 +55,7 @@ class NodeTest(WindowCase):
         half = math.radians(30)
         self.assertAlmostEqual(editor.last_edit()["rotation"][2], math.sin(half), places=12, msg="a degree a pixel, to its end")
         self.assertEqual(editor.state()["steps"], steps + 1, "a drag is one step")
-        # Escape lets go of a drag, and of what is typed; the node stays picked, and keys go on working.
+        # Escape cancels a drag and typed text; the node stays picked, and shortcuts work again.
         x, y = editor.where("properties/Position/Z")
         editor.drag([(x, y), (x + 40, y)], meanwhile=lambda: editor.key("Escape"))
         editor.click("properties/Position/X")
@@ -81,14 +81,14 @@ class NodeTest(WindowCase):
         editor.press(3, down=False)
         editor.settle()
         self.assertEqual(editor.ops(), ["import", "transform"], "Escape and the right button let go")
-        # About the line of sight, with a click at the end.
+        # Rotates about the view direction, confirmed by a click.
         editor.key("r")
         editor.move(300, 150)
         editor.press()
         editor.press(down=False)
         editor.until_ops("import", "transform", "transform")
         self.assertLess(editor.last_edit()["rotate"][0], 0.999)
-        # With another handle in hand too; and only for as long as the drag.
+        # Also while another tool is active, and for this drag only.
         editor.click("tool/Move")
         editor.move(500, 300)
         editor.key("r")
@@ -146,13 +146,13 @@ class NodeTest(WindowCase):
         self.assertEqual(editor.state()["picked"], ["ficus.2"])
         editor.key("ctrl+d")
         self.assertEqual(editor.state()["picked"], ["ficus.2.2"])
-        # A name is kept however its field is left.
+        # Leaving a name field in any way commits the name.
         editor.double_click(*editor.where("outline/ficus.2/name"))
         editor.key("ctrl+a")
         editor.type("branch")
         editor.click("outline/ficus.2.2/name")
         self.assertEqual(editor.last_edit(), {"op": "rename", "node": 2, "name": "branch"})
-        # Dropped once, it is one step.
+        # A drop in the outline is one step.
         editor.click("outline/branch/name")
         editor.key("ctrl+g")
         steps = editor.state()["steps"]

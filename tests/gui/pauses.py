@@ -1,5 +1,5 @@
-"""How long the window does not draw during each job on a scene: pauses.py PROGRAM SCENE. The longest pause in milliseconds
-of each job, and how long the job took in seconds, until the picture rests."""
+"""Measures how long the window does not draw during jobs on a scene: pauses.py PROGRAM SCENE. Prints the longest pause
+of each job in milliseconds, and the job's duration in seconds, until the picture is at rest."""
 
 import sys
 import time
@@ -11,7 +11,7 @@ REGION = [(0.30, 0.30), (0.50, 0.30), (0.50, 0.50), (0.30, 0.50)]
 
 
 def job(name, do):
-    editor.key("shift+F11")  # means nothing: pauses count from here
+    editor.key("shift+F11")  # unassigned key: pauses are measured from here
     begun = time.monotonic()
     do()
     state = editor.settle()

@@ -1,7 +1,7 @@
-"""A window of the editor on a display of its own, its pointer and keys, and what it shows.
+"""A window of the editor on its own display: pointer and key events, and its picture.
 
-The editor announces what is true of each frame (REBAKE_ANNOUNCE, see README.md here): where things can be clicked, what
-is selected, and whether it has settled. So nothing here knows where a button is, or how long something takes."""
+The editor announces the state of each frame (REBAKE_ANNOUNCE, see README.md in this folder): positions of clickable
+items, the selection, and whether all work is finished. So tests know neither positions of buttons nor durations."""
 
 import json
 import os
@@ -16,20 +16,20 @@ import time
 import numpy
 
 WIDTH, HEIGHT = 1280, 800
-PATIENCE = 180  # seconds, of a machine that does much else
+PATIENCE = 180  # timeout in seconds, for a busy machine
 
 
 class Screen:
-    """A display. Everything the editor keeps for a person lies in `home`."""
+    """An X display, and `home`, a temporary home folder for the editor's files."""
 
     def __init__(self, width=WIDTH, height=HEIGHT):
         self.width, self.height = width, height
-        self.editors = []  # processes that were started on it
+        self.editors = []  # editor processes on this display
         self.home = pathlib.Path(tempfile.mkdtemp())
         read, write = os.pipe()
         self.server = subprocess.Popen(
             ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp",
-             "-noreset", "+extension", "GLX"],  # else it begins anew when its last client ends, and may miss the next
+             "-noreset", "+extension", "GLX"],  # otherwise it restarts after its last client, and may miss the next one
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as pipe:
@@ -39,7 +39,7 @@ class Screen:
                                 REBAKE_ANNOUNCE=str(self.home / "announced"))
 
     def settings(self, **values):
-        """What the editor remembers, before it starts."""
+        """Writes the editor's settings file; call before the editor starts."""
         file = self.home / "config/rebake/settings.json"
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(json.dumps({"window_width": self.width, "window_height": self.height, **values}))
@@ -55,7 +55,7 @@ class Screen:
 
 
 def until(what, says, seconds=PATIENCE):
-    """Waits for what() to be something, and returns that."""
+    """Waits until what() is true and returns its value; `says` describes it in the error."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if found := what():
@@ -65,7 +65,7 @@ def until(what, says, seconds=PATIENCE):
 
 
 def read_picture(file):
-    """Rows of pixels, red, green and blue."""
+    """Pixels of a picture file: [row][column][red, green, blue]."""
     size = subprocess.run(["identify", "-format", "%w %h", file], capture_output=True, text=True, check=True).stdout
     width, height = map(int, size.split())
     raw = subprocess.run(["convert", file, "-depth", "8", "rgb:-"], capture_output=True, check=True).stdout
@@ -73,7 +73,7 @@ def read_picture(file):
 
 
 class Editor:
-    """The program with its window."""
+    """The program with its window; methods send input and wait until it was processed."""
 
     def __init__(self, program, screen, *paths):
         self.screen = screen
@@ -85,8 +85,7 @@ class Editor:
         self.listener.start()
         if not (screen.home / "config/rebake/settings.json").exists():
             screen.settings()
-        # Python ignores SIGXFSZ, and so does the editor then: a limit of file size is an error of writing, like a full
-        # disk.
+        # Python ignores SIGXFSZ, and the editor inherits that: beyond a file size limit, writes fail as on a full disk.
         self.process = subprocess.Popen([program, "edit", *map(str, paths)], env=screen.environment, restore_signals=False)
         screen.editors.append(self.process)
         self.clicks = self.strokes = 0
@@ -98,7 +97,7 @@ class Editor:
         return subprocess.run(["xdotool", *map(str, arguments)], env=self.screen.environment, capture_output=True,
                               text=True).stdout
 
-    # What is announced
+    # Announced state
 
     def listen(self, pipe):
         with open(pipe) as lines:
@@ -106,19 +105,19 @@ class Editor:
                 self.latest = json.loads(line)
 
     def state(self):
-        """Of the last frame; nothing before the first."""
+        """State of the last frame; empty before the first."""
         return self.latest
 
     def settle(self):
-        """Until all input is seen and nothing is being done."""
+        """Waits until all input was processed and no job runs; returns the state."""
         return until(lambda: (state := self.state()).get("settled") and state, "settled")
 
     def until(self, what, says):
-        """Until what(state) of a settled frame is something."""
+        """Waits until what(state) is true in a settled frame; returns the state."""
         return until(lambda: (state := self.state()).get("settled") and what(state) and state, says)
 
     def where(self, item):
-        """The middle of what is announced under that name."""
+        """Centre of the item that is announced under this name."""
         x, y, width, height = until(lambda: self.state().get("items", {}).get(item), item)
         return round(x + width / 2), round(y + height / 2)
 
@@ -129,7 +128,7 @@ class Editor:
         return self.state()["input"][kind]
 
     def counted(self, kind, more, act):
-        """Does it, and waits until the editor has seen so many more of that kind of input."""
+        """Calls act() and waits until the editor has processed `more` events of this kind."""
         wanted = self.seen(kind) + more
         act()
         until(lambda: self.seen(kind) >= wanted, f"{more} more {kind}")
@@ -145,7 +144,7 @@ class Editor:
         self.clicks += down
 
     def click(self, where, y=None, button=1, held=None):
-        """A point, or the name of an item; with a key held."""
+        """Clicks a point or a named item, optionally with a key held."""
         x, y = self.where(where) if y is None else (where, y)
         self.move(x, y)
         if held:
@@ -163,13 +162,13 @@ class Editor:
         self.settle()
 
     def wheel(self, x, y, away):
-        """One notch."""
+        """Turns the wheel by one notch."""
         self.move(x, y)
         self.counted("wheel", 1, lambda: self.tool("click", 4 if away else 5))
         self.settle()
 
     def drag(self, points, button=1, meanwhile=lambda: None, held=None):
-        """Along points, with steps between them as a hand makes; with a key held."""
+        """Drags along points with small steps, optionally with a key held; meanwhile() runs before the release."""
         self.move(*points[0])
         if held:
             self.counted("keys", 1, lambda: self.tool("keydown", held))
@@ -196,13 +195,13 @@ class Editor:
         self.settle()
 
     def answer(self, text):
-        """In place of what a file dialog proposes."""
+        """Replaces the path that a file dialog proposes, and confirms."""
         self.key("ctrl+a")
         self.type(text)
         self.key("Return")
 
     def command(self, name):
-        """By the palette."""
+        """Runs a command by the command palette."""
         self.key("ctrl+p")
         self.type(name)
         self.key("Return")
@@ -217,21 +216,21 @@ class Editor:
               and self.state()["window"] == [width, height], f"{width} x {height}")
         self.settle()
 
-    # What is there
+    # Pictures and files
 
     def picture(self):
-        """Rows of pixels, red, green and blue."""
+        """Pixels of the whole screen: [row][column][red, green, blue]."""
         raw = subprocess.run(["import", "-window", "root", "-depth", "8", "rgb:-"], env=self.screen.environment,
                              capture_output=True, check=True).stdout
         return numpy.frombuffer(raw, numpy.uint8).reshape(self.screen.height, self.screen.width, 3).astype(int)
 
     def viewport(self):
-        """The pixels of the scene's picture."""
+        """Pixels of the viewport: [row][column][red, green, blue]."""
         x, y, width, height = (round(v) for v in self.state()["items"]["viewport"])
         return self.picture()[y:y + height, x:x + width]
 
     def in_viewport(self, across, down):
-        """A point of the picture, by shares of its size."""
+        """Screen position of a point in the viewport, given by shares of its size."""
         x, y, width, height = self.state()["items"]["viewport"]
         return round(x + across * width), round(y + down * height)
 
@@ -239,7 +238,7 @@ class Editor:
         subprocess.run(["import", "-window", "root", str(path)], env=self.screen.environment, check=True)
 
     def journal(self):
-        """What the document did, from its journal."""
+        """Lines of all journals, without headers, as dictionaries."""
         folder = self.screen.home / "state" / "rebake" / "journals"
         files = sorted(folder.glob("*.journal")) if folder.is_dir() else []
         lines = [json.loads(line[17:]) for file in files for line in file.read_text().splitlines()]

@@ -1,4 +1,4 @@
-"""Selecting and deleting."""
+"""Selecting, deleting and erasing."""
 
 from screen import until
 from window_case import WindowCase, FICUS, KETTLE, green
@@ -28,16 +28,16 @@ class SelectTest(WindowCase):
         editor.key("ctrl+shift+z")
         editor.until_ops("import", "select_picture", "delete", "undo", "redo")
         self.assertAlmostEqual(self.leaves(), fewer, delta=50)
-        # History's lines say what was done, and never change.
+        # A click on a line of the history goes back to that step.
         editor.click("status/History")
         editor.click("tabs/history/1")
         self.assertEqual(editor.state()["steps"], 1)
 
     def test_the_eraser_shows_what_a_whole_picture_would(self):
-        """Of a stroke only the pixels that changed are drawn, at once in full."""
+        """For a stroke only changed pixels are drawn, at full quality; the picture equals a complete one."""
         editor = self.open_ficus()
         editor.key("e")
-        away = editor.in_viewport(0.02, 0.98)  # for the eraser's ring
+        away = editor.in_viewport(0.02, 0.98)  # so that the eraser's ring is out of the way
         editor.move(*away)
         whole = editor.viewport()
         for down in (0.2, 0.3, 0.4):
@@ -65,14 +65,14 @@ class SelectTest(WindowCase):
         self.assertEqual(editor.state()["scope"], "in kettle")
         self.assertIn("in kettle", editor.state()["status"])
         kettle = editor.last_edit()["node"]
-        # The same with nothing picked takes both.
+        # With nothing picked, both nodes are selected in.
         editor.key("Escape", "Escape")
         self.assertEqual(editor.state()["scope"], "in all")
         editor.key("r")
         editor.drag(everything)
         self.assertNotIn("node", editor.last_edit())
         both = editor.state()["selected"]
-        # Only what is picked is deleted, and only of that is chosen.
+        # Delete and invert affect picked nodes only.
         editor.click("outline/kettle/name")
         editor.key("ctrl+i")
         self.assertEqual(editor.last_edit()["node"], kettle)
@@ -92,14 +92,14 @@ class SelectTest(WindowCase):
         kettle = editor.state()["selected"]
         self.assertLess(kettle, both)
         self.assertEqual(editor.state()["selected_words"], f"{kettle} selected in kettle, {both - kettle} elsewhere")
-        # What is not meant is drawn faintly.
+        # Selected triangles outside of the scope are drawn faintly.
         self.assertLess(self.orange(), 0.7 * bright)
         editor.key("Delete")
         self.assertEqual(editor.state()["status"], f"Deleted {kettle} triangles of kettle")
         self.assertEqual(editor.state()["selected_words"], f"{both - kettle} selected")
 
     def orange(self):
-        """How many pixels have the full tint of a selection."""
+        """Number of pixels with the full tint of a selection."""
         self.editor.settle()
         picture = self.editor.viewport()
         return int(((picture[..., 0] > picture[..., 2] + 90) & (picture[..., 0] > picture[..., 1] + 20)).sum())
@@ -118,7 +118,7 @@ class SelectTest(WindowCase):
         editor.settle()
         self.assertGreater(int((editor.viewport()[:, :300] != before[:, :300]).sum()) + self.orange(), 1000)
         self.assertEqual(editor.ops(), ["import", "import"], "nothing is done yet")
-        # The node follows what is picked: the kettle's count differs from the plant's.
+        # The form follows the picked node: counts of kettle and plant differ.
         of_kettle = count()
         editor.click("outline/ficus/name")
         until(lambda: "triangles selected" in count() and count() != of_kettle, "the scope's count")
@@ -182,7 +182,7 @@ class SelectTest(WindowCase):
         self.assertGreater(editor.state()["selected"], inside)
         editor.click("options/Take away")
         self.assertEqual(editor.last_edit()["mode"], "remove")
-        # Escape lets go of a side.
+        # Escape cancels the drag of a side.
         before = editor.items("volume")
         x, y = editor.where("volume/+X")
         editor.drag([(x, y), (x + 80, y)], meanwhile=lambda: editor.key("Escape"))

@@ -1,5 +1,5 @@
-"""Screens of the window to be looked at: shots.py PROGRAM FOLDER writes one picture for each state, light and dark, at
-one and two pixels a plain pixel, and all of them beside each other (overview-LOOKS-SCALE.png)."""
+"""Screenshots of the window for review: shots.py PROGRAM FOLDER [LOOKS] [SCALE] writes a picture of each panel and
+dialog, light and dark, at scale 1 and 2, and overviews of all of them (overview-LOOKS-SCALE.png)."""
 
 import pathlib
 import subprocess

@@ -1,5 +1,5 @@
-"""A new user's first minutes, with real events: tour.py PROGRAM FOLDER plays them, prints how many clicks and keys they
-took, and writes the README's window.png and window.gif to the folder."""
+"""Plays a new user's first minutes with real events: tour.py PROGRAM FOLDER prints the number of clicks and keys, and
+writes the README's window.png and window.gif to the folder."""
 
 import os
 import pathlib
@@ -11,7 +11,7 @@ from screen import Editor, Screen
 
 PROGRAM, OUT = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
 MOST_ACTIONS = 40
-# Shares of the viewport: around the branch that goes to the right, and the one that goes to the left.
+# Polygons around the branch on the right and the one on the left, in shares of the viewport.
 RIGHT = [(0.57, 0.22), (0.78, 0.22), (0.78, 0.46), (0.62, 0.46), (0.57, 0.38)]
 LEFT = [(0.23, 0.16), (0.40, 0.16), (0.43, 0.27), (0.43, 0.38), (0.23, 0.38)]
 RIM = (0.37, 0.60)
@@ -28,7 +28,7 @@ def frame(times=1):
 
 
 class Filmed(Editor):
-    """Takes a picture at every other move of a drag."""
+    """An editor that takes a picture at every third move of the pointer."""
 
     moves = 0
 
@@ -48,7 +48,7 @@ def lasso(corners):
 
 OUT.mkdir(parents=True, exist_ok=True)
 work = tempfile.mkdtemp()
-os.chdir(work)  # where exports go
+os.chdir(work)  # working folder for exports
 screen = Screen()
 editor = Filmed(PROGRAM, screen)
 frame(6)
@@ -57,7 +57,7 @@ frame(6)
 editor.click("start/samples/ficus")
 editor.until_ops("import")
 frame(5)
-# Select a branch, all of it, and bend it twice.
+# Select a branch through the whole depth, and bend it twice.
 editor.key("l", "t")
 lasso(RIGHT)
 editor.key("n")
@@ -66,7 +66,7 @@ for dx, dy in ((-10, -70), (-60, -60)):
     editor.drag([(x, y), (x + dx // 2, y + dy // 2), (x + dx, y + dy)])
     frame(4)
 editor.save_picture(OUT / "window.png")
-# Remove another.
+# Delete another branch.
 editor.key("l")
 lasso(LEFT)
 editor.key("Delete")
@@ -85,12 +85,12 @@ editor.key("1", "m")
 x, y = editor.where("gizmo/middle")
 editor.drag([(x, y), editor.in_viewport(*RIM)])
 frame(6)
-# Before and after.
+# Compare before and after with the wipe.
 editor.key("y")
 x, y = editor.where("wipe")
 editor.drag([(x, y), (x - 200, y), (x + 150, y)])
 editor.key("y")
-# Export under the name that is proposed, and look at it.
+# Export under the proposed name, and open the export.
 editor.key("ctrl+e")
 frame(3)
 editor.key("Return")

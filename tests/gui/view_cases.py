@@ -1,4 +1,4 @@
-"""Views, pictures and films of them, and the window itself."""
+"""Stored views, pictures, videos, panels, light, and the window itself."""
 
 import json
 import subprocess
@@ -50,7 +50,7 @@ class ViewTest(WindowCase):
         self.assertNotIn("tabs/views/view 2/picture", editor.state()["items"])
 
     def test_what_the_camera_turns_to_is_not_compiled_for(self):
-        # Each of two objects fills one of two views.
+        # Two objects far apart, and a stored view of each.
         script = self.folder / "apart.jsonl"
         view = {"fov": 39, "near": 0.1, "far": 500}
         script.write_text("\n".join(map(json.dumps, [
@@ -79,7 +79,7 @@ class ViewTest(WindowCase):
         self.assertGreater(camera["eye"][1] - camera["target"][1], 1)
         self.assertEqual(camera["eye"][0], camera["target"][0], "exactly from above")
         self.assertEqual(camera["eye"][2], camera["target"][2])
-        # Escape closes a menu; keys work again then.
+        # Escape closes a menu, and shortcuts work again.
         editor.click("menu/Select")
         editor.key("Escape")
         editor.key("ctrl+a")
@@ -108,7 +108,7 @@ class ViewTest(WindowCase):
         for width, height in ((700, 500), (1000, 790), (640, 400)):
             editor.resize(width, height)
             self.assertGreater(self.leaves(), 300, f"the plant is seen at {width} x {height}")
-        # What leaves the window while the button is held goes on where the pointer is.
+        # A drag continues outside of the window.
         editor.resize(900, 600)
         editor.key("r")
         x, y, _, _ = editor.state()["items"]["viewport"]
@@ -187,7 +187,7 @@ class ViewTest(WindowCase):
         editor.click("tabs/light/What is gone")
         editor.until_ops("import", "light", "bend", "light")
         self.assertEqual(editor.last_edit()["effects"], ["self", "cast", "highlights"])
-        # They go with shadows on itself, and alone too.
+        # Highlights can be switched off alone, and are off without self-shadows.
         editor.click("tabs/light/Highlights")
         editor.until(lambda state: editor.last_edit()["effects"] == ["self", "cast"], "highlights are off")
         editor.click("tabs/light/On itself")
@@ -214,7 +214,7 @@ class ViewTest(WindowCase):
         editor.key("Return")
         editor.until_ops("import", "light", "light", "light")
         self.assertAlmostEqual(editor.last_edit()["picture_degrees"], 90, places=5)
-        # Without a picture to go to, it is one that was chosen before.
+        # Switching the source back to a picture reuses the one chosen before.
         editor.click("tabs/light/Sky")
         editor.click("tabs/light/Picture")
         editor.until_ops("import", "light", "light", "light", "light", "light")
@@ -237,7 +237,7 @@ class ViewTest(WindowCase):
         self.assertIn("menu/Rectangle", editor.state()["items"])
 
     def test_a_video_on_a_way_through_stored_views(self):
-        # Counts the pictures in place of encoding them.
+        # A stand-in for ffmpeg that lists the pictures instead of encoding them.
         self.program("ffmpeg", 'for last; do :; done; ls "$(dirname "$last")" > "$last.txt"; mv "$last.txt" "$last"')
         editor = self.open_ficus()
         editor.command("store view")
@@ -255,7 +255,7 @@ class ViewTest(WindowCase):
         self.assertEqual(len([name for name in video.read_text().split() if name.endswith(".png")]), 5)
         editor.settle()
         self.assertEqual(list((self.screen.home / "cache" / "rebake").glob("film*")), [], "nothing is left behind")
-        # A program that fails is said, and there is nothing then.
+        # If ffmpeg fails, the window reports it and no file is left.
         self.program("ffmpeg", "exit 7")
         editor.command("turntable")
         editor.click("dialog/Video")

@@ -1,4 +1,4 @@
-"""What all tests of the window share: an editor that is open, and ways to say what is seen of it."""
+"""Base of all window tests: an open editor, and measurements of its picture."""
 
 import json
 import pathlib
@@ -15,17 +15,17 @@ PROGRAM = sys.argv.pop(1)
 HERE = pathlib.Path(__file__).resolve().parent
 FICUS = HERE.parents[1] / "samples" / "scenes" / "ficus"
 KETTLE = FICUS.parent / "kettle"
-# Shares of the viewport: around the branch that goes to the right.
+# A polygon around the branch on the right, in shares of the viewport.
 BRANCH = [(0.57, 0.22), (0.78, 0.22), (0.78, 0.46), (0.62, 0.46), (0.57, 0.38)]
 
 
 def green(picture):
-    """Which pixels are leaves: green, and not the green of an axis."""
+    """Mask of the pixels that show leaves: green, but not the green of an axis."""
     return (picture[..., 1] > picture[..., 0] + 20) & (picture[..., 1] > picture[..., 2] + 20) & (picture[..., 1] < 190)
 
 
 def write_png(path, rows):
-    """An RGBA PNG of rows of (red, green, blue, alpha)."""
+    """Writes an RGBA PNG; rows of (red, green, blue, alpha)."""
     chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     raw = b"".join(b"\0" + bytes(value for pixel in row for value in pixel) for row in rows)
     header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 6, 0, 0, 0)
@@ -33,8 +33,8 @@ def write_png(path, rows):
 
 
 def write_square(folder, sign):
-    """A MobileNeRF folder of two triangles with 17 x 17 opaque texels: decoders of either sign have nothing in common,
-    and are fitted in no time."""
+    """Writes a MobileNeRF folder of two triangles with 17 x 17 opaque texels, which is fitted quickly. Decoders of
+    different signs have nothing in common."""
     folder.mkdir()
     unit = lambda rows, columns, value=1: [[value if j == k else 0 for k in range(columns)] for j in range(rows)]
     (folder / "mlp.json").write_text(json.dumps({
@@ -75,7 +75,7 @@ class WindowCase(unittest.TestCase):
         return int(green(self.editor.viewport()).sum())
 
     def select_branch(self):
-        """With the lasso; how many triangles."""
+        """Selects the branch with the lasso; returns the number of triangles."""
         editor = self.editor
         editor.key("l")
         corners = [editor.in_viewport(*corner) for corner in BRANCH]
@@ -83,8 +83,8 @@ class WindowCase(unittest.TestCase):
         return editor.state()["selected"]
 
     def expect_like(self, name, decibels):
-        """The whole window against a kept picture. Without the tint, or without the grid, it is at 30 dB, without the
-        leaves at 23; 40 leaves room for rounding of another processor."""
+        """Compares the whole window with a reference picture. Without the tint or the grid it has 30 dB, without the
+        leaves 23 dB; 40 dB allows for rounding on other processors."""
         kept, seen = HERE / "pictures" / (name + ".png"), self.folder / (name + ".png")
         self.editor.settle()
         self.editor.save_picture(seen)
@@ -92,7 +92,7 @@ class WindowCase(unittest.TestCase):
         self.assertEqual(result.returncode, 0, f"{result.stdout}{result.stderr} (seen: {seen})")
 
     def program(self, name, script):
-        """A program of that name that the editor finds before any other."""
+        """Installs a shell script under this name at the start of the editor's PATH."""
         folder = self.folder / "programs"
         folder.mkdir(exist_ok=True)
         (folder / name).write_text("#!/bin/sh\n" + script)

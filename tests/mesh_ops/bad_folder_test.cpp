@@ -1,4 +1,4 @@
-// Broken and ambiguous folders: refused by file and field, or opened with a warning that lists each assumption.
+// Broken and ambiguous folders: an error that names file and field, or a warning that lists each assumption.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -58,7 +58,7 @@ TEST_F(BadFolder, MissingFiles) {
   fs::remove_all(folder());
   expect_refused("does not exist");
 }
-// Whatever obj_num says, all that lies there is read, and what was assumed is said.
+// If obj_num contradicts the files on disk, all consecutive shapes are read and the assumption is reported.
 TEST_F(BadFolder, ObjNumAndFilesDisagree) {
   for (const char* count : {"3", "7"}) {
     replace_mlp("\"obj_num\":1", std::string("\"obj_num\":") + count);
@@ -191,13 +191,13 @@ TEST_F(BadFolder, Images) {
   write_text(png, png_of(16, 16, 4, "uint16"));
   expect_refused("is not 8 bits");
   std::string huge = good;
-  huge[16] = huge[17] = 0x7f;  // the width in the header
+  huge[16] = huge[17] = 0x7f;  // image width in the PNG header
   write_text(png, huge);
   expect_refused("shape0.pngfeat1.png: ");
 }
 
 TEST_F(BadFolder, ReplacedWhileItIsRead) {
-  // The second time that it is asked which folder this is, it is another.
+  // Replaces the folder between the first and the second stat() of it: same path, other inode.
   class Swap final : public FileCalls {
    public:
     explicit Swap(fs::path folder) : folder_(std::move(folder)) {}

@@ -1,4 +1,4 @@
-// What objects say of their light is made once for all that were read from the same files, and only for those.
+// BakedLight is created once per set of source files and shared by all unedited objects that were read from them.
 #include "mesh_ops/light/baked_light.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST_F(BakedLightTest, LightsEachOfThoseThatShareIt) {
     EXPECT_NE(lighting.map_of(node->id, 0, node->object->sets[0]), nullptr) << node->name;
 }
 
-// Whether its own shadows are known or traced again, light among others is the same.
+// BakedLight::among() adds occluders to the cached self-shadowing: same light as tracing all occluders together.
 TEST_F(BakedLightTest, AmongOthersIsWhatIsTracedAmongAll) {
   BakedLights known(settings_, options_);
   const auto own = read();

@@ -1,4 +1,4 @@
-// The file beside a folder that says where triangles were when their light was baked, and on which body.
+// baked.bin, a file of a scene folder: displacement of each vertex since its light was baked, and body of each face.
 #include <gtest/gtest.h>
 
 #include "mesh_ops/base/error.h"
@@ -9,10 +9,11 @@
 namespace rebake::test {
 namespace {
 
-// Some faces of the first set were moved, each by its own way, and the last third is of a second body.
+// Two texture sets. In the first, two of every five faces have moved, each vertex by a different offset, and the last
+// third of the faces belongs to body 300. The second is unchanged.
 std::vector<TextureSet> moved_sets() {
   std::vector<TextureSet> sets = made_object({.columns = 24, .rows = 12})->sets;
-  sets.push_back(made_object({.columns = 8, .rows = 4})->sets[0]);  // which nothing is said of
+  sets.push_back(made_object({.columns = 8, .rows = 4})->sets[0]);  // unchanged: must get no attributes
   const std::size_t faces = sets[0].soup.triangle_count();
   std::vector<std::uint8_t> flags(faces);
   for (std::size_t f = 0; f < faces; ++f) flags[f] = f % 5 < 2 ? 1 : 0;
@@ -73,7 +74,7 @@ TEST(BakedPlaces, CutChangedOrForeignOnesAreRefusedByName) {
     changed[at] = static_cast<char>(changed[at] ^ 0x10);
     EXPECT_TRUE(refused(changed)) << at;
   }
-  // Behind a checksum that fits, a displacement that is not a number.
+  // A NaN displacement with a correct checksum.
   std::string counted = bytes.substr(20);
   const auto first_value = std::size_t{4 + 4 + 4 + 4 + 4};
   counted.replace(first_value, 4, std::string("\0\0\xC0\x7F", 4));

@@ -1,5 +1,5 @@
-// Cage coordinates against 120 digits, on the hard cases: points on, beside and beyond faces, edges and vertices;
-// needles, caps and flat cages; very small, very large and very far cages.
+// Cage coordinates compared with 120-digit arithmetic in hard cases: points on, near and beyond faces, edges and
+// vertices; needles, caps and flat cages; very small, very large and very distant cages.
 #include "mesh_ops/deform/coordinates.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace rebake::test {
 namespace {
 
-std::vector<Vec3> points_inside_flat() {  // 1e-8 thick
+std::vector<Vec3> points_inside_flat() {  // in flat(1e-8), up to its walls
   std::vector<Vec3> points;
   for (const double height : {-5e-9, -4.9e-9, 0.0, 1e-12, 5e-9})
     for (int k = 0; k < 40; ++k) points.emplace_back(-0.34 + 0.017 * k, 0.3 * std::sin(k), height);
@@ -61,8 +61,9 @@ TEST(MeanValue, TenDiagonalsAwayWeightsAreLargeAndErrorsGrowWithThem) {
   }
 }
 
-// How far weights are from the exact ones beyond what moving the point by 1e-15 of the cage's diagonal does: a point
-// in doubles is no better known, and on a needle of 1e-12 weights change by 1e12 a unit of length.
+// Largest error of the weights at every `step`-th point, less the effect of moving that point by 1e-15 of the cage's
+// diagonal. A point in doubles is no more accurate than that, and on a needle of height 1e-12 weights change by 1e12
+// per unit of length.
 double beyond_rounding(const Cage& cage, const Coordinates& coordinates,
                        std::vector<Gold> (*exact)(const Cage&, const Gold3&), const std::vector<Vec3>& points,
                        std::size_t step) {
@@ -73,7 +74,7 @@ double beyond_rounding(const Cage& cage, const Coordinates& coordinates,
   for (std::size_t k = 0; k < points.size(); k += step) {
     std::vector<double> got = weights_at(coordinates, points[k]);
     std::vector<Gold> want = exact(cage, gold(points[k]));
-    // Cage points that coincide share what they weigh in any way.
+    // Coincident cage vertices may split their weight in any ratio: compare the sum.
     for (std::size_t v = 0; v < cage.vertices.size(); ++v)
       for (std::size_t w = 0; w < v; ++w)
         if (cage.vertices[v] == cage.vertices[w]) {
@@ -82,10 +83,10 @@ double beyond_rounding(const Cage& cage, const Coordinates& coordinates,
         }
     Gold sum = 0;
     for (std::size_t v = 0; v < cage.vertices.size(); ++v) sum += want[v];
-    if (abs(sum - 1) > 1e-9) continue;  // outside after all, where Green's have none
+    if (abs(sum - 1) > 1e-9) continue;  // outside by the exact sum; Green's coordinates are undefined there
     std::vector<Vec3> slopes;
     for (std::size_t row = 0; row < got.size(); ++row) {
-      const double length = row < cage.vertices.size() ? 1 : unit;  // ψ is a length
+      const double length = row < cage.vertices.size() ? 1 : unit;  // ψ is a length, in units of the cage frame
       double error = std::abs(static_cast<double>(want[row] * length - got[row]));
       if (!(error <= 1e-14)) {
         if (slopes.empty()) slopes = gold_gradients(exact, cage, points[k]);
@@ -101,7 +102,7 @@ TEST(MeanValue, WeightsAgreeWith120DigitsOnEveryHardCage) {
   for (const auto& [name, cage] : hard_cages()) {
     Box box;
     for (const Vec3& v : cage.vertices) box.extend(v);
-    std::vector<Vec3> near, beyond;  // a tenth of the diagonal; there the faces' parts nearly cancel
+    std::vector<Vec3> near, beyond;  // up to 0.1 from the box, and beyond, where contributions of faces nearly cancel
     for (const Vec3& point : hard_points(cage)) (box.exteriorDistance(point) <= 0.1 ? near : beyond).push_back(point);
     const auto coordinates = mean_value_coordinates(cage);
     const std::size_t step = cage.faces.size() > 20 ? 61 : 3;
@@ -123,7 +124,7 @@ TEST(MeanValue, WeightsAgreeWith120DigitsAtAnyScaleFarFromTheOriginAndInFlatCage
   EXPECT_LE(beyond_rounding(thin, *mean_value_coordinates(thin), gold_mean_value, points_inside_flat(), 7), 1e-14);
 }
 
-// Weights and gradients of points by one implementation, bit for bit.
+// All weights and gradients of the points, for bitwise comparison of implementations.
 std::vector<double> all_bits(const Coordinates& coordinates, const std::vector<Vec3>& points) {
   std::vector<double> all, weights(coordinates.rows() * batch_lanes), slopes(coordinates.rows() * 3 * batch_lanes);
   for (std::size_t first = 0; first < points.size(); first += batch_lanes) {
@@ -140,7 +141,7 @@ std::vector<double> all_bits(const Coordinates& coordinates, const std::vector<V
   return all;
 }
 
-// Machines of one batch have different processors: what an edit commits must not tell them apart.
+// Machines of one batch may have different processors; an edit must give the same bits on all of them.
 TEST(MeanValue, EveryVectorWidthGivesTheSameBits) {
   for (const auto& [name, cage] : hard_cages()) {
     std::vector<Vec3> points;
@@ -182,7 +183,7 @@ TEST(MeanValue, BlocksAndSinglePointsAgree) {
   EXPECT_LE(worst_slope, 1e-11);
 }
 
-// A point that is no number, or absurdly far, changes nothing for those that are weighed beside it.
+// A NaN, infinite or huge point does not affect the other points of its SIMD batch.
 TEST(MeanValue, PointsThatAreNoNumbersLeaveTheirNeighboursAlone) {
   const Cage cage = dented();
   std::vector<Vec3> points;
@@ -206,7 +207,8 @@ TEST(MeanValue, PointsThatAreNoNumbersLeaveTheirNeighboursAlone) {
   }
 }
 
-// What the study compares with: the frame takes scales of 1e±12 from float, whose rounding is all that is left.
+// Single precision, which the accuracy study compares with: the cage frame removes scales of 1e±12, so only float
+// rounding remains.
 TEST(MeanValue, InFloatTheScaleDoesNotMatter) {
   std::vector<std::vector<float>> all;
   for (const double scale : {std::ldexp(1.0, -40), 1.0, std::ldexp(1.0, 40)}) {  // 1e±12
@@ -274,11 +276,11 @@ TEST(Green, WeightsAreNumbersOnTheSurface) {
     for (const double weight : weights_at(*coordinates, point)) EXPECT_TRUE(std::isfinite(weight));
 }
 
-// Stretches of faces, from their deformed corners: in doubles those of needles were off by rounding over their height.
+// Face stretches of needles: rounding must not be amplified by 1 / height.
 TEST(Green, RigidMotionsOfNeedlesStretchNothing) {
   for (const double thin : {1e-3, 1e-6, 1e-9}) {
     const Cage cage = needles(thin);
-    // By right angles, so that the moved corners are exact and only the formula can err.
+    // A rotation by 90° moves the corners without rounding, so only the formula can err.
     Mat3 turn;
     turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
     std::vector<Vec3> moved = cage.vertices;
@@ -321,7 +323,7 @@ TEST(MeanValue, AMillionAdversarialPointsGiveNumbers) {
   std::size_t bad = 0;
   for (const Vec3& point : deform_points(*coordinates, cage, moved, points, false).points) bad += !point.allFinite();
   EXPECT_EQ(bad, 0U);
-  // Gradients on edges take a quarter of a millisecond each.
+  // Fewer points, because gradients on edges take 0.25 ms each.
   points.resize(static_cast<std::size_t>(cases(2000, 40000)));
   for (const Mat3& jacobian : deform_points(*coordinates, cage, moved, points, true).jacobians)
     bad += !jacobian.allFinite();

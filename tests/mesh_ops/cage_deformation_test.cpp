@@ -1,4 +1,5 @@
-// Points that follow a cage: bit for bit where nothing moves, rigidly where it does so, and near enough while dragged.
+// Deforming points with a cage: bitwise identity, rigid motions, and the accuracy of the float weights used for
+// dragging.
 #include "mesh_ops/deform/cage_deformation.h"
 #include "editor/studies/gradient_binding.h"
 
@@ -9,7 +10,7 @@
 namespace rebake::test {
 namespace {
 
-// Weights sum to 1 but for rounding; a million diagonals away that once was a million times as much.
+// Weights sum to 1 up to rounding; a translation must not multiply that error by its length in diagonals.
 TEST(CageDeformation, AFarTranslationTakesPointsAlong) {
   const Cage cage = dented();
   const Vec3 far(1e6, -3e6, 2e6);
@@ -26,7 +27,7 @@ TEST(CageDeformation, AFarTranslationTakesPointsAlong) {
 TEST(CageDeformation, TheIdentityChangesNoBitAndEqualPointsMoveAlike) {
   const Cage cage = dented();
   std::vector<Vec3> points = hard_points(cage);
-  points.insert(points.end(), points.begin(), points.end());  // corners that are not welded
+  points.insert(points.end(), points.begin(), points.end());  // duplicates, as unwelded corners have
   for (const CageCoordinates kind : {CageCoordinates::mean_value, CageCoordinates::green, CageCoordinates::harmonic}) {
     const auto coordinates = coordinates_of(cage, kind, 16);
     EXPECT_EQ(deform_points(*coordinates, cage, cage.vertices, points, true).points, points);
@@ -57,7 +58,7 @@ TEST(CageDeformation, RigidMotionsOfTheCageAreRigidMotions) {
   }
 }
 
-// What the window shows of a cage and the edit that it commits then take the same coordinates, found once.
+// The window's preview of a cage and the edit that commits it share one set of coordinates.
 TEST(CageDeformation, CoordinatesThatSomeoneHoldsAreTakenAgain) {
   const Cage cage = dented();
   Cage other = cage;

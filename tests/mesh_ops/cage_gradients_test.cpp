@@ -1,5 +1,5 @@
-// Gradients of cage coordinates against 120 digits: beside faces, and their one-sided limits on faces, edges and
-// vertices.
+// Gradients of cage coordinates compared with 120-digit arithmetic: near faces, and one-sided limits on faces, edges
+// and vertices.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -13,7 +13,7 @@
 namespace rebake::test {
 namespace {
 
-// The Jacobian of a given motion of the cage's rows.
+// Jacobian of the deformation that moves each row of the coordinates (cage vertex, or face for ψ) by its motion.
 Mat3 jacobian_of(const std::vector<Vec3>& gradients, const std::vector<Vec3>& motions) {
   Mat3 jacobian = Mat3::Identity();
   for (std::size_t row = 0; row < gradients.size(); ++row) jacobian += motions[row] * gradients[row].transpose();
@@ -42,7 +42,7 @@ void expect_gradients(const Cage& cage, const Coordinates& coordinates,
       const std::vector<Vec3> places = {(a + b + c) / 3, (a + b) / 2 + 0.3 * distance * (c - a), a};
       for (const Vec3& place : places) {
         const Vec3 point = place + distance * inwards;
-        // At corners it may lie on another face, where Green's coordinates have no gradient.
+        // Near edges and corners the point may lie on another face, where Green's coordinates have no gradient.
         if (!corners && &place != &places.front()) continue;
         std::vector<Vec3> gradients;
         weights_at(coordinates, point, &gradients);
@@ -56,7 +56,7 @@ void expect_gradients(const Cage& cage, const Coordinates& coordinates,
 TEST(MeanValue, JacobiansAgreeWith120Digits) {
   const Cage cage = dented();
   expect_gradients(cage, *mean_value_coordinates(cage), gold_mean_value, 1, true);
-  // On the planes of other faces too, where they weigh nothing.
+  // Also in the planes of other faces, whose contribution vanishes there.
   const Cage lattice = cube(2);
   const auto coordinates = mean_value_coordinates(lattice);
   const Vec3 point(0, 0, 0.1);
@@ -71,10 +71,10 @@ TEST(Green, JacobiansAgreeWith120Digits) {
   expect_gradients(cage, *green_coordinates(cage), gold_green, frame_of(cage).scale, false);
 }
 
-// The gradient's limit from inside: that of the weights a step of 1e-30 along the surface's normal away.
+// One-sided limit of the gradient from inside: central differences with step 1e-40, at a depth of 1e-25.
 std::vector<Vec3> one_sided(std::vector<Gold> (*exact)(const Cage&, const Gold3&), const Cage& cage,
                             const std::array<Vec3, 3>& from, const std::array<int, 3>& parts, const Vec3& inwards) {
-  // The point itself exactly on the surface: (Σ partsₖ fromₖ) / Σ partsₖ.
+  // The base point lies exactly on the surface: (Σ partsₖ fromₖ) / Σ partsₖ.
   const Gold step("1e-40"), depth("1e-25");
   const Gold whole = parts[0] + parts[1] + parts[2];
   Gold3 at;
@@ -109,7 +109,7 @@ void expect_one_sided_limits(const Cage& cage, const Coordinates& coordinates,
     const auto look = [&](const std::array<int, 3>& parts) {
       const double whole = parts[0] + parts[1] + parts[2];
       const Vec3 point = (parts[0] * corners[0] + parts[1] * corners[1] + parts[2] * corners[2]) / whole;
-      // Inwards at edges and corners: by all faces that hold the point, each by its angle there.
+      // Outward normal at the point: mean over all faces that contain it, weighted by their angles there.
       Vec3 outwards(0, 0, 0);
       for (const Face& other : cage.faces) {
         const Vec3 &a = cage.vertices[other[0]], &b = cage.vertices[other[1]], &c = cage.vertices[other[2]];
@@ -141,7 +141,7 @@ void expect_one_sided_limits(const Cage& cage, const Coordinates& coordinates,
   testing::Test::RecordProperty("worst", std::to_string(worst));
 }
 
-// A cage's own box holds its points on its faces, edges and corners; a gradient of 0 there turned them by 180°.
+// Points of a bounding-box cage lie on its faces, edges and corners. A gradient of 0 there would rotate them by 180°.
 TEST(MeanValue, JacobiansOnFacesEdgesAndVerticesAreTheLimitsFromInside) {
   for (const Cage& cage : {cube(), dented(), needles(1e-3)})
     expect_one_sided_limits(cage, *mean_value_coordinates(cage), gold_mean_value, false);
@@ -164,7 +164,7 @@ TEST(MeanValue, JacobiansOnEdgeExtensionsAgreeWith120Digits) {
     std::vector<Vec3> gradients;
     weights_at(*coordinates, point, &gradients);
     std::vector<Vec3> exact = gold_gradients(gold_mean_value, cage, point);
-    if (point.x() == h) {  // on a face: from inside
+    if (point.x() == h) {  // on a face: limit from inside
       Gold3 at = gold(point);
       at[0] -= Gold("1e-30");
       exact.clear();

@@ -1,5 +1,6 @@
-// Cage coordinates at random points within 1e-16 … 1e-6 of faces, edges and corners of random cages: sharp wedges,
-// lattices and stars. Sums of weights hide most faults, so cages move rigidly and weights are compared with 120 digits.
+// Cage coordinates at random points at distances of 1e-16 … 1e-6 from faces, edges and corners of random wedges,
+// lattices and stars. Sums of weights hide most errors, so linear precision is tested and weights are compared with
+// 120-digit arithmetic.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -53,8 +54,8 @@ double diagonal_of(const Cage& cage) {
   return box.diagonal().norm();
 }
 
-// Errors of linear precision: Σ w v + Σ ψ n is the point, and its gradient the identity; both relative to the sum of
-// the parts' sizes, in diagonals. A rigid motion of the cage moves the point by as much.
+// Errors of linear precision: Σ w v + Σ ψ n equals the point, and its gradient the identity. Relative to the sum of the
+// absolute terms, in cage diagonals. They bound the error under rigid motions of the cage.
 struct LinearErrors {
   double position = 0, jacobian = 0;
 };
@@ -88,7 +89,7 @@ struct Kind {
   RandomCage (*cage)(std::mt19937_64&);
   double position_bound;
 };
-// On sharp wedges double leaves 1e-16 over the slope, which is 1e-4 at least.
+// On wedges double precision allows 1e-16 / slope, and slopes are at least 1e-4.
 const std::array<Kind, 3> kinds{Kind{random_wedge, 2e-13}, Kind{random_lattice, 2e-14}, Kind{random_star, 2e-14}};
 
 void expect_linear_precision(Make make) {
@@ -112,7 +113,7 @@ void expect_linear_precision(Make make) {
 TEST(CageProperty, MeanValueIsLinearlyPreciseNearRandomSurfaces) { expect_linear_precision(make_mean_value); }
 TEST(CageProperty, GreenIsLinearlyPreciseNearRandomSurfaces) { expect_linear_precision(green_coordinates); }
 
-// Weights may differ from the exact ones by rounding, and by what moving the point by 1e-15 diagonals does to them.
+// Allows rounding of 1e-14 relative to the largest weight, plus the effect of moving the point by 1e-15 diagonals.
 void expect_agreement_with_120_digits(Make make, std::vector<Gold> (*exact)(const Cage&, const Gold3&)) {
   std::mt19937_64 random(2);
   int compared = 0;
@@ -126,8 +127,7 @@ void expect_agreement_with_120_digits(Make make, std::vector<Gold> (*exact)(cons
       const std::vector<Gold> want = exact(cage, gold(points[n]));
       Gold sum = 0;
       for (std::size_t v = 0; v < cage.vertices.size(); ++v) sum += want[v];
-      // Outside, and exactly on the surface, the reference for Green's coordinates does not sum to 1, or is not a
-      // number.
+      // Outside and exactly on the surface, the reference for Green's coordinates does not sum to 1 or is NaN.
       if (all[n].outside || !(abs(sum - 1) <= 1e-9)) continue;
       ++compared;
       double largest = 1;
@@ -154,7 +154,7 @@ TEST(CageProperty, GreenAgreesWith120DigitsNearRandomSurfaces) {
   expect_agreement_with_120_digits(green_coordinates, gold_green);
 }
 
-// The largest error of a mean value weight, as a share of the sum of the exact weights' sizes at its point.
+// Largest error of a mean value weight over all points, relative to the sum of the absolute exact weights there.
 double largest_share(const Cage& cage, const std::vector<Vec3>& points) {
   double worst = 0;
   const std::vector<Weighed> all = weighed(*make_mean_value(cage), points);
@@ -170,8 +170,7 @@ double largest_share(const Cage& cage, const std::vector<Vec3>& points) {
   return worst;
 }
 
-// The largest error of the weights at random points outside, from the cage's box to ten diagonals, as a share of the
-// sum of the exact weights' sizes.
+// largest_share() at random points outside, at 0.51 to 10 diagonals from the centre of the cage's box.
 double far_error(const Cage& cage, std::mt19937_64& random, int count) {
   Box box;
   for (const Vec3& v : cage.vertices) box.extend(v);
@@ -192,8 +191,7 @@ TEST(CageProperty, MeanValueHoldsThirteenDigitsToTenDiagonals) {
   }
 }
 
-// The largest error of a weight at points that lie a random distance outside a random place of the surface: 1e-6 to 2
-// sizes off, in any direction. As a share of the sum of the exact weights' sizes.
+// largest_share() at random points at 1e-6 to 2 diagonals from a random surface point, in random directions.
 double outside_error(const Cage& cage, std::mt19937_64& random, int count) {
   std::uniform_real_distribution<double> any(0, 1), exponent(std::log(1e-6), std::log(2.0));
   std::normal_distribution<double> normal;
@@ -209,7 +207,7 @@ double outside_error(const Cage& cage, std::mt19937_64& random, int count) {
   return largest_share(cage, points);
 }
 
-// Where terms cancel, faces are weighed with 50 digits; but for points within 1e-6 of two faces of which others cancel.
+// If terms cancel, faces are evaluated with 50 digits, except within 1e-6 of two faces if terms of other faces cancel.
 TEST(CageProperty, MeanValueHoldsNineDigitsOutsideThinCages) {
   std::mt19937_64 random(8);
   const auto box = [](double x, double y, double z) {
@@ -232,11 +230,11 @@ TEST(CageProperty, MeanValueHoldsNineDigitsOutsideThinCages) {
     const RandomCage of = random_wedge(random);
     EXPECT_LE(outside_error(of.cage, random, 10), 1e-9) << of.name;
   }
-  // Weights of a rod's end from beyond it: 18.07 instead of 0.94.
+  // A weight of a rod's end, seen from beyond it: cancellation would give 18.07 instead of 0.94.
   EXPECT_NEAR(weighed(*make_mean_value(box(1, 1e-8, 1e-8)), {Vec3(2, 3e-9, 4e-9)}).front().weights[1], 0.942857, 1e-6);
 }
 
-// The example that was found first: both faces of a sharp edge see the point in their plane and outside themselves.
+// Both faces of a sharp edge contain this point in their plane, but outside the face.
 TEST(CageProperty, PointBesideASharpEdgeFollowsTheCage) {
   Cage cage;
   cage.vertices = {{0, 0, 0}, {1, 0, -.2}, {1, 0, .2}, {0, 1, 0}};
@@ -248,7 +246,7 @@ TEST(CageProperty, PointBesideASharpEdgeFollowsTheCage) {
   EXPECT_LE((place - Vec3(1e-15, -0.4, 0)).norm(), 1e-15);
 }
 
-// Parts that overlap are wound around twice: their weights were left undivided, and turns went wrong.
+// Overlapping components have winding number 2: weights must be divided by it, or rotations are wrong.
 TEST(CageProperty, GreenFollowsTurnsWherePartsOverlap) {
   Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 1, 1, 1);
   const Cage other = lattice_cage(Box(Vec3(0.5, 0.5, 0.5), Vec3(1.5, 1.5, 1.5)), 1, 1, 1);
@@ -262,7 +260,7 @@ TEST(CageProperty, GreenFollowsTurnsWherePartsOverlap) {
   }
 }
 
-// Components were turned all together: of two boxes side by side, one wound the other way counted as outside.
+// Each component is oriented on its own, also if others are wound differently.
 TEST(CageProperty, EveryComponentIsTurnedOutwards) {
   const Cage box = lattice_cage(Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)), 1, 1, 1);
   const auto joined = [&](const Vec3& offset, double scale, bool first_inwards, bool second_inwards) {
@@ -284,7 +282,7 @@ TEST(CageProperty, EveryComponentIsTurnedOutwards) {
     }
 }
 
-// One rounding outside a lattice's wall: the face and the cage once disagreed about what that is.
+// At 2.2e-16 outside a wall, the face and the cage must agree whether the point is inside.
 TEST(CageProperty, GreenRotationOneRoundingOutsideALattice) {
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 6, 6, 6);
   std::mt19937_64 random(3);

@@ -28,7 +28,7 @@ TEST(Camera, PlanesThatAreLeftOutFitTheScene) {
   EXPECT_THROW(read_camera_json({{"near", 0}}), FieldError);
   EXPECT_THROW(read_camera_json({{"far", -1}}), FieldError);
   const Box box(Vec3(-100, -100, -100), Vec3(100, 100, 100));
-  // From afar, from beside it with a wide picture, and from within, at any scale.
+  // From far away, from beside the box with a wide picture, and from inside; at three scales.
   for (const double scale : {1e-9, 1.0, 1e9})
     for (const Vec3& eye : {Vec3(0, 0, 3000), Vec3(120, 0, 150), Vec3(10, 20, 30)}) {
       Camera camera = open;
@@ -48,7 +48,7 @@ TEST(Camera, PlanesThatAreLeftOutFitTheScene) {
       EXPECT_GT(fitted.near_plane, 0);
       EXPECT_GE(fitted.far_plane, farthest);
     }
-  // A plane that is given stays, and the other keeps clear of it.
+  // A given plane is not changed; the other one is fitted so that both are valid.
   Camera beyond = open, before = open;
   beyond.near_plane = 1e6;
   before.far_plane = 1e-3;
@@ -57,7 +57,7 @@ TEST(Camera, PlanesThatAreLeftOutFitTheScene) {
   EXPECT_EQ(with_planes(before, box, 1).far_plane, 1e-3);
   EXPECT_NO_THROW(check(with_planes(before, box, 1)));
   EXPECT_NO_THROW(check(with_planes(open, Box(), 1)));
-  // The eye on a scene of one point; one that no distance can be told to.
+  // The eye at a scene of one point; then an eye so far away that distances overflow.
   EXPECT_NO_THROW(check(with_planes(open, Box(open.eye, open.eye), 1)));
   Camera away = open;
   away.eye = Vec3(1e160, 0, 0);
@@ -81,7 +81,7 @@ TEST(Camera, AHeightThatShowsNothingIsRefused) {
   EXPECT_THROW(read_camera_json({{"ortho_height", "high"}}), FieldError);
 }
 
-// One plane is given, at any power of ten: the other one fits, or the error names the one that was given.
+// With one plane given, at any power of ten, the other is fitted or the error names the given one.
 TEST(Camera, ErrorsNameThePlaneThatWasGiven) {
   const Box scene(Vec3(-1, -1, -1), Vec3(1, 1, 1));
   int errors = 0;

@@ -1,4 +1,4 @@
-// What is said of places that were not looked at holds as often as it claims.
+// ChangeEstimate: its bound on places that were not sampled holds with the stated confidence.
 #include "mesh_ops/light/change_estimate.h"
 
 #include <gtest/gtest.h>
@@ -22,22 +22,22 @@ TEST(ChangeEstimate, PicksAreDistinctAndTheSameEveryTime) {
   EXPECT_EQ(picked, picked_places(places, 512));
 }
 
-// Of 3000 objects, of any number of places and changes in any order, at most one in a hundred has a larger share of
-// places beyond the largest that was picked.
+// Over 3000 objects, the share of places that change more than the largest sampled change exceeds share_beyond() in
+// about 1 % of cases.
 TEST(ChangeEstimate, HoldsWithTheConfidenceThatItClaims) {
   constexpr std::size_t objects = 3000, picks = 64;
   std::size_t wrong = 0;
   for (std::size_t n = 0; n < objects; ++n) {
     const std::size_t count = 1000 + 7 * n;
     const std::vector<std::size_t> picked = picked_places(std::vector<std::uint8_t>(count, 1), picks);
-    // Each place changes by a number of its own, 0 … count − 1.
+    // The changes of the places are a permutation of 0 … count − 1.
     constexpr std::size_t prime = 1'000'003;
     std::size_t largest = 0;
     for (const std::size_t place : picked) largest = std::max(largest, place * prime % count);
     const double beyond = static_cast<double>(count - 1 - largest) / static_cast<double>(count);
     wrong += beyond > ChangeEstimate{0, picks, count}.share_beyond() ? 1 : 0;
   }
-  EXPECT_LE(wrong, objects / 50);  // 30 are expected; 60 are five standard deviations beyond
+  EXPECT_LE(wrong, objects / 50);  // 30 expected; 60 is five standard deviations above
   EXPECT_GT(wrong, 0U);
 }
 

@@ -1,4 +1,4 @@
-// Bounds of what direction and features do to colours hold at random, and are not much too wide where it matters.
+// Bounds on the influence of view direction and features on decoded colours: valid for random inputs, and not too wide.
 #include "mesh_ops/texture/decoder_bounds.h"
 
 #include <gtest/gtest.h>

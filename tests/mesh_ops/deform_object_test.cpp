@@ -1,4 +1,4 @@
-// Deforming objects: no cracks, no needless change, soft borders, folds that are counted, handles, wraps.
+// Deforming objects: no cracks, unchanged data stays shared, soft borders, fold counts, handles, wraps.
 #include "mesh_ops/deform/deform_object.h"
 #include "mesh_ops/base/polar.h"
 
@@ -56,7 +56,7 @@ TriangleSet upper_half(const BakedObject& object) {
   return flags;
 }
 
-// Every corner's place before → where corners there are now. One for each when nothing is torn.
+// Maps each corner position before to the distinct positions after; exactly one each if nothing is torn.
 std::map<std::array<double, 3>, std::vector<Vec3>> places(const BakedObject& before, const BakedObject& after) {
   std::map<std::array<double, 3>, std::vector<Vec3>> result;
   for (std::size_t s = 0; s < before.sets.size(); ++s)
@@ -81,7 +81,7 @@ TEST(Deform, UnweldedCornersMoveAlikeBitForBit) {
 
 TEST(Deform, TheIdentityChangesNothing) {
   const auto object = made_object();
-  // A transform whose inverse rounds.
+  // A transform whose inverse is inexact.
   const Affine placed =
       Eigen::Translation3d(0.1, 0.2, 0.3) * Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()) * Eigen::Scaling(0.7);
   const DeformedObject result = deformed(*object, placed, all(*object), 0, bend(0));
@@ -100,12 +100,12 @@ TEST(Deform, ASoftBorderLeavesNoCrackAndAHardOneSplits) {
   std::size_t split = 0;
   for (const auto& [place, now] : places(*object, *hard.object)) split += now.size() > 1 ? 1 : 0;
   EXPECT_EQ(split, 32U) << "the equator's corners";
-  // The falloff's Jacobian is that of the faded map: a scaling still turns nothing along its own axis.
+  // The Jacobian includes the falloff; a scaling that fades out does not fold.
   EXPECT_EQ(soft.report.folded, 0U);
 }
 
-// Faded by the distance to the nearest corner of the border, what runs along it waved, with a slope that jumped by 1.5
-// over the falloff between two corners.
+// The falloff is a function of the distance to the border's edges. The distance to its corners would cause waves along
+// the border, with slopes that differ by 1.5 over the falloff.
 TEST(Deform, ASoftBorderIsAsSoftBetweenItsCornersAsAtThem) {
   // A sheet of 4 × 64 quads; the upper 48 rows rise, the border runs along x.
   std::vector<Vec3> positions;
@@ -126,7 +126,7 @@ TEST(Deform, ASoftBorderIsAsSoftBetweenItsCornersAsAtThem) {
     }
   BakedObject sheet = *made_object({.columns = 4, .rows = 2});
   sheet.sets = {sheet.sets[0]};
-  // Columns that lie between the border's corners: the sheet's own are moved aside above it.
+  // Above the border, columns are shifted to lie between the border's corners.
   for (std::size_t v = 0; v < positions.size(); ++v)
     if (positions[v].y() > 0.26) positions[v].x() += 0.25;
   sheet.sets[0].soup = Soup(positions, uvs, faces);
@@ -138,14 +138,14 @@ TEST(Deform, ASoftBorderIsAsSoftBetweenItsCornersAsAtThem) {
   const auto risen = deformed(sheet, Affine::Identity(), flags, 0.3, rise).object;
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const double t = std::min(1.0, (positions[v].y() - 0.25) / 0.3);
-    if (t <= 0 || positions[v].x() > 2) continue;  // beside the border's end its corner is the nearest
+    if (t <= 0 || positions[v].x() > 2) continue;  // beyond the border's end its corner is the nearest
     EXPECT_NEAR(risen->sets[0].soup.positions()[v].z(), t * t * (3 - 2 * t), 1e-12) << positions[v].transpose();
   }
 }
 
 TEST(Deform, FoldsAreCountedAndNothingBecomesNaN) {
   const auto object = made_object();
-  // κ = 2: folds beyond x = 0.5.
+  // A curvature κ = 2 folds space beyond x = 0.5.
   ClosedForm form;
   form.from = -1;
   form.to = 1;
@@ -164,7 +164,7 @@ TEST(Deform, FoldsAreCountedAndNothingBecomesNaN) {
       if (set.soup.rotations() == nullptr) continue;
       for (const Turn& turn : *set.soup.rotations()) {
         EXPECT_TRUE(turn.matrix().isUnitary(1e-12));
-        // A mirror is a mirror for colours too; what collapses is given a rotation.
+        // Mirroring also mirrors view directions (determinant −1); collapsed vertices get a proper rotation.
         EXPECT_EQ(turn.matrix().determinant() > 0, scale.x() >= 0) << scale.transpose();
       }
     }
@@ -207,7 +207,7 @@ TEST(Deform, RotationsAccumulateOverSeveralBends) {
   const DeformedObject twice = deformed(*once.object, Affine::Identity(), all(*object), 0, affine(quarter));
   for (const Turn& turn : *twice.object->sets[0].soup.rotations())
     EXPECT_LE((turn.matrix() - quarter * quarter).norm(), 1e-14);
-  // Seen from the object's own frame, in a node that is turned and scaled unevenly.
+  // In a node with a rotation and a non-uniform scale, rotations are stored in object space.
   const Affine placed = Eigen::AngleAxisd(1.1, Vec3(1, 1, 0).normalized()) * Eigen::Scaling(1.0, 3.0, 0.5);
   const DeformedObject turned = deformed(*object, placed, all(*object), 0, affine(quarter));
   const Mat3 frame = orthogonal_factor(placed.linear());
@@ -239,13 +239,14 @@ TEST(Handles, HeldPointsAreHeldAndTheRestIsRigid) {
   const HandledCage moved = as_rigid_as_possible(cage, held, 500);
   EXPECT_EQ(moved.free_components, 0U);
   for (const HandledVertex& h : held) EXPECT_EQ(moved.vertices[h.vertex], h.place);
-  // With one end moved rigidly and the other free, rigid motion is the minimum.
+  // With one end moved rigidly and the other free, the minimum is that rigid motion.
   for (std::size_t v = 0; v < cage.vertices.size(); ++v)
     EXPECT_LE((moved.vertices[v] - lifted * cage.vertices[v]).norm(), 1e-13);
   EXPECT_THROW(as_rigid_as_possible(cage, {}, 5), Error);
 }
 
-// From the cage at rest, ten steps left a turn of 3 by 2 to 44 % of the diagonal short.
+// Iterations start at the best rigid fit to the handles. From the cage at rest, ten of them would leave a rotation by 3
+// rad short by 2 to 44 % of the diagonal.
 TEST(Handles, RigidMotionsAreExactWhateverTheAngle) {
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
   for (const double angle : {1e-9, 0.5, 1.5, 3.0, 3.14159265358979})
@@ -260,8 +261,8 @@ TEST(Handles, RigidMotionsAreExactWhateverTheAngle) {
     }
 }
 
-// Two handles give one direction before and one after; just below 180° the rotation between them was off by 7e-5. What
-// the handles know of the rotation's plane is their rounding over the angle that is left.
+// Two handles define one direction at rest and one moved. Near 180° the axis of the rotation between them is
+// ill-conditioned: its error is rounding divided by the remaining angle.
 TEST(Handles, TwoHandlesRotateTheCageRigidlyUpToAHalfTurn) {
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
   std::mt19937 random(4);

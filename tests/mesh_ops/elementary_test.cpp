@@ -1,4 +1,4 @@
-// Functions that give the same bits on every processor are as right as a C library's, against 120 digits.
+// Functions with the same bits on every processor (elementary.h) compared with 120-digit arithmetic.
 #include "mesh_ops/base/elementary.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace rebake::test {
 namespace {
 
-// In units in the last place of the exact value.
+// Error in units in the last place of the exact value.
 double error_in_ulps(double got, const Gold& want) {
   const auto rounded = static_cast<double>(want);
   const double ulp = std::nextafter(std::abs(rounded), 1e300) - std::abs(rounded);

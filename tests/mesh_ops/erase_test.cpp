@@ -1,4 +1,4 @@
-// The eraser clears what it is meant to and not a bit more.
+// The eraser clears the opacity of exactly the texels inside the region.
 #include <gtest/gtest.h>
 
 #include "mesh_ops/features/erase.h"
@@ -45,7 +45,7 @@ TEST(Erase, OnlyOpacityOfTexelsInsideChanges) {
 }
 
 TEST(Erase, TexelsAtThePicturesBorderAreNotTakenForOthers) {
-  // A triangle over the whole border of the picture touches few of the texels in its box.
+  // A triangle over one half of the texture: its bounding box also contains texels of the other half.
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 2}));
   TextureSet& set = object->sets[0];
   set.soup = Soup({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {Vec2(0, 1), Vec2(1, 1), Vec2(0, 0)}, {Face{0, 1, 2}});
@@ -55,7 +55,7 @@ TEST(Erase, TexelsAtThePicturesBorderAreNotTakenForOthers) {
   const TexelReader texels_before(before), texels_after(after);
   for (int y = 0; y < before.height(); ++y)
     for (int x = 0; x < before.width(); ++x) {
-      // Distance beyond the diagonal, in texels along both sides together.
+      // Offset from the diagonal in texture coordinates; positive values are outside the triangle.
       const double beyond = static_cast<double>(x) / before.width() + static_cast<double>(y) / before.height() - 1;
       if (beyond > 0) {
         EXPECT_EQ(texels_before.at(x, y), texels_after.at(x, y)) << x << " " << y;

@@ -1,4 +1,4 @@
-// Export: which folders it replaces, and what it reports.
+// Export: which folders it replaces, and its report.
 #include <gtest/gtest.h>
 
 #include "mesh_ops/base/error.h"
@@ -27,7 +27,7 @@ TEST(Export, RefusesAFolderOfOtherScenes) {
   EXPECT_EQ(folder_bytes(temporary.path()), before);
 }
 
-// Names alone do not make a scene of a folder.
+// Files with the names of scene files but other contents do not make a folder a scene.
 TEST(Export, RefusesFilesThatAreNoScene) {
   for (const auto& [name, text] : {std::pair("scene.json", R"({"mine": 1})"), std::pair("mlp.json", "{}"),
                                    std::pair("shape12.obj", "v 0 0 0"), std::pair("turns.bin", "")}) {
@@ -101,7 +101,7 @@ TEST(Export, FailingLeavesWhatWasThere) {
   const auto before = folder_bytes(temporary.path() / "a");
   Scene broken = scene_of(made_object({.seed = 2}));
   auto object = std::make_shared<BakedObject>(*broken.roots[0]->object);
-  object->sets[0].soup = Soup();  // nothing to write
+  object->sets[0].soup = Soup();  // no triangles to write
   broken = with_changed(broken, broken.roots[0]->id, [&](Node& n) { n.object = object; });
   EXPECT_THROW(export_scene(broken, temporary.path() / "a", {}), Error);
   EXPECT_EQ(folder_bytes(temporary.path() / "a"), before);

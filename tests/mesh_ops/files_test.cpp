@@ -1,5 +1,5 @@
-// What is written is whole and on the disk, or was never there: the order of calls that a power loss tests, full disks,
-// short writes, leftovers, and files that are none.
+// Durable file writes: order of syncs and renames under power loss, full disks, short writes, leftovers, pipes and
+// devices. SourceGuard, which protects sources from being overwritten.
 #include "mesh_ops/base/files.h"
 
 #include <fcntl.h>
@@ -46,7 +46,7 @@ TEST(Files, AFullDiskAtAnyCallLeavesWhatWasThere) {
   export_scene(scene_of(object), folder.path() / "out", {});
   write_file_atomically(folder.path() / "note", "before", {});
   const auto before = folder_bytes(folder.path() / "out");
-  // Half of the object: other bytes.
+  // Half of the object, so that its bytes differ.
   TriangleSet half(object->triangle_count());
   for (std::size_t f = 0; f < half.size(); ++f) half[f] = f % 2;
   BakedObject changed = *object;
@@ -68,11 +68,11 @@ TEST(Files, AFullDiskAtAnyCallLeavesWhatWasThere) {
     }
     if (!failed) break;
     ++failures;
-    const bool replaced = calls.renames() > 0;  // only syncing it failed
+    const bool replaced = calls.renames() > 0;  // the rename succeeded, a later sync failed
     if (!replaced) {
       EXPECT_EQ(folder_bytes(folder.path() / "out"), before) << "call " << nth;
     } else {
-      // Whole, the old or the new one.
+      // The folder is complete: the old one or the new one.
       EXPECT_NO_THROW(read_any(folder.path() / "out", Axes::y_up));
       EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2) << "nothing half-written, call " << nth;
     }
@@ -124,7 +124,7 @@ TEST(Files, LeftoversOfKilledWritesAreRemovedByTheNextButNothingElse) {
     EXPECT_TRUE(fs::exists(folder.path() / kept)) << kept;
 }
 
-// People open leftovers to rescue them: a source that has such a name was removed by the export that read it.
+// A user may open a leftover as a source to recover it: an export must not remove it then.
 TEST(Files, LeftoversThatThisRunReadsAreKept) {
   const TemporaryFolder folder;
   const fs::path leftover = folder.path() / ".out.01234567.partial", file = folder.path() / "note.89abcdef.partial";
@@ -142,7 +142,7 @@ TEST(Files, LeftoversThatThisRunReadsAreKept) {
   EXPECT_TRUE(fs::exists(file));
 }
 
-// The place was looked at before the work began; by its end a folder on the way may be a link to a source.
+// The target is checked again before it is replaced: a parent folder may have become a link to a source meanwhile.
 TEST(Files, TheTargetIsLookedAtAgainBeforeItIsReplaced) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "sources/ficus");
@@ -152,7 +152,7 @@ TEST(Files, TheTargetIsLookedAtAgainBeforeItIsReplaced) {
   guard.add(folder.path() / "sources/ficus");
   AtomicFolder out(folder.path() / "results/ficus", guard, [](const fs::path&) {});
   out.write("mlp.json", "new");
-  // With what is being written, so that nothing else stops it.
+  // The staging folder moves too, so that only the check can fail.
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.path() / "results"))
     fs::rename(entry.path(), folder.path() / "sources" / entry.path().filename());
   fs::rename(folder.path() / "results", folder.path() / "aside");
@@ -169,7 +169,7 @@ TEST(Files, PipesAndDevicesAreNoFiles) {
   EXPECT_THROW(read_input("/dev/zero", 1 << 20), FileError);
   write_text(folder.path() / "large", std::string(100, 'x'));
   EXPECT_THROW(read_file(folder.path() / "large", 99), FileError);
-  // In a scene's folder, in place of one of its files.
+  // A pipe in place of a file of a scene folder.
   export_scene(scene_of(made_object()), folder.path() / "scene", {});
   fs::remove(folder.path() / "scene" / "shape0.obj");
   ASSERT_EQ(::mkfifo((folder.path() / "scene" / "shape0.obj").c_str(), 0600), 0);
@@ -202,7 +202,7 @@ TEST(SourceGuard, RefusesWhatIsEqualAboveBelowAndBehindLinks) {
   EXPECT_NO_THROW(guard.check_file(folder.path() / "x/p.png"));
 }
 
-// A path to a folder or file, and another way to name the same.
+// A function that returns an alias of the path `real`, with `scratch` as folder for links.
 struct Alias {
   std::string name;
   std::function<fs::path(const fs::path& real, const fs::path& scratch)> make;
@@ -229,7 +229,7 @@ const std::vector<Alias> aliases{
      }},
 };
 
-// Whatever a source is called when it is read, and whatever it is called when it is written to.
+// All combinations of an alias for reading and an alias for writing.
 TEST(SourceGuard, SeesThroughEveryAliasOfAFolder) {
   for (const Alias& read : aliases)
     for (const Alias& written : aliases) {
@@ -264,7 +264,7 @@ TEST(SourceGuard, ProtectsFilesThatASourceLinksTo) {
   EXPECT_THROW(guard.check_file(folder.path() / "hard.json"), FileError);
 }
 
-// Two paths that lead to one file with no link between them: a bind mount, or a file system that ignores case.
+// Simulates two paths to one file without a link: a bind mount, or a case-insensitive file system.
 class OneFileTwoNames : public FileCalls {
  public:
   OneFileTwoNames(fs::path name, fs::path other) : name_(std::move(name)), other_(std::move(other)) {}
@@ -315,9 +315,9 @@ TEST(SourceGuard, KnowsASourceThatWasMovedAway) {
   for (int twice = 0; twice < 2; ++twice) {
     EXPECT_THROW(guard.check_file(folder.path() / "moved/shape0.obj"), FileError);
     EXPECT_THROW(guard.check_folder(folder.path() / "moved"), FileError);
-    guard.add(folder.path() / "scene");  // as every node that was read from there does
+    guard.add(folder.path() / "scene");  // repeated, as for each node read from there
   }
-  // Another folder in its place is a source too.
+  // A new folder at the old path is a source too.
   fs::create_directories(folder.path() / "scene");
   guard.add(folder.path() / "scene");
   EXPECT_THROW(guard.check_folder(folder.path() / "scene"), FileError);

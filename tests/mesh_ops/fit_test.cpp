@@ -1,4 +1,4 @@
-// Features and decoder fitted together reproduce what they were shown, the same at every run.
+// Joint fitting of features and decoder reaches 40 dB on its training data and is deterministic.
 #include "mesh_ops/features/fit.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Folders of every layout: what is read is what was written, unedited folders byte for byte.
+// Folders of every layout round-trip; unedited folders are copied byte for byte.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -42,7 +42,7 @@ TEST_P(ByLayout, UneditedFolderExportsByteForByte) {
   const Scene read = read_any(temporary.path() / "a", Axes::y_up);
   EXPECT_EQ(read.roots[0]->object->layout, GetParam());
   EXPECT_EQ(read.roots[0]->name, "a");
-  // A marker that no writer of ours would make shows that files are copied, not written anew.
+  // Trailing white space that Rebake never writes shows that files are copied, not rewritten.
   const std::string mlp = read_file(temporary.path() / "a/mlp.json") + "\n  ";
   write_text(temporary.path() / "a/mlp.json", mlp);
   const Scene again = read_any(temporary.path() / "a", Axes::y_up);
@@ -115,7 +115,7 @@ TEST(Folder, LayoutsConvert) {
   for (int y = 0; y < split_texels.height(); ++y)
     for (int x = 0; x < split_texels.width(); ++x) {
       ASSERT_EQ(a.at(x, y).opaque(), b.at(x, y).opaque());
-      // Halved to plain is exact in what is decoded.
+      // Converting halved to plain alpha codes does not change decoded features.
       if (a.at(x, y).opaque()) {
         const auto one = decode_features(a.at(x, y), AlphaCode::halved),
                    other = decode_features(b.at(x, y), AlphaCode::plain);
@@ -140,7 +140,7 @@ TEST(Folder, ObjectsOfOneDecoderShareAFolderOthersDoNot) {
   scene = with_added(scene, node, NodeId::none, 9);
   EXPECT_TRUE(export_scene(scene, temporary.path() / "one", {}).one_folder);
   EXPECT_EQ(read_any(temporary.path() / "one", Axes::y_up).roots[0]->object->triangle_count(), 512U);
-  // Both turned alike still agree.
+  // Nodes with equal rotations still share a folder.
   const Affine turn(Eigen::AngleAxisd(0.3, Vec3::UnitY()));
   const auto turned = [&](Node& n) { n.to_parent = turn * n.to_parent; };
   const Scene both = with_changed(with_changed(scene, scene.roots[0]->id, turned), scene.roots[1]->id, turned);
@@ -161,7 +161,7 @@ TEST(Folder, SavedSceneKeepsEveryNode) {
   group.name = "group";
   group.locked = true;
   Node child;
-  child.name = "shape0.obj";  // a name that must not become a file's
+  child.name = "shape0.obj";  // a node name that must not become a file name
   child.visible = false;
   child.object = scene.roots[0]->object;
   child.to_parent = Affine(Eigen::Translation3d(1.0 / 3, 2, 3) * Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()) *
@@ -187,7 +187,7 @@ TEST(Folder, SavedSceneKeepsEveryNode) {
   }
   EXPECT_EQ(back.background, scene.background);
   EXPECT_EQ(back.views, scene.views);
-  EXPECT_EQ(after[0].node->object, after[2].node->object);  // one object in two places is stored once
+  EXPECT_EQ(after[0].node->object, after[2].node->object);  // an object shared by two nodes is stored once
   const Soup &a = turned->sets[0].soup, &b = after[3].node->object->sets[0].soup;
   ASSERT_NE(b.rotations(), nullptr);
   for (std::size_t f = 0; f < a.faces().size(); ++f)
@@ -204,8 +204,7 @@ TEST(Folder, FeaturePngsCarryBytesAndNoColourChunks) {
     for (int x = 0; x < back.width(); ++x) ASSERT_EQ(are.at(x, y), were.at(x, y));
 }
 
-// What reads folders stops all its work when one file is bad; a texture that is being made meanwhile was once left with
-// tiles that did not exist.
+// Reading a folder cancels its task group if one file is bad. A texture under construction must still get all tiles.
 TEST(Folder, TexturesAreWholeWhereWorkAroundThemIsStopped) {
   const auto texture = made_object()->sets[0].texels;
   const std::string feat0 = write_feature_png(*texture, 0), feat1 = write_feature_png(*texture, 1);
@@ -232,7 +231,7 @@ TEST(Folder, TexturesAreWholeWhereWorkAroundThemIsStopped) {
     }
 }
 
-// One patch over most of a texture of `side` texels, and one small patch.
+// An object with one patch over most of a texture of `side`² texels, and one small patch.
 std::shared_ptr<const BakedObject> wide_object(int side) {
   const auto uv = [&](double x, double y) { return Vec2((x + 0.5) / side, 1 - (y + 0.5) / side); };
   const double far = side - 40;
@@ -252,18 +251,18 @@ std::shared_ptr<const BakedObject> wide_object(int side) {
   return object;
 }
 
-// Sizes around the usual largest, powers of two and odd ones.
+// Sizes around 4096, the usual maximum; powers of two and others.
 TEST(Folder, UneditedTexturesOfAnySizeAreWrittenByteForByteAndEditedOnesKeepTheirTexels) {
   for (const int side :
        is_deep ? std::vector{64, 1000, 4095, 4096, 4097, 4200, 5000, 8192} : std::vector{64, 999, 4200}) {
     const TemporaryFolder temporary;
     BakedObject made = *wide_object(side);
     export_scene(scene_of(std::make_shared<const BakedObject>(made)), temporary.path() / "made", {});
-    // What the exporter itself wrote may have been laid out again: the source is what lies there now.
+    // The exporter may have packed its own texture again, so the folder on disk is the reference.
     const Scene read = read_any(temporary.path() / "made", Axes::y_up);
     export_scene(read, temporary.path() / "copy", {});
     EXPECT_EQ(folder_bytes(temporary.path() / "copy"), folder_bytes(temporary.path() / "made")) << side;
-    // Without its small patch: what the large one shows is what it showed.
+    // Without the small patch, texels of the large one must not change.
     Scene edited = read;
     edited = with_changed(edited, edited.roots[0]->id, [](Node& node) {
       auto object = std::make_shared<BakedObject>(*node.object);

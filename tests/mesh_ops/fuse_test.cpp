@@ -1,5 +1,4 @@
-// Fusing decoders: the arithmetic against double precision, the same bytes everywhere, and teachers that leave nothing
-// to learn from.
+// Fusing decoders: network kernels compared with double precision, reproducible bytes, and degenerate teachers.
 #include "mesh_ops/features/fuse.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +24,7 @@ std::vector<Lanes> random_lanes(std::size_t count, std::uint64_t seed, double fr
   return lanes;
 }
 
-// Seen by itself with other features, so that there is something to fit.
+// Observations of 16 texels with the given features from 24 random directions, decoded by `teacher`: targets of a fit.
 std::vector<Sighting> sightings(const FeatureNetwork& teacher, const std::vector<Lanes>& features) {
   Dice dice(7);
   TexelGroup group;
@@ -65,7 +64,7 @@ TEST(NetworkKernels, SlopesAgreeWithDifferences) {
   network_kernels().forward(network.view(), input.data(), output.data(), work.data());
   network_kernels().backward(network.view(), input.data(), output.data(), slopes.data(), gradient.data(),
                              input_slopes.data(), work.data());
-  // The loss is Σ slopes · outputs; differences of the decoder in double precision.
+  // The loss is Σ slopes · outputs; compared with central differences of the decoder in double precision.
   const auto loss = [&](const Decoder& d, std::size_t l, std::size_t moved, double by) {
     std::array<double, 11> x;
     for (std::size_t i = 0; i < 11; ++i) x[i] = static_cast<double>(input[i].at[l]) + (i == moved ? by : 0);
@@ -115,7 +114,7 @@ TEST(NetworkKernels, FindFeaturesThatShowTheColours) {
   const FeatureNetwork network(made_decoder(2));
   const std::vector<Lanes> truth = random_lanes(texel_features, 4, 0.1, 0.9);
   auto seen = sightings(network, truth);
-  // Each for itself: means of four move with their neighbours.
+  // Keeps observations of single texels only: means of four texels depend on neighbouring lanes.
   std::erase_if(seen, [](const Sighting& sighting) { return sighting.mix != 0; });
   std::vector<Lanes> work(network_kernels().workspace(network.view())), features = random_lanes(texel_features, 5);
   Lanes before, fitted, rounded, searched;
@@ -142,10 +141,10 @@ TEST(NetworkKernels, FindFeaturesThatShowTheColours) {
     }
     EXPECT_GE(std::lround(255 * best[0].at[l]), 1);
   }
-  EXPECT_LT(sums[1], 0.02F * sums[0]);  // 17 dB, from random features
+  EXPECT_LT(sums[1], 0.02F * sums[0]);  // 17 dB better than the random features at the start
 }
 
-// What a fuse gives for two nodes, quickly.
+// The composition of a scene and its fast fuse: a small sample and few training steps.
 struct Result {
   Composition composition;
   Fused fused;
@@ -280,7 +279,7 @@ TEST(Fuse, TrainsADecoderOfAnyWidthFurther) {
             40);
 }
 
-// Each teacher beside an ordinary one, at a width that is trained and at one where both fit side by side.
+// Each hard case beside an ordinary object, at width 16 (trained) and width 80 (both decoders fit side by side).
 class FuseHardCases : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Fuse, FuseHardCases, ::testing::Values(16, 80));
 
@@ -314,7 +313,7 @@ TEST_P(FuseHardCases, Geometry) {
     return std::shared_ptr<const BakedObject>(result);
   };
   const auto inside = changed(*made_object(small(2)), [](Vec3& p) { p *= 0.2; });
-  expect_sound(fused(with(with({}, sphere), inside), options));  // seen from nowhere
+  expect_sound(fused(with(with({}, sphere), inside), options));  // hidden from all directions
   const auto needle = changed(*made_object(small(2)), [](Vec3& p) { p = {p.y(), 0, 0}; });
   expect_sound(fused(with(with({}, ordinary), needle, moved(3)), options));  // triangles without area
   const auto point = changed(*made_object(small(2)), [](Vec3& p) { p.setZero(); });
@@ -346,13 +345,13 @@ TEST_P(FuseHardCases, OneTexelAndNone) {
   expect_sound(fused(with(with({}, one), one, moved(3) * Eigen::AngleAxisd(1, Vec3::UnitX())), options));
   one->sets[0].texels = only(*texels, -1, -1);
   EXPECT_THROW(composed(with({}, one), 4096), EditError);
-  // Beside something, it takes no part.
+  // Next to another object, a fully transparent one is ignored.
   EXPECT_EQ(
       fused(with(with({}, made_object(small(1))), one, moved(2.5)), options).fused.report.parts.back().errors.texels,
       0U);
 }
 
-// Turned about z, by so many radians a unit of height.
+// A small sphere whose vertices are rotated about z by `radians` per unit of y.
 std::shared_ptr<const BakedObject> bent_by(double radians) {
   auto bent = std::make_shared<BakedObject>(*made_object(small(1)));
   const Soup& soup = bent->sets[0].soup;
@@ -375,12 +374,13 @@ TEST(Fuse, BendsAreFittedTriangleByTriangle) {
   options.iterations = 0;
   options.width.reset();
   const double as_they_were = fused(with({}, bent), options).fused.report.whole.psnr_db;
-  // 5.8 where texels chose their branch sixteen by sixteen, with up to five times as many specks in pictures.
+  // Choosing branches per group of 16 texels would gain 5.8 dB, but with up to five times as many specks in pictures.
   EXPECT_GT(result.fused.report.whole.psnr_db, as_they_were + 4.5);
   EXPECT_FALSE(result.fused.object->any_rotations());
 }
 
-// Where two branches meet in a pixel, it shows neither's colour: a patch is of one, and no fit takes texels out of it.
+// A pixel that mixes texels of two branches shows a wrong colour. So all texels of a block use one branch, and no fit
+// moves a texel out of it.
 TEST(Fuse, TexelsOfABlockStayInOneBranch) {
   const auto bent = bent_by(2);
   const Scene scene = with({}, bent);
@@ -410,7 +410,7 @@ TEST(Fuse, TexelsOfABlockStayInOneBranch) {
       const Eigen::Matrix<double, 8, 1> own = branch.encode.inverse() * (features - branch.offset);
       for (std::size_t c = 0; c < texel_features; ++c) {
         if ((student.selectors >> c & 1) == 0) continue;
-        // By the rounding of bytes, which the sector's share of the plane magnifies.
+        // Tolerance for the rounding to bytes, which the inverse of the encoding magnifies.
         EXPECT_GT(own[static_cast<Eigen::Index>(c)], -0.05);
         EXPECT_LT(own[static_cast<Eigen::Index>(c)], 1.05);
       }
@@ -432,10 +432,10 @@ TEST(Fuse, RefusesWhatCannotBe) {
   EXPECT_THROW(fused(scene, options), FieldError);
   EXPECT_THROW(composed({}, 4096), EditError);
   options.keep_node = scene.roots[0]->id;
-  options.width = 8;  // than which its decoder is wider
+  options.width = 8;  // narrower than the decoder to keep
   EXPECT_THROW(fused(scene, options), FieldError);
   options.width.reset();
-  options.way = FuseWay::scratch;  // keeps nothing
+  options.way = FuseWay::scratch;  // contradicts keep_node
   EXPECT_THROW(fused(scene, options), FieldError);
 }
 
@@ -455,11 +455,11 @@ TEST(Fuse, EndsInTheTimeGiven) {
   const Result result = fused(scene, options);
   EXPECT_FALSE(result.fused.report.in_time);
   expect_sound(result);
-  // What takes no time is tried all the same.
+  // Methods without training are tried even so.
   options.width.reset();
   EXPECT_GT(fused(scene, options).fused.report.whole.psnr_db, 35);
   options.width = 16;
-  // What is good enough is not fitted further.
+  // Fitting stops when psnr_db is reached.
   options.seconds = 0;
   options.until_psnr = true;
   options.psnr_db = 5;

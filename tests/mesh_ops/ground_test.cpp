@@ -1,4 +1,4 @@
-// The ground plane against exact cases and random planes.
+// The ground plane: exact cases and random planes.
 #include "mesh_ops/scene/ground.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Harmonic coordinates against solutions that are known: of second order up to the surface, linear functions exact.
+// Harmonic coordinates compared with known solutions: second order up to the surface, exact for linear functions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,11 +18,11 @@ double quadratic(const Vec3& p) { return p.x() * p.x() + p.y() * p.z() - p.z() *
 double waves(const Vec3& p) { return std::exp(3 * p.x()) * std::sin(3 * p.y() + 0.4); }
 
 struct GridErrors {
-  double nodes = 0;   ///< largest at nodes inside
-  double points = 0;  ///< at points between them, most of them on the surface or beside it
+  double nodes = 0;   ///< largest error at inner nodes
+  double points = 0;  ///< largest error at points between nodes, most of them on or near the surface
 };
 
-// Of the grid's solution for a function's own values on the surface.
+// Errors of the grid's solution if its boundary values are those of `function`, which must be harmonic.
 GridErrors grid_errors(const Cage& cage, int resolution, double (*function)(const Vec3&)) {
   DirichletGrid grid(cage, resolution);
   EXPECT_TRUE(grid.lonely().empty());
@@ -69,7 +69,8 @@ TEST(Harmonic, LinearAndQuadraticSolutionsAreExactAtTheNodes) {
     }
 }
 
-// Half the step, a quarter of the error: nodes that took mean value weights near the surface halved it only.
+// Halving the cell size must divide the error by four. Mean value weights at nodes near the surface would only halve
+// it.
 TEST(Harmonic, SecondOrderUpToTheSurface) {
   for (const auto& [name, cage] : {std::pair("cube", cube()), std::pair("dented", dented())})
     for (const auto function : {quadratic, waves}) {
@@ -82,7 +83,7 @@ TEST(Harmonic, SecondOrderUpToTheSurface) {
     }
 }
 
-// Coarse grids end where fine ones do, wherever that is: every number of cells along every axis.
+// Multigrid: coarse grids must end where the finest one does, for any number of cells along each axis.
 TEST(Harmonic, BoxesOfEveryNumberOfCells) {
   constexpr int most = 24;
   const auto look = [](const Vec3& size) {
@@ -116,7 +117,7 @@ TEST(Harmonic, SumsAndLinearFunctionsAreExactOnHardCages) {
     }
 }
 
-// Cells larger than twice a cage's thickness made weights of any size (±148 in a turned box 1e-6 thick).
+// Cells larger than twice a cage's thickness would give unbounded weights (±148 in a rotated box of thickness 1e-6).
 TEST(Harmonic, CagesThinnerThanHalfACellAreRefusedAndOthersHaveSensibleWeights) {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
@@ -144,7 +145,7 @@ TEST(Harmonic, CagesThinnerThanHalfACellAreRefusedAndOthersHaveSensibleWeights) 
   EXPECT_LE(largest, 1.05);
 }
 
-// Weights of harmonic coordinates are not negative anywhere (Joshi et al. 2007); at nodes the grid's are not either.
+// Harmonic coordinates are non-negative everywhere (Joshi et al. 2007); so are the grid's weights at its nodes.
 TEST(Harmonic, WeightsAreNotNegative) {
   const Cage cage = dented();
   const auto coordinates = harmonic_coordinates(cage, 32);

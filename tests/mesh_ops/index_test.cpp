@@ -1,4 +1,4 @@
-// What is known of an object is computed once, whichever threads ask for it, and all get the same.
+// Indices of an object are computed once, whichever thread asks first, and shared by all threads.
 #include "mesh_ops/index/index.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(Index, IsSharedByWhatSharesTheArraysAndByNothingElse) {
   const Joining wide{.tolerance = 0.1, .gap = 0.2};
   EXPECT_EQ(components_of(object, wide), components_of(copy, wide));
   EXPECT_NE(components_of(object, wide), components_of(object));
-  // Other texels change what is seen, not which corners meet.
+  // Other texels invalidate traits and ray trees, but not welded corners.
   BakedObject painted = object;
   painted.sets[0].texels = std::make_shared<const FeatureTexture>(*object.sets[0].texels);
   EXPECT_EQ(corners_of(object), corners_of(painted));
@@ -44,9 +44,9 @@ TEST(Index, IsSharedByWhatSharesTheArraysAndByNothingElse) {
   EXPECT_NE(rays_of(object).get(), rays_of(painted).get());
 }
 
-// What is known set by set, put together, is what is known of the whole at once.
+// Components found per texture set and then joined equal the components of the whole object.
 TEST(Index, PartsOfSetsAreThoseOfTheWhole) {
-  // Spheres of one set each, which share corners: every third triangle lies in the next set.
+  // One sphere in three texture sets that share corners: triangle t lies in set t mod 3.
   const BakedObject whole = *made_object({.columns = 24, .rows = 12});
   BakedObject parts = whole;
   parts.sets.clear();
@@ -65,7 +65,7 @@ TEST(Index, PartsOfSetsAreThoseOfTheWhole) {
   EXPECT_LT(found->triangles_in.size(), whole.triangle_count());
 }
 
-// Where part of a set is moved, what its texels say of triangles stays, also where vertices became two.
+// Moving a part of a set keeps texel-based traits of its triangles, also if vertices are split.
 TEST(Index, WhatTexelsSaySurvivesMoves) {
   const auto object = made_object({.columns = 8, .rows = 4});
   TriangleSet some(object->triangle_count(), 0);
@@ -79,7 +79,7 @@ TEST(Index, WhatTexelsSaySurvivesMoves) {
     EXPECT_EQ((*before)[t].features, (*after)[t].features);
     EXPECT_EQ((*before)[t].color, (*after)[t].color);
   }
-  // Of a part of it, or with other texels, it is looked at again.
+  // Traits of a subset are computed again.
   BakedObject part = *object;
   part.sets[0].soup = subset(object->sets[0].soup, some, 0, true);
   EXPECT_EQ(traits_of(part)->size(), 2U);
@@ -88,7 +88,7 @@ TEST(Index, WhatTexelsSaySurvivesMoves) {
 
 TEST(Index, GoesWithTheArrays) {
   const auto stays = made_object({.columns = 4, .rows = 2});
-  traits_of(*stays);  // what earlier tests left goes
+  traits_of(*stays);  // evicts entries of arrays that earlier tests freed
   const std::size_t before = index_cache().size();
   {
     const auto object = made_object({.columns = 8, .rows = 4});
@@ -125,17 +125,17 @@ TEST(ArrayCache, KeepsToItsBudgetAndDropsWhatWasUsedLeastRecently) {
   const auto first = get(0);
   get(1);
   get(0);
-  get(2);  // drops 1
+  get(2);  // evicts array 1
   EXPECT_EQ(cache.memory(), 80U);
   EXPECT_EQ(get(0), first);
   EXPECT_EQ(made, 3);
   get(1);
   EXPECT_EQ(made, 4) << "it is made again";
   EXPECT_EQ(cache.if_there<Block>({arrays[2]}, {}), nullptr);
-  // What is larger than the budget is kept alone.
+  // A value larger than the budget evicts all others.
   const auto big = cache.get<Block>({arrays[0], arrays[1]}, {}, [] { return Block{1000}; });
   EXPECT_EQ(cache.size(), 1U);
-  // What throws is asked for again.
+  // If making a value throws, nothing is cached and the next call tries again.
   const auto fails = [&] { return cache.get<Block>({arrays[2]}, {1}, []() -> Block { throw Error("no"); }); };
   EXPECT_THROW(fails(), Error);
   EXPECT_NO_THROW(cache.get<Block>({arrays[2]}, {1}, [] { return Block{1}; }));

@@ -1,4 +1,4 @@
-// Learnt transfer: poses and their range, models that are fitted to them, images of surfaces, and the U-Net.
+// Learnt transfer: pose spaces and their range, fitted models, disk charts, geometry images, and the U-Net.
 #include "mesh_ops/light/learnt_transfer.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ ProxyMesh grid(const std::function<Vec3(double x, double y)>& place, int count =
 ProxyMesh flat() {
   return grid([](double x, double y) { return Vec3(x, y, 0); });
 }
-// Bowls and saddles: two numbers say what pose it is.
+// Poses with two parameters: bowls (a) and saddles (b).
 ProxyMesh curved(double a, double b) {
   return grid([=](double x, double y) { return Vec3(x, y, a * x * x + b * x * y); });
 }
@@ -36,7 +36,7 @@ ProxyMesh tetrahedron() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
-// Transfer that is known: the clamped cosine, dimmed by a linear function of the pose.
+// Analytic transfer: the clamped cosine, scaled by a linear function of the pose parameters.
 std::vector<sh::Coefficients> known(const std::vector<LightSite>& sites, double a, double b) {
   std::vector<sh::Coefficients> transfer;
   for (const LightSite& site : sites)
@@ -167,7 +167,8 @@ TEST(GeometryImage, GivesBackWhatIsLinearOverTheSquare) {
   EXPECT_EQ(image.undersampled(mesh), 0);
 }
 
-// Euler's number of a disk is 1; it has one border, which is the square's.
+// Checks the Euler characteristic (1 for a disk), the orientation of UV triangles, that they fill the unit square, and
+// the vertex mapping.
 void expect_disk(const DiskChart& chart, const ProxyMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const Face& face : chart.faces)
@@ -192,7 +193,7 @@ TEST(DiskChart, LaysOutWhatHasOneBorderNoneAndMany) {
   EXPECT_TRUE(seams_of(sheet, 6).empty()) << "a disk is not cut";
   expect_disk(disk_chart(sheet), sheet);
   expect_disk(disk_chart(tetrahedron()), tetrahedron());
-  // A torus, and one with two holes in it.
+  // A torus, then the same torus with two faces removed.
   ProxyMesh torus;
   constexpr std::uint32_t around = 16, across = 8;
   for (std::uint32_t i = 0; i < around; ++i)
@@ -224,7 +225,7 @@ TEST(DiskChart, SaysWhatIsWrongWithAMesh) {
 }
 
 TEST(Unet, IsItsLayersInTurn) {
-  // Against convolutions written out, with weights that no symmetry hides.
+  // Compared with plain convolutions, with random weights.
   constexpr int channels = 8, width = 64;
   std::mt19937 random(2);
   std::normal_distribution<float> normal;
@@ -300,8 +301,8 @@ TEST(Unet, IsItsLayersInTurn) {
 
 TEST(Unet, LearnsWhereTorchIs) {
   if (!can_train_unet()) GTEST_SKIP() << "built without LibTorch";
-  // Folding batch normalisation away must leave what was trained: on the poses that it saw it is far better than the
-  // mean over them, which turning along gives.
+  // On its training poses the network, with batch normalisation folded into its weights, must be far better than the
+  // mean transfer over the poses, rotated with the surface.
   const ProxyMesh rest = flat();
   UnetTransfer::Training training(rest, GeometryImage(grid_chart(sheet_side), 64));
   struct Seen {

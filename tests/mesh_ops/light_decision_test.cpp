@@ -1,4 +1,4 @@
-// What is said of light's effects where there are very many of them.
+// Summaries of many light decisions.
 #include "mesh_ops/light/light_decision.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ TEST(LightDecisions, ManyOfOneKindThatWereDecidedAlikeAreOneLine) {
     many.push_back({"self-shadow", fmt::format("self-shadow {}", k), false, 0, 0, "no triangle moved", ""});
     many.push_back({"light estimate", fmt::format("light estimate {}", k), true, 0, 0, "explains 90 %", ""});
   }
-  // What takes time is alike whatever time it takes.
+  // Decisions that differ only in their time become one line.
   for (int k = 1; k <= 9; ++k)
     many.push_back({"highlights", fmt::format("highlights {}", k), true, 0, 0.5, "together", fmt::format("{} s", k)});
   many.push_back({"self-shadow", "self-shadow a", false, 0, 0, "not asked for", ""});

@@ -1,4 +1,4 @@
-// Pictures of all directions as light: what lies where, what becomes a sun, and files that are refused by name.
+// Equirectangular environment maps: orientation, extraction of suns, and files that are rejected.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -28,7 +28,7 @@ class LightPictureTest : public ::testing::Test {
 };
 
 TEST_F(LightPictureTest, MiddleLiesTowardsMinusZAndTheRightQuarterTowardsX) {
-  // Around each axis a colour of its own.
+  // A different colour around each of the six axes.
   const auto color = [](const Vec3& d) -> Radiance {
     Eigen::Index axis = 0;
     d.cwiseAbs().maxCoeff(&axis);
@@ -54,15 +54,15 @@ TEST_F(LightPictureTest, SkyIsThePicturesOnTheWholeAndDirectionByDirection) {
     EXPECT_LT((picture.light.sky.mean() - Radiance::Constant(0.5)).norm(), 2e-3) << width;
     for (int k = 0; k < 200; ++k) {
       const Vec3 d = Vec3(std::sin(k * 1.3), std::cos(k * 2.1), std::sin(k * 0.7 + 1)).normalized();
-      // Pixels of the smallest are 0.1 radians wide, texels of the sky 0.05.
+      // Pixels of the smallest picture are 0.1 rad wide, texels of the sky map 0.05 rad.
       EXPECT_LT((picture.light.sky.at(d) - blend(d)).cwiseAbs().maxCoeff(), width == 64 ? 0.05 : 0.02) << width;
     }
   }
 }
 
-// Rays would miss a disk of half a degree; as a sun it is aimed at.
+// Random rays would miss a disk of half a degree; a sun gets rays of its own.
 TEST_F(LightPictureTest, BrightDiskBecomesASunThatSendsAsMuch) {
-  // Also where the picture is cut open, and about its upper edge.
+  // At the upper edge of the picture, in the middle, and across its seam.
   for (const auto& [towards, radius] : {std::pair(Vec3(0.02, 1, 0.01), 0.02), std::pair(Vec3(0.5, 0.8, 0.45), 0.01),
                                         std::pair(Vec3(0, 0.2, 1), 0.03)}) {
     const Vec3 direction = towards.normalized();
@@ -74,7 +74,7 @@ TEST_F(LightPictureTest, BrightDiskBecomesASunThatSendsAsMuch) {
     const Sun& sun = picture.light.suns.front();
     EXPECT_LT((sun.direction - direction).norm(), 0.002);
     EXPECT_NEAR(sun.radius, radius, 0.1 * radius);
-    // Over π, of a disk of angular radius r: sin² r of its radiance.
+    // Irradiance / π of a disk of angular radius r is sin² r times its radiance.
     const Radiance sent = std::pow(std::sin(radius), 2) * disk;
     EXPECT_LT((sun.irradiance - sent).cwiseQuotient(sent).cwiseAbs().maxCoeff(), 0.04);
     EXPECT_LT((picture.light.sky.at(-direction) - sky).norm(), 1e-6);
@@ -83,7 +83,7 @@ TEST_F(LightPictureTest, BrightDiskBecomesASunThatSendsAsMuch) {
   }
 }
 
-// Of small lamps and a lamp that is worth a sun, no light is lost.
+// Small lamps stay in the sky, a large one becomes a sun; the total light is preserved.
 TEST_F(LightPictureTest, LampsKeepTheirLight) {
   int number = 0;
   double sum = 0, angles = 0;
@@ -102,14 +102,14 @@ TEST_F(LightPictureTest, LampsKeepTheirLight) {
   EXPECT_NEAR(picture.light.sky.mean()[0] + picture.light.suns[0].irradiance[0] / 4, sum / angles, 0.02 * sum / angles);
 }
 
-// A night sky: none is worth a sun, and nobody waits for thousands of them to be looked at.
+// A night sky: stars do not become suns, and thousands of candidates do not take long.
 TEST_F(LightPictureTest, ManyBrightPointsAreNoSuns) {
   int number = 0;
   write_light_picture(path("stars.exr"), 512,
                       [&](const Vec3&) { return Radiance::Constant(++number % 97 == 0 ? 50 + number % 89 : 0.2); });
   const auto start = std::chrono::steady_clock::now();
   const LightPicture picture = read("stars.exr");
-  // A second, and minutes where thousands of them are looked at; sanitized on a busy machine half a minute.
+  // About 1 s (30 s with sanitizers on a busy machine); testing every star would take minutes.
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(thorough > 1 ? 20 : 200));
   EXPECT_LE(picture.light.suns.size(), 4U);
   EXPECT_NEAR(picture.light.sky.mean()[0], 0.2 + 94.0 / 97, 0.15);
@@ -171,7 +171,7 @@ TEST_F(LightPictureTest, FilesThatAreNoPicturesOfAllDirectionsAreRefusedByName) 
     }
 }
 
-// JPEG readers make up what is missing, and say nothing.
+// JPEG decoders fill in missing data without an error.
 TEST_F(LightPictureTest, PicturesThatEndTooEarlyAreRefusedInOneLine) {
   for (const char* name : {"a.jpg", "a.png", "a.exr", "a.tif"}) {
     const bool floating = std::string(name) == "a.exr";

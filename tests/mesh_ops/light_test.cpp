@@ -1,4 +1,4 @@
-// Light that follows edits: against closed forms, known lights, and itself where nothing changed.
+// Light that follows edits: closed forms, known lights, and the identity if nothing changed.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -60,7 +60,7 @@ SceneLight given_uniform(double value) {
   return light;
 }
 
-// By what the map multiplies a linear colour, at the node that is nearest to a place of the object's.
+// Factor by which the map changes the linear grey level `color`, at the chart node nearest to `place` (object space).
 Eigen::Vector3f factor_at(const BakedObject& object, const LightMap& map, const Vec3& place, float color = 0.4F) {
   const Soup& soup = object.sets.front().soup;
   double nearest = 1e300;
@@ -92,7 +92,7 @@ TEST(SkyMap, GivesBackWhatItWasMadeOf) {
     EXPECT_LT((map.at(d) - Radiance(1 + d.x(), 2 + d.y(), 3 - d.z())).norm(), 1e-6);
   }
   EXPECT_LT((map.mean() - Radiance(1, 2, 3)).norm(), 2e-3);
-  // Poles and the seams of the octahedron.
+  // Poles and seams of the octahedral map.
   for (const Vec3& d : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(0.6, -1e-12, 0.8)})
     EXPECT_LT((map.at(d) - Radiance(1 + d.x(), 2 + d.y(), 3 - d.z())).norm(), 0.1) << d.transpose();
 }
@@ -107,12 +107,12 @@ TEST(TracedLight, IsTheClosedFormInTheOpenAndBesideAWall) {
   const SiteLight open = traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({away}), uniform_light(0.7));
   EXPECT_NEAR(open.irradiance[0][1], 0.7, 0.7 * 2e-4);
   EXPECT_NEAR(static_cast<double>(open.open[1]), 1, 1e-9);
-  // An endless wall of height h at distance d takes ½ (1 − cos atan(h / d)) of a uniform sky.
+  // An infinite wall of height h at distance d occludes ½ (1 − cos atan(h / d)) of a uniform sky.
   const auto wall =
       lit_object({flat_quad({1, -1, -400}, {0, 3, 0}, {0, 0, 800})}, [](const Vec3&) { return grey(0.5); });
   const SiteLight beside = traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({wall}), uniform_light(1), 16384);
   EXPECT_NEAR(beside.irradiance[0][0], (1 + std::cos(std::atan(2.0))) / 2, 3e-3);
-  // What hides the sky sends its own.
+  // Occluders send the bounce radiance instead of the sky's.
   Light with_bounce = uniform_light(1);
   with_bounce.bounce = grey(0.25);
   const SiteLight bounced = traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({wall}), with_bounce, 16384);
@@ -126,14 +126,14 @@ TEST(TracedLight, OfASunGoesWithTheCosine) {
     light.suns = {{{std::sin(a), std::cos(a), 0}, 0.02, grey(2)}};
     EXPECT_NEAR(traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({}), light).irradiance[0][2], 2 * std::cos(a), 2e-3);
   }
-  // Behind the surface it lights the other side.
+  // A sun behind the surface lights the other side.
   light.suns = {{{0, -1, 0}, 0.02, grey(2)}};
   const SiteLight behind = traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({}), light);
   EXPECT_EQ(behind.irradiance[0], grey(0));
   EXPECT_NEAR(behind.irradiance[1][0], 2, 1e-3);
 }
 
-// light.md: 4.2 % at 64 rays, 1.3 % at 256, of 16k rays.
+// Expected errors relative to 16384 rays: 4.2 % at 64 rays, 1.3 % at 256.
 TEST(TracedLight, ComesNearerWithMoreRays) {
   const auto object = lit_object(box_quads({-1, 0, -1}, {1, 1, 1}, 3), [](const Vec3&) { return grey(0.5); });
   const SceneRays rays = rays_of_objects({object});
@@ -156,7 +156,8 @@ TEST(TracedLight, ComesNearerWithMoreRays) {
   EXPECT_LT(error(256), 0.013);
 }
 
-// Where it is known what an object lets through, only what stands around it is asked, and light is the same to the bit.
+// If visibility past the object itself is cached (OpenRays), only other occluders are traced. The light is the same to
+// the bit.
 TEST(TracedLight, IsTheSameWhereAnObjectsOwnShadowsAreKnown) {
   const auto own = lit_object(box_quads({-1, 0, -1}, {1, 1, 1}, 3), [](const Vec3&) { return grey(0.5); }),
              other = lit_object(box_quads({-3, 0, 2}, {3, 2, 2.5}, 2), [](const Vec3&) { return grey(0.5); });
@@ -186,14 +187,14 @@ TEST(TracedLight, IsTheSameWhereAnObjectsOwnShadowsAreKnown) {
   EXPECT_GT(darker, 20) << "the other one must hide something";
 }
 
-// In the open it is the clamped cosine; its product with a sky is what is traced under that sky.
+// Unoccluded transfer is the clamped cosine. Its product with a sky's coefficients is the light traced under that sky.
 TEST(TracedTransfer, IsTheCosineLobeInTheOpenAndLightWhereShaded) {
   const LightSite tilted = site({0, 0, 0}, {0.3, 1, -0.2});
   const Transfer open = traced_transfer(std::vector<LightSite>{tilted}, rays_of_objects({}), 4096);
   EXPECT_LT((open.sites[0] - sh::clamped_cosine(tilted.normal)).norm(), 2e-3);
   const auto box = lit_object(box_quads({0.2, -1, -1}, {1, 1, 1}), [](const Vec3&) { return grey(0.5); });
   const SceneRays rays = rays_of_objects({box});
-  // A sky of degree 1 is within what 16 coefficients hold.
+  // Sixteen coefficients represent a sky of degree 1 exactly.
   Light light;
   light.sky = SkyMap(64, [](const Vec3& d) { return grey(1 + 0.5 * d.x() - 0.3 * d.y()); });
   sh::Coefficients sky = sh::Coefficients::Zero();
@@ -202,7 +203,7 @@ TEST(TracedTransfer, IsTheCosineLobeInTheOpenAndLightWhereShaded) {
   sky[1] = -0.3 * std::sqrt(4 * pi / 3);
   const Transfer shaded = traced_transfer(std::vector<LightSite>{tilted}, rays, 16384);
   EXPECT_NEAR(shaded.sites[0].dot(sky), traced(tilted, rays, light).irradiance[0][0], 2e-3);
-  // A part that moves rigidly takes its transfer along.
+  // The transfer of a rigidly moved part rotates with it.
   const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   LightSite turned = tilted;
   turned.normal = turn * tilted.normal;
@@ -216,11 +217,12 @@ TEST(TracedTransfer, IsTheCosineLobeInTheOpenAndLightWhereShaded) {
   EXPECT_LT(relative_difference(turned_transfer(shaded, std::vector<Mat3>{turn}).sites, traced_again.sites), 3e-3);
 }
 
-// As light.md has of rays with a rotation of each site's own: 4.2, 1.3 and 0.43 % at 64, 256 and 1024 rays, of 16k.
+// Expected errors with one rotation of the rays per site, relative to 16384 rays: 4.2 % at 64 rays, 1.3 % at 256, 0.43
+// % at 1024.
 TEST(TracedTransfer, SaysHowFarOffItIs) {
   const auto object = lit_object(box_quads({-1, 0, -1}, {1, 1, 1}, 3), [](const Vec3&) { return grey(0.5); });
   const SceneRays rays = rays_of_objects({object});
-  // All around it: sites that see much the same are off by much the same.
+  // Sites all around the box: errors of sites with similar views are correlated.
   std::vector<LightSite> sites;
   for (int k = 0; k < 60; ++k) {
     const Vec3 out(std::cos(0.105 * k), 0, std::sin(0.105 * k));
@@ -249,7 +251,7 @@ TEST(LightChart, KeepsPatchesApart) {
     EXPECT_NEAR(node.weights.sum(), 1, 1e-5);
     EXPECT_GE(node.weights.minCoeff(), -1e-6);
   }
-  // Interpolating within a face takes nodes of its own patch: those of two faces that share no texel are apart.
+  // Vertices lie between node centres of the chart, so interpolation within a face stays inside it.
   for (const Face& face : set.soup.faces())
     for (const std::uint32_t v : face) {
       const Eigen::Vector2f& place = chart.places[v];
@@ -269,7 +271,7 @@ TEST(Lighting, OfAnUneditedSceneIsNothing) {
   EXPECT_EQ(lighting.left_out, 0);
 }
 
-// Beside an endless wall a sheet keeps half of its light, on both of its sides.
+// Next to an infinite wall, both sides of a sheet keep half of their light on average.
 TEST(Lighting, TakesWhatAnotherObjectHides) {
   const auto ground =
       lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4, 4)}, [](const Vec3&) { return grey(0.4); });
@@ -298,7 +300,7 @@ TEST(Lighting, GivesBackWhatARemovedPartHid) {
   ASSERT_TRUE(decision(lighting, "removed shadow yard")->runs);
   const auto& map = lighting.maps.at(scene.roots.front()->id).front();
   ASSERT_NE(map, nullptr);
-  // What was baked at half of the light has all of it.
+  // Points that were baked in half of the light now get all of it.
   const double gain = static_cast<double>(factor_at(*part, *map, {0.9, 0, 0}, 0.2F)[0]);
   EXPECT_GT(gain, 1.6);
   EXPECT_LT(gain, 2.05);
@@ -324,7 +326,7 @@ TEST(Lighting, LeavesOutByBoundsThatAnAuditHolds) {
     EXPECT_LE(planned.left_out, scene.light->budget);
     EXPECT_LE(cast.change, last);
     last = cast.change;
-    // What it changes at most, whether it ran or not.
+    // Largest true change by the effect, whether it ran or not.
     double change = 0;
     if (const auto found = everything.maps.find(scene.roots[0]->id);
         found != everything.maps.end() && found->second.front())
@@ -339,7 +341,8 @@ TEST(Lighting, LeavesOutByBoundsThatAnAuditHolds) {
   EXPECT_LT(last, 1.0 / 255);
 }
 
-// What hides the sky may be brighter than it; and in one light for all, bounds are of that light.
+// Occluders may be brighter than the sky (bounce). With one light shared by all objects, bounds are those of that
+// light.
 TEST(Lighting, BoundsCountBounceAndTheSharedLight) {
   const auto ground =
       lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2, 2)}, [](const Vec3&) { return grey(0.4); });
@@ -353,7 +356,7 @@ TEST(Lighting, BoundsCountBounceAndTheSharedLight) {
   light.match = true;
   light.sun.direction = {1, 0.2, 0};
   Scene scene = scene_with({{"ground", ground}, {"box", box}}, light);
-  // Turned, its own light would shine from elsewhere: the shared one still comes over the box.
+  // Rotating the ground would rotate its own light; the shared sun stays behind the box.
   scene = with_changed(scene, scene.roots[0]->id, [](Node& node) {
     node.to_parent.linear() = Eigen::AngleAxisd(pi / 2, Vec3::UnitY()).toRotationMatrix();
   });
@@ -361,7 +364,7 @@ TEST(Lighting, BoundsCountBounceAndTheSharedLight) {
   EXPECT_GT(decision(lighting, "cast shadow box→ground")->change, 0.9);
 }
 
-// A bend that is taken back leaves colours as they were; a mirror image and other sizes are lit alike.
+// A bend by 0° leaves colours unchanged; mirrored and scaled objects get the same light.
 TEST(Lighting, HoldsInHardCases) {
   const auto hinge = lit_object(
       {flat_quad({0, 0, -1}, {0, 0, 2}, {1, 0, 0}, 4, 4), flat_quad({-1, 0, -1}, {0, 0, 2}, {1, 0, 0}, 4, 4)},
@@ -394,7 +397,8 @@ TEST(Lighting, HoldsInHardCases) {
     for (const Eigen::Vector3f& gain : found->second.front()->gain) EXPECT_TRUE(gain.allFinite());
     return factor_at(*object, *found->second.front(), at);
   };
-  // Folded upright beside it, the other half hides ½ (1 − cos atan(1 / 0.2)) of the sky above; nothing of that below.
+  // Folded upright at distance 0.2, the other half occludes ½ (1 − cos atan(1 / 0.2)) of the sky above, and nothing
+  // below.
   const double one = static_cast<double>(gain_of(folded_by(90, 1), Affine::Identity(), {0.2, 0, 0})[0]);
   EXPECT_NEAR(one, (1 + (1 + std::cos(std::atan(5.0))) / 2) / 2, 0.02);
   EXPECT_EQ(gain_of(folded_by(0, 1), Affine::Identity(), {0.2, 0, 0}), Eigen::Vector3f(1, 1, 1));
@@ -407,14 +411,14 @@ TEST(Lighting, HoldsInHardCases) {
   Affine sheared = Affine::Identity();
   sheared.linear()(0, 1) = 1e-6;
   EXPECT_NEAR(static_cast<double>(gain_of(folded_by(90, 1), sheared, {0.2, 0, 0})[0]), one, 0.03);
-  // Folded onto itself, and past it.
+  // Folded onto itself and beyond: gains must stay finite.
   for (const double degrees : {179.9999, 180.0, 181.0}) gain_of(folded_by(degrees, 1), Affine::Identity(), {0.2, 0, 0});
 }
 
-// Which of two things is blue, the light or a kettle, colours do not say: what is matched takes the other's light as it
-// is spread, and keeps its own brightness and tint.
+// Colours do not tell a blue light from a blue object. So a matched object takes the directional distribution of the
+// reference object's light, and keeps its own brightness and tint.
 TEST(Lighting, WhatIsMatchedKeepsItsTintAndTakesTheSideOfTheLight) {
-  // Boxes in a sky of 0.4 with 0.6 more for what faces +x.
+  // Boxes in ambient light 0.4, with 0.6 more on the sides that face +x.
   const auto box_of = [](const Radiance& albedo) {
     return lit_object(box_quads({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, 2),
                       [&](const Vec3& at) -> Radiance { return albedo * (at.x() > 0.499 ? 1.0 : 0.4); });
@@ -444,7 +448,7 @@ TEST(Lighting, WhatIsMatchedKeepsItsTintAndTakesTheSideOfTheLight) {
   EXPECT_NE(decision(lighting, "matched light blue")->why.find("spread as that of green"), std::string::npos);
 }
 
-// A first object that tells no light leaves the others in their own.
+// If no light can be estimated from the first object, the others keep their own light.
 TEST(Lighting, NothingIsMatchedToALightThatCannotBeTold) {
   const auto line = lit_object({flat_quad({-1, 0, 0}, {2, 0, 0}, {1, 0, 0})}, [](const Vec3&) { return grey(0.4); });
   const auto box = lit_object(box_quads({2, 0, 0}, {3, 1, 1}), [](const Vec3&) { return grey(0.4); });
@@ -468,7 +472,7 @@ TEST(Lighting, InTheDarkChangesNothing) {
     for (const auto& map : maps) EXPECT_EQ(map, nullptr);
 }
 
-// A box on a ground, lit by a known sun and sky: the colours alone tell where the sun is, and how bright.
+// A box on a ground under a known sun and sky: the sun's direction and strength are estimated from colours alone.
 TEST(LightEstimate, FindsTheSunByWhatItShades) {
   const Vec3 towards = Vec3(0.5, 0.8, 0.35).normalized();
   Light truth = uniform_light(0.4);
@@ -482,7 +486,7 @@ TEST(LightEstimate, FindsTheSunByWhatItShades) {
   const LightSites sites = light_sites(*shape, charts);
   const auto lit = traced_light(sites.baked, {}, rays, truth, Mat3::Identity(), {.rays = 1024});
   std::vector<Radiance> colors;
-  // The ground is open to both sides and shows both.
+  // The ground is unoccluded on both sides and shows the mean of both.
   for (const SiteLight& one : lit) {
     const double first = facing_by_openness(static_cast<double>(one.open[0]), static_cast<double>(one.open[1]));
     colors.push_back(0.5 * shown_light(one, static_cast<float>(first)));

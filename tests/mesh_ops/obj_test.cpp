@@ -1,4 +1,4 @@
-// The OBJ subset of the format, what of it may vary, and what is refused with a line number.
+// The supported OBJ subset: round trips, accepted variants, and errors with line numbers.
 #include "mesh_ops/formats/obj.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST(Obj, NegativeIndicesPolygonsNormalsAndBlanks) {
       "# x\r\nv 0 0 0\r\nv 1 0 0 \r\nv 1 1 0 1.0\r\nv 0 1 0\n vt 0 0\nvt 1 0 0\nvt 1 1\nvt 0 1\nvn 0 0 1\ng a\n\nf "
       "-4/-4/1 -3/-3/1 -2/-2/1 -1/-1/1",
       "a.obj");
-  ASSERT_EQ(mesh.faces.size(), 2U);  // a fan
+  ASSERT_EQ(mesh.faces.size(), 2U);  // the quad becomes a fan of two triangles
   EXPECT_EQ(mesh.faces[1], (Face{0, 2, 3}));
 }
 

@@ -1,4 +1,4 @@
-// Rays that are all parallel, asked all at once, find what each finds alone.
+// ParallelRays gives the same results as single rays.
 #include "mesh_ops/rays/parallel_rays.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::vector<std::uint8_t> hidden_from(const ParallelRays& rays, const Vec3& dire
   return hidden;
 }
 
-// Where they differ, the ray must pass a border closely: its neighbours find both.
+// Results may differ only if a ray passes close to an edge: rays next to it then give both results.
 TEST(ParallelRays, SayWhatSingleRaysSay) {
   const auto object = made_object({.columns = 24, .rows = 12});
   const auto tree = std::make_shared<const RayTree>(*object);
@@ -34,7 +34,7 @@ TEST(ParallelRays, SayWhatSingleRaysSay) {
     SCOPED_TRACE(scale);
     std::vector<SceneRays::Instance> instances;
     for (int k = 0; k < 5; ++k) {
-      // Some mirrored or squeezed; some that shade nothing from afar.
+      // Some mirrored or scaled non-uniformly; some with a limited reach.
       Affine place = Affine::Identity();
       place.translate(scale * 2 * some()).rotate(Eigen::AngleAxisd(3 * unit(random), some().normalized()));
       place.scale(scale * Vec3(k % 2 == 0 ? -1 : 1, std::pow(3, unit(random)), 0.5));
@@ -54,7 +54,7 @@ TEST(ParallelRays, SayWhatSingleRaysSay) {
     for (int turn = 0; turn < 12; ++turn) {
       const Vec3 direction = turn == 0 ? Vec3(Vec3::UnitY()) : some().normalized();
       std::vector<std::uint8_t> hidden(ways.size(), 0);
-      // In one go, or in two.
+      // In one call, or in two.
       const std::size_t half = turn % 2 == 0 ? 0 : 1111;
       rays.shade(direction, 0, std::span(ways).first(half), std::span(hidden).first(half));
       rays.shade(direction, half, std::span(ways).subspan(half), std::span(hidden).subspan(half));
@@ -104,8 +104,8 @@ TEST(ParallelRays, FewAreSentOneByOne) {
   EXPECT_GT(shaded, 100);
 }
 
-// Of an object of two sets some triangles alone, asked by many threads at once, of points that crowd in a corner of
-// what they span.
+// A subset of the triangles of an object with two texture sets, called from many threads, with points clustered in a
+// small part of their bounding box.
 TEST(ParallelRays, PartsOfObjectsManyThreadsAndCrowds) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 24, .rows = 12}));
   object->sets.push_back(made_object({.columns = 24, .rows = 12, .radius = 0.6})->sets[0]);
@@ -139,7 +139,7 @@ TEST(ParallelRays, PartsOfObjectsManyThreadsAndCrowds) {
   }
 }
 
-// Out of a closed surface no ray finds its way, through edges and corners neither.
+// No ray leaves a closed surface, not even through edges and corners.
 TEST(ParallelRays, NothingLeaksThroughSharedEdges) {
   for (const int rows : {8, 60}) {
     const auto object = made_object({.columns = 2 * rows, .rows = rows, .cell = 5, .holes = false});
@@ -169,7 +169,7 @@ TEST(ParallelRays, NothingLeaksThroughSharedEdges) {
   }
 }
 
-// A flat patch of fine triangles, however it is turned, does not hide the sky from what lies just above it.
+// A flat, finely tessellated patch in any orientation does not occlude points just above it.
 TEST(ParallelRays, PointsJustAboveASurfaceAreNotHiddenByIt) {
   constexpr std::uint32_t side = 64;
   std::mt19937 random(9);
@@ -213,7 +213,7 @@ TEST(ParallelRays, PointsJustAboveASurfaceAreNotHiddenByIt) {
 }
 
 TEST(ParallelRays, HardPointsAndTriangles) {
-  // A slab of two triangles, one without an area, and one with a corner that is no number.
+  // A square of two triangles, a degenerate triangle, and one with a NaN corner.
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 2, .holes = false}));
   const Soup& soup = object->sets[0].soup;
   std::vector<Vec3> positions{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}, {0, 2, 0}, {no_number, 2, 0}};
@@ -240,12 +240,13 @@ TEST(ParallelRays, HardPointsAndTriangles) {
   EXPECT_EQ(hidden(far, up), std::vector<std::uint8_t>(40, 1)) << "from afar";
 }
 
-// Points on the extension of triangles that are seen from their edges, some of which follow a cell's last.
+// Triangles seen edge-on and points on their extension. SIMD batches also contain points behind a cell's last, which
+// must not be marked.
 TEST(ParallelRays, KernelsFindTheSameOfWhatIsSeenFromItsEdge) {
   std::mt19937 random(6);
   std::uniform_real_distribution<float> unit(-0.5F, 0.5F);
   constexpr std::size_t points = 4096, triangles = 60, cells = 64;
-  const std::array<float, 2> line{0.8F, 0.6F};  // all lies on it
+  const std::array<float, 2> line{0.8F, 0.6F};  // direction of the line on which everything is projected
   std::array<std::vector<float>, 9> columns;
   for (std::vector<float>& column : columns)
     column.assign(triangles + PointGrid::room, std::numeric_limits<float>::quiet_NaN());
@@ -299,8 +300,8 @@ TEST(ParallelRays, KernelsFindTheSameOfWhatIsSeenFromItsEdge) {
   EXPECT_GT(beyond, 100U);
 }
 
-// Against the same in double, where products of differences of floats are exact: they may differ where a point is as
-// near to an edge or to the triangle as floats are rounded.
+// All kernels give the same bits. They agree with double precision, unless a point lies within float rounding of an
+// edge or of the triangle's plane.
 TEST(ParallelRays, KernelsFindTheSameBitsAndWhatIsThere) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-0.5F, 0.5F);
@@ -318,7 +319,7 @@ TEST(ParallelRays, KernelsFindTheSameBitsAndWhatIsThere) {
   }
   std::vector<std::int32_t> along(points + PointGrid::room, 0);
   for (std::size_t i = 0; i < points; ++i) along[i] = i % 3 == 0 ? -1 : 0;
-  // All in one cell.
+  // One cell holds all points.
   const std::vector<std::uint32_t> first{0, points};
   const std::vector<std::uint16_t> cell(2048, 0);
   const PointGrid grid{at[0], at[1], at[2], along, first, cell, cell, 1, 1, -0.5F, -0.5F, 2047, 2047};
@@ -347,7 +348,7 @@ TEST(ParallelRays, KernelsFindTheSameBitsAndWhatIsThere) {
           const double a = twice(1, 2), b = twice(2, 0), c = twice(0, 1), area = a + b + c;
           const double height = (a * d(0, 2) + b * d(1, 2) + c * d(2, 2)) / area * (along[i] == 0 ? 1 : -1);
           const double within = std::min({a / area, b / area, c / area});
-          constexpr double rounding = 1e-4;  // of slivers a thousand times as long as wide
+          constexpr double rounding = 1e-4;  // float rounding for slivers with an aspect ratio of 1000
           if (std::abs(within) < rounding && std::abs(height) < 1) close = true;
           if (within > -rounding &&
               (std::abs(height) < rounding || std::abs(height - static_cast<double>(reach)) < rounding))

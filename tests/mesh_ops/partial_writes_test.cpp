@@ -1,4 +1,4 @@
-// Abandoned writes: temporary files go, files in place stay. Each case runs in a process of its own.
+// Abandoned writes remove temporary files and keep finished files. Each case runs in its own process.
 #include "mesh_ops/base/partial_writes.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The exit code of a process that does something.
+// Runs `work` in a child process; returns its exit code, −1 if it crashed.
 template <class Work>
 int in_own_process(Work work) {
   const pid_t child = fork();
@@ -35,7 +35,7 @@ TEST(PartialWrites, AbandonedFoldersLeaveTheirTargetsAlone) {
               AtomicFolder out(target, {}, [](const fs::path&) {});
               out.write("a/new", "new");
               abandon_writes(std::chrono::milliseconds(100));
-              // Neither this nor the destructor would return.
+              // After abandon_writes(), neither commit() nor the destructor returns.
               std::thread([&] {
                 out.commit();
                 ::_exit(1);

@@ -1,4 +1,4 @@
-// PNGs are what OpenImageIO writes of the same pixels, to the byte: exports did not change when it became a module.
+// PNG files are byte-identical to those that OpenImageIO writes for the same pixels.
 #include "mesh_ops/formats/png_writer.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST(PngWriter, WritesWhatOpenImageIoWrites) {
     std::vector<std::uint8_t> bytes;
     std::vector<float> values;
     for (int k = 0; k < width * height * channels; ++k) {
-      // Smooth here, noise there; opaque, so that nothing is multiplied by alpha.
+      // Smooth rows, then noise. Opaque, so that nothing is multiplied by alpha.
       const bool alpha = channels == 4 && k % 4 == 3;
       bytes.push_back(alpha ? 255 : static_cast<std::uint8_t>(k / channels / width < 20 ? k / 50 : random()));
       values.push_back(static_cast<float>(bytes.back()) / 255);

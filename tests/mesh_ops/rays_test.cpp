@@ -1,4 +1,4 @@
-// What the ray trees rest on: with SSE 4.2 Embree finds bit for bit what it does with SSE 2, also at edges and corners.
+// Embree gives the same bits with SSE 2 and SSE 4.2, also at edges and corners. Ray trees rely on this.
 #include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 using Point = std::array<float, 3>;
 
-// A rough sheet of so many places a side.
+// A rough height field of `side`² vertices.
 struct Sheet {
   std::vector<Point> places;
   std::vector<unsigned> corners;

@@ -1,4 +1,4 @@
-// Gains and offsets of relighting: identity without a change, and no glow where nothing was fitted.
+// Gains and offsets of relighting: the identity if light does not change, and bounded colours if the albedo is unknown.
 #include "mesh_ops/light/relighting.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST(Relighting, SurfacesThatNothingWasFittedToDoNotGlow) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(0, 1);
   for (int round = 0; round < 50; ++round) {
-    // Lit sites of albedo at most 0.4, hidden ones of any colour.
+    // Lit sites have albedos of at most 0.4; every tenth site is occluded and has a random colour.
     Row row(200);
     std::vector<Radiance> after;
     for (std::size_t i = 0; i < 200; ++i) {
@@ -54,7 +54,7 @@ TEST(Relighting, SurfacesThatNothingWasFittedToDoNotGlow) {
     }
     for (std::size_t i = 0; i < 200; i += 10) {
       const Radiance shown = row.lit(after, i);
-      // Albedo 0.4 in light of 0.8, and a little of the colour that was there.
+      // At most albedo 0.4 in light 0.8, plus a little of the baked colour.
       EXPECT_LE(shown.maxCoeff(), 0.4 * 0.8 + 0.08) << row.colors[i].transpose() << ", before " << row.before[i][0];
     }
     EXPECT_EQ(row.lit(row.before, 0), row.colors[0]) << "unchanged light changes nothing";

@@ -1,4 +1,4 @@
-// Rebake's own way to PNGs of 8-bit RGBA gives what the specification and OpenImageIO say, and stops at damage.
+// Rebake's decoder of 8-bit RGBA PNGs agrees with the specification and with OpenImageIO, and rejects damaged files.
 #include "mesh_ops/formats/rgba_png.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ std::uint8_t paeth(int left, int above, int corner) {
                                                                                : corner);
 }
 
-// Section 9 of the specification, byte by byte: rows that begin with their filters to pixels.
+// Reference implementation of PNG filters (section 9 of the specification): rows with filter bytes → pixels.
 Pixels unfiltered_plainly(const Pixels& rows, int width, int height) {
   const std::size_t bytes = 4 * static_cast<std::size_t>(width);
   Pixels pixels(bytes * static_cast<std::size_t>(height));
@@ -39,7 +39,7 @@ Pixels unfiltered_plainly(const Pixels& rows, int width, int height) {
   return pixels;
 }
 
-// Rows of any bytes, each with some filter.
+// Random bytes, with a random filter type for each row.
 Pixels random_rows(int width, int height, unsigned seed) {
   std::mt19937 random(seed);
   const std::size_t stride = 1 + 4 * static_cast<std::size_t>(width);
@@ -76,7 +76,7 @@ std::string deflated(const Pixels& rows) {
 
 constexpr std::string_view plain_rgba("\x08\x06\0\0\0", 5), interlaced_rgba("\x08\x06\0\0\1", 5);
 
-// `data` in chunks of `size` bytes.
+// A PNG file with the compressed `data` in IDAT chunks of `size` bytes.
 std::string png_of(int width, int height, const std::string& data, std::size_t size,
                    std::string_view kind = plain_rgba) {
   std::string file =
@@ -87,7 +87,7 @@ std::string png_of(int width, int height, const std::string& data, std::size_t s
   return file + chunk("IEND", "");
 }
 
-// Read `count` rows at a time.
+// Pixels of a file, decoded `count` rows at a time; empty if the decoder does not support its kind.
 Pixels pixels_of(std::string_view file, int count) {
   const std::filesystem::path name = "a.png";
   const std::unique_ptr<RgbaRows> png = open_rgba_png(file, name);
@@ -137,7 +137,7 @@ TEST(RgbaPng, ReadsRowsInPartsFromChunksOfAnySize) {
     for (const int count : {1, 4, 7, 31, 100}) EXPECT_EQ(pixels_of(png_of(width, height, data, size), count), expected);
 }
 
-// Rows that repeat others almost as far behind as deflate can look: across parts whose filters are undone already.
+// Rows repeat earlier rows at almost the maximum distance of deflate, from parts whose filters are already undone.
 TEST(RgbaPng, LooksBackAcrossParts) {
   const int width = 481, height = 200;  // 17 rows are 32,725 bytes
   const std::size_t stride = 1 + 4 * width;
@@ -151,7 +151,7 @@ TEST(RgbaPng, LooksBackAcrossParts) {
 }
 
 TEST(RgbaPng, OtherKindsAreReadByOpenImageIO) {
-  // Of one pixel, so that interlacing changes nothing but what the header says.
+  // One pixel, so that interlacing changes only the header.
   const Pixels pixel = {0, 1, 2, 3, 4};
   const std::string plain = png_of(1, 1, deflated(pixel), 100),
                     interlaced = png_of(1, 1, deflated(pixel), 100, interlaced_rgba);
@@ -168,12 +168,12 @@ TEST(RgbaPng, SaysWhatIsDamaged) {
   const int width = 5, height = 7;
   const std::string data = deflated(random_rows(width, height, 1)), file = png_of(width, height, data, 50);
   EXPECT_EQ(refusal_of(file), "");
-  const std::size_t end = file.size() - 12;  // before IEND, which nothing needs
+  const std::size_t end = file.size() - 12;  // before IEND, which is not needed
   for (std::size_t size = 50; size < end; ++size)
     EXPECT_NE(refusal_of(file.substr(0, size)).find("is truncated"), std::string::npos) << size;
   const std::size_t title = file.find("to be passed over");
   for (std::size_t at = 8; at < end; ++at) {
-    // Damage to what no picture needs changes none.
+    // Damage in the skipped tEXt chunk has no effect.
     if (at + 4 >= title && at < title + 17 + 4) continue;
     std::string damaged = file;
     damaged[at] = static_cast<char>(damaged[at] ^ 4);
@@ -191,7 +191,7 @@ TEST(RgbaPng, SaysWhatIsDamaged) {
             std::string::npos);
 }
 
-// Chunks that fit their checksums, but not what they should hold: nothing is written or read where it should not.
+// Corrupt deflate data with valid chunk checksums: no access out of bounds.
 TEST(RgbaPng, StandsWhatCannotBeInflated) {
   const int width = 20, height = 9;
   const Pixels rows = random_rows(width, height, 2), expected = unfiltered_plainly(rows, width, height);
@@ -201,7 +201,7 @@ TEST(RgbaPng, StandsWhatCannotBeInflated) {
       std::string damaged = data;
       damaged[at] = static_cast<char>(damaged[at] ^ change);
       const std::string file = png_of(width, height, damaged, 64);
-      // Some bits say nothing of the pixels, as those of the header's level.
+      // Some bits do not affect pixels, such as the compression level in the zlib header.
       if (refusal_of(file).empty()) {
         EXPECT_EQ(pixels_of(file, 4), expected) << at << ", " << change;
       }

@@ -1,4 +1,5 @@
-// Local rotations: right angles on any matrix, and the same as the textbook's where that is defined.
+// Local rotations are orthogonal for any matrix and equal the polar factor if that is defined. Closed forms of
+// deformation.
 #include "mesh_ops/base/polar.h"
 
 #include <gtest/gtest.h>
@@ -104,13 +105,13 @@ TEST(ClosedForms, AlongAStraightLineOfPiecesIsTheFormItself) {
       form.radians = radians;
       const Vec3 along = form.axis.normalized();
       ClosedForm from_start = form;
-      from_start.origin = form.origin - 0.5 * along;  // lengths count from the line's first point
+      from_start.origin = form.origin - 0.5 * along;  // arc length is measured from the curve's first point
       from_start.from += 0.5;
       from_start.to += 0.5;
       const auto pieces =
           along_curve(from_start, {from_start.origin, form.origin, form.origin + 0.4 * along, form.origin + 3 * along});
       for (int k = 0; k < 100; ++k) {
-        const Vec3 point(0.3 * any(random), 2 * any(random), 0.3 * any(random));  // far beyond both limits too
+        const Vec3 point(0.3 * any(random), 2 * any(random), 0.3 * any(random));  // also far beyond both limits
         const Deformed want = deform(form, point), got = deform(pieces, point);
         EXPECT_LE((got.point - want.point).norm(), 1e-13);
         EXPECT_LE((got.jacobian - want.jacobian).norm(), 1e-12);
@@ -147,7 +148,7 @@ TEST(ClosedForms, AlongACurveTheLineKeepsItsLengthAndWhatIsBeyondFollowsRigidly)
       EXPECT_NEAR(Eigen::AngleAxisd(Mat3(beyond.jacobian)).angle(), 1.1, kind == ClosedForm::Kind::bend ? 1e-3 : 0.2);
     }
   }
-  // Jacobians are those of the map.
+  // Jacobians match finite differences.
   ClosedForm form;
   form.radians = 0.9;
   form.to = length;

@@ -1,4 +1,4 @@
-// Rays through placed objects find what each object's own tree does.
+// Rays through placed objects give the same hits as each object's own ray tree.
 #include "mesh_ops/rays/scene_rays.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(SceneRays, WhatIsPassedByIsNotAskedAndChangesNothing) {
     SCOPED_TRACE(testing::Message() << count << " objects at scale " << scale);
     std::vector<SceneRays::Instance> instances;
     for (int k = 0; k < count; ++k) {
-      // Some mirrored, squeezed, or inside others.
+      // Some mirrored, scaled non-uniformly, or inside others.
       Affine place = Affine::Identity();
       place.translate(scale * 0.5 * count * some()).rotate(Eigen::AngleAxisd(3 * unit(random), some().normalized()));
       place.scale(scale * Vec3(k % 3 == 0 ? -1 : 1, std::pow(10, unit(random)), 0.5));
@@ -42,7 +42,7 @@ TEST(SceneRays, WhatIsPassedByIsNotAskedAndChangesNothing) {
     const int sent = 160000 / count;
     for (int k = 0; k < sent; ++k) {
       const Vec3 from = scale * (k % 4 == 0 ? 1e4 : 5) * some();
-      // Some towards an object, which random ones from afar would not meet.
+      // Half of the rays aim at an object; random rays from far away would miss all.
       const Vec3 direction =
           k % 2 == 0 ? some().normalized()
                      : (instances[static_cast<std::size_t>(k % count)].to_world.translation() + scale * some() - from)

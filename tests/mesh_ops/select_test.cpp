@@ -1,4 +1,4 @@
-// What selecting relies on: welding, parts that hang together, likeness, pictures, visibility.
+// Basics of selection: welding, connected components, traits, picture masks, visibility.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -15,8 +15,8 @@
 namespace rebake::test {
 namespace {
 
-// A strip of unit squares in the plane z = 0, two triangles each, every square with its own 16×16 texels and its own
-// corners, `apart` away from the next. `opaque(square, x, y)` says which texels are.
+// A strip of unit squares in the plane z = 0, two triangles each, `apart` away from each other. Each square has its own
+// 16×16 texels and its own corners. `opaque(square, x, y)` selects the opaque texels.
 BakedObject strip(int squares, double apart, const std::function<bool(int, int, int)>& opaque) {
   std::vector<Vec3> positions;
   std::vector<Vec2> uvs;
@@ -87,7 +87,7 @@ TEST(Select, PartsHangTogetherAcrossOpaqueTexelsOnly) {
   EXPECT_EQ(parts_of(strip(3, 0, everywhere)), 1U);
   // A transparent column at the left of each square cuts the strip, though all corners are shared.
   EXPECT_EQ(parts_of(strip(3, 0, [](int, int x, int) { return x > 0; })), 3U);
-  // Opaque only in the upper half on one side and the lower on the other: nothing faces anything.
+  // Opaque in the upper half on one side and in the lower half on the other: no opaque texels meet at the edge.
   EXPECT_EQ(parts_of(strip(2, 0, [](int s, int, int y) { return s == 0 ? y < 8 : y >= 8; })), 2U);
   // One texel is enough.
   EXPECT_EQ(parts_of(strip(2, 0, [](int s, int, int y) { return s == 0 || y == 5; })), 1U);
@@ -100,7 +100,7 @@ TEST(Select, ToleranceAndGapJoinWhatIsApart) {
   EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = 0.051}), 1U);
 }
 
-// Squares that come near with one corner each, wherever their texels lie in the texture.
+// Two squares whose nearest corners are 0.1 apart, for several offsets of their UVs from texel centres.
 TEST(Select, AGapIsThatOfTrianglesNotOfTexelCentres) {
   for (const double inset : {0.0, 0.4, 0.5, 0.6, 1.0}) {
     BakedObject object = strip(1, 0, everywhere);
@@ -154,7 +154,7 @@ TEST(Select, AFloodStopsAtTrianglesThatAreNotAlike) {
   from[0] = 1;
   EXPECT_EQ(joined_within(*corners, {1, 1, 1, 1, 0, 0, 1, 1, 1, 1}, from), (TriangleSet{1, 1, 1, 1, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(joined_within(*corners, TriangleSet(10, 1), from), TriangleSet(10, 1));
-  // What it starts from need not be alike itself.
+  // The start triangle itself may lie outside the allowed set.
   EXPECT_EQ(joined_within(*corners, {0, 1, 0, 0, 1, 1, 1, 1, 1, 1}, from), (TriangleSet{0, 1, 0, 0, 0, 0, 0, 0, 0, 0}));
 }
 
@@ -163,7 +163,7 @@ TEST(Select, TraitsAreThoseOfTheOpaqueTexels) {
   const auto traits = traits_of(*object);
   const TextureSet& set = object->sets[0];
   for (std::size_t f = 0; f < set.soup.triangle_count(); f += 7) {
-    // By brute force: every texel of the picture whose centre is in the triangle.
+    // Brute force: every texel of the texture whose centre is in the triangle.
     std::array<Vec2, 3> p;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2& uv = set.soup.uvs()[set.soup.faces()[f][k]];
@@ -188,7 +188,7 @@ TEST(Select, TraitsAreThoseOfTheOpaqueTexels) {
         sum += Eigen::Map<const Eigen::Array<double, 8, 1>>(decoded.data());
       }
     const TriangleTraits& t = (*traits)[f];
-    // Centres that lie on the diagonal may count here or there.
+    // Centres on the diagonal may count for either triangle.
     EXPECT_NEAR(static_cast<double>(t.opacity), static_cast<double>(opaque) / all, 0.06) << f;
     if (opaque == 0) continue;
     std::array<double, 8> mean;
@@ -250,7 +250,7 @@ TEST(Select, WhatIsSeenIsTheNearSide) {
   for (const Face& face : objects[0].node->object->sets[0].soup.faces()) {
     Vec3 centre = Vec3::Zero();
     for (const std::uint32_t v : face) centre += objects[0].node->object->sets[0].soup.positions()[v] / 3;
-    // From 4 away the near side of the unit sphere is what lies beyond z = 1/4; a facet's width either way.
+    // From distance 4, the visible side of the unit sphere is z > 1/4; the tolerance is one facet's width.
     if (centre.z() > 0.55) {
       EXPECT_EQ(seen[f], 1) << centre.transpose();
     }
@@ -275,11 +275,11 @@ TEST(Select, ParallelRaysSeeTheNearHalf) {
   for (std::size_t f = 0; f < soup.triangle_count(); ++f) {
     Vec3 centre = Vec3::Zero();
     for (const std::uint32_t v : soup.faces()[f]) centre += soup.positions()[v] / 3;
-    // A facet's width either way of the half that a camera at infinity sees.
+    // The tolerance is one facet's width around the equator z = 0.
     if (std::abs(centre.z()) > 0.25) {
       EXPECT_EQ(seen[f] != 0, centre.z() > 0) << centre.transpose();
     }
-    // Through the pixel that a point falls on, it is looked at.
+    // The ray through a point's pixel passes the point within a pixel.
     Projector::At at;
     ASSERT_TRUE(project(centre, at));
     const ViewRay ray = project.ray(at.x, at.y);
@@ -300,12 +300,12 @@ TEST(Select, ObjectsHideEachOtherAndHolesLetThrough) {
   EXPECT_LT(count(seen[1]), count(alone[0]));
 }
 
-// A brush does not wait for a tree of all triangles: it finds what their tree does, whatever is indexed.
+// A brush needs no ray tree of all triangles, and gives the same result with and without one.
 TEST(Select, ABrushFindsWhatRaysThroughAllTrianglesDo) {
   struct Case {
     const char* what;
     double scale;
-    Vec3 eye;  ///< in spheres' radii
+    Vec3 eye;  ///< position, in units of `scale`
     double ortho_height;
     std::vector<Vec2> stroke;
     double radius;
@@ -351,7 +351,7 @@ TEST(Select, ABrushFindsWhatRaysThroughAllTrianglesDo) {
   }
 }
 
-// Half of the triangles at a made sphere's poles have no area, and are never seen.
+// False for the degenerate triangles at the poles of a made sphere, which are never visible.
 bool has_area(const Soup& soup, std::size_t f) {
   const Face& face = soup.faces()[f];
   const Vec3& first = soup.positions()[face[0]];
@@ -375,12 +375,12 @@ TEST(Select, TrianglesWithoutAreaAreUnseenAndThoseBetweenTexelCentresSeen) {
   std::vector<Face> faces = soup.faces();
   const Face first = faces[0];
   const auto n = static_cast<std::uint32_t>(positions.size());
-  // A needle with the texels of the first triangle, outside of the sphere.
+  // A degenerate triangle outside the sphere, with the texels of the first triangle.
   for (std::size_t k = 0; k < 3; ++k) {
     positions.emplace_back(1.2, 0.1 * static_cast<double>(k), 0);
     uvs.push_back(uvs[first[k]]);
   }
-  // A triangle out there that shows a piece of one texel, which does not hold the texel's centre.
+  // A triangle outside the sphere that covers a part of one texel without its centre.
   const double side = object->sets[0].texels->width(), down = object->sets[0].texels->height();
   const Vec2 middle = (uvs[first[0]] + uvs[first[1]] + uvs[first[2]]) / 3;
   const Vec2 texel(std::floor(middle.x() * side), std::floor(middle.y() * down));
@@ -397,7 +397,7 @@ TEST(Select, TrianglesWithoutAreaAreUnseenAndThoseBetweenTexelCentresSeen) {
 }
 
 TEST(Select, ParallelRaysPassNoThinGap) {
-  // Two shells a two-hundredth of the object apart, and another object far away that must not matter.
+  // Two concentric shells, 0.02 apart.
   auto object = std::make_shared<BakedObject>(*made_object({.holes = false}));
   object->sets.push_back(made_object({.radius = 0.98, .holes = false})->sets[0]);
   const std::size_t outer = object->sets[0].soup.triangle_count();
@@ -407,7 +407,7 @@ TEST(Select, ParallelRaysPassNoThinGap) {
   const TriangleSet unseen = triangles_unseen(*object, all_round);
   for (std::size_t f = 0; f < unseen.size(); ++f)
     EXPECT_EQ(unseen[f] != 0, f >= outer || !has_area(object->sets[0].soup, f)) << f;
-  // From one side the near half is seen.
+  // From one side, the near half is visible.
   const TriangleSet behind = triangles_unseen(*object, std::vector<Standpoint>{{Vec3::Zero(), Vec3::UnitZ()}});
   const Soup& soup = object->sets[0].soup;
   for (std::size_t f = 0; f < outer; ++f) {

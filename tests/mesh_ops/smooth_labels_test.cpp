@@ -1,4 +1,4 @@
-// Labels of neighbours, against all there could be.
+// smooth_labels() compared with exhaustive search.
 #include "mesh_ops/features/smooth_labels.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(SmoothLabels, AreNearTheBestOfAll) {
     }
     const double found = sum_of(costs, borders, smooth_labels(costs, borders));
     EXPECT_GE(found, best - 1e-12);
-    // Twice is what is proven; in practice it is far nearer.
+    // The proven bound is a factor of 2; in practice the result is much closer to the minimum.
     EXPECT_LE(found, 1.2 * best);
   }
 }

@@ -1,4 +1,4 @@
-// Moving a part keeps its UVs, records its turn, and splits what it shares with the rest.
+// Moving a part of a soup keeps its UVs, records its rotation, and splits vertices that it shares with the rest.
 #include "mesh_ops/mesh/soup.h"
 #include "mesh_ops/base/polar.h"
 
@@ -26,7 +26,7 @@ TEST(Soup, MovedFacesSplitSharedVertices) {
   for (const std::uint32_t v : moved.faces()[1]) EXPECT_EQ(moved.positions()[v].z(), 5);
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_EQ(moved.uvs()[moved.faces()[1][k]], square().uvs()[square().faces()[1][k]]);
-  EXPECT_EQ(moved.rotations(), nullptr);  // a move turns nothing
+  EXPECT_EQ(moved.rotations(), nullptr);  // a translation records no rotation
 }
 
 TEST(Soup, TurnsAccumulateAndScaleDoesNotCount) {
@@ -47,7 +47,7 @@ TEST(Soup, SubsetKeepsOrderAndDropsUnusedVertices) {
   EXPECT_EQ(part.faces(), (std::vector<Face>{{0, 2, 1}}));
 }
 
-// Named values go wherever their vertices and faces go, whoever made them.
+// Attributes of any name and type follow their vertices and faces.
 TEST(Soup, AttributesFollowTheirVerticesAndFaces) {
   const Soup plain = square();
   const Soup soup(plain.shared_positions(), plain.shared_uvs(), plain.shared_faces(),
@@ -57,18 +57,18 @@ TEST(Soup, AttributesFollowTheirVerticesAndFaces) {
   const Soup part = subset(soup, {0, 1}, 0, true);
   EXPECT_EQ(*part.vertex_attributes().find<float>("light"), (std::vector<float>{2, 3, 4}));
   EXPECT_EQ(*part.face_attributes().find<int>("label"), (std::vector<int>{8}));
-  // Split corners keep their values, and get a rotation beside them.
+  // Split vertices keep their values and get a rotation.
   const Soup moved = moved_faces(soup, {0, 1}, 0, Affine(Eigen::AngleAxisd(1, Vec3::UnitZ())));
   for (std::size_t f = 0; f < 2; ++f)
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(light(moved, moved.faces()[f][k]), light(soup, soup.faces()[f][k]));
   EXPECT_NE(moved.rotations(), nullptr);
   EXPECT_EQ(*moved.face_attributes().find<int>("label"), (std::vector<int>{7, 8}));
-  // Beside one without, which gets the neutral value.
+  // United with a soup without these attributes, which gets neutral values.
   const Soup both = united(moved, plain);
   EXPECT_EQ(*both.face_attributes().find<int>("label"), (std::vector<int>{7, 8, 0, 0}));
   EXPECT_EQ(light(both, static_cast<std::uint32_t>(moved.positions().size())), 0.0F);
   EXPECT_TRUE(both.rotations()->back().is_identity());
-  // Parts make the whole again, with all of it.
+  // Uniting all parts restores all attributes.
   const Soup whole = united(subset(soup, {0, 1}, 0, false), part);
   EXPECT_EQ(whole.vertex_attributes(), soup.vertex_attributes());
   EXPECT_EQ(whole.face_attributes(), soup.face_attributes());

@@ -66,13 +66,12 @@ TEST(SphericalHarmonics, AtPolesAndAxesAreTheirClosedForms) {
 }
 
 TEST(SphericalHarmonics, TheClampedCosineIsItsClosedForm) {
-  // Against the integral over the half sphere, split at its rim so that what is integrated is smooth: on a cap the
-  // polynomials in z = cos θ have closed forms ∫₀¹ z P_l(z) dz = 1/2, 1/3, 1/8, 0.
+  // Zonal coefficients are integrals over the hemisphere: with z = cos θ, ∫₀¹ z P_l(z) dz = 1/2, 1/3, 1/8, 0.
   const sh::Coefficients lobe = sh::clamped_cosine({0, 0, 1});
   const double integral[] = {1.0 / 2, 1.0 / 3, 1.0 / 8, 0};
   for (int l = 0; l < sh::degrees; ++l)
     EXPECT_NEAR(lobe[l * (l + 1)], 2 * integral[l] * std::sqrt((2 * l + 1) / (4 * pi)), 1e-15) << l;
-  // A uniform sky gives its own radiance whatever the normal is.
+  // A uniform sky gives its own radiance for any normal.
   sh::Coefficients uniform = sh::Coefficients::Zero();
   uniform[0] = 0.7 * std::sqrt(4 * pi);
   EXPECT_NEAR(sh::value(sh::convolved_with_cosine(uniform), Vec3(1, 2, 3).normalized()), 0.7, 1e-15);
@@ -105,8 +104,8 @@ TEST(SphericalHarmonics, RotationsFollowEachOther) {
   }
 }
 
-// Near the identity the whole of a rotation is in its small entries. About z, of angle a, they are sin and cos of m a:
-// known to full precision.
+// Near the identity a rotation is determined by its small entries. For a rotation about z by angle a they are ± sin(m
+// a), known to full precision.
 TEST(SphericalHarmonics, TinyRotationsKeepTheirDigits) {
   for (const double angle : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15}) {
     Mat3 turn = Mat3::Identity();
@@ -134,7 +133,7 @@ TEST(SphericalHarmonics, ShearedMatricesTurnByTheirPolarFactor) {
                   .maxCoeff(),
               1e-13);
   EXPECT_THROW(sh::Rotation{Mat3(Mat3::Zero())}, std::invalid_argument);
-  // A mirror image: value(c′, M d) = value(c, d) all the same.
+  // For a mirroring M, value(c′, M d) = value(c, d) holds too.
   const Mat3 mirror = Vec3(-1, 1, 1).asDiagonal();
   sh::Coefficients c;
   for (int k = 0; k < sh::count; ++k) c[k] = std::sin(k + 1.0);
@@ -142,7 +141,7 @@ TEST(SphericalHarmonics, ShearedMatricesTurnByTheirPolarFactor) {
   EXPECT_NEAR(sh::value(sh::Rotation(mirror) * c, mirror * d), sh::value(c, d), 1e-14);
 }
 
-// light.md: of the peak, a window takes 2 to 3 % of a cosine lobe, and the valley behind it grows flatter.
+// Windows lower the peak of a cosine lobe by 2 to 3 % and flatten the negative ringing behind it.
 TEST(SphericalHarmonics, WindowsTakeRinging) {
   const auto deepest = [](const sh::Coefficients& c) {
     double least = 1e9;
@@ -185,7 +184,7 @@ TEST(SphericalHarmonics, AProjectedSkyGivesItsIrradiance) {
   Light light = sky_and_sun({0.2, 0.3, 0.4}, {1, 0.9, 0.8}, {}, {0.1, 0.1, 0.1});
   const Mat3 to_light = Eigen::AngleAxisd(0.4, Vec3(1, 0, 1).normalized()).toRotationMatrix();
   const auto coefficients = projected_sky(light, to_light);
-  // Colours that go with height are of degrees 0 and 1: half of the sky's mean and two thirds of its slope.
+  // A sky that is linear in height has degrees 0 and 1 only: the mean, plus two thirds of its slope times height.
   const Vec3 normal = Vec3(0.3, 0.7, -0.2).normalized();
   const double height = (to_light * normal).y();
   for (int c = 0; c < 3; ++c) {

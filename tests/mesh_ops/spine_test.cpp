@@ -1,4 +1,4 @@
-// The line along which a part is bent: it follows the part's shape, not the world's axes, and begins where it hangs.
+// Spine: the line along which a part is bent. It follows the part's shape and starts where the part is attached.
 #include "mesh_ops/deform/spine.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace rebake::test {
 namespace {
 
-// Rings of points around a line: a branch of that length and radius.
+// A cylinder of points around the line `from` … `to`.
 std::vector<WeightedPoint> branch(const Vec3& from, const Vec3& to, double radius) {
   std::vector<WeightedPoint> points;
   const Vec3 along = (to - from).normalized(), u = along.unitOrthogonal(), v = along.cross(u);
@@ -22,7 +22,7 @@ std::vector<WeightedPoint> branch(const Vec3& from, const Vec3& to, double radiu
 }
 
 TEST(Spine, ItsCurveRunsThroughTheMiddleOfWhatIsBent) {
-  // A quarter of a ring of radius 2 and 0.1 thick.
+  // A quarter of a torus with radii 2 and 0.1.
   std::vector<WeightedPoint> part;
   for (int i = 0; i <= 90; ++i)
     for (int k = 0; k < 12; ++k) {
@@ -37,7 +37,7 @@ TEST(Spine, ItsCurveRunsThroughTheMiddleOfWhatIsBent) {
   EXPECT_LT(worst, 0.08) << "the straight line is 0.3 off in the middle";
   EXPECT_LT((spine->curve.front() - Vec3(2, 0, 0)).norm(), 0.25);
   EXPECT_LT((spine->curve.back() - Vec3(0, 2, 0)).norm(), 0.25);
-  // That of a straight branch is its straight line.
+  // The curve of a straight branch is a straight line.
   const auto straight = spine_of(branch({0, 0, 0}, {0, 2, 0}, 0.1), {});
   for (const Vec3& p : straight->curve) EXPECT_LT(Vec2(p.x(), p.z()).norm(), 1e-12);
   EXPECT_LT((straight->curve.front() - straight->foot).norm(), 1e-12);
@@ -59,7 +59,7 @@ TEST(Spine, FollowsABranchFromItsStem) {
     EXPECT_NEAR(spine->width / scale, 0.1, 0.01) << "its diameter";
     EXPECT_LT(spine->touched, 0.2) << "at the stem only";
   }
-  // The same branch hanging on something at its other end.
+  // The same branch, attached at its other end.
   const auto other = spine_of(branch(stem, tip, 0.05), branch(tip, tip + Vec3(0, 1, 0), 0.1));
   ASSERT_TRUE(other);
   EXPECT_LT((other->foot - tip).norm(), 0.05);
@@ -74,7 +74,7 @@ TEST(Spine, WithoutARestStandsOnItsLowerEnd) {
 
 TEST(Spine, OfARoundPartLeadsFromTheRestThroughItsMiddle) {
   std::vector<WeightedPoint> ball;
-  // Equal areas: heights are as likely as angles about the axis.
+  // Equal area per point: uniform in z and in angle.
   constexpr int rings = 40, around = 40;
   for (int i = 0; i < rings; ++i)
     for (int k = 0; k < around; ++k) {

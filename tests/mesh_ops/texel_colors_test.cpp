@@ -1,4 +1,4 @@
-// Colours of many texels at once are those that one after the other has.
+// TexelColors: decoding in batches equals decoding one texel at a time.
 #include "mesh_ops/network/texel_colors.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What is packed is what was read, whoever reads it; which texels are opaque is known without unpacking.
+// Packed textures are lossless and can be read by many threads; opacity is known without unpacking.
 #include "mesh_ops/texture/texels.h"
 
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@
 namespace rebake::test {
 namespace {
 
-constexpr int columns = 760, rows = 530;  // whole tiles and parts of tiles
+constexpr int columns = 760, rows = 530;  // whole tiles and partial tiles
 
-// Empty on the left, smooth in the middle, noise that nothing can pack on the right.
+// Empty on the left, smooth in the middle, incompressible noise on the right.
 std::vector<Texel> picture() {
   std::mt19937 random(5);
   std::vector<Texel> texels(static_cast<std::size_t>(columns) * rows, empty_texel(AlphaCode::halved));

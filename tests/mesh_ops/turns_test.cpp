@@ -1,4 +1,4 @@
-// Turns of vertices: what 20 bytes keep of a matrix, and the file beside a folder that holds them.
+// Turn: a rotation or reflection per vertex in 20 bytes. turns.bin: the file of a scene folder that stores them.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -32,7 +32,7 @@ TEST(Turn, KeepsRotationsAndMirrorsToTheLastBits) {
   };
   for (int k = 0; k < 2000; ++k) {
     const Vec3 axis(normal(random), normal(random), normal(random));
-    // Near nothing, near half a turn, and anywhere.
+    // Angles near 0, near 180°, and in general.
     for (const double angle :
          std::initializer_list<double>{1e-12, 1e-7, 1.0, std::numbers::pi - 1e-9, std::numbers::pi, 4.0 + 0.001 * k}) {
       check(about(axis, angle));
@@ -66,7 +66,8 @@ TEST(Turn, AnyBytesAreATurn) {
   }
 }
 
-// A chunked object, some faces of which are bent, one turned rigidly, most of them as they were.
+// Texture sets in which three of every seven faces are bent, one other face is rotated rigidly, and the rest is
+// unchanged.
 std::vector<TextureSet> bent_sets() {
   const auto object = made_object({.columns = 24, .rows = 12});
   std::vector<TextureSet> sets = object->sets;
@@ -102,7 +103,7 @@ TEST(TurnsFile, HoldsTurnsBitForBit) {
   expect_same_turns(sets, back);
 }
 
-// Of quads with corners of their own, as they are baked, every place turned by another angle.
+// Unwelded quads, as MobileNeRF bakes them, with a different rotation at each position.
 TEST(TurnsFile, TakesAtMostTenBytesABentVertex) {
   std::vector<Vec3> positions;
   std::vector<Face> faces;
@@ -146,7 +147,7 @@ TEST(TurnsFile, FoldersWithTheTextThatCameBeforeAreStillRead) {
   read_turns_json(text.dump(), "turns.json", back);
   for (std::size_t v = 0; v < soup.positions().size(); ++v)
     EXPECT_LE(((*back[0].soup.rotations())[v].matrix() - (*soup.rotations())[v].matrix()).norm(), 4e-15);
-  // In a folder, until it is written anew.
+  // Also in a scene folder, until it is saved again.
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 24, .rows = 12}));
   object->sets = sets;
   const TemporaryFolder folder;
@@ -162,7 +163,7 @@ TEST(TurnsFile, FoldersWithTheTextThatCameBeforeAreStillRead) {
   EXPECT_TRUE(scene.roots[0]->object->any_rotations());
 }
 
-// Behind a checksum that fits, what no writer of ours makes.
+// Inconsistent contents with a correct checksum.
 TEST(TurnsFile, WhatContradictsItselfIsRefused) {
   std::vector<TextureSet> sets = made_object({.columns = 4, .rows = 2})->sets;
   sets.resize(1);
@@ -184,7 +185,7 @@ TEST(TurnsFile, WhatContradictsItselfIsRefused) {
     std::vector<TextureSet> back = sets;
     read_turns("rebaketn" + number(version, 4) + number(content_hash(counted), 8) + counted, "turns.bin", back);
   };
-  // One face turned, the rest not.
+  // One rotated face, the rest unrotated.
   const std::string one = std::string("\3\0\1\1", 4) + static_cast<char>(2 * (faces - 1));
   EXPECT_NO_THROW(read(1, set(0, faces, 1, turn, one)));
   const std::pair<const char*, std::function<void()>> wrong[] = {

@@ -1,4 +1,4 @@
-"""The Python module: the same edits, the same journal, the same errors as the program."""
+"""The Python module: the same edits, journals and errors as the program."""
 import inspect
 import json
 import os
@@ -194,7 +194,7 @@ class Module(unittest.TestCase):
         self.assertGreater(ticks[0] - before, 3, "the interpreter's lock is let go during long work")
         for picture in pictures.values():
             np.testing.assert_array_equal(picture, pictures[0])
-        del self.document  # of a thread that did not draw first
+        del self.document  # deleted by a thread other than the one that drew first
 
     def test_progress_is_told_and_may_stop(self):
         told = []
@@ -213,7 +213,7 @@ class Module(unittest.TestCase):
             self.assertTrue(0 <= share <= 1)
 
     def test_an_exception_of_progress_does_not_undo_what_is_done(self):
-        """Whenever it is raised: either the work stopped and nothing changed, or it is done and nothing is raised."""
+        """Either the work stops without a change and the exception arrives, or it is complete and none does."""
         unraisable = []
         sys.unraisablehook, kept = unraisable.append, sys.unraisablehook
         try:

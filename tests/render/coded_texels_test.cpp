@@ -1,4 +1,4 @@
-// Coded texels are what was coded, and take about half of it where features are as trained ones are.
+// Coded texels (block compression on the GPU) are lossless and take about half the memory for trained features.
 #include "render/gpu_scene/coded_texels.h"
 
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@
 namespace rebake::test {
 namespace {
 
-constexpr int texture_size = 600;  // three tiles a side, the last ones in part
+constexpr int texture_size = 600;  // three tiles per side, the last ones partial
 
-// Rectangles of all sorts that do not overlap, across tiles too.
+// Random rectangles that do not overlap; some cross tiles.
 std::vector<PackedRect> many_rects() {
   std::vector<PackedRect> rects;
   std::mt19937 random(3);
@@ -34,13 +34,13 @@ std::vector<PackedRect> many_rects() {
 
 struct Kind {
   const char* name;
-  std::uint8_t least, most;  ///< of a channel
+  std::uint8_t least, most;  ///< smallest and largest value of a channel
   double opaque;
 };
 
 class CodedTexelKinds : public ::testing::TestWithParam<Kind> {};
 
-// Each width of the bits, too: from none where all are alike, over 7, which is stored in 8, to 8.
+// Covers all bit widths: from 0 for equal values, over 7, which is stored as 8, to 8.
 TEST_P(CodedTexelKinds, AreWhatWasCoded) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(0, 1);
@@ -89,7 +89,7 @@ TEST(CodedTexels, TakeAboutHalfWhereFeaturesAreReal) {
   }
 }
 
-// Whatever draws reads them: all shadings, what is turned, and other looks.
+// All draw modes read coded texels: shading, inspection, selection and outlines.
 TEST(CodedTexels, MakeTheSamePicture) {
   const auto object = made_object({.columns = 32, .rows = 16});
   Node other;

@@ -1,4 +1,4 @@
-// What is kept on the GPU between scenes: never a picture of what was.
+// Data that stays on the GPU between scenes: pictures must never show an earlier scene.
 #include "render/gpu_scene/gpu_scene.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ View small_view() {
   return view;
 }
 
-// The object with its corners moved, and turned where `turns`, and all else shared: as while something is dragged.
+// The first object with moved vertices, also rotated if `turns`, and all other data shared, as during a drag.
 Scene bent(const Scene& scene, double amount, bool turns = false) {
   return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
     auto object = std::make_shared<BakedObject>(*node.object);
@@ -42,7 +42,7 @@ Scene bent(const Scene& scene, double amount, bool turns = false) {
   });
 }
 
-// With texels as they are, and coded; what is new is drawn with texels as they are.
+// With plain texels, and with coded ones; reference pictures use plain texels.
 class GpuSceneTest : public ::testing::TestWithParam<bool> {
  protected:
   static RenderOptions options() {
@@ -54,7 +54,7 @@ class GpuSceneTest : public ::testing::TestWithParam<bool> {
 INSTANTIATE_TEST_SUITE_P(Texels, GpuSceneTest, ::testing::Bool(),
                          [](const auto& coded) { return coded.param ? "Coded" : "Plain"; });
 
-// As the window does it: what the next picture uploads is worked out on another thread meanwhile.
+// As in the window, another thread prepares the uploads of the next picture meanwhile.
 TEST_P(GpuSceneTest, WhatWasPreparedIsDrawnAlike) {
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
   const View view = small_view();
@@ -65,7 +65,7 @@ TEST_P(GpuSceneTest, WhatWasPreparedIsDrawnAlike) {
       const Scene next = bent(scene, 0.1 * k, turns);
       std::thread ahead([&] {
         kept.prepare(next);
-        // Of what is never shown nothing stays.
+        // Scenes that are never shown.
         for (int other = 0; other < 5; ++other) kept.prepare(bent(scene, 0.01 * other + k, turns));
       });
       kept.render(scene, view, options());
@@ -75,7 +75,7 @@ TEST_P(GpuSceneTest, WhatWasPreparedIsDrawnAlike) {
     }
 }
 
-// Other texels at the address of those that were prepared and are gone are not taken for them.
+// New texels at the address of prepared ones that no longer exist must not be mistaken for them.
 TEST_P(GpuSceneTest, WhatWasPreparedForTexelsThatAreGoneIsNotUsed) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
   const auto with_texels = [&](bool empty) {
@@ -112,7 +112,7 @@ TEST_P(GpuSceneTest, WhatOnlyMovedIsDrawnAsIfItWereNew) {
     Renderer fresh;
     EXPECT_EQ(kept.render(moved, view, options()).rgb, fresh.render(moved, view).rgb) << amount;
   }
-  // The same triangles with turned colours; and again, when fewer show something.
+  // The same triangles with rotations; then again with other texels.
   Scene turned = bent(scene, 0.3, true);
   ASSERT_TRUE(turned.roots[0]->object->any_rotations());
   for (int k = 0; k < 2; ++k) {
@@ -127,14 +127,14 @@ TEST_P(GpuSceneTest, WhatOnlyMovedIsDrawnAsIfItWereNew) {
     });
   }
   EXPECT_EQ(kept.render(scene, view, options()).rgb, first.rgb);
-  // Beside a copy of itself that stays.
+  // Next to a deformed copy of itself.
   Scene two = scene;
   two = with_added(two, Node(*bent(scene, 0.4).roots[0]), NodeId::none, 1);
   Renderer fresh;
   EXPECT_EQ(kept.render(two, view, options()).rgb, fresh.render(two, view).rgb);
 }
 
-// The object with texels of some rows made transparent, or all of them opaque, in shared tiles.
+// The first object with every second texel of some rows made transparent, or opaque; other tiles stay shared.
 Scene erased(const Scene& scene, int first_row, int last_row, bool opaque = false) {
   return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
     auto object = std::make_shared<BakedObject>(*node.object);
@@ -148,7 +148,7 @@ Scene erased(const Scene& scene, int first_row, int last_row, bool opaque = fals
   });
 }
 
-// The object with other features where it is opaque, which no longer are alike from texel to texel.
+// The first object with random values in half of its features, which differ from texel to texel.
 Scene recoloured(const Scene& scene) {
   return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
     auto object = std::make_shared<BakedObject>(*node.object);
@@ -187,8 +187,7 @@ TEST_P(GpuSceneTest, WhatWasErasedIsDrawnAsIfItWereNew) {
   expect_new(scene, "and are there again");
 }
 
-// A stroke uploads the texels around it, not the texture; and prepared meshes go with the faces that they were made
-// for.
+// A stroke uploads the texels around it, not the whole texture.
 TEST_P(GpuSceneTest, UploadsWhatAStrokeTouched) {
   const auto context = gl::make_headless_context();
   const gl::Current current(*context);
@@ -208,10 +207,10 @@ TEST_P(GpuSceneTest, UploadsWhatAStrokeTouched) {
   EXPECT_EQ(gpu.texels_uploaded(), all + touched) << "nothing changed";
 }
 
-// Some 20 MB of texels, which are not uploaded at once.
+// About 20 MB of texels, more than one slice uploads.
 Scene large_scene(unsigned seed) { return scene_of(made_object({.columns = 128, .rows = 80, .seed = seed})); }
 
-// As the window does it when a scene is opened: it is uploaded in slices while another one goes on being drawn.
+// As in the window when a scene is opened: it is uploaded in slices while another scene is still drawn.
 TEST_P(GpuSceneTest, WhatArrivesIsDrawnAsIfItWereNewAndNotBefore) {
   const Scene first = large_scene(1);
   Node beside;
@@ -227,13 +226,13 @@ TEST_P(GpuSceneTest, WhatArrivesIsDrawnAsIfItWereNewAndNotBefore) {
     EXPECT_GE(now, share);
     share = now;
     EXPECT_EQ(kept.render(first, view, options()).rgb, before.rgb);
-    if (slices == 2) second = bent(second, 0.2);  // another one is wanted meanwhile, of the same texels
+    if (slices == 2) second = bent(second, 0.2);  // another scene is wanted meanwhile, with the same texels
     if (slices == 4) kept.prepare(second);
   }
   EXPECT_EQ(share, 1);
   EXPECT_GT(slices, 10);
   EXPECT_EQ(kept.render(second, view, options()).rgb, Renderer().render(second, view).rgb);
-  // What has arrived in part is drawn too; and what was not wanted after all is gone.
+  // A partly uploaded scene can be drawn; uploads of a scene that is no longer wanted are released.
   const Scene third = large_scene(5), fourth = large_scene(6);
   EXPECT_LT(kept.arrive(third, 0), 1);
   EXPECT_LT(kept.arrive(fourth, 0), 1);
@@ -243,7 +242,7 @@ TEST_P(GpuSceneTest, WhatArrivesIsDrawnAsIfItWereNewAndNotBefore) {
   EXPECT_EQ(kept.render(third, view, options()).rgb, Renderer().render(third, view).rgb);
 }
 
-// What has arrived is not uploaded again, and let go of where nobody wants it; a stroke does not wait for its texture.
+// Uploaded data is not uploaded again, and released if no longer wanted. A stroke is left to update().
 TEST_P(GpuSceneTest, ArrivesOnceAndLeavesStrokesToTheUpdate) {
   const auto context = gl::make_headless_context();
   const gl::Current current(*context);
@@ -270,7 +269,7 @@ TEST_P(GpuSceneTest, ArrivesOnceAndLeavesStrokesToTheUpdate) {
   EXPECT_LT(gl::memory_use().now, there + there / 2) << "drawn before all had arrived";
 }
 
-// Whatever finding out what is missing takes: each call brings something.
+// Each call uploads some data, even if the search for missing data takes longer than its time limit.
 TEST_P(GpuSceneTest, ManyNodesArriveToo) {
   const auto context = gl::make_headless_context();
   const gl::Current current(*context);
@@ -297,14 +296,14 @@ TEST_P(GpuSceneTest, WhatWasPreparedForFewerFacesIsNotUsedForMore) {
   Renderer kept;
   kept.render({}, view, options());
   const Scene bent_holes = bent(holes, 0.3);
-  kept.prepare(bent_holes);            // clusters of the faces that still show something
-  kept.render(full, view, options());  // whose surface then stands for that of the holes
+  kept.prepare(bent_holes);            // clusters of the faces with opaque texels
+  kept.render(full, view, options());  // its surface then replaces that of the scene with holes
   RenderOptions with_occlusion = options();
   with_occlusion.occlusion = RenderOptions::Occlusion::on;
   EXPECT_EQ(kept.render(bent_holes, view, with_occlusion).rgb, Renderer().render(bent_holes, view).rgb);
 }
 
-// A texel that a triangle may show lies on the GPU where the shader looks for it, and what none shows is not there.
+// Each texel that a triangle may show is packed where the shader reads it; unused texels are not uploaded.
 TEST(PackedTexels, HoldWhatTrianglesShow) {
   const auto object = made_object({.columns = 64, .rows = 40});
   TextureSet set = object->sets[0];

@@ -1,4 +1,4 @@
-// What an editor draws over the picture: selected triangles and lines, in front of and behind what is there.
+// Overlays of the editor: selected triangles, outlines, lines and inspection, in front of and behind surfaces.
 #include "render/graph/guides.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ Scene selected_scene(bool front) {
                       [&](Node& node) { node.selection = std::make_shared<const TriangleSet>(flags); });
 }
 
-// Pixels that differ by more than the drawing's rounding.
+// Number of pixels in which a channel differs by more than `by`.
 std::size_t changed(const Image& a, const Image& b, int by) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < a.rgb.size(); k += 3)
@@ -135,13 +135,13 @@ TEST_P(GuidesTest, LinesAreHiddenByWhatLiesInFront) {
   EXPECT_GE(line_at(2, 0), 10U);
   EXPECT_EQ(line_at(-2, 0), 0U);
   EXPECT_GE(line_at(-2, 1), 5U);
-  // In front of nothing at all.
+  // A line in an empty scene.
   Guides guides;
   guides.lines.push_back({{-1, 0, 0}, {1, 0, 0}, Color(0, 0, 0), 1, 0});
   EXPECT_GT(changed(shown({}, {}), shown({}, guides), 40), 30U);
 }
 
-// Where nothing is drawn now, something was in the picture before.
+// Depths of the previous picture must not hide lines if nothing is drawn now.
 TEST_P(GuidesTest, WhatWasThereBeforeHidesNoLine) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
   Guides guides;

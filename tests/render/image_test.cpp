@@ -1,4 +1,4 @@
-// Pictures that are read hold the colours that the file holds, whatever its alpha says.
+// Reading pictures keeps the stored colours and drops alpha.
 #include "render/image.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Where only texels changed, only the pixels that may show them are drawn anew: no byte of any picture may tell, and
-// the others must truly be left alone.
+// If only texels changed, only pixels that may show them are drawn again. Pictures must equal complete ones to the
+// byte, and other pixels must not be drawn.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,10 +21,10 @@ struct Beside {
       if (pass.effect == &effects::kept_pixels) return pass;
     return {};
   }
-  // Whether pixels were kept.
+  // Draws completely and with reuse, and compares; returns whether pixels were reused.
   bool expect_same(const Scene& scene, const View& view, const std::string& what, const Guides* guides = nullptr,
                    RenderOptions options = {}) {
-    // Another view before it, so that nothing can be kept.
+    // Another view first, so that nothing can be reused.
     View other = view;
     other.width = other.height = 16;
     whole.render(scene, other, options);
@@ -42,7 +42,7 @@ struct Beside {
 
 View from_front(int samples = 4) {
   View view;
-  view.camera.eye = {0.4, 0.6, 6.5};  // so that all of it is less than a third of the picture
+  view.camera.eye = {0.4, 0.6, 6.5};  // far enough that the scene covers less than a third of the picture
   view.camera.near_plane = 0.1;
   view.camera.far_plane = 50;
   view.width = 200;
@@ -58,7 +58,7 @@ std::shared_ptr<const BakedObject> with_texels(const BakedObject& object,
   return changed;
 }
 
-// Texels of a square gone, or where they were gone back.
+// Inverts the opacity of a square of texels.
 std::shared_ptr<const FeatureTexture> stroked(const FeatureTexture& texels, int x, int y, int size) {
   FeatureTexture::Change change(texels);
   for (int v = y; v < std::min(y + size, texels.height()); ++v)
@@ -69,7 +69,7 @@ std::shared_ptr<const FeatureTexture> stroked(const FeatureTexture& texels, int 
   return change.finish();
 }
 
-// The same object twice, one turned; one behind them.
+// One object twice, the second with a rotation and a mirroring scale; another object behind them.
 Scene three(const std::shared_ptr<const BakedObject>& object, const std::shared_ptr<const BakedObject>& behind) {
   Scene scene;
   const auto add = [&](const std::shared_ptr<const BakedObject>& shown, const Affine& place) {
@@ -109,7 +109,7 @@ TEST(KeptPixels, NoByteTellsThatOthersWereNotDrawn) {
                     : 0;
       }
       EXPECT_GT(kept, strokes / 2);
-      // All of them undone at once.
+      // All strokes undone at once.
       pair.expect_same(three(with_texels(*object, first), behind), view, "as at first");
     }
   }
@@ -122,7 +122,7 @@ TEST(KeptPixels, MarksAndLinesStayRight) {
   Guides guides;
   guides.lines = {{{-2, -1, 0.3}, {2, 1, 0.4}, {1, 0, 0}, 0.8, 0.3}, {{-2, 0, -1}, {2, 0.2, 1}, {0, 1, 0}, 1, 0.4}};
   std::mt19937 random(9);
-  // Kept in the nodes, as selections are.
+  // All scenes share one selection, as after edits that do not change it.
   const auto selection = std::make_shared<TriangleSet>(object->triangle_count(), 0);
   for (std::size_t f = 0; f < selection->size(); f += 3) (*selection)[f] = 1;
   const auto scene = [&] {
@@ -173,7 +173,7 @@ TEST(KeptPixels, WhatIsOutOfSightCostsNoPixel) {
   Beside pair;
   const auto behind = made_object({.seed = 3}), object = made_object({.columns = 40, .rows = 20});
   View view = from_front();
-  // Past the object whose texels change.
+  // A view past the object whose texels change.
   view.camera.eye = {0, 0.3, 0.4};
   view.camera.target = {0, 0.3, -1.5};
   Scene scene = three(object, behind);

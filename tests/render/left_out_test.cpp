@@ -1,5 +1,5 @@
-// What a frame leaves out because it changes less than is seen: directions that decoders do not depend on, and samples
-// where everything has one colour. Pictures with all of it prove that.
+// Effects that a frame omits because their change is invisible: view directions that a decoder ignores, and
+// supersampling if everything has one colour. Compared with pictures of all effects.
 #include <gtest/gtest.h>
 
 #include "render/compare.h"
@@ -10,7 +10,7 @@
 namespace rebake::test {
 namespace {
 
-// The made object with its decoder changed.
+// A made object with a changed decoder.
 template <class Change>
 std::shared_ptr<const BakedObject> with_decoder(Change change) {
   auto object = std::make_shared<BakedObject>(*made_object());
@@ -27,7 +27,7 @@ View left_out_view() {
   return view;
 }
 
-// The largest difference to the picture with everything, in 1/255, after that its plan allows it.
+// The largest difference from the picture with all effects, in 1/255.
 double unseen_difference(const Scene& scene, const View& view) {
   static Renderer renderer;
   RenderOptions all;
@@ -63,14 +63,14 @@ TEST(LeftOut, DirectionsThatChangeLessThanIsSeen) {
 }
 
 TEST(LeftOut, SamplesWhereEverythingHasTheBackgroundsColour) {
-  // Whatever features it is fed, it gives (¾, ½, ¼).
+  // For small `weights` the decoder gives (¾, ½, ¼) for any input.
   const auto constant = [](double weights) {
     auto object = std::make_shared<BakedObject>(*with_decoder([&](Decoder& d) {
       d.weights2 *= weights;
       d.bias2 = Vec3(std::log(3.0), 0, -std::log(3.0));
     }));
     const auto old = object->sets[0].texels;
-    // One colour, with holes where they were.
+    // The same features everywhere, with the same holes.
     object->sets[0].texels = std::make_shared<const FeatureTexture>(
         FeatureTexture::from_rows(old->width(), old->height(), old->alpha_code(), [&](int y, Texel* row) {
           for (int x = 0; x < old->width(); ++x)
@@ -84,7 +84,7 @@ TEST(LeftOut, SamplesWhereEverythingHasTheBackgroundsColour) {
   EXPECT_FALSE(planned.runs(effects::supersampling));
   EXPECT_EQ(planned.view.samples, 1);
   EXPECT_LE(unseen_difference(scene, left_out_view()), planned.left_out * 255 + 1);
-  // Against another background its edges show, and so do colours that features change.
+  // With another background edges are visible; with larger weights features change colours.
   Scene other = scene;
   other.background = {0.75, 0.5, 0.26};
   EXPECT_TRUE(plan(other, left_out_view()).runs(effects::supersampling));

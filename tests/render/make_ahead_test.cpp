@@ -1,4 +1,4 @@
-// Programs that other views of a scene want are made before the camera turns there, and nothing else changes.
+// Shader programs for other views of a scene are compiled in advance; pictures do not change.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -9,7 +9,7 @@
 namespace rebake::test {
 namespace {
 
-// Objects with decoders of their own a hundred units apart, one turned, one bent.
+// Three objects, 100 units apart: the second has another decoder and is rotated, the third is bent.
 Scene far_apart() {
   Scene scene = scene_of(made_object({.seed = 1}));
   Node turned;

@@ -1,5 +1,5 @@
-// Leaving out hidden triangles must change no byte of any picture, whatever was drawn before; and it must leave out
-// what is hidden, and nothing where that does not pay.
+// Occlusion culling must not change a byte of any picture, whatever was drawn before. It must cull hidden triangles,
+// and must not run if it does not pay.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using Occlusion = RenderOptions::Occlusion;
 
-// Two renderers side by side: one that draws everything, and one that remembers its last frame.
+// Two renderers: one draws everything, the other culls and remembers its last frame.
 struct Pair {
   Renderer all, some;
 
@@ -27,12 +27,12 @@ struct Pair {
     const Image drawn = some.render(scene, view, options);
     EXPECT_TRUE(expected.rgb == drawn.rgb) << what;
   }
-  // And while nothing moves: it is looked closely in the third frame, and not at all in the fourth.
+  // With the camera at rest: visibility is tested per sample in the third frame, and not at all in the fourth.
   void expect_same_at_rest(const Scene& scene, const View& view, const std::string& what, RenderOptions options = {}) {
     for (int frame = 0; frame < 4; ++frame) expect_same(scene, view, fmt::format("{}, frame {}", what, frame), options);
   }
 
-  // What the last picture's plan says of hidden triangles.
+  // The statement about occlusion culling in the plan of the last picture.
   std::string said() const {
     for (const PlannedPass& pass : some.passes())
       if (pass.effect == &effects::occlusion) return pass.why;
@@ -57,7 +57,7 @@ View view_of(const Vec3& eye, const Vec3& target, int samples = 4) {
   return view;
 }
 
-// Spheres that cross, copies of one another at the same place, a bent one, a turned part, one far away.
+// Intersecting and stretched spheres, two equal ones at the same place, one with a rotated part, one far away.
 Scene crowd() {
   Scene scene;
   std::mt19937 random(7);
@@ -71,7 +71,7 @@ Scene crowd() {
     scene = with_added(scene, node, NodeId::none, 99);
   };
   add(dense, Affine::Identity());
-  add(dense, Affine::Identity());  // equally near everywhere: the later one shows
+  add(dense, Affine::Identity());  // equal depths everywhere: the later one is visible
   for (int k = 0; k < 6; ++k)
     add(other, Eigen::Translation3d(place(random), place(random), place(random)) *
                    Eigen::AngleAxisd(angle(random), Vec3::UnitY()) * Eigen::Scaling(1.0, 0.5 + 0.2 * k, 1.0));
@@ -136,7 +136,7 @@ TEST(Occlusion, ChangesNoByteFarFromTheOriginTinyAndHuge) {
     }
 }
 
-// Vertices far off their object's centre reach the GPU as coarse floats, which bounds must allow for.
+// Vertices far from their object's centre are rounded coarsely to float on the GPU; bounds must allow for it.
 TEST(Occlusion, ChangesNoByteWhereFloatsAreCoarse) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 64, .rows = 32, .cell = 9}));
   TriangleSet half(object->triangle_count(), 0);
@@ -163,7 +163,7 @@ TEST(Occlusion, ChangesNoByteOfSamplesAndOfEdits) {
         view.camera.far_plane = 5 * size;
         renderers().expect_same_at_rest(scene, view, fmt::format("{}, edit {}, view {}", name, edit, k));
       }
-      // Half of the triangles go, then the rest moves: what was remembered is of other faces.
+      // Half of the triangles are deleted, then half of the rest moves: remembered visibility belongs to other faces.
       const NodePtr node = scene.roots[0];
       auto object = std::make_shared<BakedObject>(*node->object);
       for (TextureSet& set : object->sets) {
@@ -190,7 +190,7 @@ TEST(Occlusion, ChangesNoByteOfTheRealMic) {
   }
 }
 
-// As two windows on one scene do.
+// As for two windows with one scene.
 TEST(Occlusion, RemembersViewsThatAlternate) {
   const Scene scene = crowd();
   const View views[] = {view_of({3, 1, 0}, {0, 0, 0}), view_of({-1, 2, -3}, {0, 0, 0})};
@@ -207,7 +207,7 @@ TEST(Occlusion, RemembersViewsThatAlternate) {
   }
 }
 
-// Behind a wall needles whose depth drivers extrapolate until it lies before the wall.
+// Needles behind a wall: drivers extrapolate their depth so far that they appear in front of it.
 TEST(Occlusion, ChangesNoByteWhereNeedlesComeThroughAWall) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 4, .holes = false}));
   const Vec2 uv = object->sets[0].soup.uvs()[0], other = object->sets[0].soup.uvs()[20];
@@ -255,7 +255,7 @@ TEST(Occlusion, OneTriangleAndNone) {
 }
 
 TEST(Occlusion, LeavesOutWhatASphereHides) {
-  // One sphere within another: all of the inner one and the far half of the outer one.
+  // One sphere inside another: all of the inner one and the far half of the outer one are hidden.
   Scene scene = scene_of(made_object({.columns = 128, .rows = 64, .cell = 5, .holes = false}));
   Node inner;
   inner.object = made_object({.columns = 128, .rows = 64, .cell = 5, .seed = 3, .radius = 0.9});
@@ -275,7 +275,7 @@ TEST(Occlusion, LeavesOutWhatASphereHides) {
       }
     return 1.0;
   };
-  drawn();  // learns what shows
+  drawn();  // learns which triangles are visible
   EXPECT_LT(drawn(), 0.35) << "a quarter shows";
 }
 
@@ -302,7 +302,7 @@ TEST(Occlusion, RunsWhereItPays) {
   EXPECT_FALSE(plan(many, view, off).runs(effects::occlusion));
 }
 
-// A scene whose every triangle shows must not be looked at again and again.
+// If all triangles are visible, culling must not be tried in every frame.
 TEST(Occlusion, GivesUpForAWhileWhereNothingIsHidden) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 200, .rows = 100, .cell = 3, .holes = false}));
   std::vector<Vec3> flat;
@@ -322,13 +322,13 @@ TEST(Occlusion, GivesUpForAWhileWhereNothingIsHidden) {
   EXPECT_LE(looked, 3);
 }
 
-// A change between frames at rest is seen: what it uncovers and what it puts in front.
+// Changes between frames at rest are noticed: newly uncovered and newly occluding objects.
 TEST(Occlusion, AtRestSeesWhatChanges) {
   const Scene scene = crowd();
   const View view = view_of({3, 1, 0}, {0, 0, 0});
   renderers().expect_same_at_rest(scene, view, "before");
   EXPECT_NE(renderers().said().find("nothing has moved"), std::string::npos) << renderers().said();
-  // The near half of the first object becomes transparent.
+  // Half of the first object's texels become transparent.
   const auto holes = [&](std::size_t root) {
     return with_changed(scene, scene.roots[root]->id, [&](Node& node) {
       auto object = std::make_shared<BakedObject>(*node.object);
@@ -342,7 +342,7 @@ TEST(Occlusion, AtRestSeesWhatChanges) {
   renderers().expect_same(holes(0), view, "erased");
   EXPECT_EQ(renderers().said().find("nothing has moved"), std::string::npos);
   renderers().expect_same_at_rest(scene, view, "undone");
-  // Another node in the place of one that went.
+  // A node is replaced by another one.
   Node copy = *scene.roots[3];
   copy.id = NodeId::none;
   Scene swapped = with_added(scene, copy, NodeId::none, 4);

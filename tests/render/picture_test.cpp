@@ -1,4 +1,4 @@
-// The GPU's picture against the independent oracle: 45 dB and 99.5 % of pixels within 2/255, whatever the scene.
+// GPU pictures compared with an independent ray caster: at least 45 dB, and 99.5 % of pixels within 2/255.
 #include "render/picture.h"
 #include "mesh_ops/base/polar.h"
 #include "render/graph/effects.h"
@@ -33,7 +33,8 @@ View view_from(const Vec3& eye, int samples = 4) {
   view.camera.eye = eye;
   view.camera.near_plane = 0.5;
   view.camera.far_plane = 20;
-  // At one sample an edge decided otherwise costs a whole pixel: as many samples in all keep the bar's meaning.
+  // With one sample per pixel, rounding at an edge changes a whole pixel. An equal number of samples keeps the
+  // thresholds comparable.
   view.width = samples == 1 ? 320 : 160;
   view.height = samples == 1 ? 240 : 120;
   view.samples = samples;
@@ -80,7 +81,7 @@ TEST_P(PictureBySamples, OneObject) { expect_as_cast(scene_of(made_object()), vi
 TEST_P(PictureBySamples, OneRayForAllSamplesOfANarrowPixel) {
   const Scene scene = scene_of(made_object());
   View view = view_from({0.8, 2.4, 4.8}, GetParam());
-  view.camera.fov_degrees = 25;  // just under the span at which each sample gets its own ray
+  view.camera.fov_degrees = 25;  // pixels just below the angle at which each sample gets its own ray
   EXPECT_FALSE(plan(scene, view).runs(effects::ray_per_sample));
   expect_as_cast(scene, view);
 }
@@ -263,7 +264,7 @@ TEST(Thumbnail, AveragesTheMiddleAndNeverEnlarges) {
   EXPECT_EQ(thumbnail_of(small, 100, 100).rgb, small.rgb);
 }
 
-// Neighbours that show one object are bound once; copies with arrays of their own are not.
+// Consecutive nodes of one object share bound buffers; copies with their own arrays do not. The picture is the same.
 TEST(Picture, OfCopiesIsThatOfObjectsOfTheirOwn) {
   const auto object = made_object({.columns = 24, .rows = 12, .cell = 9, .radius = 0.3});
   Scene copies, apart;
@@ -271,7 +272,7 @@ TEST(Picture, OfCopiesIsThatOfObjectsOfTheirOwn) {
     Node node;
     node.object = object;
     node.to_parent.translation() = Vec3(0.5 * k - 0.75, 0.1 * k, -0.2 * k);
-    // The third is turned, so that its decoder is fed otherwise.
+    // The third one is rotated, so that its decoder gets other view directions.
     if (k == 2) node.to_parent.linear() = Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix();
     copies = with_added(copies, node, NodeId::none, static_cast<std::size_t>(k));
     auto own = std::make_shared<BakedObject>(*object);

@@ -1,4 +1,4 @@
-// The plan says what runs and why, without a GPU; what a scene does not call for must be left out.
+// Frame plans, without a GPU: which effects run, and why. Effects that a scene does not call for must not run.
 #include "render/graph/effects.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(Plan, CompositingOnlyForSeveralDecoders) {
   Scene scene = scene_of(made_object({.seed = 1}));
   EXPECT_FALSE(plan(scene, {}).runs(effects::decoder_compositing));
   Node other;
-  other.object = made_object({.seed = 1});  // equal weights in another place of memory count as one
+  other.object = made_object({.seed = 1});  // equal weights at another address count as the same decoder
   scene = with_added(scene, other, NodeId::none, 9);
   EXPECT_FALSE(plan(scene, {}).runs(effects::decoder_compositing));
   EXPECT_FALSE(plan(scene, {}).runs(effects::node_frames));
@@ -80,7 +80,7 @@ Scene with_node(const Scene& scene, const std::shared_ptr<const BakedObject>& ob
   return with_added(scene, std::move(node), NodeId::none, scene.roots.size());
 }
 
-// Small scenes keep their speed, large ones fit; hidden nodes are on the GPU too, and one texture counts once.
+// Texels are coded only if they take much memory. Hidden nodes are on the GPU too, and a shared texture counts once.
 TEST(Plan, TexelsAreCodedWhereTheyTakeMuchMemory) {
   using Texels = RenderOptions::Texels;
   constexpr int side = 4096;  // 128 MiB
@@ -131,7 +131,7 @@ TEST(Resources, UnchangedPartsAreNotUploadedTwice) {
   EXPECT_EQ(gone.released_meshes.size() + gone.released_surfaces.size(), 2U);
 }
 
-// What an effect reads an earlier one has written, and names are not used twice.
+// An effect reads only targets that it or an earlier effect writes; names are unique.
 TEST(Effects, ReadWhatEarlierOnesWrite) {
   std::set<Target> written;
   std::set<std::string> names;

@@ -1,4 +1,4 @@
-// Programs are compiled once while they are in use, and those of long ago do not pile up.
+// Shader programs in use are compiled once, and old ones are evicted.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// What leaving out hidden triangles rests on: bounds that hold all that a driver draws, and a pyramid of depths that
-// errs on the side of what shows.
+// Basis of occlusion culling: screen bounds that contain all that a driver draws, and a conservative depth pyramid
+// (Hi-Z).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ TEST(DepthPyramid, HidesATriangleWhereAllThatItCoversIsNearerOnly) {
     const auto [y0, y1] = std::minmax_element(t.y.begin(), t.y.end());
     t.samples = {static_cast<int>(*x0) - 1, static_cast<int>(*y0) - 1, static_cast<int>(*x1) + 1,
                  static_cast<int>(*y1) + 1};
-    // As a driver may draw it: corners moved, and nearer.
+    // As a driver may rasterise it: with displaced corners, and nearer.
     ScreenTriangle drawn = t;
     for (std::size_t c = 0; c < 3; ++c) {
       drawn.x[c] += t.moved * 0.7 * (2 * near(random) - 1);
@@ -95,7 +95,7 @@ TEST(DepthPyramid, HidesWhatLiesBehindAllItsSamplesOnly) {
   EXPECT_GT(hidden, 1000);
 }
 
-// Bounds against the same projection in long double: no corner, moved by what drivers round, may lie outside.
+// Bounds compared with the projection in long double: all corners must lie inside.
 TEST(ScreenBounds, HoldTheirTriangles) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> u(-1, 1);
@@ -133,7 +133,7 @@ TEST(ScreenBounds, HoldTheirTriangles) {
         for (Eigen::Index row = 0; row < 4; ++row)
           clip[row] = to_clip(row, 0) * at(0) + to_clip(row, 1) * at(1) + to_clip(row, 2) * at(2) + to_clip(row, 3);
         const long double px = (clip[0] / clip[3] + 1) * 320, py = (clip[1] / clip[3] + 1) * 240;
-        // The sample nearest to a corner on its inner side lies at most one further.
+        // The sample next to a corner on its inner side must be covered.
         if (px > 0 && px < 640) {
           EXPECT_LE(bounds.left[k], static_cast<int>(std::ceil(px - 0.5L)));
           EXPECT_GE(bounds.right[k], static_cast<int>(std::floor(px - 0.5L)));
@@ -155,7 +155,7 @@ TEST(ScreenBounds, TriangleThatIsNoNumberMayBeAnywhere) {
                               {0, 0, 64, 64});
   ClusterCorners corners{};
   for (std::size_t k = 0; k < faces_a_face_cluster; ++k) {
-    corners.at[1][0][k] = corners.at[2][1][k] = 0.5F;  // a triangle, but for one number
+    corners.at[1][0][k] = corners.at[2][1][k] = 0.5F;  // a triangle with one coordinate that is not finite
     corners.at[k % 3][k / 3 % 3][k] = k % 5 == 0 ? NAN : INFINITY;
   }
   ClusterBounds bounds;

@@ -12,7 +12,7 @@ CoordinateErrors errors_of(const Coordinates& coordinates, const Cage& cage, con
   const double size = box.diagonal().stableNorm();
   CoordinateErrors errors;
   const std::size_t rows = coordinates.rows();
-  const double unit = frame_of(cage).scale * size;  // that ψ is measured in
+  const double unit = frame_of(cage).scale * size;  // unit of ψ
   std::vector<double> weights(rows * batch_lanes);
   for (std::size_t first = 0; first < points.size(); first += batch_lanes) {
     std::array<Vec3, batch_lanes> block;

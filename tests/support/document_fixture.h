@@ -14,7 +14,7 @@
 
 namespace rebake::test {
 
-/// A folder with a scene to import, and work to do on it.
+/// A temporary folder with a scene to import (sources/ball), and edits to test with.
 class DocumentTest : public ::testing::Test {
  protected:
   DocumentTest() { export_scene(scene_of(made_object()), path("sources/ball"), {}); }
@@ -24,7 +24,8 @@ class DocumentTest : public ::testing::Test {
   void import(Document& document) const {
     act(document, nlohmann::json{{"op", "import"}, {"path", path("sources/ball").string()}, {"as", "ball"}});
   }
-  /// Half removed, half of the rest separated and moved.
+  /// Seven edits: imports the ball, deletes half of it, separates half of the rest as "part", moves it, and erases
+  /// texels.
   void work(Document& document) const {
     import(document);
     act(document,

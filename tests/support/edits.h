@@ -1,6 +1,6 @@
 #pragma once
 
-// Every edit, for tests that make them as structs.
+// Includes all edits, for tests that create them as structs.
 
 #include "editor/edits/deform/bend.h"
 #include "editor/edits/deform/cage.h"

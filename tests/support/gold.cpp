@@ -64,7 +64,7 @@ std::vector<Gold> gold_green(const Cage& cage, const Gold3& point) {
       r[k] = length(e[k]);
     }
     Gold3 normal = cross(e[1] - e[0], e[2] - e[0]);
-    const Gold area = length(normal);  // twice
+    const Gold area = length(normal);  // twice the area
     if (area == 0) continue;
     normal = normal * (1 / area);
     const Gold h = dot(e[0], normal);

@@ -18,7 +18,7 @@ Cage dented() {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> shift(-0.06, 0.06);
   for (Vec3& v : cage.vertices) {
-    // One after the other: compilers evaluate a call's arguments in different orders.
+    // In this order: the order in which a call's arguments are evaluated is unspecified.
     const double z = shift(random), y = shift(random), x = shift(random);
     v = v.normalized() * 0.4 + Vec3(x, y, z);
     if (v.x() > 0.2) v.x() = 0.35 - v.x();
@@ -84,7 +84,7 @@ std::vector<Vec3> all_hard_points(const Cage& cage) {
         points.push_back(place + d * normal);
         points.push_back(place + d * Vec3(0.3, -0.5, 0.8));
       }
-    // In the plane outside, on the edge's extension, and above a corner of the plane.
+    // In the plane outside the face, on an edge's extension, and just above an edge's extension.
     for (const double d : {1e-12, 1e-6, 0.3}) {
       points.push_back(a + (a - b) * d + (a - c) * d);
       points.push_back(a + (a - b) * d);
@@ -99,7 +99,7 @@ std::vector<Vec3> all_hard_points(const Cage& cage) {
 std::vector<Vec3> hard_points(const Cage& cage) {
   const std::vector<Vec3> points = all_hard_points(cage);
   std::vector<Vec3> some;
-  // A prime, so that every kind of place at every distance is among them.
+  // A prime, so that all kinds of points at all distances are included.
   const auto step = static_cast<std::size_t>(cases(11, 1));
   for (std::size_t k = 0; k < points.size(); k += step) some.push_back(points[k]);
   return some;

@@ -13,20 +13,20 @@ namespace rebake::test {
 Cage cube(int cells = 1);
 /// A subdivided cube, dented: concave, in general position.
 Cage dented();
-/// A tetrahedron with a face split at a point that lies `thin` from an edge: needles of that height.
+/// A tetrahedron with a face split at a point at distance `thin` from an edge: needles of that height.
 Cage needles(double thin);
-/// A tetrahedron with an edge split in two: exact for halves; and `lift` above the edge's middle otherwise.
+/// A tetrahedron with an edge split at its middle, which is raised by `lift`: a cap of that height.
 Cage cap(double lift);
 /// A flat box.
 Cage flat(double thickness);
 Cage scaled(Cage cage, double scale, const Vec3& offset = Vec3(0, 0, 0));
-/// All of these with what else is hard: cage points that coincide, two components.
+/// Hard cages with names: cubes, a dented one, needles, caps, coincident cage vertices, two components.
 std::vector<std::pair<std::string, Cage>> hard_cages();
 
-/// Points on each face, edge and vertex, at distances on both sides, along their planes and lines, and on corners'
-/// projections.
+/// Points on faces, edges and vertices, at distances of 0 to 0.1 from them on both sides, in planes of faces and on
+/// extensions of edges. Every eleventh of them unless REBAKE_DEEP is set.
 std::vector<Vec3> hard_points(const Cage& cage);
-/// Those of the hard points that are inside, by the solid angle of the cage (van Oosterom) in double.
+/// Hard points inside the cage, by its winding number from solid angles (van Oosterom), in double.
 std::vector<Vec3> inside_points(const Cage& cage);
 
 }  // namespace rebake::test

@@ -7,8 +7,9 @@
 
 namespace rebake::test {
 
-/// Writes an equirectangular picture of what lies in each direction, of the kind that its name says: linear radiances
-/// as OpenEXR, else display colours. Directions by their own formula: the middle is −z, to the right +x, above +y.
+/// Writes an equirectangular picture of `width` × `width` / 2 pixels: `radiance` is linear for .exr, otherwise in
+/// display colours. The centre is −z, right is +x, up is +y. Its formula for directions does not share code with the
+/// reader.
 void write_light_picture(const std::filesystem::path& path, int width,
                          const std::function<Radiance(const Vec3&)>& radiance);
 

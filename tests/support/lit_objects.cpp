@@ -8,9 +8,9 @@ namespace rebake::test {
 namespace {
 
 constexpr int cell = 17;
-constexpr double slope = 10;  // of the decoder, over features 0 … 1
+constexpr double slope = 10;  // slope of the decoder's logistic function over features 0 … 1
 
-// Shows features 1, 2 and 4 as red, green and blue: a logistic function of each.
+// A decoder that shows features 1, 2 and 4 as red, green and blue, by a logistic function of each.
 Decoder plain_decoder() {
   Decoder d;
   d.weights0 = Eigen::MatrixXd::Zero(Decoder::inputs, 3);
@@ -24,7 +24,7 @@ Decoder plain_decoder() {
   return d;
 }
 
-// The byte whose decoded feature gives the colour.
+// The byte whose decoded feature gives this linear colour.
 std::uint8_t byte_for(double linear) {
   const double display = std::clamp(to_display(linear), 0.007, 0.993);
   return static_cast<std::uint8_t>(std::lround((std::log(display / (1 - display)) / slope + 0.5) * 255));

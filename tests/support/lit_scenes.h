@@ -10,7 +10,7 @@
 
 namespace rebake::test {
 
-/// Results that are kept as long as it lives.
+/// A cache of results in memory that counts how many were found.
 struct Remembered final : Results {
   std::map<std::string, std::string> held;
   int found = 0;
@@ -23,12 +23,12 @@ struct Remembered final : Results {
   void keep(const std::string& key, std::string_view bytes) override { held[key] = bytes; }
 };
 
-/// A box over a ground, which it shades under a uniform sky: one object.
+/// One object: a box over a ground plane, on which its shadow under a uniform sky is baked.
 Scene table();
-/// In uniform light, by the edit.
+/// The scene after a light edit with a uniform source.
 Scene with_light(const Scene& scene);
 
-/// What was decided under this name; null where nothing was.
+/// The decision with this name; null if there is none.
 const LightDecision* decided(const Lighting& lighting, const std::string& name);
 bool runs(const Lighting& lighting, const std::string& name);
 

@@ -160,7 +160,7 @@ std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int 
   const FeatureTexture read = read_feature_pngs(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved);
   auto object = std::make_shared<BakedObject>();
   Decoder decoder = read_mlp_json(read_file(folder / "mlp.json"), folder / "mlp.json").decoder;
-  // It was trained on (d + 1) / 2.
+  // This decoder was trained with directions (d + 1) / 2.
   decoder.bias0 += 0.5 * decoder.weights0.bottomRows<3>().colwise().sum().transpose();
   decoder.weights0.bottomRows<3>() *= 0.5;
   object->decoder = std::make_shared<const Decoder>(decoder);
@@ -184,7 +184,7 @@ std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int 
       faces.push_back({first, first + 1, first + 3});
       faces.push_back({first, first + 3, first + 2});
     }
-  // Some alphas are 127, which no split folder holds.
+  // Some alphas are 127, which split folders cannot store.
   const TexelReader texels(read);
   object->sets.push_back(
       {Soup(positions, uvs, faces), std::make_shared<const FeatureTexture>(FeatureTexture::from_rows(

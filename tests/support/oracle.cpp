@@ -15,7 +15,7 @@ namespace {
 struct Surface {
   const TextureSet* set;
   const BakedObject* object;
-  Mat3 world_to_object;       // directions
+  Mat3 world_to_object;       // for directions
   std::vector<Vec3> corners;  // world positions relative to the eye
   int decoder;
   std::unique_ptr<const TexelReader> texels;
@@ -33,13 +33,13 @@ struct Hit {
 struct CastContext {
   RTCIntersectContext base;
   const std::vector<Surface>* surfaces;
-  Vec3 start, ray;  // relative to the eye; unnormalised: its length along the view axis is 1
+  Vec3 start, ray;  // relative to the eye; the ray's length along the view axis is 1
   double nearest, farthest;
-  bool parallel;  // rays, of an orthographic camera
+  bool parallel;  // orthographic camera
   Hit hit;
 };
 
-// Möller–Trumbore in double; false when the ray misses by more than rounding.
+// Möller–Trumbore in double; false if the ray misses by more than rounding.
 bool intersect(const Vec3& start, const Vec3& ray, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& u,
                double& v) {
   const Vec3 e1 = b - a, e2 = c - a, p = ray.cross(e2);
@@ -53,7 +53,7 @@ bool intersect(const Vec3& start, const Vec3& ray, const Vec3& a, const Vec3& b,
 }
 
 void filter(const RTCFilterFunctionNArguments* args) {
-  args->valid[0] = 0;  // never accepted: all hits are looked at, in double
+  args->valid[0] = 0;  // rejects every hit, so that Embree reports all of them; they are compared here in double
   auto& context = *reinterpret_cast<CastContext*>(args->context);
   const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
   const Surface& surface = (*context.surfaces)[hit->geomID];
@@ -64,7 +64,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
                  surface.corners[face[2]], t, u, v))
     return;
   if (t < context.nearest || t > context.farthest) return;
-  // At equal depth the later drawn wins (less or equal).
+  // At equal depth, the triangle that is drawn later is visible (depth test less-or-equal).
   if (t > context.hit.t) return;
   if (t == context.hit.t && std::pair(hit->geomID, hit->primID) < std::pair(context.hit.surface, context.hit.face))
     return;
@@ -76,7 +76,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
   if (texel.feat0[0] == 0) return;
   Vec3 direction = surface.world_to_object * context.ray;
   if (soup.rotations() != nullptr) {
-    // The corners' rays are turned back and interpolated unnormalised.
+    // The corners' view rays are rotated back to the baked pose and interpolated without normalisation.
     Vec3 sum = Vec3::Zero();
     const double weight[3] = {1 - u - v, u, v};
     for (std::size_t k = 0; k < 3; ++k) {

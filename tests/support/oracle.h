@@ -6,8 +6,8 @@
 
 namespace rebake::test {
 
-/// The rendering rule of format.md, cast with rays and shaded in double precision. Shares no code with the GPU's way
-/// but the loader and the scene's types: it says what a picture must look like.
+/// Reference picture: MobileNeRF's rendering rule by ray casting, shaded in double precision. Shares no code with the
+/// GPU renderer except the loader and the scene types.
 Image cast_picture(const Scene& scene, const View& view);
 
 }  // namespace rebake::test

@@ -83,7 +83,7 @@ int PowerLoss::rename(const char* from, const char* to, unsigned flags) {
   const int result = FileCalls::rename(from, to, flags);
   if (result != 0) return result;
   ++renames_;
-  // Both folders have other entries now; what was made in the staging folder has another name.
+  // Both folders have changed; files that were created below `from` have other paths now.
   std::erase_if(dirty_,
                 [&](const std::string& path) { return path == from || path.starts_with(std::string(from) + "/"); });
   dirty_.insert(fs::path(from).parent_path());

@@ -9,19 +9,19 @@
 
 namespace rebake::test {
 
-/// Carries calls out and watches what a power loss after any of them would leave: a file that takes another's name must
-/// be on the disk before, with all that it holds, and the folder that names it after. Can let the nth call fail, and
-/// write little at a time.
+/// Executes file calls and checks that a power loss after any of them is harmless: a file must be synced before it is
+/// renamed, and its folder afterwards. Can make one call fail, and limit the bytes per write.
 class PowerLoss final : public FileCalls {
  public:
-  /// The call with this number (from 0; opening to read, closing and removing are not counted) fails so.
+  /// Lets call number `nth` (from 0) fail with `error`. Not counted: opening for reading, truncating, closing,
+  /// removing.
   void fail_at(int nth, int error);
   void write_at_most(std::size_t bytes) { most_ = bytes; }
 
-  /// What is wrong so far, with folders that are not synced yet; empty when nothing is.
+  /// Violations so far, and files and folders that are not synced yet; empty if there are none.
   std::string trouble() const;
   std::size_t renames() const { return renames_; }
-  /// Names of what was done, e.g. "rename a b".
+  /// Syncs, renames and removals so far, e.g. "rename a b".
   const std::vector<std::string>& log() const { return log_; }
 
   int open(const char* path, int flags, mode_t mode) override;

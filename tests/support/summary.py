@@ -24,7 +24,7 @@ def expected(conditions):
 
 
 def print_failures(name, output):
-    """The last 40 lines of what each failed test printed: logs of whole runs are often cut before them."""
+    """Prints the last 40 lines of each failed test, because logs of whole runs are often truncated."""
     failed = re.findall(r"^\[ RUN      \] ([\w/.]+)\n((?:(?!\[ RUN ).*\n)*?)\[  FAILED  \] \1", output, re.M)
     for inner, text in failed or [(name, output)]:
         print(f"\nFAILED {inner}")
@@ -37,7 +37,7 @@ def main(report, preset, data):
         output = case.findtext("system-out") or ""
         if case.find("failure") is not None:
             print_failures(case.get("name"), output)
-        # One process may run many tests, and passes when some are skipped.
+        # One process may run many tests; it passes if some are skipped.
         inner = set(re.findall(r"^\[  SKIPPED \] ([\w/.]+)(?: \(|$)", output, re.M))
         skipped |= inner
         if case.get("status") not in ("notrun", "disabled"):

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -165,8 +166,8 @@ class EditorWindow {
 
   // Writes changed settings when no button is held, so that they survive a crash.
   void keep_settings() {
-    desk_.settings.window_width = static_cast<int>(window().width() / scale_);
-    desk_.settings.window_height = static_cast<int>(window().height() / scale_);
+    desk_.settings.window_width = static_cast<int>(std::lround(window().width() / window().scale()));
+    desk_.settings.window_height = static_cast<int>(std::lround(window().height() / window().scale()));
     if (desk_.settings == kept_settings_ || ImGui::IsAnyMouseDown()) return;
     kept_settings_ = desk_.settings;
     try {

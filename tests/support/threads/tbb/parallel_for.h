@@ -13,17 +13,17 @@
 #include <type_traits>
 #include <utility>
 
-/// What the thread sanitizer's build takes for TBB's loops. The library is not built with the sanitizer, which hence
-/// takes all that TBB orders for races; threads of the standard library it knows. Loops within loops run in order; what
-/// contexts do when a loop is stopped is not imitated.
+/// Replaces TBB's loops in builds with the thread sanitizer. TBB is not built with the sanitizer, which therefore
+/// reports its synchronisation as races, but knows threads of the standard library. Nested loops run sequentially.
+/// Cancellation by contexts is not implemented.
 namespace tbb {
 
-/// Of this thread: it carries out a block.
+/// Whether this thread executes a block of a loop.
 inline thread_local bool inside_loop = false;
 
-/// `body(begin, end)` on blocks of at least `grain`, dealt out to three threads in turn: nothing but their beginning
-/// and end puts them in order, so that what they share is found whichever runs first. What the first to fail throws is
-/// thrown, and what has not begun by then is left out.
+/// Calls `body(begin, end)` for blocks of at least `grain`, assigned to three threads in turn. Only the loop's begin
+/// and end synchronise, so data races are found whichever thread runs first. Rethrows the first exception; blocks that
+/// have not begun by then are skipped.
 template <class Value, class Body>
 void for_blocks(Value begin, Value end, Value grain, const Body& body) {
   if (!(begin < end)) return;

@@ -4,7 +4,7 @@
 
 namespace tbb {
 
-/// See tbb/parallel_for.h beside this.
+/// See parallel_for.h in this folder.
 template <class First, class Second, class... Context>
 void parallel_invoke(const First& first, const Second& second, Context&&...) {
   parallel_for(0, 2, [&](int which) { which == 0 ? first() : second(); });

@@ -6,7 +6,7 @@
 
 namespace tbb {
 
-/// See tbb/parallel_for.h beside this. Parts are joined in their order.
+/// See parallel_for.h in this folder. Partial results are joined in order.
 template <class Range, class Value, class Body, class Join>
 Value parallel_reduce(const Range& range, const Value& identity, const Body& body, const Join& join) {
   std::mutex mutex;

@@ -4,7 +4,7 @@
 
 namespace tbb {
 
-/// See tbb/parallel_for.h beside this: here one thread sorts.
+/// Sorts on one thread; see parallel_for.h in this folder.
 template <class Container>
 void parallel_sort(Container& values) {
   std::ranges::sort(values);
