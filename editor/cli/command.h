@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <initializer_list>
 #include <memory>
@@ -14,16 +15,31 @@ class Option;
 
 namespace rebake {
 
+/// An option of a subcommand, as help shows it.
+struct OptionHelp {
+  std::string names;               ///< "-o,--out"; without a dash for a positional argument
+  std::string hint;                ///< placeholder of the value, such as "OUT.png"; empty for a flag
+  std::string help;                ///< what it does
+  std::vector<std::string> words;  ///< the only values allowed; empty if others are
+};
+
+/// A subcommand, as the manual page and shell completions show it.
+struct SubcommandHelp {
+  std::string name, help, footer;
+  std::deque<OptionHelp> options;  ///< a deque, because descriptions hold references to its elements
+};
+
 /// Builder of a subcommand: declares its options and its function. Wraps CLI11, which is slow to compile and included
 /// only by command.cpp.
 class CommandDescription {
  public:
-  explicit CommandDescription(CLI::App& app) : app_(&app) {}
+  /// Adds to the parser `app`, and to `help`; both must outlive this object.
+  CommandDescription(CLI::App& app, SubcommandHelp& help) : app_(&app), help_(&help) {}
 
   /// Constraints of an option's value; each function returns the option for chaining.
   class Option {
    public:
-    explicit Option(CLI::Option* option) : option_(option) {}
+    Option(CLI::Option* option, OptionHelp& help) : option_(option), help_(&help) {}
     Option& required();
     Option& one_of(const std::vector<std::string>& words);
     Option& one_of(const std::vector<int>& numbers);
@@ -33,6 +49,7 @@ class CommandDescription {
 
    private:
     CLI::Option* option_;
+    OptionHelp* help_;
   };
 
   /// Adds an option that is stored in `value`. `names`: "-o,--out", or a name without dashes for a positional argument.
@@ -48,6 +65,7 @@ class CommandDescription {
 
  private:
   CLI::App* app_;
+  SubcommandHelp* help_;
 };
 
 /// Entry of the table of subcommands (commands.h).
@@ -62,6 +80,12 @@ struct Subcommand {
 struct ExitWith {
   int code;  ///< 1 failed, 3 pictures differ, 4 below the requested quality
 };
+
+/// All subcommands with their options, in the order of the table.
+std::vector<SubcommandHelp> subcommand_help();
+
+/// The meaning of the program's exit codes, in sentences.
+extern const char* const exit_code_help;
 
 /// Parses the command line and runs the subcommand. Returns the exit code: 0, or 2 for a wrong command line. Throws
 /// exceptions of the subcommand.

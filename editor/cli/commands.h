@@ -14,6 +14,7 @@ void describe_recover(CommandDescription& command);
 void describe_compare(CommandDescription& command);
 void describe_study(CommandDescription& command);
 void describe_light(CommandDescription& command);
+void describe_completion(CommandDescription& command);
 
 /// Table of all subcommands, in help order.
 inline constexpr Subcommand subcommand_table[] = {
@@ -27,6 +28,7 @@ inline constexpr Subcommand subcommand_table[] = {
     {"recover", "gets the work of a run that was killed back from its journal, as a project", describe_recover},
     {"compare", "says how much two pictures differ", describe_compare},
     {"study", "measures accuracy against time: a table (CSV) and a plot (SVG, PNG)", describe_study},
-    {"light", "learns how an object sees the sky in its poses, for light that goes along with drags", describe_light}};
+    {"light", "learns how an object sees the sky in its poses, for light that goes along with drags", describe_light},
+    {"completion", "prints shell completions or the manual page", describe_completion}};
 
 }  // namespace rebake

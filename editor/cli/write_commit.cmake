@@ -1,0 +1,9 @@
+# Writes HEADER, which names the Git commit of SOURCE; leaves it untouched when nothing changed, so that nothing is rebuilt.
+# Sources outside of a checkout have no commit.
+set(commit "")
+find_program(GIT git)
+if(GIT)
+  execute_process(COMMAND ${GIT} -C "${SOURCE}" describe --always --dirty=+ --exclude=* --abbrev=7
+    OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+endif()
+file(CONFIGURE OUTPUT "${HEADER}" CONTENT "#define REBAKE_COMMIT \"@commit@\"\n" @ONLY)
