@@ -1,8 +1,7 @@
-"""Runs the named steps of a check one after another and prints what each took.
+"""Runs the named steps of a check in order and prints their times.
 
-Steps are pairs: timed.py [--all] NAME COMMAND [NAME COMMAND …], commands for bash. The first step that fails ends the
-run; with --all the others follow all the same. Times are wall and CPU (user + system of all descendants that were
-waited for) minutes.
+timed.py [--all] NAME COMMAND [NAME COMMAND …]; commands are for bash. A failed step ends the run, unless --all is given.
+Times are wall and CPU minutes (user + system of all descendants).
 """
 
 import os

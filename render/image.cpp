@@ -17,10 +17,10 @@ constexpr int compression_level = 6;  // zlib's default
 
 Image read_image(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw FileError(path, "does not exist");
-  if (!std::filesystem::is_regular_file(path)) throw FileError(path, "is no regular file");
+  if (!std::filesystem::is_regular_file(path)) throw FileError(path, "is not a regular file");
   const auto reader = open_picture(path);
   const PictureLayout& layout = reader->layout();
-  if (layout.width > 32768 || layout.height > 32768) throw FileError(path, "is larger than 32768 pixels a side");
+  if (layout.width > 32768 || layout.height > 32768) throw FileError(path, "is larger than 32768 pixels per side");
   const int channels = layout.channels;
   std::vector<std::uint8_t> raw(static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.height) *
                                 static_cast<std::size_t>(channels));

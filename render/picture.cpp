@@ -32,7 +32,7 @@ double milliseconds_since(Clock::time_point start) {
 class Renderer::Impl {
  public:
   explicit Impl(std::unique_ptr<gl::Context> context) : context_(std::move(context)) {
-    const gl::Current current(*context_);
+    const gl::CurrentContextScope current(*context_);
     device_ = gl::device_name();
     software_ = device_.find("llvmpipe") != std::string::npos || device_.find("softpipe") != std::string::npos ||
                 device_.find("SWR") != std::string::npos;
@@ -40,13 +40,13 @@ class Renderer::Impl {
     GLint largest = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &largest);
     // Each 64-bit word is two texels of R32UI; two words of padding follow the data.
-    reads_coded_ = static_cast<std::size_t>(largest) >= 2 * (most_coded_words + 2);
+    reads_coded_ = static_cast<std::size_t>(largest) >= 2 * (max_coded_words + 2);
   }
 
   // Members delete objects of this context, so it must be current.
   ~Impl() {
     try {
-      const gl::Current current(*context_);
+      const gl::CurrentContextScope current(*context_);
       state_ = {};
       gpu_.reset();
     } catch (const Error&) {
@@ -58,7 +58,7 @@ class Renderer::Impl {
 
   FrameTimes draw(const Scene& scene, const View& view, const RenderOptions& options, bool each_pass,
                   const Lighting* lighting, const Guides* guides = nullptr) {
-    const gl::Current current(*context_);
+    const gl::CurrentContextScope current(*context_);
     const Clock::time_point start = Clock::now();
     DeviceFacts facts = device_facts();
     if (drawn_) facts.shown = &*drawn_;
@@ -67,15 +67,15 @@ class Renderer::Impl {
     shown_ = view;
     texels_ = options.texels;
     if (frame_plan.frames.size() > 65535)
-      throw DeviceError("more than 65535 differently placed objects are in view; merge or hide some");
+      throw DeviceError("more than 65535 different orientations of objects are in view; merge or hide some objects");
     update(scene, frame_plan.options.texels == RenderOptions::Texels::coded, lighting);
     const std::size_t made_before = state_.programs.made();
     FrameTimes times = carry_out(frame_plan, each_pass, start);
     if (state_.programs.made() != made_before) ++compiled_;
     remember(variant_of(frame_plan));
     passes_ = frame_plan.passes;
-    if (frame_plan.runs(effects::occlusion)) say_occlusion();
-    if (frame_plan.runs(effects::coded_texels)) say_coded();
+    if (frame_plan.runs(effects::occlusion)) append_occlusion_results();
+    if (frame_plan.runs(effects::coded_texels)) append_coded_size();
     drawn_ = std::move(frame_plan);
     return times;
   }
@@ -93,14 +93,15 @@ class Renderer::Impl {
   }
   bool kept() const { return drawn_ && drawn_->kept; }
 
-  bool make_ahead(const Scene& scene, const View& view, const RenderOptions& options, const Lighting* lighting) {
-    const gl::Current current(*context_);
-    for (FrameToCome& frame : frames_to_come(scene, view, options, lighting)) {
+  bool compile_next_program(const Scene& scene, const View& view, const RenderOptions& options,
+                            const Lighting* lighting) {
+    const gl::CurrentContextScope current(*context_);
+    for (PrecompileFrame& frame : precompile_frames(scene, view, options, lighting)) {
       RenderOptions all_drawn = options;
       all_drawn.occlusion = RenderOptions::Occlusion::off;
       const FramePlan frame_plan = plan(frame.scene, frame.view, all_drawn, nullptr, lighting, device_facts());
       if (!remember(variant_of(frame_plan))) continue;
-      update(scene, codes_texels(scene, options.texels, device_facts()), lighting);
+      update(scene, uses_coded_texels(scene, options.texels, device_facts()), lighting);
       // Draws into separate render targets, so that the shown picture stays.
       PassState other;
       other.empty_array = gl::make_vertex_array();
@@ -120,31 +121,31 @@ class Renderer::Impl {
     }
     return false;
   }
-  std::size_t frames_that_compiled() const { return compiled_; }
+  std::size_t compile_stall_count() const { return compiled_; }
 
   void prepare(const Scene& scene) { gpu_->prepare(scene, codes(scene)); }
-  double arrive(const Scene& scene, double milliseconds) {
-    const gl::Current current(*context_);
+  double upload_slice(const Scene& scene, double milliseconds) {
+    const gl::CurrentContextScope current(*context_);
     try {
-      const double share = gpu_->arrive(scene, codes(scene), milliseconds);
+      const double share = gpu_->upload_slice(scene, codes(scene), milliseconds);
       if (glGetError() != GL_OUT_OF_MEMORY) return share;
     } catch (const std::exception&) {
       // draw() reports the error.
     }
     // The GPU cannot hold both scenes: update() will evict the current one before it uploads the next.
-    gpu_->forget_arrival();
+    gpu_->evict_staged();
     return 1;
   }
-  void forget_arrival() {
-    const gl::Current current(*context_);
-    gpu_->forget_arrival();
+  void evict_staged() {
+    const gl::CurrentContextScope current(*context_);
+    gpu_->evict_staged();
   }
   const std::string& device() const { return device_; }
   const std::vector<PlannedPass>& passes() const { return passes_; }
   unsigned texture() const { return state_.targets.texture(Target::picture).name(); }
 
   Image read_back() {
-    const gl::Current current(*context_);
+    const gl::CurrentContextScope current(*context_);
     const View& view = shown_;
     Image image{
         view.width, view.height,
@@ -161,7 +162,9 @@ class Renderer::Impl {
   }
 
  private:
-  bool codes(const Scene& scene) const { return codes_texels(scene, texels_, {.reads_coded_texels = reads_coded_}); }
+  bool codes(const Scene& scene) const {
+    return uses_coded_texels(scene, texels_, {.reads_coded_texels = reads_coded_});
+  }
 
   void update(const Scene& scene, bool coded, const Lighting* lighting) {
     gpu_->update(scene, coded, lighting);
@@ -193,7 +196,7 @@ class Renderer::Impl {
     glFinish();
     times.frame_ms = milliseconds_since(start);
     if (const GLenum error = glGetError(); error != GL_NO_ERROR)
-      throw DeviceError(error == GL_OUT_OF_MEMORY ? "the GPU's memory is out; use fewer samples or a smaller picture"
+      throw DeviceError(error == GL_OUT_OF_MEMORY ? "GPU memory is exhausted; use fewer samples or a smaller picture"
                                                   : "OpenGL reports error " + std::to_string(error));
     return times;
   }
@@ -212,14 +215,14 @@ class Renderer::Impl {
   DeviceFacts device_facts() {
     DeviceFacts facts;
     // A GPU draws triangles about 100 times faster than llvmpipe, but the tests run on the CPU in both cases.
-    if (!software_) facts.occlusion_from = 2'000'000;
+    if (!software_) facts.min_culling_triangles = 2'000'000;
     facts.reads_coded_texels = reads_coded_;
-    // If too few triangles were occluded, culling is tried again only every look_again frames.
-    if (share_ > worthwhile_share && ++frames_without_ < look_again) facts.shown_share = share_;
+    // If too few triangles were occluded, culling is tried again only every retry_interval frames.
+    if (share_ > max_visible_share && ++frames_without_ < retry_interval) facts.visible_share = share_;
     return facts;
   }
 
-  void say_occlusion() {
+  void append_occlusion_results() {
     const OcclusionCounts& c = state_.occlusion_counts;
     share_ = c.triangles_in_view == 0
                  ? 0
@@ -229,21 +232,21 @@ class Renderer::Impl {
       if (pass.effect == &effects::occlusion)
         pass.why +=
             fmt::format(
-                ": of {} clusters {} show, {} are hidden, {} out of view; of {} triangles {} were drawn, {} may "
-                "show{}; ",
+                ": of {} clusters {} are visible, {} occluded, {} out of view; of {} triangles {} were drawn, {} may "
+                "be visible{}; ",
                 c.clusters, c.clusters_drawn, c.clusters_hidden, c.clusters_out_of_view, c.triangles, c.triangles_drawn,
-                c.triangles_shown, c.drawn_again ? " and were drawn again, in their order" : "") +
-            (c.known ? std::string("that is known, since nothing has moved")
-                     : fmt::format("deciding took {:.1f} ms", c.milliseconds));
+                c.triangles_shown, c.drawn_again ? " and drawn again in scene order" : "") +
+            (c.known ? std::string("results were reused, because nothing has moved")
+                     : fmt::format("tests took {:.1f} ms", c.milliseconds));
   }
 
-  void say_coded() {
+  void append_coded_size() {
     for (PlannedPass& pass : passes_)
       if (pass.effect == &effects::coded_texels) pass.why += fmt::format("; {:.0f} MB", gpu_->texel_bytes() / 1e6);
   }
 
-  static constexpr double worthwhile_share = 0.7;  // visible share of the triangles in view up to which culling pays
-  static constexpr int look_again = 16;
+  static constexpr double max_visible_share = 0.7;  // visible share of the triangles in view up to which culling pays
+  static constexpr int retry_interval = 16;
 
   unsigned picture_buffer() { return state_.targets.framebuffer({Target::picture}, false).name(); }
 
@@ -267,16 +270,18 @@ Renderer::Renderer() : Renderer(gl::make_headless_context()) {}
 Renderer::Renderer(std::unique_ptr<gl::Context> context) : impl_(std::make_unique<Impl>(std::move(context))) {}
 Renderer::~Renderer() = default;
 
-bool Renderer::make_ahead(const Scene& scene, const View& view, const RenderOptions& options,
-                          const Lighting* lighting) {
-  return impl_->make_ahead(scene, view, options, lighting);
+bool Renderer::compile_next_program(const Scene& scene, const View& view, const RenderOptions& options,
+                                    const Lighting* lighting) {
+  return impl_->compile_next_program(scene, view, options, lighting);
 }
-std::size_t Renderer::frames_that_compiled() const { return impl_->frames_that_compiled(); }
+std::size_t Renderer::compile_stall_count() const { return impl_->compile_stall_count(); }
 
 void Renderer::prepare(const Scene& scene) { impl_->prepare(scene); }
 
-double Renderer::arrive(const Scene& scene, double milliseconds) { return impl_->arrive(scene, milliseconds); }
-void Renderer::forget_arrival() { impl_->forget_arrival(); }
+double Renderer::upload_slice(const Scene& scene, double milliseconds) {
+  return impl_->upload_slice(scene, milliseconds);
+}
+void Renderer::evict_staged() { impl_->evict_staged(); }
 
 Image Renderer::render(const Scene& scene, const View& view, const RenderOptions& options, const Lighting* lighting) {
   impl_->draw(scene, view, options, false, lighting);

@@ -37,9 +37,10 @@ class Renderer {
 
   /// Compiles programs in advance that other views of this scene may need, because a driver may take 0.1 s per program.
   /// Each call draws one small frame off screen. Returns false if all programs are compiled.
-  bool make_ahead(const Scene& scene, const View& view, const RenderOptions& options, const Lighting* lighting);
+  bool compile_next_program(const Scene& scene, const View& view, const RenderOptions& options,
+                            const Lighting* lighting);
   /// Number of frames that had to compile a program while they were drawn.
-  std::size_t frames_that_compiled() const;
+  std::size_t compile_stall_count() const;
 
   /// Prepares uploads of the next picture of a scene on the CPU, so that it is drawn sooner. Callable from any thread.
   void prepare(const Scene& scene);
@@ -47,9 +48,9 @@ class Renderer {
   /// Uploads a slice of the data of a scene that is not drawn yet, for about `milliseconds`. The current scene stays
   /// resident. Returns the uploaded share, 0 … 1; 1 also if the GPU cannot hold both scenes. Drawing the new scene
   /// uploads the rest at once.
-  double arrive(const Scene& scene, double milliseconds);
+  double upload_slice(const Scene& scene, double milliseconds);
   /// Evicts the data uploaded by arrive(), if that scene will not be drawn.
-  void forget_arrival();
+  void evict_staged();
 
   /// Draws a frame without reading it back. `each_pass`: time each pass (fills pass_ms), otherwise the frame as a
   /// whole.

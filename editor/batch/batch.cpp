@@ -53,7 +53,7 @@ struct Mark {
     std::string path, content;
   };
   std::string key;
-  bool below_asked = false;  // an export missed the PSNR that the script requires
+  bool below_requested_psnr = false;  // an export missed the PSNR that the script requires
   std::vector<File> read, wrote;
 };
 
@@ -67,7 +67,7 @@ Mark mark_from(const std::string& text) {
     begin = end + 1;
     if (!line.is_object()) continue;
     mark.key = line.value("key", mark.key);
-    mark.below_asked = line.value("below_asked", mark.below_asked);
+    mark.below_requested_psnr = line.value("below_asked", mark.below_requested_psnr);
     if (line.contains("read")) mark.read.push_back({line.value("read", ""), line.value("content", "")});
     if (line.contains("wrote")) mark.wrote.push_back({line.value("wrote", ""), line.value("content", "")});
   }
@@ -76,7 +76,7 @@ Mark mark_from(const std::string& text) {
 
 Mark read_mark(const fs::path& path) { return fs::exists(path) ? mark_from(read_file(path)) : Mark(); }
 
-bool is_as_it_was(const Mark::File& file) {
+bool is_unchanged(const Mark::File& file) {
   try {
     return hash_text(fs::is_directory(file.path) ? folder_hash(file.path) : content_hash(read_file(file.path))) ==
            file.content;
@@ -86,14 +86,14 @@ bool is_as_it_was(const Mark::File& file) {
 }
 
 // Whether the scene was done with this key, and all files that it read and wrote are unchanged.
-bool still_done(const Mark& mark, const std::string& key) {
-  return mark.key == key && std::all_of(mark.read.begin(), mark.read.end(), is_as_it_was) &&
-         std::all_of(mark.wrote.begin(), mark.wrote.end(), is_as_it_was);
+bool is_up_to_date(const Mark& mark, const std::string& key) {
+  return mark.key == key && std::all_of(mark.read.begin(), mark.read.end(), is_unchanged) &&
+         std::all_of(mark.wrote.begin(), mark.wrote.end(), is_unchanged);
 }
 
-void say_quality(BatchResult& result, bool below_asked) {
-  result.below_asked = below_asked;
-  if (below_asked) result.message = "an export missed the psnr that was asked for; the log says which object suffers";
+void set_quality_message(BatchResult& result, bool below_requested_psnr) {
+  result.below_requested_psnr = below_requested_psnr;
+  if (below_requested_psnr) result.message = "an export is below the requested psnr; the log names the worst object";
 }
 
 // Ownership of outputs by scenes, across all shards: one file per output that is created exclusively and has the
@@ -112,7 +112,7 @@ class Claims {
       if (!whole) throw FileError(path, "cannot be written");
       return "";
     }
-    if (errno != EEXIST) throw FileError(path, "cannot be made");
+    if (errno != EEXIST) throw FileError(path, "cannot be created");
     const std::string other = read_file(path);
     return other == scene ? "" : other.empty() ? "another scene" : other;
   }
@@ -205,8 +205,8 @@ std::string last_error(const fs::path& log, int status) {
     // There is no log: use the status only.
   }
   if (WIFSIGNALED(status))
-    return fmt::format("crashed (signal {}){}{}", WTERMSIG(status), found.empty() ? "" : ": ", found);
-  return found.empty() ? fmt::format("ended with code {}", WEXITSTATUS(status)) : found;
+    return fmt::format("crashed with signal {}{}{}", WTERMSIG(status), found.empty() ? "" : ": ", found);
+  return found.empty() ? fmt::format("failed with exit code {}; see its log", WEXITSTATUS(status)) : found;
 }
 
 }  // namespace
@@ -233,7 +233,8 @@ ScenesByName matched_scenes(const BatchOptions& options) {
         found.assign(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
       ::globfree(&matches);
     }
-    if (found.empty()) throw FieldError("--scenes", fmt::format("\"{}\" matches nothing", pattern));
+    if (found.empty())
+      throw FieldError("--scenes", fmt::format("\"{}\" matches no file or folder; check the pattern", pattern));
     std::vector<fs::path> folders;
     for (fs::path& path : found) {
       if (!path.has_filename()) path = path.parent_path();
@@ -246,15 +247,18 @@ ScenesByName matched_scenes(const BatchOptions& options) {
                                               folder.string()));
       if (!options.report.empty() &&
           fs::weakly_canonical(options.report) == fs::weakly_canonical(out / folder_title(folder)))
-        throw FieldError("--report", fmt::format("the result of {} would lie where the report does; name another file",
-                                                 folder.string()));
+        throw FieldError(
+            "--report", fmt::format("the result of {} would replace the report; choose another file", folder.string()));
       const auto [other, added] = by_name.emplace(folder_title(folder), folder);
       if (!added && fs::weakly_canonical(other->second) != fs::weakly_canonical(folder))
-        throw FieldError("--scenes", fmt::format("{} and {} have one name, and their results would too; run them apart",
-                                                 other->second.string(), folder.string()));
+        throw FieldError(
+            "--scenes",
+            fmt::format(
+                "{} and {} have the same folder name, so their results would collide; run them in separate batches",
+                other->second.string(), folder.string()));
     }
   }
-  if (by_name.empty()) throw FieldError("--scenes", "matches no folder");
+  if (by_name.empty()) throw FieldError("--scenes", "matches no scene folder; check the patterns");
   return by_name;
 }
 
@@ -264,16 +268,16 @@ std::vector<std::pair<std::string, fs::path>> guarded_by(const BatchOptions& opt
   std::map<std::string, std::string> variables;
   for (const std::string& variable : options.variables)
     variables[variable.substr(0, variable.find('='))] = variable.substr(variable.find('=') + 1);
-  std::vector<std::pair<std::string, fs::path>> guarded;
+  std::vector<std::pair<std::string, fs::path>> protected_paths;
   std::map<fs::path, std::set<std::string>> readers;
   for (const auto& [name, folder] : scenes) {
-    guarded.emplace_back("", fs::absolute(folder));
+    protected_paths.emplace_back("", fs::absolute(folder));
     variables["name"] = name;
     variables["path"] = folder.string();
     for (const ScriptInput& input : script_inputs(script, variables)) readers[fs::absolute(input.path)].insert(name);
   }
-  for (const auto& [path, names] : readers) guarded.emplace_back(names.size() == 1 ? *names.begin() : "", path);
-  return guarded;
+  for (const auto& [path, names] : readers) protected_paths.emplace_back(names.size() == 1 ? *names.begin() : "", path);
+  return protected_paths;
 }
 
 }  // namespace
@@ -281,24 +285,27 @@ std::vector<std::pair<std::string, fs::path>> guarded_by(const BatchOptions& opt
 BatchScenes batch_scenes(const BatchOptions& options) {
   const ScenesByName by_name = matched_scenes(options);
   BatchScenes result;
-  result.guarded = guarded_by(options, by_name);
+  result.protected_paths = guarded_by(options, by_name);
   SourceGuard sources;
-  for (const auto& [reader, path] : result.guarded) sources.add_input(path);
+  for (const auto& [reader, path] : result.protected_paths) sources.add_input(path);
   for (const fs::path& kept : {state_folder(options), state_folder(options) / "claims"}) sources.check_file(kept);
   for (const char* scene : {"mlp.json", "scene.json"})
     if (fs::exists(options.out / scene))
-      throw FieldError("--out", fmt::format("{} is a scene itself; choose a folder for results", options.out.string()));
+      throw FieldError("--out",
+                       fmt::format("{} is a scene; choose another folder for the results", options.out.string()));
   if (const fs::path script = fs::weakly_canonical(options.script), state = fs::weakly_canonical(state_folder(options));
       std::mismatch(state.begin(), state.end(), script.begin(), script.end()).first == state.end())
-    throw FieldError("script", fmt::format("lies in {}, where the batch keeps its own files; move it", state.string()));
+    throw FieldError("script",
+                     fmt::format("is in {}, the folder of the batch's own files; move it elsewhere", state.string()));
   if (!options.report.empty()) {
     sources.check_file(options.report);
     if (fs::weakly_canonical(options.report) == fs::weakly_canonical(options.script))
-      throw FieldError("--report", "is the script; name another file");
+      throw FieldError("--report", "is the script itself; choose another file");
   }
   const auto shards = static_cast<std::uint64_t>(options.shards);
   for (const auto& [name, folder] : by_name)
-    if (content_hash(name) % shards == static_cast<std::uint64_t>(options.shard - 1)) result.mine.push_back(folder);
+    if (content_hash(name) % shards == static_cast<std::uint64_t>(options.shard - 1))
+      result.shard_scenes.push_back(folder);
   return result;
 }
 
@@ -306,15 +313,15 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
                                    const std::function<void(const BatchResult&)>& ended) {
   const std::uint64_t program = content_hash(read_file(options.program)),
                       script = content_hash(read_file(options.script));
-  const auto [scenes, guarded] = batch_scenes(options);
+  const auto [scenes, protected_paths] = batch_scenes(options);
   std::error_code error;
   fs::create_directories(state_folder(options), error);
-  if (error) throw FileError(options.out, "cannot be made: " + error.message());
+  if (error) throw FileError(options.out, "cannot be created: " + error.message());
   Processes running;
   std::vector<BatchResult> results(scenes.size());
   // No script may overwrite another scene or an input of another script.
   std::string list;
-  for (const auto& [reader, path] : guarded) list += reader + '\0' + path.string() + '\0';
+  for (const auto& [reader, path] : protected_paths) list += reader + '\0' + path.string() + '\0';
   // A unique name, since another batch with the same output folder has other scenes.
   const fs::path sources =
       state_folder(options) / fmt::format("sources-{}-of-{}-{}", options.shard, options.shards, ::getpid());
@@ -346,9 +353,9 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
       try {
         const std::string key = key_of(options, program, script, scenes[k]);
         const Mark before = read_mark(mark);
-        if (options.resume && still_done(before, key)) {
+        if (options.resume && is_up_to_date(before, key)) {
           result.status = BatchResult::Status::skipped;
-          say_quality(result, before.below_asked);
+          set_quality_message(result, before.below_requested_psnr);
         } else {
           for (const Mark::File& output : before.wrote) claims.release(output.path, result.name);
           fs::remove(mark);
@@ -378,14 +385,14 @@ std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& 
     // Exit code 4: done, but an export missed the PSNR that the script requires.
     const bool below = WIFEXITED(status) && WEXITSTATUS(status) == 4;
     if (below || (WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
-      say_quality(result, below);
+      set_quality_message(result, below);
       const std::string files = read_file(state_folder(options) / (result.name + ".files"));
       result.status = BatchResult::Status::done;
       for (const Mark::File& output : mark_from(files).wrote)
         if (const std::string other = claims.claim(output.path, result.name); !other.empty()) {
           result.status = BatchResult::Status::failed;
-          result.message =
-              fmt::format("{} is written for {} too: put {{name}} into the script's path", output.path, other);
+          result.message = fmt::format("{} is also written for {}; put {{name}} into the output path in the script",
+                                       output.path, other);
         }
       if (result.status == BatchResult::Status::done)
         write_file_atomically(state_folder(options) / (result.name + ".done"),

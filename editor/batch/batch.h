@@ -34,19 +34,19 @@ struct BatchResult {
   std::string name;
   std::filesystem::path scene;
   Status status = Status::failed;
-  bool below_asked = false;  ///< done, but an export missed the PSNR that the script requires
-  std::string message;       ///< reason of a failure, or of `below_asked`
-  double seconds = 0;        ///< duration of the process
+  bool below_requested_psnr = false;  ///< done, but an export missed the PSNR that the script requires
+  std::string message;                ///< reason of a failure, or of `below_requested_psnr`
+  double seconds = 0;                 ///< duration of the process
 };
 
 const char* to_string(BatchResult::Status status);
 
 /// Scenes of a batch.
 struct BatchScenes {
-  std::vector<std::filesystem::path> mine;  ///< folders of this shard in the order of their names; may be empty
+  std::vector<std::filesystem::path> shard_scenes;  ///< folders of this shard in the order of their names; may be empty
   /// Paths that scripts must not overwrite: the scenes of all shards, and the inputs of scripts. `first` is the name of
   /// the one scene whose script may, since no other reads the path; empty if none may.
-  std::vector<std::pair<std::string, std::filesystem::path>> guarded;
+  std::vector<std::pair<std::string, std::filesystem::path>> protected_paths;
 };
 
 /// Matches the patterns and checks all paths. Throws FieldError if a pattern matches nothing, if two scenes have the

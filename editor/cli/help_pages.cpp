@@ -97,8 +97,10 @@ std::string manual_page(const std::vector<SubcommandHelp>& subcommands, const st
       const std::string value = option.hint.empty() ? "" : "\\fI" + troff(option.hint) + "\\fR";
       const std::string head = is_positional(option) ? (value.empty() ? "\\fI" + troff(option.names) + "\\fR" : value)
                                                      : joined(bold, ", ") + (value.empty() ? "" : " " + value);
-      out += fmt::format(".TP\n{}\n{}\n", head, troff(option.help));
-      if (!option.words.empty()) out += troff("One of: " + joined(option.words, ", ") + ".") + "\n";
+      // Most placeholders list the words already.
+      const bool lists_words = option.words.empty() || option.hint.find(joined(option.words, "|")) != std::string::npos;
+      const std::string words = lists_words ? "" : "; one of: " + joined(option.words, ", ");
+      out += fmt::format(".TP\n{}\n{}\n", head, troff(option.help + words));
     }
     if (!subcommand.footer.empty()) out += ".PP\n" + troff(subcommand.footer) + "\n";
   }

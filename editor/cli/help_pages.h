@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/cli/command.h"
+#include "editor/cli/subcommand.h"
 
 namespace rebake {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <new>
 
-#include "editor/cli/commands.h"
+#include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
 #include "editor/document/result_store.h"
 #include "mesh_ops/base/error.h"
@@ -26,10 +26,10 @@ int main(int argc, char** argv) {
   // A write beyond the file size limit then fails with an error instead of killing the process.
   std::signal(SIGXFSZ, SIG_IGN);
   rebake::stop_on_interrupt();
-  rebake::keep_results_in(rebake::ResultStore::of_user());
+  rebake::set_result_cache(rebake::ResultStore::of_user());
   const auto fail = [](const std::string& what) {
     rebake::clear_progress_bar();
-    rebake::complain(rebake::coloured("error:", "1;31") + " " + rebake::printable(what) + "\n");
+    rebake::write_stderr(rebake::coloured("error:", "1;31") + " " + rebake::printable(what) + "\n");
     return 1;
   };
   try {
@@ -50,8 +50,8 @@ int main(int argc, char** argv) {
   } catch (const rebake::Error& error) {
     return fail(error.what());
   } catch (const std::bad_alloc&) {
-    return fail("memory is out");
+    return fail("out of memory");
   } catch (const std::exception& error) {
-    return fail(std::string("unexpected: ") + error.what());
+    return fail(std::string("unexpected error: ") + error.what());
   }
 }

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "editor/actions/views.h"
 #include "editor/cli/terminal.h"
-#include "editor/commands/views.h"
 #include "editor/document/document.h"
 #include "editor/document/project.h"
 #include "editor/edits/support.h"
@@ -52,8 +52,8 @@ Vec3 parse_vec3(const std::string& text, const char* option) {
   return {values[0], values[1], values[2]};
 }
 
-void add_axes_option(CommandDescription& command, std::string& axes) {
-  command.option("--axes", axes, "which way MobileNeRF folders are oriented: 360 or forward", "360|forward [360]")
+void add_axes_option(SubcommandDescription& command, std::string& axes) {
+  command.option("--axes", axes, "orientation of MobileNeRF folders: 360 or forward (facing)", "360|forward [360]")
       .one_of(Codec<Axes>::type().choices);
 }
 Axes axes_of(const std::string& word) { return Codec<Axes>::read(word, {}); }
@@ -74,7 +74,7 @@ Opened read_all(const std::vector<std::string>& folders, const std::string& axes
     }
     add_sources(opened.sources, read);
     for (const std::string& assumption : assumptions_of(read))
-      say_line(fmt::format("warning: {}: {}", folder, assumption));
+      print_message(fmt::format("warning: {}: {}", folder, assumption));
     if (folders.size() == 1) {
       scene = std::move(read);
       return opened;
@@ -86,7 +86,7 @@ Opened read_all(const std::vector<std::string>& folders, const std::string& axes
   return opened;
 }
 
-void ViewOptions::add_to(CommandDescription& command) {
+void ViewOptions::add_to(SubcommandDescription& command) {
   command.option("--size", size, "picture size in pixels", "WxH [800x800]");
   command.option("--eye", eye, "camera position", "x,y,z");
   command.option("--target", target, "point that the camera looks at", "x,y,z");
@@ -95,21 +95,23 @@ void ViewOptions::add_to(CommandDescription& command) {
   command.option("--near", near_plane, "near plane", "n");
   command.option("--far", far_plane, "far plane", "f");
   command.option("--camera", camera_file,
-                 "JSON file with eye, target, up, fov, ortho_height, near, far; or the name of a view of the scene",
+                 "JSON file with eye, target, up, fov, ortho_height, near and far; or the name of a stored view",
                  "FILE|VIEW");
-  command.option("--samples", samples, "samples a pixel", "1|4|16 [4]").one_of(std::vector<int>{1, 4, 16});
-  command.option("--background", background, "display colour, 0 to 1", "r,g,b [1,1,1]");
+  command.option("--samples", samples, "samples per pixel", "1|4|16 [4]").one_of(std::vector<int>{1, 4, 16});
+  command.option("--background", background, "background in display colours, 0 to 1", "r,g,b [1,1,1]");
   command.option("--weights", weights, "decoder weights in the shader", "automatic|constants|buffer")
       .one_of(std::vector<std::string>{"automatic", "constants", "buffer"});
-  command.option("--shading", shading, "forward decodes while drawing, at 1 sample only", "automatic|deferred|forward")
+  command
+      .option("--shading", shading, "forward shading decodes while drawing, at 1 sample only",
+              "automatic|deferred|forward")
       .one_of(std::vector<std::string>{"automatic", "deferred", "forward"});
-  command.option("--occlusion", occlusion, "look for hidden triangles and leave them out", "automatic|on|off")
+  command.option("--occlusion", occlusion, "occlusion culling", "automatic|on|off")
       .one_of(std::vector<std::string>{"automatic", "on", "off"});
   command
-      .option("--texels", texels, "on the GPU 8 bytes each, or coded without loss in about half of that",
+      .option("--texels", texels, "texels on the GPU: 8 bytes each, or coded losslessly in about half",
               "automatic|plain|coded")
       .one_of(std::vector<std::string>{"automatic", "plain", "coded"});
-  command.option("--precision", precision, "decoder weights as 32- or 16-bit floats", "full|half")
+  command.option("--precision", precision, "decoder weights as 32-bit (full) or 16-bit (half) floats", "full|half")
       .one_of(std::vector<std::string>{"full", "half"});
 }
 

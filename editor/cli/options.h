@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/cli/command.h"
+#include "editor/cli/subcommand.h"
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/scene/scene.h"
@@ -16,7 +16,7 @@ namespace rebake {
 Vec3 parse_vec3(const std::string& text, const char* option);
 
 /// Adds --axes 360|forward: the orientation of MobileNeRF folders.
-void add_axes_option(CommandDescription& command, std::string& axes);
+void add_axes_option(SubcommandDescription& command, std::string& axes);
 /// Throws Error for another word.
 Axes axes_of(const std::string& word);
 
@@ -36,7 +36,7 @@ struct ViewOptions {
               texels = "automatic";
 
   /// Adds the options to a subcommand.
-  void add_to(CommandDescription& command);
+  void add_to(SubcommandDescription& command);
   /// The view of `scene`. Options override the camera file or stored view, or a camera that frames the scene. Throws
   /// FieldError, FileError.
   View view(const Scene& scene) const;

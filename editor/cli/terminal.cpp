@@ -59,7 +59,7 @@ void stop_on_interrupt() {
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-void complain(const std::string& text) { std::fputs(text.c_str(), stderr); }
+void write_stderr(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
 bool is_interactive() {
   static const bool yes = isatty(STDERR_FILENO) == 1;
@@ -82,7 +82,7 @@ Progress progress_bar() {
           const std::scoped_lock lock(said->first);
           // The text after the time counts steps and is cut off.
           const std::string words(what.substr(0, what.find(", ", at + 1)));
-          if (std::exchange(said->second, words) != words) complain(fmt::format("note: {}\n", words));
+          if (std::exchange(said->second, words) != words) write_stderr(fmt::format("note: {}\n", words));
         },
         &interrupted);
   }
@@ -95,14 +95,14 @@ Progress progress_bar() {
         state->second = now;
         if (share >= 1) return clear_progress_bar();
         const auto filled = static_cast<std::size_t>(share * 30);
-        complain(fmt::format("\r\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'),
-                             std::string(30 - filled, ' '), share * 100));
+        write_stderr(fmt::format("\r\033[K{} [{}{}] {:3.0f} %", what, std::string(filled, '#'),
+                                 std::string(30 - filled, ' '), share * 100));
       },
       &interrupted);
 }
 
 void clear_progress_bar() {
-  if (is_interactive()) complain("\r\033[K");
+  if (is_interactive()) write_stderr("\r\033[K");
 }
 
 std::string printable(std::string_view text) {
@@ -121,9 +121,9 @@ std::string printable(std::string_view text) {
   return result;
 }
 
-void say_line(const std::string& line) {
+void print_message(const std::string& line) {
   clear_progress_bar();
-  complain(printable(line) + "\n");
+  write_stderr(printable(line) + "\n");
 }
 
 }  // namespace rebake

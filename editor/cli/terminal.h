@@ -23,12 +23,12 @@ void stop_on_interrupt();
 Progress progress_bar();
 
 /// Writes to standard error; failures are ignored, so that work continues.
-void complain(const std::string& text);
+void write_stderr(const std::string& text);
 void clear_progress_bar();
 
 /// Escapes control characters except newline and tab as \xNN, so that names and paths cannot control the terminal.
 std::string printable(std::string_view text);
 /// Writes a line to standard error, after removing the progress bar.
-void say_line(const std::string& line);
+void print_message(const std::string& line);
 
 }  // namespace rebake

@@ -34,7 +34,7 @@ std::size_t count_in(const json& value) { return value.is_boolean() ? 1 : value.
 Document::Document(Scene start, std::uint64_t memory_budget)
     : starts_empty_(start.roots.empty()), history_(std::move(start), memory_budget) {}
 
-Document Document::open(const fs::path& project, const Relinked& links, const Progress& progress,
+Document Document::open(const fs::path& project, const SourceLinks& links, const Progress& progress,
                         std::uint64_t memory_budget) {
   Document document({}, memory_budget);
   read_project(
@@ -73,17 +73,18 @@ struct JournalLine {
   json entry;
 };
 
-bool reads_missing_source(const json& entry, const Relinked& links) {
+bool reads_missing_source(const json& entry, const SourceLinks& links) {
   for (json edit : edits_in(entry))
     if (const json* const source = source_field(edit);
-        source != nullptr && !trouble_with(source->get<std::string>(), edit.value("content", ""), links).empty())
+        source != nullptr && !source_problem(source->get<std::string>(), edit.value("content", ""), links).empty())
       return true;
   return false;
 }
 
-// The lines to replay: all of them, or only those of steps that are not undone (`only_done`) if only undone steps read
-// a missing source. No other step depends on those.
-std::vector<JournalLine> lines_to_replay(const Journal::Contents& contents, const Relinked& links, bool& only_done) {
+// The lines to replay: all of them, or only those of steps that are not undone (`skips_undone`) if only undone steps
+// read a missing source. No other step depends on those.
+std::vector<JournalLine> lines_to_replay(const Journal::Contents& contents, const SourceLinks& links,
+                                         bool& skips_undone) {
   std::vector<JournalLine> lines;
   for (const std::string& text : contents.entries) lines.push_back({lines.size() + 2, json::parse(text)});
   const StepsDone done = steps_done(contents);
@@ -93,32 +94,32 @@ std::vector<JournalLine> lines_to_replay(const Journal::Contents& contents, cons
     return std::any_of(some.begin(), some.end(),
                        [&](const JournalLine& line) { return reads_missing_source(line.entry, links); });
   };
-  only_done = !done.partly && misses(lines) && !misses(left);
-  return only_done ? left : lines;
+  skips_undone = !done.partly && misses(lines) && !misses(left);
+  return skips_undone ? left : lines;
 }
 
 }  // namespace
 
-Document::Recovered Document::recover(const fs::path& path, const Relinked& links, const Progress& progress) {
+Document::Recovered Document::recover(const fs::path& path, const SourceLinks& links, const Progress& progress) {
   Journal::Contents contents;
   Journal journal = Journal::resume(path, contents);
   Recovered result;
   History& history = result.document.history_;
   result.torn = contents.torn;
-  bool only_done = false;
-  const std::vector<JournalLine> lines = lines_to_replay(contents, links, only_done);
+  bool skips_undone = false;
+  const std::vector<JournalLine> lines = lines_to_replay(contents, links, skips_undone);
   // Replays one line: all its edits or none.
   const auto replay = [&](const json& entry) {
     const bool adjusts = entry.contains("adjust");
     if (!adjusts && !entry.contains("edit") && !entry.contains("edits")) {
-      if (!entry.contains("undo") && !entry.contains("redo")) throw Error("is neither an edit nor undo or redo");
+      if (!entry.contains("undo") && !entry.contains("redo")) throw Error("is not an edit, undo or redo");
       if (entry.contains("undo") ? !history.undo(count_in(entry.at("undo")), progress)
                                  : !history.redo(count_in(entry.at("redo")), progress))
         throw Error("there is nothing to undo or redo");
       return;
     }
     const json& step = adjusts ? entry.at("adjust") : entry;
-    const std::size_t adjusted = adjusts && !only_done ? count_in(step.at("undo")) : 0;
+    const std::size_t adjusted = adjusts && !skips_undone ? count_in(step.at("undo")) : 0;
     const std::size_t replaced = step.value("replaces", std::size_t{0});
     if (adjusted + replaced > history.undo_count()) throw Error("there is no step to adjust");
     const Scene start = history.scene_at(history.undo_count() - adjusted - replaced, progress);
@@ -127,11 +128,11 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
       const Scene& before = made.empty() ? start : made.back().second;
       if (json* const source = source_field(one)) {
         const fs::path imported = source->get<std::string>();
-        if (const std::string trouble = trouble_with(imported, one.value("content", ""), links); !trouble.empty()) {
+        if (const std::string trouble = source_problem(imported, one.value("content", ""), links); !trouble.empty()) {
           result.gone.push_back({imported, one.value("content", ""), trouble});
           throw FileError(imported, trouble);
         }
-        *source = relinked(imported, one.value("content", ""), links).string();
+        *source = resolved_source(imported, one.value("content", ""), links).string();
       }
       Edit edit = read_edit(one, before);
       Scene scene = rebake::apply(before, edit, progress).scene;
@@ -163,12 +164,12 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
       result.lost.push_back(fmt::format("{}: {}", named(line, entry), error.what()));
     }
   }
-  result.nameless = contents.damaged_line == 1;
+  result.header_damaged = contents.damaged_line == 1;
   if (contents.damaged_line > 1) result.lost.push_back(fmt::format("line {} is damaged", contents.damaged_line));
   for (const Journal::Contents::Line& after : contents.after)
     result.lost.push_back(named(after.number, json::parse(after.entry)) + " (behind the damage)");
   result.edits = history.undo_count();
-  if (result.lost.empty() && links.empty() && !only_done && contents.damaged_line == 0 && contents.current)
+  if (result.lost.empty() && links.empty() && !skips_undone && contents.damaged_line == 0 && contents.current)
     result.document.journal_ = std::move(journal);
   else
     result.journal = std::move(journal);
@@ -178,24 +179,25 @@ Document::Recovered Document::recover(const fs::path& path, const Relinked& link
 std::vector<std::string> Document::Recovered::first_lost() const {
   constexpr std::size_t most = 20;
   std::vector<std::string> lines(lost.begin(), lost.begin() + static_cast<std::ptrdiff_t>(std::min(most, lost.size())));
-  if (lost.size() > most) lines.push_back(fmt::format("and {} more behind these", lost.size() - most));
+  if (lost.size() > most) lines.push_back(fmt::format("and {} more", lost.size() - most));
   return lines;
 }
 
 SourceGuard Document::sources() const {
   SourceGuard guard = imported_;
   add_sources(guard, scene());
-  if (journal_) guard.add_file(journal_->path(), "the journal that keeps this work safe");
+  if (journal_) guard.add_file(journal_->path(), "the journal of this document");
   return guard;
 }
 
 void Document::protect_files_of(const json& edit) {
   if (edit.is_object() && edit.contains("mesh") && edit.at("mesh").is_string())
-    protect_file(edit.at("mesh").get<std::string>(), "the mesh of a cage that this run reads");
+    protect_file(edit.at("mesh").get<std::string>(), "a cage mesh that this run reads");
 }
 
 void Document::keep_journal(const fs::path& path) {
-  if (!starts_empty_) throw Error("a journal can be kept only from an empty scene on: import what is in it");
+  if (!starts_empty_)
+    throw Error("a journal needs a document that began empty: begin with an empty scene and import its contents");
   std::vector<json> entries;
   const std::vector<History::Entry> all = history_.entries();
   for (std::size_t first = 0; first < history_.undo_count();) {
@@ -212,36 +214,40 @@ void Document::edit(const Edit& edit, const Progress& progress) { edits({edit}, 
 
 namespace {
 
-CarriedOut done(const Scene& start, const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
-  return made != nullptr && made->is_of(start, edits) ? *made : carried_out(start, edits, progress);
+AppliedEdits done(const Scene& start, const std::vector<Edit>& edits, const Progress& progress,
+                  const AppliedEdits* made) {
+  return made != nullptr && made->matches_input(start, edits) ? *made : apply_edits(start, edits, progress);
 }
 
 }  // namespace
 
-std::vector<Report> Document::take_in(CarriedOut done, std::size_t replaced) {
+std::vector<Report> Document::add_to_history(AppliedEdits done, std::size_t replaced) {
   add_sources(imported_, done.edits);
   for (std::size_t k = 0; k < done.edits.size(); ++k)
     history_.add(std::move(done.edits[k]), std::move(done.scenes[k]), k > 0, k > 0 ? 0 : replaced);
   return std::move(done.reports);
 }
 
-std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
+std::vector<Report> Document::edits(const std::vector<Edit>& edits, const Progress& progress,
+                                    const AppliedEdits* made) {
   if (edits.empty()) return {};
-  CarriedOut taken = done(scene(), edits, progress, made);
+  AppliedEdits taken = done(scene(), edits, progress, made);
   if (journal_) {
     SourceGuard read;
     add_sources(read, taken.edits);
     if (!read.empty()) read.check_file(journal_->path());
     journal_->append(entry_of(taken.edits));
   }
-  return take_in(std::move(taken));
+  return add_to_history(std::move(taken));
 }
 
-std::vector<Report> Document::adjust(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
+std::vector<Report> Document::adjust(const std::vector<Edit>& edits, const Progress& progress,
+                                     const AppliedEdits* made) {
   const std::size_t last = history_.undo_step();
-  if (last == 0 || edits.empty()) throw EditError("there is no step to adjust, or nothing to do in its place");
+  if (last == 0 || edits.empty()) throw EditError("there is no step to adjust, or no edit to replace it");
   const std::size_t replaced = history_.replaced_by_last_step();
-  CarriedOut taken = done(history_.scene_at(history_.undo_count() - last - replaced, progress), edits, progress, made);
+  AppliedEdits taken =
+      done(history_.scene_at(history_.undo_count() - last - replaced, progress), edits, progress, made);
   // One line: after a crash the step is there either as before or as after the adjustment.
   if (journal_) {
     json entry = {{"undo", last}, {"edits", json::array()}};
@@ -250,16 +256,17 @@ std::vector<Report> Document::adjust(const std::vector<Edit>& edits, const Progr
     journal_->append({{"adjust", entry}});
   }
   history_.forget_last(last);
-  return take_in(std::move(taken), replaced);
+  return add_to_history(std::move(taken), replaced);
 }
 
-std::vector<Report> Document::revise(const std::vector<Edit>& edits, const Progress& progress, const CarriedOut* made) {
+std::vector<Report> Document::revise(const std::vector<Edit>& edits, const Progress& progress,
+                                     const AppliedEdits* made) {
   const std::size_t last = history_.undo_step();
-  if (last == 0 || edits.empty()) throw EditError("there is no step to revise, or nothing to do in its place");
+  if (last == 0 || edits.empty()) throw EditError("there is no step to revise, or no edit to replace it");
   const std::size_t replaced = last + history_.replaced_by_last_step();
-  CarriedOut taken = done(history_.scene_at(history_.undo_count() - replaced, progress), edits, progress, made);
+  AppliedEdits taken = done(history_.scene_at(history_.undo_count() - replaced, progress), edits, progress, made);
   if (journal_) journal_->append(entry_of(taken.edits, replaced));
-  return take_in(std::move(taken), replaced);
+  return add_to_history(std::move(taken), replaced);
 }
 
 bool Document::undo(std::size_t edits, const Progress& progress) {
@@ -292,10 +299,12 @@ bool Document::redo_step(const Progress& progress) {
 }
 
 std::vector<std::string> Document::save(const fs::path& project, const Progress& progress) const {
-  if (!starts_empty_) throw Error("only what was imported by edits can be saved as a project");
+  if (!starts_empty_)
+    throw Error("the document did not begin empty, so it cannot be saved as a project: import its contents instead");
   if (Journal::is_journal(project))
-    throw FileError(project,
-                    "is a journal that may hold work: get it back with \"rebake recover\", or name another file");
+    throw FileError(
+        project,
+        "is a journal that may contain unsaved work: recover it with \"rebake recover\", or name another file");
   std::vector<History::Entry> entries = history_.entries();
   entries.erase(entries.begin() + static_cast<std::ptrdiff_t>(history_.undo_count()), entries.end());
   return write_project(project, entries, sources(), progress);

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "editor/document/carried_out.h"
+#include "editor/document/applied_edits.h"
 #include "editor/document/history.h"
 #include "editor/document/journal.h"
 #include "editor/document/sources.h"
@@ -17,15 +17,15 @@ class Document {
   /// `memory_budget`: bytes, see History.
   explicit Document(Scene start = {}, std::uint64_t memory_budget = History::default_budget);
 
-  /// Opens a project by replaying its edits. Throws FileError, and SourcesGone for missing or changed sources.
-  static Document open(const std::filesystem::path& project, const Relinked& links = {}, const Progress& progress = {},
-                       std::uint64_t memory_budget = History::default_budget);
+  /// Opens a project by replaying its edits. Throws FileError, and SourcesUnavailable for missing or changed sources.
+  static Document open(const std::filesystem::path& project, const SourceLinks& links = {},
+                       const Progress& progress = {}, std::uint64_t memory_budget = History::default_budget);
   /// Replays a journal as far as possible. Lines behind damage and edits with a missing source are listed as lost;
   /// undone steps with a missing source are skipped. The document continues to write the journal if it is complete,
   /// undamaged, of the current version, and nothing was relinked or skipped. Throws FileError for a file that is no
   /// journal.
   struct Recovered;
-  static Recovered recover(const std::filesystem::path& journal, const Relinked& links = {},
+  static Recovered recover(const std::filesystem::path& journal, const SourceLinks& links = {},
                            const Progress& progress = {});
 
   const Scene& scene() const { return history_.now(); }
@@ -61,16 +61,16 @@ class Document {
   /// Applies edits as one step of history; none if one throws. Returns a report per edit. `made` is used as the result
   /// if it was computed for these edits and the present scene.
   std::vector<Report> edits(const std::vector<Edit>& edits, const Progress& progress = {},
-                            const CarriedOut* made = nullptr);
+                            const AppliedEdits* made = nullptr);
   /// Replaces the last step by these edits, applied to the scene before it; undo does not return to the old step. The
   /// old step stays if an edit throws. `made` must start from the scene before the step. Throws EditError if there is
   /// no step or no edit.
   std::vector<Report> adjust(const std::vector<Edit>& edits, const Progress& progress = {},
-                             const CarriedOut* made = nullptr);
+                             const AppliedEdits* made = nullptr);
   /// As adjust(), but undo returns to the replaced step. For tools that refine one edit in many steps, such as the
   /// drags of a cage. History::edits() then contains only the refined edit.
   std::vector<Report> revise(const std::vector<Edit>& edits, const Progress& progress = {},
-                             const CarriedOut* made = nullptr);
+                             const AppliedEdits* made = nullptr);
   /// Undoes or redoes this many edits; returns false and does nothing if there are fewer.
   bool undo(std::size_t edits = 1, const Progress& progress = {});
   bool redo(std::size_t edits = 1, const Progress& progress = {});
@@ -85,7 +85,7 @@ class Document {
   void discard_journal();
 
  private:
-  std::vector<Report> take_in(CarriedOut done, std::size_t replaced = 0);
+  std::vector<Report> add_to_history(AppliedEdits done, std::size_t replaced = 0);
 
   bool starts_empty_;  ///< the history began with an empty scene, so that edits alone restore it
   History history_;
@@ -96,11 +96,11 @@ class Document {
 /// Result of Document::recover().
 struct Document::Recovered {
   Document document;
-  std::size_t edits = 0;                  ///< number of recovered edits, without undone ones
-  bool nameless = false;                  ///< the first line (format version) is damaged; it contains no edit
-  bool torn = false;                      ///< the program ended while it wrote a last edit, which is lost
-  std::vector<std::string> lost;          ///< one line of text per lost journal line, with the reason
-  std::vector<SourcesGone::Source> gone;  ///< missing or changed sources of lost edits
+  std::size_t edits = 0;                         ///< number of recovered edits, without undone ones
+  bool header_damaged = false;                   ///< the first line (format version) is damaged; it contains no edit
+  bool torn = false;                             ///< the program ended while it wrote a last edit, which is lost
+  std::vector<std::string> lost;                 ///< one line of text per lost journal line, with the reason
+  std::vector<SourcesUnavailable::Source> gone;  ///< missing or changed sources of lost edits
   /// The first 20 of `lost`, and the number of the others.
   std::vector<std::string> first_lost() const;
   std::optional<Journal> journal;  ///< the file, if the document does not continue to write it

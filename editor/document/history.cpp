@@ -91,7 +91,7 @@ void History::add(Edit edit, Scene scene, bool joined, std::size_t replaced) {
   forget_last(0);
   steps_.push_back({std::move(edit), std::nullopt, joined && position_ > 0, position_ - replaced});
   keep(++position_, std::move(scene));
-  fit_budget();
+  evict_to_budget();
 }
 
 std::size_t History::undo_step() const {
@@ -160,7 +160,7 @@ void History::go_to(std::size_t step, const Progress& progress) {
     while (oldest < k && (memory_ - there > budget_ / 2 || k - oldest >= checkpoint_distance)) drop(chain[oldest++]);
   }
   position_ = step;
-  fit_budget();
+  evict_to_budget();
 }
 
 void History::keep(std::size_t step, Scene scene) {
@@ -186,7 +186,7 @@ void History::drop(std::size_t step) {
   steps_[step].scene.reset();
 }
 
-void History::fit_budget() {
+void History::evict_to_budget() {
   // Checkpoints are evicted last, so that few edits must be repeated to get an evicted scene back.
   for (const bool checkpoints : {false, true}) {
     // From both ends towards the present scene, the farther end first.

@@ -72,7 +72,7 @@ class History {
   std::vector<std::size_t> uncached_chain(std::size_t step) const;
   void keep(std::size_t step, Scene scene);
   void drop(std::size_t step);
-  void fit_budget();
+  void evict_to_budget();
   void go_to(std::size_t step, const Progress& progress);
 
   std::vector<Step> steps_;   ///< the start, then one entry per edit

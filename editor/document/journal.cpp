@@ -33,7 +33,7 @@ std::string line_of(const json& entry) {
   try {
     text = entry.dump();
   } catch (const json::type_error&) {
-    throw Error("the journal holds text only: a name or path has bytes that are not UTF-8");
+    throw Error("the journal cannot be written: a name or path is not valid UTF-8");
   }
   return fmt::format("{} {}\n", hash_text(content_hash(text)), text);
 }
@@ -75,7 +75,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
     if (number == 0 && entry && entry->contains("rebake_journal")) {
       const json& of = entry->at("rebake_journal");
       if (!of.is_number_unsigned() || of.get<std::uint64_t>() > journal_version)
-        throw FileError(path, "was written by a newer version of Rebake; open it with that one");
+        throw FileError(path, "was written by a newer version of Rebake; open it with that version");
       contents.current = of.get<std::uint64_t>() == journal_version;
       parsed.begun = true;
       parsed.good_bytes = begin;
@@ -100,7 +100,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
   }
   if (!parsed.begun) {
     // If other lines are intact, only the first is damaged; it contains nothing but the version.
-    if (whole_lines == 0) throw FileError(path, "is not a journal of Rebake");
+    if (whole_lines == 0) throw FileError(path, "is not a Rebake journal");
     if (contents.damaged_line == 0) contents.damaged_line = 1;
   }
   return parsed;
@@ -113,7 +113,7 @@ class Journal::File {
   // Opens the file and locks it for this process. Throws FileError if another process holds the lock.
   File(fs::path path, int flags) : path_(std::move(path)), descriptor_(open(path_, flags)) {
     if (::flock(descriptor_.value, LOCK_EX | LOCK_NB) != 0)
-      throw FileError(path_, "is being written by another Rebake");
+      throw FileError(path_, "is in use by another Rebake process");
   }
 
   Contents resume() {
@@ -129,10 +129,10 @@ class Journal::File {
   }
 
   void append(const std::vector<json>& entries) {
-    if (damaged_) throw FileError(path_, "is damaged: nothing can be written behind that");
+    if (damaged_) throw FileError(path_, "is damaged, so no edit can be added; recover it with rebake recover");
     if (!is_in_place() || size() != end_)
       throw FileError(
-          path_, "was removed, replaced or changed by another program, so work cannot be kept safe in it; save now");
+          path_, "was removed, replaced or changed by another program, so it no longer protects this work; save now");
     std::string lines;
     std::uint64_t next = next_;
     for (json entry : entries) {
@@ -181,7 +181,8 @@ class Journal::File {
   static int open(const fs::path& path, int flags) {
     const int descriptor = file_calls().open(path.c_str(), flags | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno == EEXIST)
-      throw FileError(path, "is there already and may hold work: get it back with \"rebake recover\", or remove it");
+      throw FileError(path,
+                      "already exists and may contain unsaved work: recover it with \"rebake recover\", or remove it");
     if (descriptor < 0) throw FileError(path, std::string("cannot be opened for writing: ") + std::strerror(errno));
     return descriptor;
   }
@@ -228,7 +229,8 @@ Journal Journal::create(const fs::path& path, const std::vector<json>& entries) 
 }
 
 Journal Journal::resume(const fs::path& path, Contents& contents) {
-  if (std::error_code error; !fs::is_regular_file(path, error)) throw FileError(path, "is not there, or is not a file");
+  if (std::error_code error; !fs::is_regular_file(path, error))
+    throw FileError(path, "does not exist, or is not a file");
   Journal journal(std::make_unique<File>(path, O_RDWR));
   contents = journal.file_->resume();
   return journal;

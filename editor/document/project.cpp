@@ -32,19 +32,18 @@ fs::path source_path(const fs::path& folder, const json& name) {
 }
 
 void check_form(const fs::path& path, const json& root) {
-  if (!root.is_object() || !root.contains("rebake_project")) throw FileError(path, "is not a project of Rebake");
+  if (!root.is_object() || !root.contains("rebake_project")) throw FileError(path, "is not a Rebake project");
   const json& of = root.at("rebake_project");
   if (!of.is_number_unsigned() || of.get<std::uint64_t>() > project_version)
-    throw FileError(path, "was written by a newer version of Rebake; open it with that one");
+    throw FileError(path, "was written by a newer version of Rebake; open it with that version");
   for (const auto& [key, value] : root.items())
     if (key != "rebake_project" && key != "sources" && key != "edits" && key != "joined" && key != "replaces" &&
         key != "checksum")
-      throw FileError(path, fmt::format("is damaged: \"{}\" is no part of a project", key));
+      throw FileError(path, fmt::format("is damaged: \"{}\" is not a field of a project", key));
   if (root.contains("checksum") && root.at("checksum") != checksum(root))
-    throw FileError(
-        path,
-        "is damaged, or was changed by hand: its checksum does not fit. Take \"checksum\" out of the file to "
-        "open it as it is");
+    throw FileError(path,
+                    "is damaged, or was edited by hand: the checksum is wrong. Remove \"checksum\" from the file to "
+                    "open it anyway");
 }
 
 }  // namespace
@@ -78,9 +77,9 @@ std::vector<std::string> write_project(const fs::path& path, const std::vector<H
   std::vector<std::string> warnings;
   for (const json& source : root["sources"]) {
     const fs::path read = source_path(folder, source.at("path"));
-    if (const std::string trouble = trouble_with(read, source.at("content"), {}); !trouble.empty())
+    if (const std::string trouble = source_problem(read, source.at("content"), {}); !trouble.empty())
       warnings.push_back(
-          fmt::format("{} {}: the project opens only with it as it was; save a scene folder to keep the "
+          fmt::format("{} {}: the project cannot be opened without the original; save a scene folder to keep the "
                       "present scene",
                       read.string(), trouble));
   }
@@ -88,38 +87,39 @@ std::vector<std::string> write_project(const fs::path& path, const std::vector<H
     root["checksum"] = checksum(root);
     write_file_atomically(path, root.dump(1) + '\n', guard);
   } catch (const json::type_error&) {
-    throw FileError(path, "holds text only: a name or path has bytes that are not UTF-8");
+    throw FileError(path, "cannot be written: a name or path is not valid UTF-8");
   }
   return warnings;
 }
 
-void read_project(const fs::path& path, const EachEdit& each, const Relinked& links, const Progress& progress) {
+void read_project(const fs::path& path, const EditVisitor& each, const SourceLinks& links, const Progress& progress) {
   const fs::path folder = real_folder_of(path);
   try {
     const json root = json::parse(read_file(path));
     check_form(path, root);
     std::string troubles;
-    std::vector<SourcesGone::Source> gone;
+    std::vector<SourcesUnavailable::Source> gone;
     std::vector<fs::path> imports;
     for (const json& source : root.at("sources")) {
       const fs::path& imported = imports.emplace_back(source_path(folder, source.at("path")));
-      const std::string trouble = trouble_with(imported, source.at("content"), links);
+      const std::string trouble = source_problem(imported, source.at("content"), links);
       if (trouble.empty()) continue;
       troubles += fmt::format("\n  {} {}", imported.string(), trouble);
       gone.push_back({imported, source.at("content"), trouble});
     }
     check_links(links, imports);
     if (!gone.empty())
-      throw SourcesGone(path,
-                        "its sources are not as they were; put them back, or say where they lie now (the editor asks; "
-                        "rebake recover P.rebake --source OLD=NEW -o Q.rebake):" +
-                            troubles,
-                        gone);
+      throw SourcesUnavailable(
+          path,
+          "sources are missing or have changed; restore them, or give their new locations (in the editor, or by "
+          "rebake recover P.rebake --source OLD=NEW -o Q.rebake):" +
+              troubles,
+          gone);
     std::vector<bool> joined(root.at("edits").size());
     for (const json& one : root.value("joined", json::array())) {
       const auto k = one.get<std::size_t>();
       if (k < 2 || k > joined.size())
-        throw FileError(path, fmt::format("joined: there is no edit {} that could be", k));
+        throw FileError(path, fmt::format("joined: {} is not the number of an edit from 2 on", k));
       joined[k - 1] = true;
     }
     // Scenes that a later edit with "replaces" starts from, by the number of edits before them.
@@ -140,10 +140,10 @@ void read_project(const fs::path& path, const EachEdit& each, const Relinked& li
       progress.at("opening", static_cast<double>(number++) / static_cast<double>(root.at("edits").size()));
       try {
         if (json* const source = source_field(line))
-          *source = relinked(source_path(folder, *source), line.value("content", ""), links).string();
+          *source = resolved_source(source_path(folder, *source), line.value("content", ""), links).string();
         const Edit edit = read_edit(line, scene);
         if (const auto source = source_of(edit); source && source->content.empty())
-          throw FieldError("content", "is missing: without it a changed source would not be noticed");
+          throw FieldError("content", "is missing: the content hash is needed to detect a changed source");
         scene = rebake::apply(scene, edit, progress).scene;
         each({edit, joined[number - 1], replaced[number - 1]}, scene);
       } catch (const Cancelled&) {

@@ -33,11 +33,11 @@ std::vector<std::string> write_project(const std::filesystem::path& path, const 
                                        const SourceGuard& guard, const Progress& progress = {});
 
 /// Receives each edit of a project while it is read, and the scene after it.
-using EachEdit = std::function<void(const History::Entry& entry, const Scene& after)>;
+using EditVisitor = std::function<void(const History::Entry& entry, const Scene& after)>;
 /// Replays a project edit by edit. Memory holds only the last scene and those that a later edit starts from. Throws
-/// FileError for a file that is no project, is damaged or has a newer version; SourcesGone, naming all missing and
-/// changed sources; Cancelled.
-void read_project(const std::filesystem::path& path, const EachEdit& each, const Relinked& links = {},
+/// FileError for a file that is no project, is damaged or has a newer version; SourcesUnavailable, naming all missing
+/// and changed sources; Cancelled.
+void read_project(const std::filesystem::path& path, const EditVisitor& each, const SourceLinks& links = {},
                   const Progress& progress = {});
 
 }  // namespace rebake

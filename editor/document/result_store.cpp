@@ -56,14 +56,14 @@ void ResultStore::keep(const std::string& key, std::string_view bytes) {
     std::error_code error;
     fs::create_directories(folder_, error);
     write_file_atomically(folder_ / (key + extension), hash_text(content_hash(bytes)) + std::string(bytes), {});
-    fit_limit();
+    evict_to_limit();
   } catch (const std::exception&) {
     // A full disk or a read-only folder: the result is computed again next time.
   }
 }
 
 // Removes the least recently used files until the rest fits.
-void ResultStore::fit_limit() const {
+void ResultStore::evict_to_limit() const {
   struct Kept {
     fs::file_time_type used;
     fs::path path;

@@ -11,7 +11,7 @@ namespace rebake {
 
 /// Content-addressed cache in a folder: one checksummed file per result, with least-recently-used eviction. Several
 /// processes may share the folder, and it may be deleted at any time. A damaged file counts as missing.
-class ResultStore final : public Results {
+class ResultStore final : public ResultCache {
  public:
   static constexpr std::uint64_t default_limit = std::uint64_t{512} << 20;  ///< bytes
   /// `limit`: maximum size of all files together, in bytes.
@@ -27,7 +27,7 @@ class ResultStore final : public Results {
   std::size_t found() const { return found_; }  ///< number of hits of find()
 
  private:
-  void fit_limit() const;
+  void evict_to_limit() const;
 
   std::filesystem::path folder_;
   std::uint64_t limit_;

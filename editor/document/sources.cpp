@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // Relative path from a folder to a source in it, "." for the folder itself; nothing if the source is elsewhere.
-std::optional<fs::path> way_to(const fs::path& source, const fs::path& folder) {
+std::optional<fs::path> relative_path_in(const fs::path& source, const fs::path& folder) {
   const fs::path rest = absolute_path(source).lexically_relative(absolute_path(folder));
   return rest.empty() || *rest.begin() == ".." ? std::nullopt : std::optional(rest);
 }
@@ -29,10 +29,11 @@ std::optional<fs::path> way_to(const fs::path& source, const fs::path& folder) {
 namespace {
 
 // The most specific (longest) old path among the links that contain a source; null if there is none.
-const fs::path* old_path_of(const fs::path& source, const Relinked& links) {
+const fs::path* old_path_of(const fs::path& source, const SourceLinks& links) {
   const fs::path* chosen = nullptr;
-  for (const Relinked::value_type& link : links)
-    if (way_to(source, link.first) && (chosen == nullptr || way_to(link.first, *chosen))) chosen = &link.first;
+  for (const SourceLinks::value_type& link : links)
+    if (relative_path_in(source, link.first) && (chosen == nullptr || relative_path_in(link.first, *chosen)))
+      chosen = &link.first;
   return chosen;
 }
 
@@ -41,7 +42,7 @@ bool holds(const fs::path& path, const std::string& content) {
   std::error_code error;
   if (!fs::exists(path, error)) return false;
   try {
-    return hash_text(content_at(path)) == content;
+    return hash_text(content_hash_at(path)) == content;
   } catch (const FileError&) {
     return false;
   }
@@ -49,10 +50,10 @@ bool holds(const fs::path& path, const std::string& content) {
 
 }  // namespace
 
-fs::path relinked(const fs::path& source, const std::string& content, const Relinked& links) {
+fs::path resolved_source(const fs::path& source, const std::string& content, const SourceLinks& links) {
   const fs::path* const old = old_path_of(source, links);
   if (old == nullptr) return source;
-  const fs::path way = *way_to(source, *old);
+  const fs::path way = *relative_path_in(source, *old);
   std::vector<fs::path> places;
   for (auto [link, end] = links.equal_range(*old); link != end; ++link)
     places.push_back(way == "." ? absolute_path(link->second) : absolute_path(link->second) / way);
@@ -61,15 +62,16 @@ fs::path relinked(const fs::path& source, const std::string& content, const Reli
   return found != places.end() ? *found : places.front();
 }
 
-void check_links(const Relinked& links, const std::vector<fs::path>& sources) {
-  for (const Relinked::value_type& link : links) {
-    const bool used = std::any_of(sources.begin(), sources.end(),
-                                  [&](const fs::path& source) { return way_to(source, link.first).has_value(); });
+void check_links(const SourceLinks& links, const std::vector<fs::path>& sources) {
+  for (const SourceLinks::value_type& link : links) {
+    const bool used = std::any_of(sources.begin(), sources.end(), [&](const fs::path& source) {
+      return relative_path_in(source, link.first).has_value();
+    });
     std::string known;
     for (const fs::path& source : std::set(sources.begin(), sources.end())) known += "\n  " + source.string();
     if (!used)
-      throw FieldError("source", fmt::format("nothing was read from \"{}\"{}", link.first.string(),
-                                             known.empty() ? "" : "; these were:" + known));
+      throw FieldError("source", fmt::format("\"{}\" contains no source{}", link.first.string(),
+                                             known.empty() ? "" : "; the sources are:" + known));
   }
 }
 
@@ -82,7 +84,7 @@ bool has_picture(const LightEdit& light) {
 
 }  // namespace
 
-std::uint64_t content_at(const fs::path& path) {
+std::uint64_t content_hash_at(const fs::path& path) {
   std::error_code error;
   return fs::is_directory(scene_folder_of(path), error) ? folder_hash(path) : content_hash(read_file(path));
 }
@@ -103,13 +105,13 @@ nlohmann::json* source_field(nlohmann::json& edit) {
   return found == edit.end() || *found == "" ? nullptr : &*found;
 }
 
-std::string trouble_with(const fs::path& source, const std::string& content, const Relinked& links) {
-  const fs::path where = relinked(source, content, links);
-  const std::string at = where == source ? "" : fmt::format(" (looked for at {})", where.string());
+std::string source_problem(const fs::path& source, const std::string& content, const SourceLinks& links) {
+  const fs::path where = resolved_source(source, content, links);
+  const std::string at = where == source ? "" : fmt::format(" (expected at {})", where.string());
   std::error_code error;
-  if (!fs::exists(where, error)) return at.empty() ? "is not there any more" : "is not there" + at;
-  if (hash_text(content_at(where)) == content) return "";
-  return at.empty() ? "has changed since it was read" : "is not what was read" + at;
+  if (!fs::exists(where, error)) return at.empty() ? "no longer exists" : "does not exist" + at;
+  if (hash_text(content_hash_at(where)) == content) return "";
+  return at.empty() ? "has changed since it was imported" : "has another content than the imported source" + at;
 }
 
 Edit completed(const Edit& edit) {
@@ -119,7 +121,7 @@ Edit completed(const Edit& edit) {
   const std::string path = absolute_path(source->path).string();
   const auto content = [&](bool there) {
     // The edit itself reports a missing source.
-    return source->content.empty() && there ? hash_text(content_at(path)) : source->content;
+    return source->content.empty() && there ? hash_text(content_hash_at(path)) : source->content;
   };
   std::error_code error;
   if (const auto* import = edit.as<Import>()) {

@@ -16,13 +16,14 @@ namespace rebake {
 
 /// New locations of moved sources: old path → new path of a source or of a folder that contains sources. An old path
 /// may have several new ones, for sources with different contents.
-using Relinked = std::multimap<std::filesystem::path, std::filesystem::path>;
+using SourceLinks = std::multimap<std::filesystem::path, std::filesystem::path>;
 
 /// Present location of a source with this content hash. Candidates are the new paths of the longest matching old path,
 /// then the source's own path. The first with that content is taken, else the first candidate.
-std::filesystem::path relinked(const std::filesystem::path& source, const std::string& content, const Relinked& links);
+std::filesystem::path resolved_source(const std::filesystem::path& source, const std::string& content,
+                                      const SourceLinks& links);
 /// Throws FieldError, which lists the sources, for a link whose old path is neither a source nor contains one.
-void check_links(const Relinked& links, const std::vector<std::filesystem::path>& sources);
+void check_links(const SourceLinks& links, const std::vector<std::filesystem::path>& sources);
 
 /// External input of an edit: an imported folder, or the environment map of a light.
 struct EditSource {
@@ -32,26 +33,26 @@ struct EditSource {
 /// Nothing for edits that read no source.
 std::optional<EditSource> source_of(const Edit& edit);
 /// Hash of the present content: of a file, or of all files of a scene folder. Throws FileError.
-std::uint64_t content_at(const std::filesystem::path& path);
+std::uint64_t content_hash_at(const std::filesystem::path& path);
 /// The field of an edit's JSON that contains the path of its source; null if it has none.
 nlohmann::json* source_field(nlohmann::json& edit);
 
 /// Thrown if sources of a project are missing or changed; lists all of them.
-class SourcesGone : public FileError {
+class SourcesUnavailable : public FileError {
  public:
   struct Source {
     std::filesystem::path path;  ///< path as imported
     std::string content;         ///< content hash as imported
     std::string trouble;         ///< reason, for people
   };
-  SourcesGone(const std::filesystem::path& file, const std::string& message, std::vector<Source> gone)
+  SourcesUnavailable(const std::filesystem::path& file, const std::string& message, std::vector<Source> gone)
       : FileError(file, message), sources(std::move(gone)) {}
   std::vector<Source> sources;
 };
 
 /// Reason why a source with this content hash, relinked, is unusable (missing or changed), for people; empty if it is
 /// unchanged.
-std::string trouble_with(const std::filesystem::path& source, const std::string& content, const Relinked& links);
+std::string source_problem(const std::filesystem::path& source, const std::string& content, const SourceLinks& links);
 
 /// The edit with the absolute path and the present content hash of its source, as replay needs them. Throws FileError,
 /// and FieldError for an import without a path.

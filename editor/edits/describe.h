@@ -30,7 +30,7 @@ EditType type_of(const char* help, Describe) {
   type.help = help;
   type.selects = requires { T::selects; };
   type.fields = [] {
-    std::vector<FieldLine> lines;
+    std::vector<FieldInfo> lines;
     FieldLister lister(lines);
     const T standard{};
     Describe{}(standard, lister);

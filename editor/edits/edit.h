@@ -13,7 +13,7 @@
 namespace rebake {
 
 class Edit;
-struct FieldLine;
+struct FieldInfo;
 
 /// Messages for people about the effect of an edit.
 struct Report {
@@ -36,7 +36,7 @@ struct EditType {
   const char* help;  ///< one sentence
   bool selects;      ///< changes nothing but the selection
 
-  std::vector<FieldLine> (*fields)();  ///< names, types, defaults and help
+  std::vector<FieldInfo> (*fields)();  ///< names, types, defaults and help
   /// The functions below as read_edit(), to_json() and apply(); `edit` points to the struct.
   Edit (*read)(const nlohmann::json& object, const Scene& scene);
   nlohmann::json (*write)(const void* edit);

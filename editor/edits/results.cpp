@@ -6,15 +6,15 @@ namespace rebake {
 
 namespace {
 
-std::shared_ptr<Results>& place() {
-  static std::shared_ptr<Results> results;
+std::shared_ptr<ResultCache>& place() {
+  static std::shared_ptr<ResultCache> results;
   return results;
 }
 
 }  // namespace
 
-void keep_results_in(std::shared_ptr<Results> results) { place() = std::move(results); }
+void set_result_cache(std::shared_ptr<ResultCache> results) { place() = std::move(results); }
 
-std::shared_ptr<Results> kept_results() { return place(); }
+std::shared_ptr<ResultCache> result_cache() { return place(); }
 
 }  // namespace rebake

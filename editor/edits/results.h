@@ -7,7 +7,7 @@
 namespace rebake {
 
 /// The process-wide cache of expensive results; null: no cache. Set it once, before the first edit.
-void keep_results_in(std::shared_ptr<Results> results);
-std::shared_ptr<Results> kept_results();
+void set_result_cache(std::shared_ptr<ResultCache> results);
+std::shared_ptr<ResultCache> result_cache();
 
 }  // namespace rebake

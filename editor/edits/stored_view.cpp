@@ -13,7 +13,7 @@ namespace rebake {
 namespace {
 
 // Natural sort order: runs of digits compare as numbers.
-bool counts_before(const std::string& a, const std::string& b) {
+bool natural_less(const std::string& a, const std::string& b) {
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   std::size_t i = 0, j = 0;
   while (i < a.size() && j < b.size()) {
@@ -39,7 +39,7 @@ bool counts_before(const std::string& a, const std::string& b) {
 std::vector<std::string> view_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const auto& [name, camera] : scene.views) names.push_back(name);
-  std::stable_sort(names.begin(), names.end(), counts_before);
+  std::stable_sort(names.begin(), names.end(), natural_less);
   return names;
 }
 
@@ -47,9 +47,10 @@ const Camera& stored_view(const Scene& scene, const std::string& name, const cha
   if (const auto found = scene.views.find(name); found != scene.views.end()) return found->second;
   std::vector<std::string> names;
   for (const auto& [known, camera] : scene.views) names.push_back(known);
-  throw FieldError(field, names.empty()
-                              ? fmt::format("there is no view \"{}\"; store it with the view edit first", name)
-                              : fmt::format("there is no view \"{}\"; there are {}", name, fmt::join(names, ", ")));
+  throw FieldError(field,
+                   names.empty()
+                       ? fmt::format("there is no view \"{}\"; store it with the view edit first", name)
+                       : fmt::format("there is no view \"{}\"; the stored views are {}", name, fmt::join(names, ", ")));
 }
 
 }  // namespace rebake

@@ -16,7 +16,7 @@ namespace rebake {
 
 PlacedNode present(const Scene& scene, NodeId id) {
   auto placed = find_placed(scene, id);
-  if (!placed) throw EditError("the node is not there any more");
+  if (!placed) throw EditError("the node no longer exists");
   return std::move(*placed);
 }
 
@@ -34,13 +34,13 @@ PlacedNode editable_with_children(const Scene& scene, NodeId id) {
     open.pop_back();
     if (node->locked)
       throw EditError(
-          fmt::format("\"{}\" holds the locked node \"{}\"; unlock it first", placed.node->name, node->name));
+          fmt::format("\"{}\" contains the locked node \"{}\"; unlock it first", placed.node->name, node->name));
     open.insert(open.end(), node->children.begin(), node->children.end());
   }
   return placed;
 }
 
-std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<NodeRef>& node) {
+std::vector<PlacedNode> objects_with_selection(const Scene& scene, const std::optional<NodeRef>& node) {
   const bool of_group = node && !present(scene, node->id).node->object;
   std::set<NodeId> inside;
   if (of_group) inside.insert(editable(scene, node->id).node->id);
@@ -69,7 +69,7 @@ PlacedNode object_with_selection(const Scene& scene, const NodeRef& node) {
   const PlacedNode placed = present(scene, node.id);
   if (!placed.node->object)
     throw EditError(fmt::format("\"{}\" is a group; name an object inside it", placed.node->name));
-  return with_selection(scene, node).front();
+  return objects_with_selection(scene, node).front();
 }
 
 std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vector<TextureSet> sets) {
@@ -77,7 +77,7 @@ std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vec
   if (sets.empty()) return nullptr;
   auto result = std::make_shared<BakedObject>(object);
   result->sets = std::move(sets);
-  keep_bodies(*result, object);
+  record_bodies(*result, object);
   return result;
 }
 
@@ -117,7 +117,7 @@ Node without_ids(const Node& node) {
   return copy;
 }
 
-OutlinePlace place_of(const Scene& scene, NodeId id) {
+TreePosition place_of(const Scene& scene, NodeId id) {
   const NodeId parent = parent_of(scene, id);
   const std::vector<NodePtr> siblings = parent == NodeId::none ? scene.roots : find(scene, parent)->children;
   std::size_t index = 0;
@@ -171,19 +171,20 @@ Box selection_bounds(const PlacedNode& placed) {
 }
 
 void check_subtree(const Scene& scene, NodeId id) {
-  if (depth(scene) > deepest_group) throw EditError(fmt::format("groups can be nested {} deep at most", deepest_group));
+  if (depth(scene) > deepest_group)
+    throw EditError(fmt::format("groups can be nested at most {} levels deep", deepest_group));
   std::vector<NodeId> inside{id};
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (std::find(inside.begin(), inside.end(), placed.node->id) == inside.end()) continue;
     for (const NodePtr& child : placed.node->children) inside.push_back(child->id);
-    checked_turn(placed.to_world);
+    check_invertible(placed.to_world);
     const Box box = placed.node->object ? transformed(placed.node->object->bounds(), placed.to_world) : Box();
     if (!placed.to_world.matrix().allFinite() || !(box.isEmpty() || (box.min().allFinite() && box.max().allFinite())))
-      throw EditError(fmt::format("\"{}\" would lie beyond what numbers can hold", placed.node->name));
+      throw EditError(fmt::format("the coordinates of \"{}\" would be too large", placed.node->name));
   }
 }
 
-void checked_turn(const Affine& transform) {
+void check_invertible(const Affine& transform) {
   try {
     orthogonal_factor(transform.linear());
   } catch (const std::invalid_argument& error) {
@@ -202,8 +203,7 @@ void check_boxes(const nlohmann::json& edit) {
     for (std::size_t axis = 0; axis < 3 && min.is_array() && max.is_array(); ++axis)
       if (axis < min.size() && axis < max.size() && min[axis].is_number() && max[axis].is_number() &&
           min[axis].get<double>() > max[axis].get<double>())
-        throw FieldError(field,
-                         fmt::format("min {0} is above max {0}, so nothing lies inside; exchange them", "xyz"[axis]));
+        throw FieldError(field, fmt::format("min {0} is above max {0}, so the box is empty; swap them", "xyz"[axis]));
   }
   for (const char* list : {"moves", "fixed"})
     if (edit.contains(list)) check_boxes(edit.at(list));

@@ -21,7 +21,7 @@ PlacedNode present(const Scene& scene, NodeId id);
 
 /// Objects with selected triangles: the given object, the objects in the given group, or all objects. Hidden and locked
 /// objects are skipped unless named. Throws EditError if nothing is selected or the named node is locked.
-std::vector<PlacedNode> with_selection(const Scene& scene, const std::optional<NodeRef>& node);
+std::vector<PlacedNode> objects_with_selection(const Scene& scene, const std::optional<NodeRef>& node);
 /// The object `node`. Throws EditError if it is a group, is locked, or has no selected triangle.
 PlacedNode object_with_selection(const Scene& scene, const NodeRef& node);
 
@@ -40,11 +40,11 @@ void keep_triangles(Node& node, const TriangleSet& flags, bool wanted);
 Node without_ids(const Node& node);
 
 /// Position of a node in the tree.
-struct OutlinePlace {
+struct TreePosition {
   NodeId parent;      ///< none for roots
   std::size_t index;  ///< among the parent's children
 };
-OutlinePlace place_of(const Scene& scene, NodeId id);
+TreePosition place_of(const Scene& scene, NodeId id);
 
 /// The scene with only these nodes, their children, and the groups above them; the whole scene if `nodes` is empty.
 /// Throws EditError if a node is missing.
@@ -63,7 +63,7 @@ void check_subtree(const Scene& scene, NodeId id);
 void set_ground(Scene& scene, const Ground& ground);
 
 /// Throws EditError for a singular transform.
-void checked_turn(const Affine& transform);
+void check_invertible(const Affine& transform);
 
 /// Throws FieldError for a box in a new edit's JSON that is empty because min is above max. Journals and projects are
 /// not checked, so that old ones still open.

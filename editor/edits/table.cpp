@@ -71,11 +71,11 @@ std::span<const EditType* const> edit_types() {
 
 Edit read_edit(const nlohmann::json& object, const Scene& scene) {
   if (!object.is_object() || !object.contains("op") || !object.at("op").is_string())
-    throw FieldError("op", "must name an edit");
+    throw FieldError("op", "must be the name of an edit");
   const auto& op = object.at("op").get_ref<const std::string&>();
   for (const EditType* type : edit_types())
     if (op == type->op) return type->read(object, scene);
-  throw FieldError("op", "\"" + op + "\" is no edit");
+  throw FieldError("op", "\"" + op + "\" is not an edit");
 }
 
 namespace {

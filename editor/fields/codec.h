@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "editor/fields/values.h"
-#include "mesh_ops/features/fuse_way.h"
+#include "mesh_ops/features/fuse_method.h"
 
 namespace rebake {
 
@@ -63,7 +63,7 @@ REBAKE_CODEC(Interval);
 REBAKE_CODEC(NumberRanges);
 REBAKE_CODEC(PixelSize);
 REBAKE_CODEC(FuseWidth);
-REBAKE_CODEC(FuseWay);
+REBAKE_CODEC(FuseMethod);
 REBAKE_CODEC(std::vector<std::string>);
 REBAKE_CODEC(std::vector<int>);
 REBAKE_CODEC(SelectMode);

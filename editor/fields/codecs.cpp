@@ -109,11 +109,11 @@ NodeRef Codec<NodeRef>::read(const json& value, const Scene& scene) {
     throw Error(fmt::format("there is no node \"{}\"{}", name,
                             names.empty()   ? " (the scene is empty)"
                             : !near.empty() ? fmt::format("; did you mean \"{}\"?", near)
-                                            : fmt::format("; there are {}", fmt::join(names, ", "))));
+                                            : fmt::format("; the nodes are {}", fmt::join(names, ", "))));
   }
   if (value.is_number_unsigned()) {
     const NodeId id{value.get<std::uint64_t>()};
-    if (find(scene, id) == nullptr) throw Error(fmt::format("there is no node number {}", value.get<std::uint64_t>()));
+    if (find(scene, id) == nullptr) throw Error(fmt::format("there is no node with id {}", value.get<std::uint64_t>()));
     return {id};
   }
   throw Error("must be the name of a node");
@@ -159,7 +159,7 @@ json Codec<Rotation>::write(const Rotation& value) {
 FieldType Codec<Scale>::type() { return {FieldKind::other, "number or [x, y, z]", "float | Vector", {}}; }
 Scale Codec<Scale>::read(const json& value, const Scene&) {
   const Vec3 scale = value.is_number() ? Vec3::Constant(number(value)) : vector(value);
-  if ((scale.array() == 0).any()) throw Error("a scale of 0 would flatten the object");
+  if ((scale.array() == 0).any()) throw Error("a scale factor must not be 0");
   return {scale};
 }
 json Codec<Scale>::write(const Scale& value) { return list(value.value); }
@@ -231,7 +231,7 @@ json Codec<BrushStroke>::write(const BrushStroke& value) {
 
 FieldType Codec<Interval>::type() { return {FieldKind::other, "[min, max]", "Sequence[float]", {}}; }
 Interval Codec<Interval>::read(const json& value, const Scene&) {
-  if (!value.is_array() || value.size() != 2) throw Error("must be a list of two numbers: least and most");
+  if (!value.is_array() || value.size() != 2) throw Error("must be a list of two numbers: minimum and maximum");
   const Interval interval{number(value[0]), number(value[1])};
   if (interval.min > interval.max) throw Error("the first number must not be above the second");
   return interval;
@@ -239,10 +239,10 @@ Interval Codec<Interval>::read(const json& value, const Scene&) {
 json Codec<Interval>::write(const Interval& value) { return json::array({value.min, value.max}); }
 
 FieldType Codec<NumberRanges>::type() {
-  return {FieldKind::other, "list of whole numbers and of ranges [first, last]", "Sequence[int | Sequence[int]]", {}};
+  return {FieldKind::other, "list of whole numbers and ranges [first, last]", "Sequence[int | Sequence[int]]", {}};
 }
 NumberRanges Codec<NumberRanges>::read(const json& value, const Scene&) {
-  constexpr const char* expected = "must be a list of whole numbers from 0 on, or of ranges [first, last] of them";
+  constexpr const char* expected = "must be a list of non-negative whole numbers or ranges [first, last]";
   if (!value.is_array()) throw Error(expected);
   NumberRanges result;
   for (const json& entry : value) {
@@ -272,33 +272,33 @@ PixelSize Codec<PixelSize>::read(const json& value, const Scene& scene) {
 json Codec<PixelSize>::write(const PixelSize& value) { return json::array({value.width, value.height}); }
 
 FieldType Codec<FuseWidth>::type() {
-  return {FieldKind::other, "auto, or a whole number from 4 to 256", "int | str", {}};
+  return {FieldKind::other, "auto or a whole number from 4 to 256", "int | str", {}};
 }
 FuseWidth Codec<FuseWidth>::read(const json& value, const Scene& scene) {
   if (value == "auto") return {};
-  if (!value.is_number_integer()) throw Error("must be auto, or a whole number from 4 to 256");
+  if (!value.is_number_integer()) throw Error("must be auto or a whole number from 4 to 256");
   return {Codec<int>::read(value, scene)};
 }
 json Codec<FuseWidth>::write(const FuseWidth& value) { return value.neurons ? json(*value.neurons) : json(); }
 
-FieldType Codec<FuseWay>::type() { return choice_type({"keep", "train", "new", "side_by_side"}); }
-FuseWay Codec<FuseWay>::read(const json& value, const Scene&) {
-  return word<FuseWay>(value, {{"keep", FuseWay::keep},
-                               {"train", FuseWay::train},
-                               {"new", FuseWay::scratch},
-                               {"side_by_side", FuseWay::side_by_side}});
+FieldType Codec<FuseMethod>::type() { return choice_type({"keep", "train", "new", "side_by_side"}); }
+FuseMethod Codec<FuseMethod>::read(const json& value, const Scene&) {
+  return word<FuseMethod>(value, {{"keep", FuseMethod::keep},
+                                  {"train", FuseMethod::train},
+                                  {"new", FuseMethod::scratch},
+                                  {"side_by_side", FuseMethod::side_by_side}});
 }
-json Codec<FuseWay>::write(const FuseWay& value) {
-  return value == FuseWay::keep      ? "keep"
-         : value == FuseWay::train   ? "train"
-         : value == FuseWay::scratch ? "new"
-                                     : "side_by_side";
+json Codec<FuseMethod>::write(const FuseMethod& value) {
+  return value == FuseMethod::keep      ? "keep"
+         : value == FuseMethod::train   ? "train"
+         : value == FuseMethod::scratch ? "new"
+                                        : "side_by_side";
 }
 
 FieldType Codec<std::vector<std::string>>::type() { return {FieldKind::other, "list of names", "Sequence[str]", {}}; }
 std::vector<std::string> Codec<std::vector<std::string>>::read(const json& value, const Scene& scene) {
   if (!value.is_array()) throw Error("must be a list of names");
-  if (value.empty()) throw Error("must name at least one");
+  if (value.empty()) throw Error("must contain at least one name");
   std::vector<std::string> names;
   for (const json& name : value) names.push_back(Codec<std::string>::read(name, scene));
   return names;
@@ -370,7 +370,7 @@ Rotation::Rotation(const Eigen::Quaterniond& turn) : quaternion_(turn) {
   if (std::abs(turn.squaredNorm() - 1) <= rounding) return;
   // Scales by a power of two first, since squares of 1e200 overflow and those of 1e-200 underflow.
   const double largest = turn.coeffs().cwiseAbs().maxCoeff();
-  if (!(largest > 0)) throw Error("a quaternion of length 0 is no rotation");
+  if (!(largest > 0)) throw Error("a quaternion of length 0 is not a rotation");
   int exponent = 0;
   std::frexp(largest, &exponent);
   for (double& part : quaternion_.coeffs()) part = std::ldexp(part, -exponent);
@@ -405,7 +405,7 @@ const char* to_string(Unit unit) {
   }
 }
 
-std::string words_of(const FieldLine& field) {
+std::string notation_of(const FieldInfo& field) {
   if (field.unit == Unit::none) return field.type.words;
   const bool bare = field.unit == Unit::share || field.unit == Unit::factor;  // numbers without a dimension
   return fmt::format("{}, {} {}", field.type.words, bare ? "as a" : "in", to_string(field.unit));
@@ -432,8 +432,9 @@ void FieldReader::finish() const {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     // Prefers the name of a missing required field as the suggestion.
     const std::string meant = nearest_word(name, missing_), near = meant.empty() ? nearest_word(name, known_) : meant;
-    throw FieldError(name, near.empty() ? fmt::format("is not known here (known: {})", fmt::join(known_, ", "))
-                                        : fmt::format("is not known here; did you mean \"{}\"?", near));
+    throw FieldError(
+        name, near.empty() ? fmt::format("is not a known field; its fields are {}", fmt::join(known_, ", "))
+                           : fmt::format("is not a known field; did you mean \"{}\"?", near));
   }
   if (!missing_.empty()) throw FieldError(missing_.front(), "is missing");
 }

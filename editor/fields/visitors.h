@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "editor/fields/codec.h"
-#include "editor/fields/field_line.h"
+#include "editor/fields/field_info.h"
 #include "mesh_ops/base/error.h"
 
 namespace rebake {
@@ -70,7 +70,7 @@ class FieldWriter {
 /// Field visitor that lists fields with types, defaults and help.
 class FieldLister {
  public:
-  explicit FieldLister(std::vector<FieldLine>& lines) : lines_(lines) {}
+  explicit FieldLister(std::vector<FieldInfo>& lines) : lines_(lines) {}
   template <class T>
   void operator()(const char* name, const T& value, Need need, const char* help, Unit unit = Unit::none) {
     add(name, Codec<T>::type(), Codec<T>::write(value), need, help, unit);
@@ -78,7 +78,7 @@ class FieldLister {
 
  private:
   void add(const char* name, FieldType type, const nlohmann::json& initial, Need need, const char* help, Unit unit);
-  std::vector<FieldLine>& lines_;
+  std::vector<FieldInfo>& lines_;
 };
 
 }  // namespace rebake

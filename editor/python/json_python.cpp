@@ -17,7 +17,7 @@ class Reader {
     constexpr int deepest = 32;
     constexpr std::size_t most = 10'000'000;
     if (depth > deepest) throw FieldError(field_, "is nested deeper than 32 levels, or contains itself");
-    if (++count_ > most) throw FieldError(field_, "holds more than ten million values, or never ends");
+    if (++count_ > most) throw FieldError(field_, "contains more than ten million values, or is endless");
     if (value.is_none()) return nullptr;
     if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
     if (py::isinstance<py::int_>(value)) return whole(value);
@@ -50,7 +50,7 @@ class Reader {
       return value.cast<std::string>();
     } catch (const py::cast_error&) {
       PyErr_Clear();
-      throw FieldError(field_, "is no text in UTF-8, which journals and projects hold");
+      throw FieldError(field_, "is not valid UTF-8 text, which journals and projects need");
     }
   }
   json whole(const py::handle& value) const {
@@ -58,7 +58,7 @@ class Reader {
       const auto number = value.cast<std::int64_t>();
       return number < 0 ? json(number) : json(static_cast<std::uint64_t>(number));
     } catch (const py::cast_error&) {
-      throw FieldError(field_, "is a whole number beyond 64 bits");
+      throw FieldError(field_, "is a whole number of more than 64 bits");
     }
   }
   std::string field_ = "value";  // top-level field that is being read, for messages

@@ -10,12 +10,12 @@
 #include <optional>
 #include <utility>
 
-#include "editor/commands/export.h"
-#include "editor/commands/lit.h"
-#include "editor/commands/save.h"
-#include "editor/commands/save_project.h"
-#include "editor/commands/session.h"
-#include "editor/commands/views.h"
+#include "editor/actions/export_action.h"
+#include "editor/actions/lit.h"
+#include "editor/actions/save.h"
+#include "editor/actions/save_project.h"
+#include "editor/actions/session.h"
+#include "editor/actions/views.h"
 #include "editor/document/project.h"
 #include "editor/document/result_store.h"
 #include "editor/edits/deform/cage.h"
@@ -56,9 +56,9 @@ class PyDocument {
 
   py::object progress = py::none();  ///< progress callback, or None
 
-  /// Runs `job` with do_work(). If the callback uses this document, it waits until the job is done.
+  /// Runs `job` with run_without_gil(). If the callback uses this document, it waits until the job is done.
   void work(const std::function<void(Session&)>& job) {
-    do_work(progress, [&](const Progress& on_the_way) {
+    run_without_gil(progress, [&](const Progress& on_the_way) {
       const std::scoped_lock lock(mutex_);
       session_.progress = on_the_way;
       try {
@@ -72,19 +72,19 @@ class PyDocument {
   }
 
   Scene scene() {
-    const InsideModule inside;
+    const ModuleGuard inside;
     const py::gil_scoped_release others;
     const std::scoped_lock lock(mutex_);
     return session_.scene();
   }
   SourceGuard sources() {
-    const InsideModule inside;
+    const ModuleGuard inside;
     const py::gil_scoped_release others;
     const std::scoped_lock lock(mutex_);
     return session_.document.sources();
   }
   std::vector<Edit> edits() {
-    const InsideModule inside;
+    const ModuleGuard inside;
     const py::gil_scoped_release others;
     const std::scoped_lock lock(mutex_);
     return session_.document.history().edits();
@@ -97,7 +97,8 @@ class PyDocument {
 
 PlacedNode node_in(const Scene& scene, const py::object& name) {
   const PlacedNode placed = *find_placed(scene, Codec<NodeRef>::read(to_json(name), scene).id);
-  if (!placed.node->object) throw EditError("node \"" + placed.node->name + "\" is a group: it has no triangles");
+  if (!placed.node->object)
+    throw EditError("node \"" + placed.node->name + "\" is a group without triangles; name an object");
   return placed;
 }
 
@@ -105,7 +106,8 @@ TextureSet set_in(const Scene& scene, const py::object& name, std::size_t index)
   const PlacedNode placed = node_in(scene, name);
   const auto& sets = placed.node->object->sets;
   if (index >= sets.size())
-    throw FieldError("texture_set", fmt::format("\"{}\" has {}, counted from 0", placed.node->name, sets.size()));
+    throw FieldError("texture_set",
+                     fmt::format("is out of range: \"{}\" has {}, counted from 0", placed.node->name, sets.size()));
   return sets[index];
 }
 
@@ -213,8 +215,8 @@ py::object select_mask(PyDocument& document, const py::object& node, const py::a
   const PlacedNode placed = node_in(document.scene(), node);
   const std::size_t count = placed.node->object->triangle_count();
   if (mask.ndim() != 1 || static_cast<std::size_t>(mask.size()) != count)
-    throw FieldError("mask",
-                     fmt::format("must be one row of {} values, one a triangle of \"{}\"", count, placed.node->name));
+    throw FieldError(
+        "mask", fmt::format("must be a 1-D array of {} values, one per triangle of \"{}\"", count, placed.node->name));
   SelectTriangles edit{{placed.node->id}, {}, Codec<SelectMode>::read(json(mode), {})};
   const auto flags = mask.unchecked<1>();
   for (std::uint64_t f = 0; f < count; ++f) {
@@ -231,7 +233,7 @@ py::object select_mask(PyDocument& document, const py::object& node, const py::a
 
 // Checks that an argument is an n × 3 array whose dtype kind is one of `kinds`. Throws FieldError for the argument
 // `name`.
-py::array table_of(const py::object& given, const char* name, const char* kinds, const char* numbers) {
+py::array checked_array(const py::object& given, const char* name, const char* kinds, const char* numbers) {
   const py::array array = py::array::ensure(given);
   if (!array) PyErr_Clear();
   if (!array || std::string_view(kinds).find(array.dtype().kind()) == std::string_view::npos || array.ndim() != 2 ||
@@ -244,7 +246,8 @@ py::array table_of(const py::object& given, const char* name, const char* kinds,
 }
 
 std::vector<Vec3> points_from(const py::object& given, const char* name) {
-  const py::array_t<double, py::array::c_style | py::array::forcecast> array = table_of(given, name, "fiu", "numbers");
+  const py::array_t<double, py::array::c_style | py::array::forcecast> array =
+      checked_array(given, name, "fiu", "numbers");
   std::vector<Vec3> points;
   const auto rows = array.unchecked<2>();
   for (py::ssize_t k = 0; k < rows.shape(0); ++k) {
@@ -255,7 +258,7 @@ std::vector<Vec3> points_from(const py::object& given, const char* name) {
 }
 std::vector<Face> faces_from(const py::object& given, std::size_t points) {
   const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> array =
-      table_of(given, "faces", "iu", "whole numbers");
+      checked_array(given, "faces", "iu", "whole numbers");
   std::vector<Face> faces;
   const auto rows = array.unchecked<2>();
   for (py::ssize_t k = 0; k < rows.shape(0); ++k) {
@@ -264,7 +267,7 @@ std::vector<Face> faces_from(const py::object& given, std::size_t points) {
       const std::int64_t number = rows(k, corner);
       if (number < 0 || static_cast<std::uint64_t>(number) >= points)
         throw FieldError("faces",
-                         fmt::format("row {} names point {}; there are {}, counted from 0", k, number, points));
+                         fmt::format("row {} contains vertex {}; there are {}, counted from 0", k, number, points));
       face[static_cast<std::size_t>(corner)] = static_cast<std::uint32_t>(number);
     }
   }
@@ -283,16 +286,16 @@ py::array_t<double> move_by_cage(const py::object& points, const py::object& ver
   const std::vector<Vec3> places = points_from(points, "points"), targets = points_from(moved, "moved"),
                           corners = points_from(vertices, "vertices");
   const Cage cage = checked_cage({corners, faces_from(faces, corners.size())});
-  if (targets.size() != cage.vertices.size()) throw FieldError("moved", "must hold as many points as vertices");
+  if (targets.size() != cage.vertices.size()) throw FieldError("moved", "must have as many rows as vertices");
   const CageCoordinates coordinates = Codec<CageCoordinates>::read(json(kind), {});
   std::vector<Vec3> moved_places;
-  do_work(py::none(), [&](const Progress& progress) {
+  run_without_gil(py::none(), [&](const Progress& progress) {
     const auto weights = coordinates_of(cage, coordinates, resolution, progress);
     moved_places = deform_points(*weights, cage, targets, places, false, progress).points;
   });
   for (std::size_t k = 0; k < moved_places.size(); ++k)
     if (!moved_places[k].allFinite())
-      throw FieldError("points", fmt::format("row {} lies too far from the cage for coordinates", k));
+      throw FieldError("points", fmt::format("row {} is too far from the cage for coordinates", k));
   return array_of(moved_places);
 }
 
@@ -300,14 +303,14 @@ py::tuple wrap_triangles(const py::object& points, const py::object& faces, doub
   const std::vector<Vec3> places = points_from(points, "points");
   const TriangleList triangles{places, faces_from(faces, places.size())};
   Cage cage;
-  do_work(py::none(), [&](const Progress& progress) { cage = wrap(triangles, coarseness, progress); });
+  run_without_gil(py::none(), [&](const Progress& progress) { cage = wrap(triangles, coarseness, progress); });
   py::array_t<std::uint32_t> numbers({static_cast<py::ssize_t>(cage.faces.size()), py::ssize_t{3}});
   if (!cage.faces.empty()) std::memcpy(numbers.mutable_data(), cage.faces.data(), cage.faces.size() * sizeof(Face));
   return py::make_tuple(array_of(cage.vertices), numbers);
 }
 
-Relinked links_from(const py::dict& sources) {
-  Relinked links;
+SourceLinks links_from(const py::dict& sources) {
+  SourceLinks links;
   const auto path_from = [](const py::handle& value) {
     try {
       return value.cast<std::filesystem::path>();
@@ -327,14 +330,13 @@ Relinked links_from(const py::dict& sources) {
 
 std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, const std::string& axes,
                                           const py::object& callback, const py::dict& sources) {
-  const Relinked links = links_from(sources);
-  if (!links.empty() && !is_project_file(path))
-    throw FieldError("sources", "are those of a project, which this is not");
+  const SourceLinks links = links_from(sources);
+  if (!links.empty() && !is_project_file(path)) throw FieldError("sources", "can be given for projects only");
   std::optional<Document> opened;
   Import import;
   import.path = path.string();
   import.axes = Codec<Axes>::read(json(axes), {});
-  do_work(callback, [&](const Progress& progress) {
+  run_without_gil(callback, [&](const Progress& progress) {
     if (is_project_file(path)) {
       opened = Document::open(path, links, progress);
       return;
@@ -349,18 +351,18 @@ std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, con
 
 std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journal, const py::dict& sources,
                                              const py::object& callback) {
-  const Relinked links = links_from(sources);
+  const SourceLinks links = links_from(sources);
   std::optional<Document::Recovered> recovered;
-  do_work(callback, [&](const Progress& progress) { recovered = Document::recover(journal, links, progress); });
+  run_without_gil(callback, [&](const Progress& progress) { recovered = Document::recover(journal, links, progress); });
   if (!recovered->document.keeps_journal() &&
       PyErr_WarnEx(PyExc_UserWarning,
-                   (journal.string() + " is kept as it is, and what is edited from now on is in no journal: call "
+                   (journal.string() + " is not changed, and further edits are not in a journal: call "
                                        "keep_journal with another file, or save")
                        .c_str(),
                    1) != 0)
     throw py::error_already_set();
   for (const std::string& lost : recovered->lost)
-    if (PyErr_WarnEx(PyExc_UserWarning, ("not got back: " + lost).c_str(), 1) != 0) throw py::error_already_set();
+    if (PyErr_WarnEx(PyExc_UserWarning, ("not recovered: " + lost).c_str(), 1) != 0) throw py::error_already_set();
   auto document = std::make_unique<PyDocument>(std::move(recovered->document));
   document->progress = callback;
   return document;
@@ -370,7 +372,7 @@ std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journa
 
 PYBIND11_MODULE(rebake, module) {
   py::module_::import("numpy");  // here, because two threads must not import it first at the same time
-  keep_results_in(ResultStore::of_user());
+  set_result_cache(ResultStore::of_user());
   module.doc() = "Edit and compose baked NeRF scenes (MobileNeRF format).";
   const auto& error = py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
   py::register_exception<FileError>(module, "FileError", error);
@@ -378,15 +380,15 @@ PYBIND11_MODULE(rebake, module) {
   py::register_exception<EditError>(module, "EditError", error);
   py::register_exception<DeviceError>(module, "DeviceError", error);
 
-  py::class_<PyDocument> type(module, "Document",
-                              "A scene with its history. An edit that raises leaves everything as it was.");
+  py::class_<PyDocument> type(module, "Document", "A scene with its history. An edit that raises changes nothing.");
   type.def(py::init<>());
   type.def_property_readonly("nodes", &nodes_of, "Every node: id, name, parent, visible, locked, triangles, to_world.");
-  type.def_readwrite("progress", &PyDocument::progress,
-                     "None, or a function called with what is being done and its share, 0 to 1; raising stops it.");
+  type.def_readwrite(
+      "progress", &PyDocument::progress,
+      "None, or a function called with the present task and its share, 0 to 1; an exception cancels the work.");
   type.def(
       "edit", [](PyDocument& document, const py::dict& line) { edit_once(document, to_json(line)); }, py::arg("edit"),
-      "Carries out one edit, given as a line of a script.");
+      "Applies one edit, given as a line of a script.");
   type.def(
       "edits",
       [](PyDocument& document) {
@@ -394,7 +396,7 @@ PYBIND11_MODULE(rebake, module) {
         for (const Edit& edit : document.edits()) lines.append(to_python(rebake::to_json(edit)));
         return lines;
       },
-      "What was done, as lines of a script; nodes by number.");
+      "The edits so far, as lines of a script; nodes by id.");
   type.def(
       "undo",
       [](PyDocument& document) {
@@ -402,7 +404,7 @@ PYBIND11_MODULE(rebake, module) {
         document.work([&](Session& session) { done = session.document.undo(1, session.progress); });
         return done;
       },
-      "False where there is nothing to undo.");
+      "Undoes one edit. False if there is none.");
   type.def(
       "redo",
       [](PyDocument& document) {
@@ -410,13 +412,13 @@ PYBIND11_MODULE(rebake, module) {
         document.work([&](Session& session) { done = session.document.redo(1, session.progress); });
         return done;
       },
-      "False where there is nothing to redo.");
+      "Redoes one edit. False if there is none.");
   type.def(
       "keep_journal",
       [](PyDocument& document, const std::filesystem::path& path) {
         document.work([&](Session& session) { session.document.keep_journal(path); });
       },
-      py::arg("path"), "From here on every edit is on the disk before it returns.");
+      py::arg("path"), "Begins a journal: from now on, each edit is on the disk before it returns.");
   type.def("discard_journal",
            [](PyDocument& document) { document.work([](Session& session) { session.document.discard_journal(); }); });
   type.def(
@@ -432,7 +434,7 @@ PYBIND11_MODULE(rebake, module) {
         for (const std::string& warning : warnings)
           if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
       },
-      py::arg("path"), "Writes a project (.rebake), or a scene folder that keeps every node.");
+      py::arg("path"), "Writes a project (.rebake), or a scene folder with all nodes.");
   type.def(
       "export",
       [](PyDocument& document, const std::filesystem::path& path, const py::object& layout, const std::string& format,
@@ -444,7 +446,7 @@ PYBIND11_MODULE(rebake, module) {
         if (!layout.is_none()) action.layout = Codec<Layout>::read(to_json(layout), {});
         action.plain = plain;
         action.width = Codec<FuseWidth>::read(to_json(width), {});
-        if (!way.is_none()) action.way = Codec<FuseWay>::read(to_json(way), {});
+        if (!way.is_none()) action.way = Codec<FuseMethod>::read(to_json(way), {});
         action.keep = keep;
         action.psnr = psnr;
         action.seconds = seconds;
@@ -471,20 +473,20 @@ PYBIND11_MODULE(rebake, module) {
       py::arg("path"), py::arg("layout") = py::none(), py::arg("format") = "mobilenerf", py::arg("plain") = false,
       py::arg("width") = "auto", py::arg("way") = py::none(), py::arg("keep") = "auto", py::arg("psnr") = py::none(),
       py::arg("seconds") = 0, py::arg("report") = "",
-      "Writes the MobileNeRF format or another; returns what the result cannot hold or was converted.");
+      "Exports in the MobileNeRF format or another; returns notes about conversions and losses.");
   type.def("render", &render_picture, py::arg("width") = 800, py::arg("height") = 800, py::arg("samples") = 4,
-           py::arg("camera") = py::none(), py::arg("view") = "", "A picture, height × width × 3.");
+           py::arg("camera") = py::none(), py::arg("view") = "", "Renders a picture, uint8, height × width × 3.");
   type.def(
       "selection",
       [](PyDocument& document, const py::object& node) { return mask_of(node_in(document.scene(), node)); },
-      py::arg("node"), "Which of an object's triangles are selected.");
+      py::arg("node"), "The selected triangles of an object, as a boolean mask.");
   type.def(
       "vertices",
       [](PyDocument& document, const py::object& node, std::size_t index) {
         const auto positions = set_in(document.scene(), node, index).soup.shared_positions();
         return view_of(positions->data()->data(), {static_cast<py::ssize_t>(positions->size()), 3}, positions);
       },
-      py::arg("node"), py::arg("texture_set") = 0, "Positions in the object's own space, n × 3; a read-only view.");
+      py::arg("node"), py::arg("texture_set") = 0, "Positions in object space, n × 3; a read-only view.");
   type.def(
       "uvs",
       [](PyDocument& document, const py::object& node, std::size_t index) {
@@ -500,11 +502,11 @@ PYBIND11_MODULE(rebake, module) {
       },
       py::arg("node"), py::arg("texture_set") = 0, "Vertex numbers, n × 3; a read-only view.");
   type.def("tiles", &tiles_of, py::arg("node"), py::arg("texture_set") = 0,
-           "The texels, 256 × 256 × 8 a tile, by row and column; read-only, unpacked by each call.");
+           "The texels by tile row and column, 256 × 256 × 8 per tile; read-only, unpacked by each call.");
   type.def("texture", &texture_of, py::arg("node"), py::arg("texture_set") = 0,
-           "The texels in one piece, height × width × 8; a copy.");
+           "All texels as one array, height × width × 8; a copy.");
   type.def("select_mask", &select_mask, py::arg("node"), py::arg("mask"), py::arg("mode") = "set",
-           "Selects an object's triangles by a mask, as selection() gives one; recorded as select_triangles.");
+           "Selects an object's triangles by a mask, as returned by selection(); recorded as select_triangles.");
   type.def("_edit", &edit_with);
   // Edits as methods whose names, types and defaults are visible to help() and inspect.
   py::dict scope;
@@ -522,16 +524,17 @@ PYBIND11_MODULE(rebake, module) {
       py::arg("sources") = py::dict(),
       "Opens a MobileNeRF folder, a Rebake scene or a project. `sources` maps moved folders of a project to their "
       "new paths.");
-  module.def("recover", &recover_document, py::arg("journal"), py::arg("sources") = py::dict(),
-             py::arg("progress") = py::none(),
-             "The work that a journal kept; `sources` says where folders lie now that were moved. What cannot be got "
-             "back is warned of.");
-  py::module_::import("atexit").attr("register")(py::cpp_function(&end_all_work));
+  module.def(
+      "recover", &recover_document, py::arg("journal"), py::arg("sources") = py::dict(),
+      py::arg("progress") = py::none(),
+      "Recovers a document from a journal. `sources` maps moved folders to their new paths. Warns about edits that "
+      "are lost.");
+  py::module_::import("atexit").attr("register")(py::cpp_function(&shut_down_workers));
   module.def("move_by_cage", &move_by_cage, py::arg("points"), py::arg("vertices"), py::arg("faces"), py::arg("moved"),
              py::arg("coordinates") = "mean_value", py::arg("resolution") = 32,
-             "Where points go when a closed cage's vertices move.");
+             "Deforms points by a closed cage whose vertices move.");
   module.def("wrap", &wrap_triangles, py::arg("points"), py::arg("faces"), py::arg("coarseness") = 0.1,
-             "A closed cage around triangles: its vertices and faces.");
+             "Wraps triangles with a closed cage; returns its vertices and faces.");
   module.def("python_stub", &python_stub, "The module's type stub.");
 }
 

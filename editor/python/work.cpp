@@ -20,18 +20,18 @@ namespace rebake {
 
 namespace {
 
-std::atomic<pid_t> worked_in = 0;  // process that called do_work() first; 0: none
+std::atomic<pid_t> worker_process = 0;  // process that called run_without_gil() first; 0: none
 
 void refuse_forked() {
   const pid_t here = ::getpid();
   pid_t before = 0;
-  if (!worked_in.compare_exchange_strong(before, here) && before != here)
+  if (!worker_process.compare_exchange_strong(before, here) && before != here)
     throw Error(
-        "this process was forked off one that used rebake, whose threads did not come along: start processes by "
+        "this process was forked from one that used rebake, and threads do not survive a fork: start processes by "
         "multiprocessing's \"spawn\", or fork before rebake is first used");
 }
 
-// State of all InsideModule guards: one entry in `flags` per guard, the cancel flag or null.
+// State of all ModuleGuard guards: one entry in `flags` per guard, the cancel flag or null.
 struct Running {
   std::mutex mutex;
   std::condition_variable changed;
@@ -44,7 +44,7 @@ Running& running() {
 }
 
 // Handles an exception that Python raised during work that succeeded nevertheless.
-void keep_quiet(py::error_already_set& raised) {
+void report_late_exception(py::error_already_set& raised) {
   if (raised.matches(PyExc_KeyboardInterrupt))
     PyErr_SetInterrupt();
   else
@@ -53,20 +53,20 @@ void keep_quiet(py::error_already_set& raised) {
 
 }  // namespace
 
-InsideModule::InsideModule(std::atomic<bool>* flag) : flag_(flag) {
+ModuleGuard::ModuleGuard(std::atomic<bool>* flag) : flag_(flag) {
   const std::scoped_lock lock(running().mutex);
-  if (running().ending) throw Error("the interpreter is ending; rebake takes no more work");
+  if (running().ending) throw Error("the interpreter is shutting down; rebake accepts no more work");
   running().flags.insert(flag_);
 }
-InsideModule::~InsideModule() {
+ModuleGuard::~ModuleGuard() {
   const std::scoped_lock lock(running().mutex);
   running().flags.erase(running().flags.find(flag_));
   running().changed.notify_all();
 }
 
-void end_all_work() {
+void shut_down_workers() {
   // In a forked process there are no worker threads, and one may have held the mutex during the fork.
-  if (worked_in != 0 && worked_in != ::getpid()) return;
+  if (worker_process != 0 && worker_process != ::getpid()) return;
   const py::gil_scoped_release others;
   std::unique_lock lock(running().mutex);
   running().ending = true;
@@ -76,7 +76,7 @@ void end_all_work() {
   if (!running().changed.wait_for(lock, patience, [] { return running().flags.empty(); })) ::_exit(1);
 }
 
-void do_work(const py::object& callback, const std::function<void(const Progress&)>& work) {
+void run_without_gil(const py::object& callback, const std::function<void(const Progress&)>& work) {
   refuse_forked();
   std::mutex mutex;
   std::condition_variable changed;
@@ -84,7 +84,7 @@ void do_work(const py::object& callback, const std::function<void(const Progress
   std::exception_ptr failed;
   std::optional<std::pair<std::string, double>> latest;
   std::atomic<bool> cancel = false;
-  const InsideModule inside(&cancel);
+  const ModuleGuard inside(&cancel);
   const Progress progress(
       [&](std::string_view what, double share) {
         const std::scoped_lock lock(mutex);
@@ -127,7 +127,7 @@ void do_work(const py::object& callback, const std::function<void(const Progress
   }
   if (failed && raised) throw std::move(*raised);
   if (failed) std::rethrow_exception(failed);
-  if (raised) keep_quiet(*raised);
+  if (raised) report_late_exception(*raised);
 }
 
 }  // namespace rebake

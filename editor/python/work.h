@@ -15,24 +15,24 @@ namespace rebake {
 /// Ctrl+C or an exception of the callback cancels the work and is raised. If the work succeeds nevertheless, its result
 /// is valid: the interrupt is raised after the call, and the callback's exception goes to sys.unraisablehook. Throws
 /// exceptions of `work`. Throws Error during interpreter shutdown, and in a process forked from one that has called
-/// do_work(), because threads do not survive a fork.
-void do_work(const pybind11::object& callback, const std::function<void(const Progress&)>& work);
+/// run_without_gil(), because threads do not survive a fork.
+void run_without_gil(const pybind11::object& callback, const std::function<void(const Progress&)>& work);
 
 /// RAII guard that registers a thread that is inside the module without the GIL, so that shutdown waits for it. `flag`,
 /// if not null, is set to true at shutdown. The constructor throws Error if shutdown has begun.
-class InsideModule {
+class ModuleGuard {
  public:
-  explicit InsideModule(std::atomic<bool>* flag = nullptr);
-  ~InsideModule();
-  InsideModule(const InsideModule&) = delete;
-  InsideModule& operator=(const InsideModule&) = delete;
+  explicit ModuleGuard(std::atomic<bool>* flag = nullptr);
+  ~ModuleGuard();
+  ModuleGuard(const ModuleGuard&) = delete;
+  ModuleGuard& operator=(const ModuleGuard&) = delete;
 
  private:
   std::atomic<bool>* flag_;
 };
 
-/// Cancels all work, refuses new work, and waits until no InsideModule is left; ends the process after 5 s. To be
+/// Cancels all work, refuses new work, and waits until no ModuleGuard is left; ends the process after 5 s. To be
 /// registered with atexit: a thread that requests the GIL after shutdown would abort the process.
-void end_all_work();
+void shut_down_workers();
 
 }  // namespace rebake

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "editor/commands/session.h"
+#include "editor/actions/session.h"
 #include "editor/edits/support.h"
 #include "editor/fields/codec.h"
-#include "editor/fields/field_line.h"
+#include "editor/fields/field_info.h"
 
 namespace rebake {
 
@@ -16,24 +16,25 @@ using nlohmann::json;
 
 namespace {
 
-std::string filled_in(const std::string& text, const std::map<std::string, std::string>& variables) {
+std::string substitute_variables(const std::string& text, const std::map<std::string, std::string>& variables) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t open = text.find('{', at), close = text.find('}', at);
     if (open == std::string::npos || close == std::string::npos || close < open) return out + text.substr(at);
     const std::string name = text.substr(open + 1, close - open - 1);
     const auto found = variables.find(name);
-    if (found == variables.end()) throw Error(fmt::format("the variable {{{0}}} has no value; give --var {0}=…", name));
+    if (found == variables.end())
+      throw Error(fmt::format("the variable {{{0}}} has no value; set it with --var {0}=…", name));
     out += text.substr(at, open - at) + found->second;
     at = close + 1;
   }
   return out;
 }
 
-std::string reference_of(const char* op, const char* help, const std::vector<FieldLine>& lines) {
+std::string reference_of(const char* op, const char* help, const std::vector<FieldInfo>& lines) {
   std::string out = fmt::format("### `{}`\n{}\n\n| field | value | default | meaning |\n|---|---|---|---|\n", op, help);
-  for (const FieldLine& line : lines)
-    out += fmt::format("| `{}` | {} | {} | {} |\n", line.name, words_of(line),
+  for (const FieldInfo& line : lines)
+    out += fmt::format("| `{}` | {} | {} | {} |\n", line.name, notation_of(line),
                        line.required                                    ? "required"
                        : line.initial.empty() || line.initial == "\"\"" ? "–"
                                                                         : "`" + line.initial + "`",
@@ -59,18 +60,19 @@ ScriptCommand read_command(const json& line, const Scene& scene) {
     known.emplace_back(type->op);
   }
   const std::string near = nearest_word(name, known);
-  throw FieldError("op", near.empty() ? fmt::format("\"{}\" is not known (known: {})", name, fmt::join(known, ", "))
-                                      : fmt::format("\"{}\" is not known; did you mean \"{}\"?", name, near));
+  throw FieldError("op", near.empty()
+                             ? fmt::format("\"{}\" is not an edit or action; known are {}", name, fmt::join(known, ", "))
+                             : fmt::format("\"{}\" is not an edit or action; did you mean \"{}\"?", name, near));
 }
 
 json with_variables(json line, const std::map<std::string, std::string>& variables) {
-  if (line.is_string()) return filled_in(line.get<std::string>(), variables);
+  if (line.is_string()) return substitute_variables(line.get<std::string>(), variables);
   if (line.is_structured())
     for (json& value : line) value = with_variables(std::move(value), variables);
   return line;
 }
 
-std::string said_by(const std::exception& error) {
+std::string json_error_message(const std::exception& error) {
   const std::string what = error.what();
   const std::size_t end = what.find("] ");
   return end == std::string::npos ? what : what.substr(end + 2);
@@ -86,7 +88,7 @@ json read_line(std::string_view text) {
   // No command is nested deeper, and deep nesting could exhaust the stack.
   static constexpr int deepest = 32;
   return json::parse(text.begin(), text.end(), [](int depth, json::parse_event_t, json&) {
-    if (depth > deepest) throw Error(fmt::format("nests deeper than {} levels", deepest));
+    if (depth > deepest) throw Error(fmt::format("is nested deeper than {} levels", deepest));
     return true;
   });
 }
@@ -113,7 +115,7 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
       else
         std::get<Action>(command)(session);
     } catch (const json::exception& error) {
-      fail("is not valid JSON: " + said_by(error));
+      fail("is not valid JSON: " + json_error_message(error));
     } catch (const Cancelled&) {
       throw;
     } catch (const std::filesystem::filesystem_error& error) {

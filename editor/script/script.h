@@ -7,7 +7,7 @@
 #include <string_view>
 #include <variant>
 
-#include "editor/commands/action.h"
+#include "editor/actions/action.h"
 #include "editor/edits/edit.h"
 #include "mesh_ops/base/error.h"
 
@@ -29,7 +29,7 @@ ScriptCommand read_command(const nlohmann::json& line, const Scene& scene);
 nlohmann::json with_variables(nlohmann::json line, const std::map<std::string, std::string>& variables);
 
 /// Message of a JSON parse error, without the library's error code.
-std::string said_by(const std::exception& error);
+std::string json_error_message(const std::exception& error);
 
 /// The JSON text of a script line, without a byte order mark; empty for blank lines and comments.
 std::string_view command_text(std::string_view line);

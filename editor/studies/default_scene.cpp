@@ -9,7 +9,7 @@ std::filesystem::path default_study_scene() {
   std::error_code error;
   const std::filesystem::path folder = sample_folder() / "ficus";
   if (!std::filesystem::is_directory(folder, error))
-    throw Error("the sample scene is not found; name one with --scene");
+    throw Error("the sample scene \"ficus\" was not found; pass a scene with --scene");
   return folder;
 }
 

@@ -30,7 +30,8 @@ StudySoup study_soup(const Scene& scene) {
       }
     }
   }
-  if (soup.places.empty()) throw Error("the scene shows nothing that could be deformed");
+  if (soup.places.empty())
+    throw Error("the scene has no visible opaque triangle to deform; pass another one with --scene");
   soup.diagonal = box.diagonal().norm();
   return soup;
 }

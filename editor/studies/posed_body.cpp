@@ -10,7 +10,7 @@
 #include "mesh_ops/deform/closed_form.h"
 #include "mesh_ops/deform/wrap.h"
 #include "mesh_ops/light/body_image.h"
-#include "mesh_ops/light/kept_light.h"
+#include "mesh_ops/light/cached_light.h"
 
 namespace rebake {
 
@@ -32,7 +32,7 @@ PosedBody in_lattice(std::string name, ProxyMesh rest) {
 
 }  // namespace
 
-ProxyMesh PosedBody::caged(std::uint32_t seed, double amplitude) const {
+ProxyMesh PosedBody::random_pose(std::uint32_t seed, double amplitude) const {
   std::mt19937 random(seed);
   Box box;
   for (const Vec3& v : cage.vertices) box.extend(v);
@@ -101,15 +101,16 @@ PosedBody wrapped_part(const Scene& scene, const Box& shares, double coarseness)
   for (const Face& face : soup.opaque.faces)
     if (box.contains((part.points[face[0]] + part.points[face[1]] + part.points[face[2]]) / 3))
       part.faces.push_back(face);
-  if (part.faces.empty()) throw Error("there is nothing in that part of the scene");
-  PosedBody body = in_lattice("branch", largest_piece(wrap(part, coarseness)));
+  if (part.faces.empty())
+    throw Error("the studied part of the scene has no opaque triangle; pass another scene with --scene");
+  PosedBody body = in_lattice("branch", largest_component(wrap(part, coarseness)));
   body.chart = disk_chart(body.rest);
   return body;
 }
 
 TracedPose traced_pose(const ProxyMesh& rest, const ProxyMesh& posed, int rays, const Progress& progress) {
   TracedPose pose;
-  pose.turns = vertex_turns(rest, posed);
+  pose.turns = vertex_rotations(rest, posed);
   pose.sites = vertex_sites(rest, posed, pose.turns);
   pose.transfer = traced_transfer(pose.sites, rays_among({{solid_object(posed), Affine::Identity()}}), rays, progress);
   return pose;

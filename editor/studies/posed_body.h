@@ -21,7 +21,7 @@ struct PosedBody {
 
   /// Random pose: each cage vertex moves by a normal deviate along each axis. The standard deviation is `amplitude`
   /// times the cage's longest side. Deterministic per seed.
-  ProxyMesh caged(std::uint32_t seed, double amplitude) const;
+  ProxyMesh random_pose(std::uint32_t seed, double amplitude) const;
   /// The body bent along its longest axis.
   ProxyMesh bent(double degrees) const;
 };

@@ -42,10 +42,10 @@ Image enlarged(const Image& image, int width, int height) {
 }
 
 // Runs gnuplot on a script and returns its output. Throws Error if gnuplot fails.
-std::string plotted(const std::string& script) {
+std::string run_gnuplot(const std::string& script) {
   std::string name = (std::filesystem::temp_directory_path() / "rebake-plot-XXXXXX").string();
   const int file = ::mkstemp(name.data());
-  if (file < 0) throw FileError(name, "cannot be made for gnuplot");
+  if (file < 0) throw FileError(name, "cannot be created for gnuplot");
   const bool written = ::write(file, script.data(), script.size()) == static_cast<ssize_t>(script.size());
   ::close(file);
   std::string output;
@@ -56,15 +56,15 @@ std::string plotted(const std::string& script) {
   }
   const bool done = pipe != nullptr && ::pclose(pipe) == 0 && !output.empty();
   ::unlink(name.c_str());
-  if (!done) throw Error("the table is written, but gnuplot failed; install gnuplot-nox for the plots");
+  if (!done) throw Error("the table was written, but gnuplot failed; install gnuplot-nox for the plots");
   return output;
 }
 
 }  // namespace
 
 StudyTable picture_table() {
-  return {{"milliseconds a frame", "PSNR dB (100: equal)", "largest of 255", "fastest ms", "slowest ms", "x of largest",
-           "y of largest"},
+  return {{"milliseconds per frame", "PSNR dB (100: equal)", "largest error of 255", "fastest ms", "slowest ms",
+           "x of largest error", "y of largest error"},
           {},
           0,
           1,
@@ -141,7 +141,7 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
        {std::pair{fmt::format("svg size 860,{} dynamic background rgb 'white'", height), "svg"},
         std::pair{fmt::format("pngcairo size 860,{}", height), "png"}})
     write_file_atomically(base + "." + extension,
-                          plotted(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)), guard);
+                          run_gnuplot(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)), guard);
 }
 
 }  // namespace
@@ -156,10 +156,10 @@ void prepare_study_folder(const Study& study, const std::filesystem::path& folde
   for (const char* ending : {".csv", ".svg", ".png", "-2.svg", "-2.png"}) {
     guard.check_file(base + ending);
     if (std::filesystem::is_symlink(base + ending, error))
-      throw FileError(base + ending, "is a link, which the study would write through; remove it");
+      throw FileError(base + ending, "is a symbolic link; remove it, since the study would overwrite its target");
   }
   if (std::filesystem::exists(base + ".csv", error) && !read_file(base + ".csv").starts_with("choice,"))
-    throw FileError(base + ".csv", "is no table of an earlier study; choose another folder");
+    throw FileError(base + ".csv", "is not a table of an earlier study; choose another folder");
 }
 
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,

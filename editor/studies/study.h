@@ -55,16 +55,16 @@ StudyTable study_slim(const StudyInput& input);
 
 /// All studies, in the order of `rebake study --help`.
 inline constexpr Study study_table[] = {
-    {"samples", "samples a pixel, against 64 samples", study_samples},
-    {"resolution", "share of the resolution, enlarged, against 64 samples", study_resolution},
-    {"decoder", "precision and place of the decoder's weights, against 32-bit constants", study_decoder},
+    {"samples", "samples per pixel, against 64 samples", study_samples},
+    {"resolution", "rendering at lower resolution and upscaling, against 64 samples", study_resolution},
+    {"decoder", "precision and storage of the decoder's weights, against 32-bit constants", study_decoder},
     {"cage", "cage coordinates, their precision and resolution", study_cage},
     {"rotation", "local rotations, against exact gradients and SVD", study_rotation},
-    {"wrap", "coarseness of the wrap around what shows something", study_wrap},
-    {"fuse", "one decoder for several: how it is made, its width, bits a feature", study_fuse},
-    {"transfer", "what a bent body sees of the sky: turned along, learnt, traced", study_transfer},
-    {"light", "the light of a bake, found again, by views and albedos", study_light},
-    {"slim", "what nobody sees removed, and fewer bits a feature: size, pictures, frame", study_slim},
+    {"wrap", "coarseness of the wrap around opaque triangles", study_wrap},
+    {"fuse", "one decoder fitted to several: method, width, bits per feature", study_fuse},
+    {"transfer", "radiance transfer of a deformed body: rotated, learnt, traced", study_transfer},
+    {"light", "estimation of baked light, by views and albedos", study_light},
+    {"slim", "removal of invisible triangles, and fewer bits per feature: size, image error, frame time", study_slim},
 };
 
 /// Empty table for comparisons of images. Columns: median frame time in ms; PSNR in dB, at most 100; largest channel

@@ -56,7 +56,7 @@ std::string read_all(const fs::path& path, int file, std::uint64_t expected, std
     if (got < 0) fail(path, "cannot be read");
     if (got == 0) break;
     filled += static_cast<std::size_t>(got);
-    if (filled > most) throw FileError(path, "is larger than " + megabytes(most) + ", the most that is read");
+    if (filled > most) throw FileError(path, "is larger than " + megabytes(most) + ", the size limit for reading");
   }
   bytes.resize(filled);
   return bytes;
@@ -87,7 +87,7 @@ Input open_input(const fs::path& path, bool pipes) {
 std::string read_some(const fs::path& path, std::uint64_t most, bool pipes) {
   const Input input = open_input(path, pipes);
   if (input.size.value_or(0) > most)
-    throw FileError(path, "is larger than " + megabytes(most) + ", the most that is read");
+    throw FileError(path, "is larger than " + megabytes(most) + ", the size limit for reading");
   return read_all(path, input.file.value, input.size.value_or(65536), most);
 }
 
@@ -164,8 +164,8 @@ void remove_leftovers(const fs::path& folder, const std::string& of, bool are_fo
 void make_folders(const fs::path& folder) {
   if (folder.empty() || fs::is_directory(folder)) return;
   make_folders(folder.parent_path());
-  if (file_calls().mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) fail(folder, "cannot be made");
-  if (!fs::is_directory(folder)) throw FileError(folder, "is no folder");
+  if (file_calls().mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) fail(folder, "cannot be created");
+  if (!fs::is_directory(folder)) throw FileError(folder, "is not a folder");
   sync_folder(folder.parent_path());
 }
 
@@ -199,7 +199,7 @@ void refuse_write_protected(const fs::path& path) {
 fs::path followed(const fs::path& path) {
   std::error_code error;
   fs::path target = fs::weakly_canonical(fs::absolute(path), error);
-  if (error) throw FileError(path, "cannot be reached: " + error.message());
+  if (error) throw FileError(path, "cannot be resolved: " + error.message());
   return target.has_filename() ? target : target.parent_path();
 }
 
@@ -270,12 +270,12 @@ bool OutputFile::sync() const {
 void sync_folder(const fs::path& folder) {
   const fs::path named = folder.empty() ? fs::path(".") : folder;
   const int descriptor = file_calls().open(named.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0);
-  if (descriptor < 0) fail(named, "cannot be synced");
+  if (descriptor < 0) fail(named, "cannot be synced to disk");
   const bool done = file_calls().fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
   const int error = errno;
   file_calls().close(descriptor);
   errno = error;
-  if (!done) fail(named, "cannot be synced");
+  if (!done) fail(named, "cannot be synced to disk");
 }
 
 void write_file_atomically(const fs::path& named, std::string_view bytes, const SourceGuard& guard) {
@@ -322,7 +322,7 @@ void remove_file(const fs::path& path) {
 AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
                            const std::function<void(const fs::path&)>& may_replace)
     : guard_(guard) {
-  if (target.empty()) throw FieldError("out", "names no folder to write to");
+  if (target.empty()) throw FieldError("out", "is empty; name a folder to write to");
   guard.check_folder(target);
   target_ = followed(target);
   std::error_code error;

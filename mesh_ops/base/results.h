@@ -8,17 +8,17 @@ namespace rebake {
 
 /// Content-addressed cache of expensive results, so that undo, opening and replay need not compute them again. Entries
 /// may vanish at any time. Thread-safe.
-class Results {
+class ResultCache {
  public:
-  virtual ~Results() = default;
+  virtual ~ResultCache() = default;
   virtual std::optional<std::string> find(const std::string& key) = 0;
   /// Caches a result; failures are ignored.
   virtual void keep(const std::string& key, std::string_view bytes) = 0;
 
  protected:
-  Results() = default;
-  Results(const Results&) = default;
-  Results& operator=(const Results&) = default;
+  ResultCache() = default;
+  ResultCache(const ResultCache&) = default;
+  ResultCache& operator=(const ResultCache&) = default;
 };
 
 /// Cache key: `kind` (name and version of the algorithm) followed by hashes of its input bytes.

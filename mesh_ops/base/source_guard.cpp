@@ -69,7 +69,7 @@ void SourceGuard::add(const fs::path& source) {
 void SourceGuard::add_folder(const fs::path& folder, const std::string& role) {
   // Many nodes share a source; its links are searched once.
   if (!add_source({folder, true, role, identity_of(folder), false})) return;
-  const std::string linked = "what a link in a source of this scene leads to";
+  const std::string linked = "the target of a link in a source of this scene";
   for_each_entry(folder, [&](const fs::directory_entry& entry) {
     std::error_code ignored;
     if (!entry.is_symlink(ignored)) return;
@@ -102,7 +102,7 @@ void SourceGuard::add_contents(const fs::path& folder, const std::string& role) 
 
 void SourceGuard::release_contents(const fs::path& folder) {
   const fs::path path = plain_path(folder);
-  std::erase_if(sources_, [&](const Source& source) { return source.whole_may_go && is_same(source, path); });
+  std::erase_if(sources_, [&](const Source& source) { return source.replaceable && is_same(source, path); });
 }
 
 bool SourceGuard::add_source(Source source) {
@@ -110,7 +110,7 @@ bool SourceGuard::add_source(Source source) {
     if (known.path == source.path && known.is_folder == source.is_folder) {
       // The source may have been replaced since. Undo and journals still need the earlier one if it was moved.
       if (!source.seen.empty() && !was_seen(known, source.seen)) known.seen.push_back(source.seen.front());
-      known.whole_may_go = known.whole_may_go && source.whole_may_go;
+      known.replaceable = known.replaceable && source.replaceable;
       known.role = std::move(source.role);
       return false;
     }
@@ -120,7 +120,7 @@ bool SourceGuard::add_source(Source source) {
 
 const SourceGuard::Source* SourceGuard::source_holding(const fs::path& wanted) const {
   for (const Source& source : sources_) {
-    const auto may_go = [&](const fs::path& at) { return source.whole_may_go && at == wanted; };
+    const auto may_go = [&](const fs::path& at) { return source.replaceable && at == wanted; };
     if (lies_in(wanted, source.path) && !may_go(source.path)) return &source;
     for (fs::path at = wanted;; at = at.parent_path()) {
       if (is_same(source, at) && !may_go(at)) return &source;
@@ -144,11 +144,11 @@ void SourceGuard::check_folder(const fs::path& path) const {
   const fs::path wanted = plain_path(path);
   check_file(path);
   const auto refuse = [&](const Source& source) {
-    throw FileError(path, "holds \"" + source.path.string() + "\", " + source.role +
-                              ", which would be lost with it; write to another folder");
+    throw FileError(path, "contains \"" + source.path.string() + "\", " + source.role +
+                              ", which would be lost; write to another folder");
   };
   for (const Source& source : sources_) {
-    if (lies_in(source.path, wanted) && !(source.whole_may_go && source.path == wanted)) refuse(source);
+    if (lies_in(source.path, wanted) && !(source.replaceable && source.path == wanted)) refuse(source);
     for (fs::path at = source.path.parent_path(); at != at.parent_path(); at = at.parent_path())
       if (const auto there = identity_of(at); !there.empty() && there == identity_of(wanted)) refuse(source);
   }

@@ -47,7 +47,7 @@ class SourceGuard {
     bool is_folder;
     std::string role;
     std::vector<Identity> seen;  ///< identity of the path's target at each time it was added
-    bool whole_may_go = false;   ///< replacing the whole folder is allowed, see add_contents()
+    bool replaceable = false;    ///< replacing the whole folder is allowed, see add_contents()
   };
   static std::vector<Identity> identity_of(const std::filesystem::path& path);
   static bool was_seen(const Source& source, const std::vector<Identity>& there);

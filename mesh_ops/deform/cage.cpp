@@ -111,7 +111,7 @@ double winding_around(const Vec3& point, const Cage& part) {
 
 // Per face, 1 if it must be flipped. Components that lie inside no other one must face outwards; components inside
 // those are flipped along with them, so a cavity stays a cavity.
-std::vector<std::uint8_t> faces_to_turn(const Cage& cage) {
+std::vector<std::uint8_t> faces_to_flip(const Cage& cage) {
   const std::vector<std::uint32_t> of_vertex = components(cage);
   std::map<std::uint32_t, Cage> parts;
   for (const Face& face : cage.faces) parts[of_vertex[face[0]]].faces.push_back(face);
@@ -150,8 +150,8 @@ Cage checked_cage(Cage cage) {
     const Face& face = cage.faces[f];
     for (std::size_t k = 0; k < 3; ++k) {
       if (face[k] >= cage.vertices.size())
-        throw Error(fmt::format("cage triangle {} names point {}, which is not there", f, face[k]));
-      if (face[k] == face[(k + 1) % 3]) throw Error(fmt::format("cage triangle {} names point {} twice", f, face[k]));
+        throw Error(fmt::format("cage triangle {} uses point {}, which does not exist", f, face[k]));
+      if (face[k] == face[(k + 1) % 3]) throw Error(fmt::format("cage triangle {} uses point {} twice", f, face[k]));
       ++directed[{face[k], face[(k + 1) % 3]}];
     }
   }
@@ -159,8 +159,8 @@ Cage checked_cage(Cage cage) {
   for (const auto& [edge, count] : directed) {
     if (count > 1)
       throw Error(fmt::format(
-          "the cage edge from point {} to point {} belongs to several triangles the same way round: the surface is "
-          "non-manifold or not turned consistently there",
+          "the cage edge from point {} to point {} belongs to several triangles in the same direction: the surface is "
+          "non-manifold or inconsistently oriented there",
           edge.first, edge.second));
     if (!directed.contains({edge.second, edge.first})) ++open;
   }
@@ -171,10 +171,10 @@ Cage checked_cage(Cage cage) {
   for (const Vec3& v : cage.vertices) box.extend(v);
   const double extent = box.sizes().maxCoeff();
   if (!(extent > 0) || !std::isfinite(extent) || extent < 1e-150)
-    throw Error("the cage has no extent that numbers can hold");
+    throw Error("the cage has no extent, or coordinates out of range");
   Cage scaled = cage;
   for (Vec3& v : scaled.vertices) v = (v - box.center()) / extent;
-  const std::vector<std::uint8_t> turn = faces_to_turn(scaled);
+  const std::vector<std::uint8_t> turn = faces_to_flip(scaled);
   for (std::size_t f = 0; f < turn.size(); ++f)
     if (turn[f] != 0) {
       std::swap(cage.faces[f][1], cage.faces[f][2]);

@@ -16,7 +16,7 @@ namespace {
 
 // Subtracts the mean motion of the vertices if no vertex deviates from it by half its length, and returns it (else
 // zero). Weights sum to 1 only up to rounding, and a long translation would amplify that error.
-Vec3 take_shift(std::vector<Vec3>& motions, std::size_t vertices) {
+Vec3 subtract_mean_motion(std::vector<Vec3>& motions, std::size_t vertices) {
   Vec3 mean(0, 0, 0);
   for (std::size_t v = 0; v < vertices; ++v) mean += motions[v] / static_cast<double>(vertices);
   double spread = 0;
@@ -60,7 +60,7 @@ DeformedPoints deform_points(const Coordinates& coordinates, const Cage& rest, c
   if (jacobians) result.jacobians.assign(points.size(), Mat3::Identity());
   if (points.empty()) return result;
   std::vector<Vec3> motions = coordinates.row_motions(rest, moved);
-  const Vec3 shift = take_shift(motions, rest.vertices.size());
+  const Vec3 shift = subtract_mean_motion(motions, rest.vertices.size());
   const std::vector<std::uint32_t> order = curve_order(points);
   for_blocks(coordinates, points, order, jacobians, progress,
              [&](std::size_t block, const std::vector<double>& weights, const std::vector<double>& slopes,
@@ -108,7 +108,7 @@ std::uint64_t CageBinding::memory() const {
 void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& out) const {
   out.resize(points_.size());
   std::vector<Vec3> motions = coordinates_.row_motions(rest_, moved);
-  const Vec3 shift = take_shift(motions, rest_.vertices.size());
+  const Vec3 shift = subtract_mean_motion(motions, rest_.vertices.size());
   const MovingRows moving = moving_rows(motions);
   const std::size_t block_size = coordinates_.rows() * batch_lanes;
   const RowSums sum_rows = row_sums();

@@ -76,7 +76,8 @@ Wide3 wide_local(const CageFrame& frame, const Vec3& point) {
 CageFrame frame_of(const Cage& cage) {
   Box box;
   for (const Vec3& v : cage.vertices) box.extend(v);
-  if (box.isEmpty() || !box.sizes().allFinite() || box.sizes().maxCoeff() <= 0) throw Error("the cage has no extent");
+  if (box.isEmpty() || !box.sizes().allFinite() || box.sizes().maxCoeff() <= 0)
+    throw Error("the cage has no extent, or coordinates out of range");
   CageFrame frame;
   frame.center = box.center();
   // Length of the diagonal; scaled first because squares of 1e±300 would overflow.
@@ -115,7 +116,7 @@ CageFrame frame_of(const Cage& cage) {
   return frame;
 }
 
-std::array<Wide, 3> wide_place(const CageFrame& cage, const Vec3& point) {
+std::array<Wide, 3> wide_local_point(const CageFrame& cage, const Vec3& point) {
   return rounded<Wide>(wide_local(cage, point));
 }
 

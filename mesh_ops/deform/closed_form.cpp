@@ -25,8 +25,8 @@ Mat3 frame_of(const ClosedForm& form) {
 
 void check(const ClosedForm& form) {
   if (!form.origin.allFinite()) throw FieldError("origin", "must be finite");
-  if (!form.axis.allFinite() || !(form.axis.stableNorm() > 0)) throw FieldError("axis", "must have a length");
-  if (!(form.from < form.to) || !std::isfinite(form.to - form.from)) throw FieldError("from", "must lie below to");
+  if (!form.axis.allFinite() || !(form.axis.stableNorm() > 0)) throw FieldError("axis", "must be finite and not zero");
+  if (!(form.from < form.to) || !std::isfinite(form.to - form.from)) throw FieldError("from", "must be less than to");
   if (form.kind == ClosedForm::Kind::bend) {
     const Vec3 z = form.axis.stableNormalized();
     if (!(Vec3(form.direction - form.direction.dot(z) * z).stableNorm() > 1e-9 * form.direction.stableNorm()))
@@ -83,8 +83,8 @@ Deformed deform(const ClosedForm& form, const Vec3& point) {
 
 std::vector<ClosedForm> along_curve(const ClosedForm& form, const std::vector<Vec3>& spine) {
   if (form.kind == ClosedForm::Kind::taper)
-    throw FieldError("spine", "is for bends, twists and stretches; leave it out");
-  if (spine.size() < 2) throw FieldError("spine", "must have two points or more");
+    throw FieldError("spine", "applies only to bends, twists and stretches; leave it out");
+  if (spine.size() < 2) throw FieldError("spine", "must have at least two points");
   const bool bends = form.kind == ClosedForm::Kind::bend;
   const Vec3 turn = bends ? Vec3(form.axis.cross(form.direction).stableNormalized()) : Vec3(0, 0, 0);
   std::vector<ClosedForm> pieces;
@@ -93,7 +93,8 @@ std::vector<ClosedForm> along_curve(const ClosedForm& form, const std::vector<Ve
     ClosedForm piece = form;
     const Vec3 way = spine[k + 1] - spine[k];
     const double length = way.stableNorm(), begins = at;
-    if (!way.allFinite() || !(length > 0)) throw FieldError("spine", "must have points that are finite and differ");
+    if (!way.allFinite() || !(length > 0))
+      throw FieldError("spine", "must have finite points, and no equal neighbours");
     at += length;
     piece.origin = spine[k];
     piece.axis = way;
@@ -125,7 +126,7 @@ std::vector<ClosedForm> along_curve(const ClosedForm& form, const std::vector<Ve
       pieces.push_back(piece);
     }
   }
-  if (pieces.empty()) throw FieldError("spine", "is shorter than where the deformation begins");
+  if (pieces.empty()) throw FieldError("spine", "ends before the deformation begins; lower from or lengthen the spine");
   std::reverse(pieces.begin(), pieces.end());
   return pieces;
 }

@@ -43,8 +43,8 @@ class Coordinates {
   /// Computes weights of batch_lanes points, given in the space of the cage, as weights[row][lane], and
   /// gradients[row][axis][lane] if `gradients` is not null. Sets outside[lane] to 1 and all weights to 0 if the
   /// coordinates are undefined at a point. Thread-safe.
-  virtual void weigh(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
-                     std::uint8_t* outside) const = 0;
+  virtual void compute_weights(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
+                               std::uint8_t* outside) const = 0;
   /// Motion per row when the cage's vertices go from `rest` to `moved` (same faces). Zero for rows that do not move.
   virtual std::vector<Vec3> row_motions(const Cage& rest, const std::vector<Vec3>& moved) const;
 

@@ -26,15 +26,15 @@ TriangleSet folded_triangles(const BakedObject& object) {
 DeformedObject deformed(const BakedObject& object, const Affine& to_world, const TriangleSet& flags, double falloff,
                         const SpaceDeformation& deformation) {
   const auto corners = corners_of(object);
-  const FlaggedPlaces places = flagged_places(object, *corners, to_world, flags);
-  const DeformedPlaces moved = deform_places(object, *corners, to_world, flags, places, falloff, deformation);
+  const FlaggedPositions places = flagged_positions(object, *corners, to_world, flags);
+  const DeformedPositions moved = deform_positions(object, *corners, to_world, flags, places, falloff, deformation);
   const Affine to_object = to_world.inverse();
   auto made = std::make_shared<BakedObject>(object);
-  keep_bodies(*made, object);
+  record_bodies(*made, object);
   std::size_t first = 0;
   for (TextureSet& set : made->sets) {
     const std::size_t total = set.soup.triangle_count();
-    std::vector<std::uint32_t> place_of(set.soup.positions().size(), FlaggedPlaces::none);
+    std::vector<std::uint32_t> place_of(set.soup.positions().size(), FlaggedPositions::none);
     std::vector<std::uint8_t> folded(total, 0);
     for (std::size_t f = 0; f < total; ++f)
       for (std::size_t k = 0; k < 3; ++k) {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "mesh_ops/deform/deform_places.h"
+#include "mesh_ops/deform/deform_positions.h"
 #include "mesh_ops/scene/object.h"
 
 namespace rebake {
@@ -16,8 +16,8 @@ struct DeformedObject {
   std::shared_ptr<const BakedObject> object;
   DeformationReport report;
 };
-/// Deforms the flagged triangles in world space; see deform_places(). If `falloff` is 0, corners that they share with
-/// unflagged triangles are split.
+/// Deforms the flagged triangles in world space; see deform_positions(). If `falloff` is 0, corners that they share
+/// with unflagged triangles are split.
 DeformedObject deformed(const BakedObject& object, const Affine& to_world, const TriangleSet& flags, double falloff,
                         const SpaceDeformation& deformation);
 

@@ -24,7 +24,7 @@ constexpr double clear_of_surface = 1.01;
 // Nodes nearer to the surface than this take its value.
 constexpr double least_cut = 1e-8;
 // Search radius of an outer node for samples to extrapolate from, and the radius if too few are found.
-constexpr double near_reach = 2.45, far_reach = 3.75;
+constexpr double search_radius = 2.45, wide_search_radius = 3.75;
 
 // Barycentric coordinates of the nearest point of a triangle (Ericson 2005, 5.1.5: by the region that contains the
 // projection).
@@ -112,7 +112,7 @@ DirichletGrid::DirichletGrid(const Cage& surface, int resolution, const Progress
     }
   cut_links(domain, vertices, surface.faces, progress);
   multigrid_ = std::make_unique<GridMultigrid>(std::move(domain));
-  continue_outwards(vertices, surface.faces, progress);
+  extrapolate_outwards(vertices, surface.faces, progress);
 }
 
 void DirichletGrid::find_distances(const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
@@ -296,16 +296,16 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
   }
 }
 
-void DirichletGrid::continue_outwards(const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
-                                      const Progress& progress) {
+void DirichletGrid::extrapolate_outwards(const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
+                                         const Progress& progress) {
   const GridDomain& domain = multigrid_->domain();
-  outer_of_.assign(distance_.size(), none);
+  outer_index_.assign(distance_.size(), none);
   for (std::uint32_t node = 0; node < distance_.size(); ++node) {
     if (nearest_[node] == none || domain.slot_of[node] != none) continue;
     const Face& face = faces[nearest_[node]];
     const SurfacePoint foot{nearest_[node],
                             nearest_on(place_of(node), vertices[face[0]], vertices[face[1]], vertices[face[2]])};
-    outer_of_[node] = static_cast<std::uint32_t>(outer_.size());
+    outer_index_[node] = static_cast<std::uint32_t>(outer_.size());
     outer_.push_back({node, static_cast<std::uint32_t>(surface_.size()), weighted(foot.corners, vertices, face)});
     surface_.push_back(foot);
   }
@@ -315,21 +315,21 @@ void DirichletGrid::continue_outwards(const std::vector<Vec3>& vertices, const s
   std::vector<std::vector<Term>> terms(outer_.size());
   tbb::parallel_for(std::size_t{0}, outer_.size(), [&](std::size_t k) {
     if (k % 1024 == 0) progress.at(task, 0);
-    terms[k] = continuation(outer_[k], near_reach, places);
-    if (terms[k].empty()) terms[k] = continuation(outer_[k], far_reach, places);
+    terms[k] = extrapolation_terms(outer_[k], search_radius, places);
+    if (terms[k].empty()) terms[k] = extrapolation_terms(outer_[k], wide_search_radius, places);
   });
   first_term_.assign(1, 0);
   for (std::size_t k = 0; k < outer_.size(); ++k) {
     terms_.insert(terms_.end(), terms[k].begin(), terms[k].end());
     first_term_.push_back(terms_.size());
-    if (terms[k].empty()) lonely_.push_back(inside_nodes() + k);
+    if (terms[k].empty()) isolated_nodes_.push_back(inside_nodes() + k);
   }
 }
 
 // Linear extrapolation: the value at the foot plus a gradient. The gradient is fitted by weighted least squares to
 // inside nodes and to the surface points where their links are cut.
-std::vector<DirichletGrid::Term> DirichletGrid::continuation(const Outer& outer, double reach,
-                                                             const std::vector<Vec3>& surface_places) const {
+std::vector<DirichletGrid::Term> DirichletGrid::extrapolation_terms(const OuterNode& outer, double reach,
+                                                                    const std::vector<Vec3>& surface_places) const {
   const GridDomain& domain = multigrid_->domain();
   const auto inside = static_cast<std::uint32_t>(domain.node_of.size());
   const Vec3 place = place_of(outer.node), out = place - outer.foot_place;
@@ -420,8 +420,8 @@ bool DirichletGrid::find_cell(const Vec3& point, Cell& cell) const {
                                     low[2] + static_cast<int>(k >> 2U));
     if (domain.slot_of[node] != none)
       cell.nodes[k] = domain.slot_of[node];
-    else if (outer_of_[node] != none)
-      cell.nodes[k] = static_cast<std::uint32_t>(domain.node_of.size()) + outer_of_[node];
+    else if (outer_index_[node] != none)
+      cell.nodes[k] = static_cast<std::uint32_t>(domain.node_of.size()) + outer_index_[node];
     else
       return false;
   }

@@ -41,7 +41,7 @@ class DirichletGrid {
   /// Number of inside nodes. They come first; outer nodes follow.
   std::size_t inside_nodes() const { return multigrid_->domain().node_of.size(); }
   /// Outer nodes with too few inside nodes near them to extrapolate from, as in spikes thinner than a step.
-  const std::vector<std::size_t>& lonely() const { return lonely_; }
+  const std::vector<std::size_t>& isolated_nodes() const { return isolated_nodes_; }
   /// Position of an inside or outer node.
   Vec3 place(std::size_t node) const;
 
@@ -55,7 +55,7 @@ class DirichletGrid {
 
  private:
   /// An outer node.
-  struct Outer {
+  struct OuterNode {
     std::uint32_t node;
     std::uint32_t foot;  ///< nearest point of the surface: index in surface()
     Vec3 foot_place;     ///< position of that point, in steps
@@ -73,8 +73,10 @@ class DirichletGrid {
                                         const Progress& progress) const;
   void cut_links(GridDomain& domain, const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
                  const Progress& progress);
-  void continue_outwards(const std::vector<Vec3>& vertices, const std::vector<Face>& faces, const Progress& progress);
-  std::vector<Term> continuation(const Outer& outer, double reach, const std::vector<Vec3>& surface_places) const;
+  void extrapolate_outwards(const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
+                            const Progress& progress);
+  std::vector<Term> extrapolation_terms(const OuterNode& outer, double reach,
+                                        const std::vector<Vec3>& surface_places) const;
 
   double step_ = 0;
   Vec3 origin_;
@@ -84,11 +86,11 @@ class DirichletGrid {
   std::vector<SurfacePoint> surface_;
   /// Per row of the domain's `cuts` and direction: index in surface_, or none.
   std::vector<std::array<std::uint32_t, grid_directions>> cut_points_;
-  std::vector<Outer> outer_;
-  std::vector<std::uint32_t> outer_of_;  ///< per node: index in outer_, or none
-  std::vector<std::size_t> first_term_;  ///< per outer node: its first entry in terms_; one more at the end
+  std::vector<OuterNode> outer_;
+  std::vector<std::uint32_t> outer_index_;  ///< per node: index in outer_, or none
+  std::vector<std::size_t> first_term_;     ///< per outer node: its first entry in terms_; one more at the end
   std::vector<Term> terms_;
-  std::vector<std::size_t> lonely_;
+  std::vector<std::size_t> isolated_nodes_;
   std::unique_ptr<GridMultigrid> multigrid_;
 };
 

@@ -60,9 +60,9 @@ void fade_out(const std::vector<Vec3>& rest, const std::vector<BorderPiece>& bor
 }
 
 std::vector<BorderPiece> border_of(const WeldedCorners& corners, const TriangleSet& flags,
-                                   const FlaggedPlaces& places) {
+                                   const FlaggedPositions& places) {
   const auto is_border = [&](std::uint32_t place) {
-    return places.number_of[place] != FlaggedPlaces::none && places.shared[place] != 0 &&
+    return places.number_of[place] != FlaggedPositions::none && places.shared[place] != 0 &&
            places.world[places.number_of[place]].allFinite();
   };
   const auto for_edges = [&](bool flagged, const auto& visit) {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mesh_ops/deform/cage_deformation.h"
-#include "mesh_ops/deform/deform_places.h"
+#include "mesh_ops/deform/deform_positions.h"
 
 namespace rebake {
 
@@ -16,7 +16,8 @@ struct BorderPiece {
 };
 
 /// The border of the flagged triangles in world space: shared edges, and shared corners that belong to no such edge.
-std::vector<BorderPiece> border_of(const WeldedCorners& corners, const TriangleSet& flags, const FlaggedPlaces& places);
+std::vector<BorderPiece> border_of(const WeldedCorners& corners, const TriangleSet& flags,
+                                   const FlaggedPositions& places);
 
 /// Fades a deformation out towards the border: the full motion at distance `falloff` and beyond, none on the border,
 /// with a cubic smoothstep between. Adjusts positions and Jacobians of `deformed`, whose entries belong to the points

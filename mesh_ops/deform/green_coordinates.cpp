@@ -11,8 +11,8 @@ class Green final : public Coordinates {
   explicit Green(const Cage& cage)
       : Coordinates(cage.vertices.size() + cage.faces.size()), frame_(frame_of(cage)), face_count_(cage.faces.size()) {}
 
-  void weigh(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
-             std::uint8_t* outside) const override {
+  void compute_weights(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
+                       std::uint8_t* outside) const override {
     const std::size_t vertex_count = frame_.vertices.size();
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
       const Vec3& p = points[lane];
@@ -74,7 +74,7 @@ class Green final : public Coordinates {
   Vec3 needle_motion(const FaceFrame& face, const std::vector<Vec3>& moved) const {
     const WideFace wide = wide_face(frame_, face);
     std::array<std::array<Wide, 3>, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = wide_place(frame_, moved[face.vertices[k]]);
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = wide_local_point(frame_, moved[face.vertices[k]]);
     std::array<Wide, 3> along, out;
     const FaceFrameOf<Wide>& f = wide.frame;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -52,7 +52,7 @@ Mat3 rotation_between(const Vec3& a, const Vec3& b) {
 
 // The rotation that best maps centred points to their targets (Kabsch). If it is not unique (collinear or coincident
 // points), the one with the smallest angle.
-Mat3 fitted_turn(const Mat3& covariance) {
+Mat3 fit_rotation(const Mat3& covariance) {
   const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3& sizes = svd.singularValues();
   if (!(sizes[0] > 0)) return Mat3::Identity();
@@ -72,7 +72,7 @@ RigidMotion fitted(const std::vector<Vec3>& rest, const std::vector<Vec3>& place
   }
   Mat3 covariance = Mat3::Zero();
   for (std::size_t k = 0; k < rest.size(); ++k) covariance += (places[k] - to) * (rest[k] - from).transpose();
-  motion.turn = fitted_turn(covariance);
+  motion.turn = fit_rotation(covariance);
   motion.shift = to - motion.turn * from;
   double farthest = 0, size = 1;
   for (std::size_t k = 0; k < rest.size(); ++k) {
@@ -111,19 +111,19 @@ double rigidity_energy(const std::vector<Vec3>& rest, const std::vector<Vec3>& m
 
 }  // namespace
 
-HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVertex>& held, int iterations,
-                                 const Progress& progress) {
-  if (held.empty()) throw Error("no cage point is held; fix some and move some");
-  HandledCage result{cage.vertices};
+ConstrainedCage as_rigid_as_possible(const Cage& cage, const std::vector<ConstrainedVertex>& held, int iterations,
+                                     const Progress& progress) {
+  if (held.empty()) throw Error("no cage point is fixed or moved; fix some points and move others");
+  ConstrainedCage result{cage.vertices};
   const std::vector<std::uint32_t> component = components(cage);
   std::vector<std::uint8_t> has_held(cage.vertices.size(), 0), used(cage.vertices.size(), 0);
-  for (const HandledVertex& h : held) has_held[component[h.vertex]] = 1;
+  for (const ConstrainedVertex& h : held) has_held[component[h.vertex]] = 1;
   for (const Face& face : cage.faces)
     for (const std::uint32_t v : face) used[v] = 1;
-  if (std::none_of(held.begin(), held.end(), [&](const HandledVertex& h) { return used[h.vertex] != 0; }))
-    throw Error("none of the held points belongs to a triangle of the cage; fix some that do");
+  if (std::none_of(held.begin(), held.end(), [&](const ConstrainedVertex& h) { return used[h.vertex] != 0; }))
+    throw Error("none of the fixed or moved points belongs to a triangle of the cage; fix some that do");
   // Constrained vertices get exactly their targets.
-  for (const HandledVertex& h : held) result.vertices[h.vertex] = h.place;
+  for (const ConstrainedVertex& h : held) result.vertices[h.vertex] = h.place;
   for (std::uint32_t v = 0; v < cage.vertices.size(); ++v)
     if (used[v] != 0 && component[v] == v && has_held[v] == 0) ++result.free_components;
   if (result.vertices == cage.vertices) return result;
@@ -138,7 +138,7 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
   for (std::uint32_t first = 0; first < cage.vertices.size(); ++first) {
     if (used[first] == 0 || component[first] != first || has_held[first] == 0) continue;
     std::vector<Vec3> rest, places;
-    for (const HandledVertex& h : held)
+    for (const ConstrainedVertex& h : held)
       if (used[h.vertex] != 0 && component[h.vertex] == first) {
         rest.push_back(local(cage.vertices[h.vertex]));
         places.push_back(local(h.place));
@@ -163,14 +163,14 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
     for (const Face& face : cage.faces)
       if (has_held[component[face[0]]] != 0 &&
           mesh.add_face(number[face[0]], number[face[1]], number[face[2]]) == Mesh::null_face())
-        throw Error("two parts of the cage meet in a single point: handles need a cage without such places");
+        throw Error("two parts of the cage meet in a single point: handles need a manifold cage; separate the parts");
     Deformation deformation(mesh);
     for (const auto v : mesh.vertices()) deformation.insert_roi_vertex(v);
     // A vertex of no face gets its target, and influences no other.
-    for (const HandledVertex& h : held)
+    for (const ConstrainedVertex& h : held)
       if (used[h.vertex] != 0) deformation.insert_control_vertex(number[h.vertex]);
     if (!deformation.preprocess()) throw Error("the handles do not determine the cage; fix some more points");
-    for (const HandledVertex& h : held)
+    for (const ConstrainedVertex& h : held)
       if (used[h.vertex] != 0) {
         const Vec3 place = local(h.place);
         deformation.set_target_position(number[h.vertex], Kernel::Point_3(place.x(), place.y(), place.z()));
@@ -185,7 +185,7 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
         result.residual = std::max(result.residual, (place - moved[v]).norm());
         moved[v] = place;
       }
-      progress.at("rigid as possible", static_cast<double>(++result.iterations) / iterations);
+      progress.at("deforming as rigidly as possible", static_cast<double>(++result.iterations) / iterations);
     } while (result.iterations < iterations && result.residual > handles_residual);
     std::vector<Face> solved;
     for (const Face& face : cage.faces)
@@ -198,7 +198,7 @@ HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVert
                         motions[component[v]].shift.isZero(0);
     if (used[v] != 0 && has_held[component[v]] != 0 && !stands) result.vertices[v] = box.center() + moved[v] * size;
   }
-  for (const HandledVertex& h : held) result.vertices[h.vertex] = h.place;
+  for (const ConstrainedVertex& h : held) result.vertices[h.vertex] = h.place;
   return result;
 }
 

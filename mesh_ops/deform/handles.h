@@ -9,13 +9,13 @@
 namespace rebake {
 
 /// A constrained vertex of a cage and its target position. Other vertices are free.
-struct HandledVertex {
+struct ConstrainedVertex {
   std::uint32_t vertex;
   Vec3 place;
 };
 
 /// Result of an as-rigid-as-possible deformation (Sorkine, Alexa 2007; implemented by CGAL).
-struct HandledCage {
+struct ConstrainedCage {
   std::vector<Vec3> vertices;
   std::size_t free_components = 0;  ///< connected components without a constrained vertex; they do not move
   int iterations = 0;               ///< number of iterations done
@@ -23,7 +23,7 @@ struct HandledCage {
   double energy = 0;                ///< remaining energy for a cage of diagonal 1; 0 if the motion is rigid
 };
 
-/// Iterations stop when HandledCage::residual reaches this.
+/// Iterations stop when ConstrainedCage::residual reaches this.
 inline constexpr double handles_residual = 1e-6;
 
 /// Deforms a cage with some vertices constrained. Starts from the rigid motion that best fits the constrained vertices
@@ -31,7 +31,7 @@ inline constexpr double handles_residual = 1e-6;
 /// `iterations` local and global steps follow. Components whose constrained vertices did not move keep their bits.
 /// Throws Error if no vertex of a face is constrained, two parts of the cage meet in a single vertex, or the system
 /// cannot be solved.
-HandledCage as_rigid_as_possible(const Cage& cage, const std::vector<HandledVertex>& held, int iterations,
-                                 const Progress& progress = {});
+ConstrainedCage as_rigid_as_possible(const Cage& cage, const std::vector<ConstrainedVertex>& held, int iterations,
+                                     const Progress& progress = {});
 
 }  // namespace rebake

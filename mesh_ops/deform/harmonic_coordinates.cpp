@@ -59,16 +59,16 @@ class Harmonic final : public Coordinates {
       }
       progress.at(words, static_cast<double>(first + lanes) / static_cast<double>(rows()));
     }
-    tbb::parallel_for(std::size_t{0}, grid_->lonely().size(), [&](std::size_t k) {
-      const std::size_t node = grid_->lonely()[k];
+    tbb::parallel_for(std::size_t{0}, grid_->isolated_nodes().size(), [&](std::size_t k) {
+      const std::size_t node = grid_->isolated_nodes()[k];
       std::vector<double> weights;
       mean_value_weights(frame_, grid_->place(node), weights);
       std::copy(weights.begin(), weights.end(), &values_[node * rows()]);
     });
   }
 
-  void weigh(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
-             std::uint8_t* outside) const override {
+  void compute_weights(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
+                       std::uint8_t* outside) const override {
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
       const Vec3 at = frame_.to_local(points[lane]);
       DirichletGrid::Cell cell;
@@ -111,7 +111,7 @@ class Harmonic final : public Coordinates {
     const double wanted = std::ceil(resolution * least * step / thickness);
     throw FieldError(
         "resolution",
-        fmt::format("of {} is too coarse for a cage that is {:.2g} of its length thick; {}", resolution,
+        fmt::format("{} is too coarse: the thickness of the cage is {:.2g} of its longest side; {}", resolution,
                     thickness / (step * resolution),
                     wanted <= 256 ? fmt::format("use at least {:.0f}", wanted)
                                   : std::string("use mean_value or green coordinates, or a thicker cage")));
@@ -120,13 +120,15 @@ class Harmonic final : public Coordinates {
   void check_memory(int resolution, double nodes) const {
     const auto check = [&](const char* what, double bytes, double most) {
       if (bytes > most)
-        throw FieldError("resolution",
-                         fmt::format("{} would {} {:.1f} GB for this cage, {:.0f} at most; choose a lower one or a "
-                                     "coarser cage",
-                                     resolution, what, bytes * 1e-9, most * 1e-9));
+        throw FieldError(
+            "resolution",
+            fmt::format(
+                "{} would {} {:.1f} GB for this cage, at most {:.0f} GB are allowed; use a lower resolution or a "
+                "coarser cage",
+                resolution, what, bytes * 1e-9, most * 1e-9));
     };
     check("need", nodes * static_cast<double>(rows() * sizeof(double)), most_bytes);
-    check("be solved in", nodes * solver_bytes, most_solver_bytes);
+    check("temporarily need", nodes * solver_bytes, most_solver_bytes);
   }
 
   CageFrame frame_;

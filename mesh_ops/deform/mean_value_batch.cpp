@@ -67,8 +67,8 @@ REBAKE_INLINE double beside_line(double a, double square, double begin, double e
 }
 
 template <bool gradients>
-std::size_t weigh(const BatchCage& cage, const double* points, const double* start, double* workspace, double* weights,
-                  double* slopes, BatchNear* near) {
+std::size_t compute_weights(const BatchCage& cage, const double* points, const double* start, double* workspace,
+                            double* weights, double* slopes, SkippedFace* near) {
   constexpr int row = (gradients ? 4 : 1) * lanes;
   const double *px = points, *py = points + lanes, *pz = points + 2 * lanes;
   double* const angles = workspace;                      // per edge: θ / c, then its gradient; rows of lanes
@@ -312,9 +312,9 @@ std::size_t weigh(const BatchCage& cage, const double* points, const double* sta
 }  // namespace
 
 std::size_t REBAKE_BATCH_NAME(const BatchCage& cage, const double* points, const double* start, double* workspace,
-                              double* weights, double* gradients, BatchNear* near) {
-  if (gradients != nullptr) return weigh<true>(cage, points, start, workspace, weights, gradients, near);
-  return weigh<false>(cage, points, start, workspace, weights, gradients, near);
+                              double* weights, double* gradients, SkippedFace* near) {
+  if (gradients != nullptr) return compute_weights<true>(cage, points, start, workspace, weights, gradients, near);
+  return compute_weights<false>(cage, points, start, workspace, weights, gradients, near);
 }
 
 }  // namespace rebake

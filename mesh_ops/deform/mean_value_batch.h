@@ -31,7 +31,7 @@ std::size_t batch_sums_at(const BatchCage& cage, bool gradients);
 
 /// A face that the batch leaves out for one lane: the lane's point is near the face or near the line of one of its
 /// edges.
-struct BatchNear {
+struct SkippedFace {
   std::uint32_t face, lane;
   bool on;  ///< whether the point is near the face itself
 };
@@ -42,16 +42,16 @@ struct BatchNear {
 /// faces left out, listed in `near` (at most face_count · batch_lanes); weights of their lanes are incomplete. Every
 /// implementation gives the same bits: lanes do not mix, and no operation is contracted or reordered.
 using MeanValueBatch = std::size_t (*)(const BatchCage& cage, const double* points, const double* start,
-                                       double* workspace, double* weights, double* gradients, BatchNear* near);
+                                       double* workspace, double* weights, double* gradients, SkippedFace* near);
 
 // One source file, compiled once per processor level.
 std::size_t mean_value_batch_baseline(const BatchCage& cage, const double* points, const double* start,
-                                      double* workspace, double* weights, double* gradients, BatchNear* near);
+                                      double* workspace, double* weights, double* gradients, SkippedFace* near);
 #ifdef REBAKE_WIDE_VECTORS
 std::size_t mean_value_batch_v3(const BatchCage& cage, const double* points, const double* start, double* workspace,
-                                double* weights, double* gradients, BatchNear* near);
+                                double* weights, double* gradients, SkippedFace* near);
 std::size_t mean_value_batch_v4(const BatchCage& cage, const double* points, const double* start, double* workspace,
-                                double* weights, double* gradients, BatchNear* near);
+                                double* weights, double* gradients, SkippedFace* near);
 #endif
 
 }  // namespace rebake

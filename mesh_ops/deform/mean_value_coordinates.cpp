@@ -61,8 +61,8 @@ class MeanValue final : public Coordinates {
   MeanValue(const MeanValue&) = delete;
   MeanValue& operator=(const MeanValue&) = delete;
 
-  void weigh(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
-             std::uint8_t* outside) const override {
+  void compute_weights(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
+                       std::uint8_t* outside) const override {
     std::array<double, 3 * batch_lanes> local;
     std::array<Vec3, batch_lanes> places;
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
@@ -92,7 +92,7 @@ class MeanValue final : public Coordinates {
                    double* weights, double* gradients) const {
     constexpr std::size_t row = (pl::has_gradient<T> ? 4 : 1) * batch_lanes;
     thread_local std::vector<double> workspace, start;
-    thread_local std::vector<BatchNear> left_out;
+    thread_local std::vector<SkippedFace> left_out;
     thread_local Near near;
     workspace.resize(batch_workspace(batch_, pl::has_gradient<T>));
     left_out.resize(batch_.face_count * batch_lanes);
@@ -132,7 +132,7 @@ class MeanValue final : public Coordinates {
               ? mean_value_weights(frame_, p, exact) > most_cancelled && p.stableNorm() < exact_within * frame_.diagonal
               : near[lane].empty() && cancels(lane)) {
         exact.assign(rows(), pl::constant<T>(0));
-        add_near_faces<T>(frame_, pl::local_point(p, T()), wide_place(frame_, places[lane]), all_faces_, exact);
+        add_near_faces<T>(frame_, pl::local_point(p, T()), wide_local_point(frame_, places[lane]), all_faces_, exact);
       } else if (far_out) {
         // mean_value_weights() has already set `exact`.
       } else if (again[lane] != 0 || !near[lane].empty()) {
@@ -144,11 +144,11 @@ class MeanValue final : public Coordinates {
           else
             exact[v] = sum[0];
         }
-        const double divisor =
-            add_near_faces<T>(frame_, pl::local_point(p, T()), wide_place(frame_, places[lane]), near[lane], exact);
+        const double divisor = add_near_faces<T>(frame_, pl::local_point(p, T()),
+                                                 wide_local_point(frame_, places[lane]), near[lane], exact);
         if (!near[lane].empty() && sizes[lane] + needle_sizes[lane] > most_cancelled_near * std::abs(divisor)) {
           exact.assign(rows(), pl::constant<T>(0));
-          add_near_faces<T>(frame_, pl::local_point(p, T()), wide_place(frame_, places[lane]), all_faces_, exact);
+          add_near_faces<T>(frame_, pl::local_point(p, T()), wide_local_point(frame_, places[lane]), all_faces_, exact);
         }
       } else {
         continue;

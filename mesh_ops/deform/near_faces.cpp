@@ -98,7 +98,7 @@ double angle_at(const WideFace& face, const pl::Seen<Wide>& s) {
 
 // For a point on the surface, a point just inside; otherwise nothing. The direction is the angle-weighted normal of the
 // faces that meet, which points outwards at every corner (Bærentzen, Aanæs 2005).
-std::optional<WidePoint> place_inside(const std::vector<WideFace>& faces, const WidePoint& point) {
+std::optional<WidePoint> point_just_inside(const std::vector<WideFace>& faces, const WidePoint& point) {
   const std::optional<WidePoint> on = snapped(faces, point);
   if (!on) return std::nullopt;
   WidePoint normal{Wide(0), Wide(0), Wide(0)};
@@ -111,8 +111,8 @@ std::optional<WidePoint> place_inside(const std::vector<WideFace>& faces, const 
 }
 
 // The point where gradients are taken: just inside for points on the surface.
-WidePoint gradient_place(const std::vector<WideFace>& faces, const WidePoint& point) {
-  return place_inside(faces, point).value_or(point);
+WidePoint gradient_point(const std::vector<WideFace>& faces, const WidePoint& point) {
+  return point_just_inside(faces, point).value_or(point);
 }
 
 pl::Point<WideDual> with_gradients(const WidePoint& place) {
@@ -148,7 +148,7 @@ std::vector<Wide> near_faces::wide_values(const CageFrame& cage, const WidePoint
 std::vector<WideDual> near_faces::wide_gradients(const CageFrame& cage, const WidePoint& point,
                                                  std::span<const FaceFrame* const> near, std::vector<WideDual> sums) {
   const std::vector<WideFace> faces = wide_faces(cage, near);
-  const pl::Point<WideDual> place = with_gradients(gradient_place(faces, point));
+  const pl::Point<WideDual> place = with_gradients(gradient_point(faces, point));
   for (const WideFace& face : faces) add_terms(face, seen_from(face, place), sums);
   normalise(sums);
   return sums;
@@ -184,14 +184,14 @@ WideGreen wide_green(const CageFrame& cage, const WidePoint& exact, std::span<co
     return static_cast<double>(Wide(sum / (4 * boost::math::constants::pi<Wide>())));
   };
   result.sum = result.sum_inside = sum_at(exact, &result.terms);
-  if (const auto inside = place_inside(faces, exact)) result.sum_inside = sum_at(*inside, nullptr);
+  if (const auto inside = point_just_inside(faces, exact)) result.sum_inside = sum_at(*inside, nullptr);
   return result;
 }
 
 std::vector<pl::GreenTerms<WideDual>> wide_green_gradients(const CageFrame& cage, const WidePoint& exact,
                                                            std::span<const FaceFrame* const> near) {
   const std::vector<WideFace> faces = faces_beyond_double(cage, exact, near);
-  const pl::Point<WideDual> place = with_gradients(gradient_place(faces, exact));
+  const pl::Point<WideDual> place = with_gradients(gradient_point(faces, exact));
   std::vector<pl::GreenTerms<WideDual>> terms;
   for (const WideFace& face : faces) terms.push_back(pl::green(face.frame, seen_from(face, place)));
   return terms;

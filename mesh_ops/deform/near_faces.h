@@ -75,7 +75,7 @@ double normalise(std::vector<T>& weights) {
 
 // Adds the single face that the point is over or on. Returns the same as add_near_faces().
 template <class T>
-double add_face_below(const FaceFrame& face, plane_local::Seen<T> s, std::vector<T>& weights) {
+double add_face_under_point(const FaceFrame& face, plane_local::Seen<T> s, std::vector<T>& weights) {
   // A height within rounding is 0 for the weights; their gradients keep its derivative.
   if (plane_local::place(s) == plane_local::Place::on_face) s.h = s.h - plane_local::constant<T>(value_of(s.h));
   const plane_local::OverFace<T> over = plane_local::over_face(face, s);
@@ -106,7 +106,7 @@ double add_near_faces(const CageFrame& cage, const plane_local::Point<T>& local,
   for (const T& weight : weights) others += std::abs(value_of(weight));
   if (near.size() == 1 && others < large_others) {
     const plane_local::Seen<T> s = plane_local::seen(cage, *near.front(), local);
-    if (near_faces::is_over(s)) return near_faces::add_face_below(*near.front(), s, weights);
+    if (near_faces::is_over(s)) return near_faces::add_face_under_point(*near.front(), s, weights);
   }
   using R = typename plane_local::RealOf<T>::type;
   std::vector<Wide> sums;

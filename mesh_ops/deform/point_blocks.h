@@ -38,8 +38,8 @@ void for_blocks(const Coordinates& coordinates, const std::vector<Vec3>& points,
     std::vector<double> slopes(gradients ? coordinates.rows() * 3 * batch_lanes : 0);
     std::array<std::uint8_t, batch_lanes> outside;
     for (std::size_t block = range.begin(); block < range.end(); ++block) {
-      coordinates.weigh(block_points(points, order, block), weights.data(), gradients ? slopes.data() : nullptr,
-                        outside.data());
+      coordinates.compute_weights(block_points(points, order, block), weights.data(),
+                                  gradients ? slopes.data() : nullptr, outside.data());
       visit(block, weights, slopes, outside);
     }
     progress.at("cage weights", static_cast<double>(done += range.size()) / static_cast<double>(blocks));

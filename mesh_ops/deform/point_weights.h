@@ -143,7 +143,7 @@ bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_co
   double inside = value_of(sum), winding = 0;
   bool wide = false;
   if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Dual>) {
-    const WidePoint exact = near.empty() ? WidePoint() : wide_place(cage, point);
+    const WidePoint exact = near.empty() ? WidePoint() : wide_local_point(cage, point);
     if (const WideGreen of_near = wide_green(cage, exact, near); !of_near.terms.empty()) {
       wide = true;
       add_wide_values(cage, near_numbers, of_near.terms, phi, psi);

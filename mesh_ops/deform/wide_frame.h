@@ -10,7 +10,7 @@ namespace rebake {
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
 /// Local coordinates (CageFrame) of a point in the space of the cage.
-std::array<Wide, 3> wide_place(const CageFrame& cage, const Vec3& point);
+std::array<Wide, 3> wide_local_point(const CageFrame& cage, const Vec3& point);
 
 /// A face in local coordinates: its frame and corner positions.
 struct WideFace {

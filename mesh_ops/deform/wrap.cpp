@@ -57,7 +57,7 @@ Mesh wrapped(const Triangles& of, double coarseness, const Progress& progress, c
 
 // Extrapolates from a wrap four times as coarse. The number of points grows with the square of the fineness, and time a
 // little faster (measured on two scenes: by 5.3 to 6 per halved coarseness, from 0.05 on).
-Expected expected_of(const Triangles& of, double coarseness, const Progress& progress) {
+Expected estimate_work(const Triangles& of, double coarseness, const Progress& progress) {
   constexpr double coarser = 4, time_power = 2.4;
   const auto start = std::chrono::steady_clock::now();
   const Mesh coarse = wrapped(of, coarser * coarseness, progress, {});
@@ -79,9 +79,10 @@ Cage wrap(const TriangleList& triangles, double coarseness, const Progress& prog
     for (const Vec3* p : {&a, &b, &c}) box.extend(*p);
     faces.push_back({face[0], face[1], face[2]});
   }
-  if (faces.empty()) throw Error("there is no triangle to put a cage around");
+  if (faces.empty()) throw Error("there is no triangle with finite positions to wrap");
   const double diagonal = box.diagonal().stableNorm();
-  if (!(diagonal > 0) || !std::isfinite(diagonal)) throw Error("the triangles have no extent to put a cage around");
+  if (!(diagonal > 0) || !std::isfinite(diagonal))
+    throw Error("the triangles have no extent, or positions out of range; they cannot be wrapped");
   const Vec3 center = box.center();
   for (const Vec3& p : triangles.points) {
     const Vec3 q = p.allFinite() ? Vec3((p - center) / diagonal) : Vec3(0, 0, 0);
@@ -91,10 +92,10 @@ Cage wrap(const TriangleList& triangles, double coarseness, const Progress& prog
   std::erase_if(faces, [&](const std::vector<std::size_t>& f) {
     return CGAL::collinear(points[f[0]], points[f[1]], points[f[2]]);
   });
-  if (faces.empty()) throw Error("no triangle has an area: there is nothing to put a cage around; use a lattice");
+  if (faces.empty()) throw Error("no triangle has an area, so none can be wrapped; use a lattice");
   // Only finer wraps take more than a second and need an estimate.
   constexpr double estimated_below = 0.02;
-  const Expected expected = coarseness < estimated_below ? expected_of(given, coarseness, progress) : Expected{};
+  const Expected expected = coarseness < estimated_below ? estimate_work(given, coarseness, progress) : Expected{};
   progress.at(expected.words, 0);
   const Mesh mesh = wrapped(given, coarseness, progress, expected);
   Cage cage;

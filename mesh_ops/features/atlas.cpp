@@ -106,9 +106,10 @@ std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<cons
       FeatureTexture::from_tile_rows(texture->width(), texture->height(), code, rows_of(texture, code).read));
 }
 
-PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code, const ShownBy& shown_by) {
+PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code,
+                const PatchRepresentatives& representative_of) {
   PackedSets result;
-  for (PackedPage& page : packed_pages(sets, largest_side, code, shown_by)) {
+  for (PackedPage& page : packed_pages(sets, largest_side, code, representative_of)) {
     const auto& [width, height, read] = page.texels;
     result.sets.push_back({std::move(page.soup), std::make_shared<const FeatureTexture>(
                                                      FeatureTexture::from_tile_rows(width, height, code, read))});
@@ -118,20 +119,20 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
 }
 
 std::vector<PackedPage> packed_pages(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code,
-                                     const ShownBy& shown_by) {
+                                     const PatchRepresentatives& representative_of) {
   std::vector<TexelPatches> patches;
   std::vector<Place> places;
   std::uint64_t area = 0;
   int widest = 1;
   for (std::size_t s = 0; s < sets.size(); ++s) {
-    if (!can_pack(sets[s])) throw Error("texels cannot be moved: some UVs lie outside 0 … 1");
+    if (!can_pack(sets[s])) throw Error("texels cannot be repacked: some UVs are outside 0 … 1");
     patches.push_back(texel_patches(sets[s]));
     for (std::size_t p = 0; p < patches[s].rects.size(); ++p) {
       const TexelRect& rect = patches[s].rects[p];
       if (rect.width() > largest_side || rect.height() > largest_side)
-        throw Error(fmt::format("a patch of {}×{} texels does not fit into textures of {}²", rect.width(),
+        throw Error(fmt::format("a patch of {}×{} texels does not fit into a texture of {}² texels", rect.width(),
                                 rect.height(), largest_side));
-      if (!shown_by.empty() && shown_by[s][p] != PatchNumber{s, p}) continue;
+      if (!representative_of.empty() && representative_of[s][p] != PatchNumber{s, p}) continue;
       places.push_back({s, p});
       area += static_cast<std::uint64_t>(rect.width()) * static_cast<std::uint64_t>(rect.height());
       widest = std::max(widest, rect.width());
@@ -174,9 +175,9 @@ std::vector<PackedPage> packed_pages(const std::vector<TextureSet>& sets, int la
     moves[place.page].push_back({sets[place.set].texels, rect_at(place), place.x, place.y});
   }
 
-  for (std::size_t s = 0; s < shown_by.size(); ++s)
-    for (std::size_t p = 0; p < shown_by[s].size(); ++p) {
-      const Place& shown = place_of[shown_by[s][p].set][shown_by[s][p].patch];
+  for (std::size_t s = 0; s < representative_of.size(); ++s)
+    for (std::size_t p = 0; p < representative_of[s].size(); ++p) {
+      const Place& shown = place_of[representative_of[s][p].set][representative_of[s][p].patch];
       place_of[s][p] = {s, p, shown.page, shown.x, shown.y};
     }
 

@@ -28,18 +28,19 @@ struct PatchNumber {
   bool operator==(const PatchNumber&) const = default;
 };
 /// Per set and patch (texel_patches): the representative whose texels it uses, of the same size.
-using ShownBy = std::vector<std::vector<PatchNumber>>;
+using PatchRepresentatives = std::vector<std::vector<PatchNumber>>;
 
 /// Moves the used patches of texels bit for bit into new textures and drops the rest. UVs move by whole texels, so
 /// nearest sampling finds the same texels. Positions, rotations and the order of faces within a texture are preserved.
 /// Textures with another alpha code are converted to `code`; plain to halved loses the lowest bit of alpha, as in the
-/// published exporter. `shown_by` replaces patches by representatives. Throws Error for a patch larger than
+/// published exporter. `representative_of` replaces patches by representatives. Throws Error for a patch larger than
 /// `largest_side` and for UVs outside [0, 1].
-PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code, const ShownBy& shown_by = {});
+PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code,
+                const PatchRepresentatives& representative_of = {});
 
 /// As pack(), without creating the textures.
 std::vector<PackedPage> packed_pages(const std::vector<TextureSet>& sets, int largest_side, AlphaCode code,
-                                     const ShownBy& shown_by = {});
+                                     const PatchRepresentatives& representative_of = {});
 
 /// The texture converted to an alpha code; the same pointer if it has it already.
 std::shared_ptr<const FeatureTexture> with_alpha_code(const std::shared_ptr<const FeatureTexture>& texture,

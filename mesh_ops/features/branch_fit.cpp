@@ -22,7 +22,7 @@ constexpr double mixed_error = 0.01;
 // Cost of a branch that a block must not use.
 constexpr double never = 1e6;
 // Numbers of groups and of directions per block that are sampled to choose its branch.
-constexpr std::size_t groups_looked_at = 4, directions_looked_along = 8;
+constexpr std::size_t sampled_groups = 4, sampled_directions = 8;
 
 // Pairs of adjacent blocks, whose texels may be mixed in one pixel, with the cost of different branches.
 std::vector<LabelBorder> borders_of(const Composition& composition) {
@@ -95,33 +95,33 @@ BranchFit::BranchFit(const Composition& composition, const Student& student)
   for (std::uint32_t k = 0; k < student.branches.size(); ++k) {
     const Student::Branch& branch = student.branches[k];
     networks_.emplace_back(
-        fold_turn(*composition.teachers[branch.teacher], branch.turn.transpose(), Axes::forward, Axes::forward));
+        fold_rotation(*composition.teachers[branch.teacher], branch.turn.transpose(), Axes::forward, Axes::forward));
     branches_of_[branch.teacher].push_back(k);
   }
 }
 
-void BranchFit::fit_own(std::uint32_t branch, const TexelGroup& group, const std::vector<Sighting>& sightings,
+void BranchFit::fit_own(std::uint32_t branch, const TexelGroup& group, const std::vector<ViewSample>& view_samples,
                         std::size_t iterations, Lanes* features, Lanes* error, Lanes* work) const {
   std::copy_n(group.features, texel_features, features);
-  network_kernels().fit_texels(networks_[branch].view(), sightings.data(), sightings.size(), {iterations}, features,
-                               error, work);
+  network_kernels().fit_texels(networks_[branch].view(), view_samples.data(), view_samples.size(), {iterations},
+                               features, error, work);
 }
 
 void BranchFit::fit(std::uint32_t branch, const Composition::Part& part, const TexelGroup& group,
-                    const std::vector<Sighting>& sightings, const TexelFit& how, Lanes* features, Lanes* error,
+                    const std::vector<ViewSample>& view_samples, const TexelFit& how, Lanes* features, Lanes* error,
                     Lanes* work) const {
-  const bool exact = shown_exactly(student_, part);
+  const bool exact = needs_only_rounding(student_, part);
   // Fitted in the branch's own features, which are always stored within its sector.
-  fit_own(branch, group, sightings, exact ? 0 : how.iterations, features, error, work);
-  store_in(student_.branches[branch], features);
+  fit_own(branch, group, view_samples, exact ? 0 : how.iterations, features, error, work);
+  encode_for(student_.branches[branch], features);
   TexelFit rounding = how;
   rounding.iterations = 0;
   rounding.not_searched = exact ? 0 : student_.selectors;
-  network_kernels().fit_texels(student_.decoder.view(), sightings.data(), sightings.size(), rounding, features, error,
-                               work);
+  network_kernels().fit_texels(student_.decoder.view(), view_samples.data(), view_samples.size(), rounding, features,
+                               error, work);
 }
 
-std::vector<std::optional<std::uint32_t>> BranchFit::choose(const Sightlines& sightlines, std::size_t iterations,
+std::vector<std::optional<std::uint32_t>> BranchFit::choose(const VisibleDirections& sightlines, std::size_t iterations,
                                                             const Progress& progress) const {
   std::vector<std::optional<std::uint32_t>> result(composition_.blocks.size());
   // Only side-by-side students have separate branches.
@@ -142,22 +142,22 @@ std::vector<std::optional<std::uint32_t>> BranchFit::choose(const Sightlines& si
       costs[b].assign(student_.branches.size(), 0);
       return;
     }
-    if (branches.size() < 2 || shown_exactly(student_, part)) {
+    if (branches.size() < 2 || needs_only_rounding(student_, part)) {
       costs[b][branches.front()] = 0;
       return;
     }
     any_choice = true;
     const std::vector<TexelSite> sites = sites_of(composition_, block);
     const std::vector<TexelGroup> groups = groups_of(composition_, block, sites);
-    const std::vector<Vec3> directions = sightlines.directions(sites, directions_looked_along, 2 * b);
+    const std::vector<Vec3> directions = sightlines.directions(sites, sampled_directions, 2 * b);
     std::vector<Lanes> work(workspace_of(student_, teachers));
     for (const std::uint32_t branch : branches) costs[b][branch] = 0;
-    const std::size_t looked_at = std::min(groups.size(), groups_looked_at);
+    const std::size_t looked_at = std::min(groups.size(), sampled_groups);
     for (std::size_t k = 0; k < looked_at; ++k) {
       const TexelGroup& group = groups[(2 * k + 1) * groups.size() / (2 * looked_at)];
-      const auto seen = sightings_of(teachers[part.teacher], group, directions, b, work.data());
+      const auto seen = view_samples_of(teachers[part.teacher], group, directions, b, work.data());
       double weight = 0;
-      for (const Sighting& sighting : seen) weight += 3 * static_cast<double>(sighting.weight);
+      for (const ViewSample& view_sample : seen) weight += 3 * static_cast<double>(view_sample.weight);
       for (const std::uint32_t branch : branches) {
         Lanes features[texel_features], error;
         fit_own(branch, group, seen, iterations, features, &error, work.data());

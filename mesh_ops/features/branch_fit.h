@@ -17,15 +17,15 @@ class BranchFit {
 
   /// Chooses a branch per block; nothing if any branch may store its texels. Neighbours on the surface get the same
   /// branch if that costs little. `iterations`: Gauss–Newton iterations per trial.
-  std::vector<std::optional<std::uint32_t>> choose(const Sightlines& sightlines, std::size_t iterations,
+  std::vector<std::optional<std::uint32_t>> choose(const VisibleDirections& sightlines, std::size_t iterations,
                                                    const Progress& progress) const;
   /// Fits the features of a group to its observations within a branch; outputs as NetworkKernels::fit_texels().
   void fit(std::uint32_t branch, const Composition::Part& part, const TexelGroup& group,
-           const std::vector<Sighting>& sightings, const TexelFit& how, Lanes* features, Lanes* error,
+           const std::vector<ViewSample>& view_samples, const TexelFit& how, Lanes* features, Lanes* error,
            Lanes* work) const;
 
  private:
-  void fit_own(std::uint32_t branch, const TexelGroup& group, const std::vector<Sighting>& sightings,
+  void fit_own(std::uint32_t branch, const TexelGroup& group, const std::vector<ViewSample>& view_samples,
                std::size_t iterations, Lanes* features, Lanes* error, Lanes* work) const;
 
   const Composition& composition_;

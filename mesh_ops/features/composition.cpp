@@ -12,7 +12,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
-#include "mesh_ops/features/turn_groups.h"
+#include "mesh_ops/features/rotation_groups.h"
 #include "mesh_ops/index/footprint.h"
 
 namespace rebake {
@@ -24,7 +24,7 @@ constexpr const char* part_attribute = "part";
 constexpr const char* light_attribute = "light place";
 
 // Frobenius distance of two rotations (about 10°) above which triangles need separate copies of their texels.
-constexpr double turned_apart = 0.25;
+constexpr double separate_rotation = 0.25;
 
 // The flagged triangles of a set in world space, with their part number and, if lit, their places in the light chart.
 TextureSet in_world(const TextureSet& set, const TriangleSet& flags, const Affine& to_world, const Mat3& node_turn,
@@ -40,10 +40,10 @@ TextureSet in_world(const TextureSet& set, const TriangleSet& flags, const Affin
   for (Vec3& p : *positions) p = to_world * p;
   Attributes vertices;
   if (bent) {
-    std::vector<Turn> turns(positions->size());
+    std::vector<PackedRotation> turns(positions->size());
     for (std::size_t v = 0; v < turns.size(); ++v)
-      turns[v] = Turn(node_turn * (*some.rotations())[v].matrix() * node_turn.transpose());
-    vertices = vertices.with(Soup::rotation, Values<Turn>::of(std::move(turns)));
+      turns[v] = PackedRotation(node_turn * (*some.rotations())[v].matrix() * node_turn.transpose());
+    vertices = vertices.with(Soup::rotation, Values<PackedRotation>::of(std::move(turns)));
   }
   if (light != nullptr) vertices = vertices.with(light_attribute, some.vertex_attributes().shared(light_attribute));
   const Attributes faces = Attributes().with(
@@ -55,8 +55,8 @@ Mat3 turn_of(const Soup& soup, std::uint32_t vertex) {
   return soup.rotations() == nullptr ? Mat3(Mat3::Identity()) : (*soup.rotations())[vertex].matrix();
 }
 
-// Splits a set so that no texel is used by triangles whose rotations differ by more than turned_apart.
-std::vector<TextureSet> without_clashes(const TextureSet& set) {
+// Splits a set so that no texel is used by triangles whose rotations differ by more than separate_rotation.
+std::vector<TextureSet> split_by_rotation(const TextureSet& set) {
   if (set.soup.rotations() == nullptr) return {set};
   const auto& faces = set.soup.faces();
   const TexelPatches patches = texel_patches(set);
@@ -68,7 +68,7 @@ std::vector<TextureSet> without_clashes(const TextureSet& set) {
     const Mat3 mean =
         (turn_of(set.soup, faces[f][0]) + turn_of(set.soup, faces[f][1]) + turn_of(set.soup, faces[f][2])) / 3;
     std::size_t k = 0;
-    while (k < known.size() && (known[k] - mean).norm() > turned_apart) ++k;
+    while (k < known.size() && (known[k] - mean).norm() > separate_rotation) ++k;
     if (k == known.size()) known.push_back(mean);
     cluster[f] = k;
     most = std::max(most, known.size());
@@ -194,7 +194,7 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
   std::vector<Piece> pieces;
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.visible || !placed.node->object || placed.node->object->triangle_count() == 0) continue;
-    progress.at("taking the scene apart", 0);
+    progress.at("decomposing the scene", 0);
     const BakedObject& object = *placed.node->object;
     Mat3 node_turn;
     try {
@@ -203,7 +203,7 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
       throw EditError(fmt::format("node \"{}\": {}", placed.node->name, error.what()));
     }
     result.forward = result.forward && object.axes == Axes::forward;
-    const TurnGroups groups = turn_groups(object);
+    const RotationGroups groups = rotation_groups(object);
     // Triangles with a light map form a separate part per texture set.
     std::map<std::pair<std::uint32_t, const LightMap*>, std::uint32_t> part_of_group;
     std::size_t first = 0;
@@ -220,15 +220,15 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
       }
       first += faces;
       for (auto& [group, some] : flags) {
-        const bool bent = group == TurnGroups::bent;
+        const bool bent = group == RotationGroups::bent;
         const auto [it, fresh] =
             part_of_group.try_emplace({group, light.get()}, static_cast<std::uint32_t>(result.parts.size()));
         if (fresh) {
           const Mat3 turn = bent ? node_turn : Mat3(node_turn * groups.groups[group].turn);
-          result.parts.push_back(
-              {placed.node->id, placed.node->name,
-               teacher(std::make_shared<const Decoder>(fold_turn(*object.decoder, turn, object.axes, Axes::forward))),
-               bent, 0, false, light, turn.transpose(), node_turn.transpose()});
+          result.parts.push_back({placed.node->id, placed.node->name,
+                                  teacher(std::make_shared<const Decoder>(
+                                      fold_rotation(*object.decoder, turn, object.axes, Axes::forward))),
+                                  bent, 0, false, light, turn.transpose(), node_turn.transpose()});
         }
         Composition::Part& part = result.parts[it->second];
         part.triangles += count(some);
@@ -237,9 +237,9 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
       }
     }
   }
-  if (pieces.empty()) throw EditError("there is nothing to export: no visible node has triangles");
+  if (pieces.empty()) throw EditError("nothing to export: no visible node has triangles");
   if (std::none_of(pieces.begin(), pieces.end(), [](const Piece& p) { return p.set.texels->opaque_count() > 0; }))
-    throw EditError("there is nothing to export: no triangle in view has an opaque texel");
+    throw EditError("nothing to export: no visible triangle has an opaque texel");
   if (result.exact()) return result;
 
   std::vector<TextureSet> sets;
@@ -248,7 +248,7 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
     const Composition::Part& part = result.parts[piece.part];
     if (!can_pack(piece.set))
       throw EditError(fmt::format(
-          "node \"{}\": some UVs lie outside 0 … 1, so that its texels cannot be moved into one folder", part.name));
+          "node \"{}\": some UVs are outside 0 … 1, so its texels cannot be repacked into one folder", part.name));
     const TextureSet whole =
         in_world(piece.set, piece.flags, piece.to_world, piece.node_turn, part.bent, piece.part, part.light.get());
     if (part.light && !part.bent) {
@@ -261,20 +261,20 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
       else
         sets[it->second].soup = united(sets[it->second].soup, whole.soup);
     } else {
-      for (TextureSet& apart : without_clashes(whole)) sets.push_back(std::move(apart));
+      for (TextureSet& apart : split_by_rotation(whole)) sets.push_back(std::move(apart));
     }
   }
   pieces.clear();
   for (std::size_t k = 0; k < result.teachers.size(); ++k) result.frames.push_back(frame_of(result, sets, k));
-  progress.at("taking the scene apart", 0.2);
+  progress.at("decomposing the scene", 0.2);
   result.pages = pack(sets, largest_side, AlphaCode::plain).sets;
   sets.clear();
   for (std::uint32_t page = 0; page < result.pages.size(); ++page) {
-    progress.at("taking the scene apart", 0.6 + 0.4 * page / static_cast<double>(result.pages.size()));
+    progress.at("decomposing the scene", 0.6 + 0.4 * page / static_cast<double>(result.pages.size()));
     add_blocks(result, page);
   }
   std::erase_if(result.blocks, [](const Composition::Block& block) { return block.opaque == 0; });
-  if (result.blocks.empty()) throw EditError("there is nothing to export: no triangle in view has an opaque texel");
+  if (result.blocks.empty()) throw EditError("nothing to export: no visible triangle has an opaque texel");
   for (const Composition::Block& block : result.blocks) result.opaque_texels += block.opaque;
   return result;
 }

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t lanes = network_lanes;  // observations per SIMD batch
 constexpr std::size_t block_texels = 64;      // texels per partial sum of gradients, which are added in a fixed order
 constexpr std::size_t batch_texels = 1024;
-constexpr std::size_t seen_a_pass = 8;  // observations per texel and epoch
+constexpr std::size_t observations_per_epoch = 8;  // observations per texel and epoch
 
 float decoded(const std::array<std::uint8_t, 8>& bytes, std::size_t c) {
   return c % 4 == 3 ? static_cast<float>(2 * bytes[c] - 255) / 255 : static_cast<float>(bytes[c]) / 255;
@@ -43,11 +43,11 @@ class Fitter {
         net_adam_(net_.values.size()),
         logits_(problem.texel_count * 8),
         texel_adam_(problem.texel_count * 8) {
-    const std::size_t count = problem.texel_count * problem.observations_a_texel;
+    const std::size_t count = problem.texel_count * problem.observations_per_texel;
     if (count == 0 || problem.fed_directions.size() != count || problem.colors.size() != count)
-      throw std::invalid_argument("a fit needs a direction and a colour for each observation");
+      throw std::invalid_argument("each observation needs a direction and a colour");
     if (!problem.hints.empty() && problem.hints.size() != problem.texel_count)
-      throw std::invalid_argument("a fit needs a hint for each texel, or none");
+      throw std::invalid_argument("there must be one hint per texel, or none");
     randomise(net_, options.seed);
     // Features 0–2 start at the texel's mean colour, so that similar texels get similar features.
     for (std::size_t t = 0; t < problem.texel_count; ++t) {
@@ -55,9 +55,9 @@ class Fitter {
         float mean = 0.5F;
         if (c < 3) {
           mean = 0;
-          for (std::size_t k = 0; k < problem.observations_a_texel; ++k)
-            mean += problem.colors[t * problem.observations_a_texel + k][c];
-          mean = std::clamp(mean / static_cast<float>(problem.observations_a_texel), 0.05F, 0.95F);
+          for (std::size_t k = 0; k < problem.observations_per_texel; ++k)
+            mean += problem.colors[t * problem.observations_per_texel + k][c];
+          mean = std::clamp(mean / static_cast<float>(problem.observations_per_texel), 0.05F, 0.95F);
         } else if (!problem.hints.empty()) {
           mean = std::clamp(problem.hints[t][c - 3], 0.05F, 0.95F);
         }
@@ -97,7 +97,7 @@ class Fitter {
       throw std::invalid_argument("hidden width must be 1 to 256");
     return static_cast<std::size_t>(options.hidden);
   }
-  float rate_at(double share) const { return static_cast<float>(options_.learning_rate) * falling_rate(share); }
+  float rate_at(double share) const { return static_cast<float>(options_.learning_rate) * cosine_rate(share); }
 
   // Squared error of one batch of observations. Adds to the network's `gradient` and writes `input_gradient`, unless
   // they are null.
@@ -136,14 +136,15 @@ class Fitter {
         std::vector<Lanes> work(network_kernels().workspace(net_.view()));
         const std::size_t first = begin + b * block_texels, last = std::min(end, first + block_texels);
         std::minstd_rand pick(static_cast<unsigned>(first * 2654435761U) + static_cast<unsigned>(epoch) * 40503U + 1);
-        for (std::size_t group = first; group < last; group += lanes / seen_a_pass) {
+        for (std::size_t group = first; group < last; group += lanes / observations_per_epoch) {
           std::array<Lanes, decoder_inputs> input{}, input_gradient{};
           std::array<Lanes, 3> target{};
           std::array<std::size_t, lanes> texel{};
           Lanes coverage{};
           for (std::size_t l = 0; l < lanes; ++l) {
-            texel[l] = order_[std::min(group + l / seen_a_pass, last - 1)];
-            const std::size_t seen = texel[l] * problem_.observations_a_texel + pick() % problem_.observations_a_texel;
+            texel[l] = order_[std::min(group + l / observations_per_epoch, last - 1)];
+            const std::size_t seen =
+                texel[l] * problem_.observations_per_texel + pick() % problem_.observations_per_texel;
             // A fifth of the observations is at an edge, where the rendering rule scales features and directions by
             // coverage.
             const auto dice = pick() % 15;
@@ -157,13 +158,13 @@ class Fitter {
           errors[b] += static_cast<double>(
               evaluate(input, target, gradients[b].data(), move_texels ? input_gradient.data() : nullptr, work.data()));
           if (!move_texels) continue;
-          for (std::size_t l = 0; l < lanes; l += seen_a_pass) {
-            if (group + l / seen_a_pass >= last) break;
+          for (std::size_t l = 0; l < lanes; l += observations_per_epoch) {
+            if (group + l / observations_per_epoch >= last) break;
             for (std::size_t c = 0; c < 8; ++c) {
               const std::size_t i = texel[l] * 8 + c;
               const float value = 1 / (1 + std::exp(-logits_[i]));
               float slope = 0;
-              for (std::size_t k = l; k < l + seen_a_pass; ++k)
+              for (std::size_t k = l; k < l + observations_per_epoch; ++k)
                 slope += coverage.at[k] * input_gradient[c].at[k] * value * (1 - value);
               texel_adam_.step_one(i, logits_[i], slope, rate * 5, epoch + 1);
             }
@@ -174,12 +175,12 @@ class Fitter {
       for (std::size_t i = 0; i < net_.values.size(); ++i) {
         for (const auto& block : gradients)
           for (const float value : block[i].at) mean_gradient_[i] += value;
-        mean_gradient_[i] /= static_cast<float>((end - begin) * seen_a_pass);
+        mean_gradient_[i] /= static_cast<float>((end - begin) * observations_per_epoch);
       }
       net_adam_.step(net_.values, mean_gradient_, rate);
       for (const double e : errors) error += e;
     }
-    return error / static_cast<double>(order_.size() * seen_a_pass * 3);
+    return error / static_cast<double>(order_.size() * observations_per_epoch * 3);
   }
 
   double whole_error() const {
@@ -187,12 +188,12 @@ class Fitter {
     tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t b) {
       std::vector<Lanes> work(network_kernels().workspace(net_.view()));
       for (std::size_t t = b * block_texels; t < std::min(problem_.texel_count, (b + 1) * block_texels); ++t)
-        for (std::size_t k = 0; k < problem_.observations_a_texel; k += lanes) {
-          const std::size_t n = std::min(lanes, problem_.observations_a_texel - k);
+        for (std::size_t k = 0; k < problem_.observations_per_texel; k += lanes) {
+          const std::size_t n = std::min(lanes, problem_.observations_per_texel - k);
           std::array<Lanes, decoder_inputs> input{};
           std::array<Lanes, 3> target{};
           for (std::size_t l = 0; l < lanes; ++l) {
-            const std::size_t seen = t * problem_.observations_a_texel + k + std::min(l, n - 1);
+            const std::size_t seen = t * problem_.observations_per_texel + k + std::min(l, n - 1);
             for (std::size_t c = 0; c < 8; ++c) input[c].at[l] = feature(t, c);
             for (std::size_t c = 0; c < 3; ++c)
               input[8 + c].at[l] = problem_.fed_directions[seen][c], target[c].at[l] = problem_.colors[seen][c];

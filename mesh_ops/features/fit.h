@@ -12,7 +12,7 @@ namespace rebake {
 /// Input of fit(): observed colours of texels along view directions, with an equal number of observations per texel.
 struct FitProblem {
   std::size_t texel_count = 0;
-  std::size_t observations_a_texel = 0;
+  std::size_t observations_per_texel = 0;
   std::vector<std::array<float, 3>> fed_directions;  ///< [texel][observation], unit, in the decoder's axes
   std::vector<std::array<float, 3>> colors;          ///< [texel][observation], display colours 0 … 1
   std::vector<std::array<float, 5>>

@@ -19,7 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-constexpr std::size_t fitted_directions = 24, judged_directions = 8;
+constexpr std::size_t fitted_directions = 24, held_out_view_directions = 8;
 
 double psnr_of(double mean_square) { return mean_square > 0 ? std::min(100.0, -10 * std::log10(mean_square)) : 100; }
 
@@ -57,23 +57,24 @@ struct Histogram {
   }
 };
 
-double weight_of(const std::vector<Sighting>& sightings) {
+double weight_of(const std::vector<ViewSample>& view_samples) {
   double sum = 0;
-  for (const Sighting& s : sightings) sum += 3 * static_cast<double>(s.weight);
+  for (const ViewSample& s : view_samples) sum += 3 * static_cast<double>(s.weight);
   return sum;
 }
 
 // Mean squared error of a group's texels over some observations.
-double error_over(const Student& student, const std::vector<Sighting>& sightings, std::size_t texels, Lanes* features,
-                  Lanes* work) {
+double error_over(const Student& student, const std::vector<ViewSample>& view_samples, std::size_t texels,
+                  Lanes* features, Lanes* work) {
   Lanes error;
-  network_kernels().fit_texels(student.decoder.view(), sightings.data(), sightings.size(), {}, features, &error, work);
+  network_kernels().fit_texels(student.decoder.view(), view_samples.data(), view_samples.size(), {}, features, &error,
+                               work);
   double sum = 0;
   for (std::size_t l = 0; l < texels; ++l) sum += static_cast<double>(error.at[l]);
-  return sum / weight_of(sightings) / static_cast<double>(texels);
+  return sum / weight_of(view_samples) / static_cast<double>(texels);
 }
 
-struct Judgement {
+struct PsnrEstimate {
   double psnr_db = 100;
   std::string node;  ///< the worst node
 };
@@ -82,15 +83,15 @@ struct Judgement {
 // whichever is lower, because pictures show either, depending on distance. Errors are averaged within a node only,
 // because a node of few texels may fill a picture. A fit of a side-by-side student also keeps to one branch per block,
 // which is ignored here.
-Judgement judged(const Student& student, const Composition& composition, const TexelSample& sample,
-                 const FuseOptions& options, const Progress& progress) {
+PsnrEstimate judged(const Student& student, const Composition& composition, const TexelSample& sample,
+                    const FuseOptions& options, const Progress& progress) {
   const std::vector<FeatureNetwork> teachers = networks_of(composition);
   const auto levels = feature_levels(options.bits, AlphaCode::halved);
   struct Errors {
     double alone = 0, mixed = 0;
   };
   std::vector<Errors> errors(sample.pieces.size());
-  progress.at("judging", 0);
+  progress.at("scoring", 0);
   tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t k) {
     const TexelSample::Piece& piece = sample.pieces[k];
     const Composition::Part& part = composition.parts[piece.part];
@@ -98,17 +99,18 @@ Judgement judged(const Student& student, const Composition& composition, const T
     std::vector<Lanes> work(workspace_of(student, teachers));
     const FeatureNetwork& teacher = teachers[part.teacher];
     const std::vector<Vec3> directions(piece.directions.begin(), piece.directions.begin() + fitted_directions);
-    const auto seen = sightings_of(teacher, piece.group, directions, k, work.data()),
-               held_out = sightings_of(teacher, piece.group, piece.held_out, k, work.data());
+    const auto seen = view_samples_of(teacher, piece.group, directions, k, work.data()),
+               held_out = view_samples_of(teacher, piece.group, piece.held_out, k, work.data());
     Lanes features[texel_features], error;
-    first_guess(student, teacher, part, piece.group, seen, features, work.data());
-    const std::size_t iterations = shown_exactly(student, part) ? 0 : static_cast<std::size_t>(options.iterations);
+    initial_guess(student, teacher, part, piece.group, seen, features, work.data());
+    const std::size_t iterations =
+        needs_only_rounding(student, part) ? 0 : static_cast<std::size_t>(options.iterations);
     network_kernels().fit_texels(student.decoder.view(), seen.data(), seen.size(),
                                  {iterations, levels.data(), options.search && options.iterations > 0}, features,
                                  &error, work.data());
-    std::vector<Sighting> alone, mixed;
-    for (const Sighting& sighting : held_out)
-      (sighting.mix == 0 && sighting.coverage == 1 ? alone : mixed).push_back(sighting);
+    std::vector<ViewSample> alone, mixed;
+    for (const ViewSample& view_sample : held_out)
+      (view_sample.mix == 0 && view_sample.coverage == 1 ? alone : mixed).push_back(view_sample);
     errors[k] = {error_over(student, alone, piece.group.count, features, work.data()),
                  error_over(student, mixed, piece.group.count, features, work.data())};
   });
@@ -122,21 +124,21 @@ Judgement judged(const Student& student, const Composition& composition, const T
     sums[part].mixed += errors[k].mixed;
     ++pieces[part];
   }
-  struct OfNode {
+  struct NodeQuality {
     Errors errors;
     double texels = 0;
     std::string name;
   };
-  std::map<NodeId, OfNode> nodes;
+  std::map<NodeId, NodeQuality> nodes;
   for (std::size_t p = 0; p < texels.size(); ++p) {
     if (pieces[p] == 0) continue;
-    OfNode& node = nodes[composition.parts[p].node];
+    NodeQuality& node = nodes[composition.parts[p].node];
     node.errors.alone += texels[p] * sums[p].alone / pieces[p];
     node.errors.mixed += texels[p] * sums[p].mixed / pieces[p];
     node.texels += texels[p];
     node.name = composition.parts[p].name;
   }
-  Judgement worst;
+  PsnrEstimate worst;
   for (const auto& [id, node] : nodes) {
     const double psnr = psnr_of(std::max(node.errors.alone, node.errors.mixed) / node.texels);
     if (psnr < worst.psnr_db) worst = {psnr, node.name};
@@ -158,7 +160,7 @@ std::size_t base_of(const Composition& composition, const FuseOptions& options) 
       texels[composition.parts[block.part].teacher] += block.opaque;
   const auto most = std::max_element(texels.begin(), texels.end());
   if (*most == 0)
-    throw FieldError("keep", "must name an object that is seen and not bent as a whole, or be none or auto");
+    throw FieldError("keep", "must be auto, none, or the name of a visible object that has unbent triangles");
   return static_cast<std::size_t>(most - texels.begin());
 }
 
@@ -172,7 +174,7 @@ struct FittedBlock {
   std::vector<float> errors;  // mean squared error per texel
 };
 
-FittedBlock fitted(const Composition& composition, const Sightlines& sightlines, const Student& student,
+FittedBlock fitted(const Composition& composition, const VisibleDirections& sightlines, const Student& student,
                    const std::vector<FeatureNetwork>& teachers, const BranchFit& branches, std::size_t number,
                    const std::optional<std::uint32_t>& branch, const TexelFit& fit) {
   const Composition::Block& block = composition.blocks[number];
@@ -183,20 +185,20 @@ FittedBlock fitted(const Composition& composition, const Sightlines& sightlines,
   result.sites = sites_of(composition, block);
   const std::vector<TexelGroup> groups = groups_of(composition, block, result.sites);
   const std::vector<Vec3> directions = sightlines.directions(result.sites, fitted_directions, 2 * number),
-                          others = sightlines.directions(result.sites, judged_directions, 2 * number + 1);
+                          others = sightlines.directions(result.sites, held_out_view_directions, 2 * number + 1);
   std::vector<Lanes> work(workspace_of(student, teachers));
   result.bytes.resize(result.sites.size());
   result.errors.resize(result.sites.size());
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const TexelGroup& group = groups[g];
-    const auto seen = sightings_of(teacher, group, directions, number + g, work.data());
+    const auto seen = view_samples_of(teacher, group, directions, number + g, work.data());
     Lanes features[texel_features], error;
     if (branch) {
       branches.fit(*branch, part, group, seen, fit, features, &error, work.data());
     } else {
-      first_guess(student, teacher, part, group, seen, features, work.data());
+      initial_guess(student, teacher, part, group, seen, features, work.data());
       TexelFit own = fit;
-      if (shown_exactly(student, part)) own.iterations = 0;
+      if (needs_only_rounding(student, part)) own.iterations = 0;
       kernels.fit_texels(student.decoder.view(), seen.data(), seen.size(), own, features, &error, work.data());
     }
     for (std::size_t l = 0; l < group.count; ++l) {
@@ -204,7 +206,7 @@ FittedBlock fitted(const Composition& composition, const Sightlines& sightlines,
       for (std::size_t c = 0; c < texel_features; ++c)
         bytes[c] = static_cast<std::uint8_t>(std::lround(255 * features[c].at[l]));
     }
-    const auto held_out = sightings_of(teacher, group, others, number + g, work.data());
+    const auto held_out = view_samples_of(teacher, group, others, number + g, work.data());
     kernels.fit_texels(student.decoder.view(), held_out.data(), held_out.size(), {}, features, &error, work.data());
     for (std::size_t l = 0; l < group.count; ++l)
       result.errors[group.site[l]] = static_cast<float>(static_cast<double>(error.at[l]) / weight_of(held_out));
@@ -222,7 +224,7 @@ void check(const FuseOptions& options) {
   if (options.bits < 4 || options.bits > 8) throw FieldError("bits", "must be 4 to 8");
 }
 
-FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines, const FuseOptions& options,
+FusePlan plan_fuse(const Composition& composition, const VisibleDirections& sightlines, const FuseOptions& options,
                    const Progress& progress) {
   check(options);
   using Keep = FuseOptions::Keep;
@@ -240,21 +242,21 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   const auto late = [&] { return training.until && Clock::now() > *training.until; };
   const std::size_t base = base_of(composition, options);
   const int base_width = std::max(composition.teachers[base]->hidden0(), composition.teachers[base]->hidden1());
-  const auto wants = [&](FuseWay way) {
-    if (options.keep == Keep::node && way != FuseWay::keep) return false;
-    if (options.keep == Keep::none && way == FuseWay::keep) return false;
+  const auto wants = [&](FuseMethod way) {
+    if (options.keep == Keep::node && way != FuseMethod::keep) return false;
+    if (options.keep == Keep::none && way == FuseMethod::keep) return false;
     return !options.way || *options.way == way;
   };
-  if (!wants(FuseWay::keep) && !wants(FuseWay::train) && !wants(FuseWay::scratch) && !wants(FuseWay::side_by_side))
-    throw FieldError("keep", "does not go with this way");
-  const bool must_keep = options.keep == Keep::node || options.way == FuseWay::keep;
+  if (!wants(FuseMethod::keep) && !wants(FuseMethod::train) && !wants(FuseMethod::scratch) &&
+      !wants(FuseMethod::side_by_side))
+    throw FieldError("keep", "contradicts the chosen fusing method");
+  const bool must_keep = options.keep == Keep::node || options.way == FuseMethod::keep;
   if (must_keep && options.width && *options.width < base_width)
-    throw FieldError("width",
-                     fmt::format("is {}, but the decoder that is to be kept has {}", *options.width, base_width));
+    throw FieldError("width", fmt::format("is {}, but the kept decoder has width {}", *options.width, base_width));
   const TexelSample sample = sampled(composition, sightlines, options.sample, training.seed, progress);
 
   std::vector<FuseCandidate>& candidates = plan.candidates;
-  const auto consider = [&](Student student, FuseWay way, Clock::time_point begun) {
+  const auto consider = [&](Student student, FuseMethod way, Clock::time_point begun) {
     FuseTrial trial{width_of(student), way, 0, {}, 0, 0};
     const Clock::time_point trained = Clock::now();
     const auto fitted = std::count_if(sample.pieces.begin(), sample.pieces.end(), [&](const TexelSample::Piece& piece) {
@@ -263,7 +265,7 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
     double texels = 0;
     for (const Composition::Block& block : composition.blocks)
       if (!stays(student, composition.parts[block.part])) texels += block.opaque;
-    const Judgement judgement = judged(student, composition, sample, options, progress);
+    const PsnrEstimate judgement = judged(student, composition, sample, options, progress);
     trial.psnr_db = judgement.psnr_db;
     trial.worst_node = judgement.node;
     if (fitted > 0) trial.fit_seconds = seconds_since(trained) / static_cast<double>(fitted) / network_lanes * texels;
@@ -276,31 +278,32 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   // Side-by-side students are built first, because they are quickest. More rotations of bent parts are added only until
   // the target is reached.
   const auto beside = [&](std::size_t first, std::size_t last) {
-    for (std::size_t bent_turns = first; bent_turns <= last && wants(FuseWay::side_by_side) && !any_reaches();
+    for (std::size_t bent_turns = first; bent_turns <= last && wants(FuseMethod::side_by_side) && !any_reaches();
          ++bent_turns) {
       const Clock::time_point begun = Clock::now();
       Student student = side_by_side(composition, sample, bent_turns);
       const int width = width_of(student);
       if (options.width && width > *options.width) {
-        if (options.way == FuseWay::side_by_side && candidates.empty())
-          throw FieldError("width", fmt::format("is {}, but side by side the decoders have {}", *options.width, width));
+        if (options.way == FuseMethod::side_by_side && candidates.empty())
+          throw FieldError("width",
+                           fmt::format("is {}, but the decoders side by side have width {}", *options.width, width));
         return;
       }
       const std::size_t branches = student.branches.size();
       if (bent_turns == 1 || candidates.empty() || branches > candidates.back().student.branches.size())
-        consider(std::move(student), FuseWay::side_by_side, begun);
+        consider(std::move(student), FuseMethod::side_by_side, begun);
     }
   };
   beside(1, 1);
   Clock::time_point begun = Clock::now();
   std::optional<Student> kept;
-  if ((wants(FuseWay::keep) || wants(FuseWay::train)) && (candidates.empty() || !late()))
+  if ((wants(FuseMethod::keep) || wants(FuseMethod::train)) && (candidates.empty() || !late()))
     kept = keeping(composition, sample, base, training, progress);
-  if (kept && wants(FuseWay::keep) && (!options.width || base_width <= *options.width))
-    consider(*kept, FuseWay::keep, begun);
+  if (kept && wants(FuseMethod::keep) && (!options.width || base_width <= *options.width))
+    consider(*kept, FuseMethod::keep, begun);
   const bool kept_is_enough =
-      !candidates.empty() && candidates.back().trial.way == FuseWay::keep && reaches(candidates.back());
-  beside(2, most_branches - 1);
+      !candidates.empty() && candidates.back().trial.way == FuseMethod::keep && reaches(candidates.back());
+  beside(2, max_branches - 1);
   // Doubling the width gains about 2 dB. Once a candidate reaches the target, further widths are tried only while the
   // last one was within 6 dB of it.
   constexpr double hopeless = 6;
@@ -308,27 +311,28 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   std::vector<int> widths{16, 24, 32};
   if (options.width)
     widths = {*options.width};
-  else if (options.way == FuseWay::train && base_width > widths.back())
+  else if (options.way == FuseMethod::train && base_width > widths.back())
     widths = {base_width};
   for (const int width : widths) {
     const bool narrower_may_do = !options.width && !kept_is_enough && last >= options.psnr_db - hopeless;
     if (!candidates.empty() && (late() || (any_reaches() && !narrower_may_do))) break;
     const auto wide = static_cast<std::size_t>(width);
     last = 0;
-    if (kept && wants(FuseWay::train) && base_width <= width) {
+    if (kept && wants(FuseMethod::train) && base_width <= width) {
       begun = Clock::now();
-      last = consider(adapted(*kept, composition, sample, wide, training, progress), FuseWay::train, begun);
+      last = consider(fine_tuned(*kept, composition, sample, wide, training, progress), FuseMethod::train, begun);
     }
     // Training from scratch is skipped for a single teacher, whose decoder already suits all texels.
-    if (wants(FuseWay::scratch) && (composition.teachers.size() > 1 || candidates.empty() || options.way)) {
+    if (wants(FuseMethod::scratch) && (composition.teachers.size() > 1 || candidates.empty() || options.way)) {
       begun = Clock::now();
-      last = std::max(last,
-                      consider(from_scratch(composition, sample, wide, training, progress), FuseWay::scratch, begun));
+      last = std::max(
+          last, consider(from_scratch(composition, sample, wide, training, progress), FuseMethod::scratch, begun));
     }
     if (last >= options.psnr_db) break;
   }
   if (candidates.empty())
-    throw FieldError("width", fmt::format("is {}, but the decoder to be trained has {}", *options.width, base_width));
+    throw FieldError("width", fmt::format("is {}, but the decoder that training starts from has width {}",
+                                          *options.width, base_width));
   // Unless `until_psnr` is set, a candidate of 50 dB is preferred even if it is wider.
   constexpr double as_good_as_exact = 50;
   const auto excels = [&](const FuseCandidate& c) {
@@ -348,7 +352,7 @@ FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines,
   return plan;
 }
 
-Fused fuse(const Composition& composition, const Sightlines& sightlines, const FusePlan& plan,
+Fused fuse(const Composition& composition, const VisibleDirections& sightlines, const FusePlan& plan,
            const FuseOptions& options, const Progress& progress) {
   check(options);
   const Clock::time_point start = Clock::now();
@@ -453,9 +457,9 @@ Fused fuse(const Composition& composition, const Sightlines& sightlines, const F
   object->axes = composition.forward ? Axes::forward : Axes::y_up;
   object->layout = options.layout;
   object->decoder = std::make_shared<const Decoder>(
-      student.keeps ? fold_turn(*composition.teachers[student.branches.front().teacher],
-                                student.branches.front().turn.transpose(), Axes::forward, object->axes)
-                    : fold_turn(student.decoder.to_decoder(), Mat3::Identity(), Axes::forward, object->axes));
+      student.keeps ? fold_rotation(*composition.teachers[student.branches.front().teacher],
+                                    student.branches.front().turn.transpose(), Axes::forward, object->axes)
+                    : fold_rotation(student.decoder.to_decoder(), Mat3::Identity(), Axes::forward, object->axes));
   report.seconds = seconds_since(start);
   return {std::move(object), std::move(report)};
 }

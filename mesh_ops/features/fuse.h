@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "mesh_ops/features/fuse_method.h"
 #include "mesh_ops/features/fuse_training.h"
-#include "mesh_ops/features/fuse_way.h"
 
 namespace rebake {
 
@@ -21,9 +21,9 @@ struct FuseOptions {
   /// texels, if that is better overall.
   Keep keep = Keep::automatic;
   NodeId keep_node = NodeId::none;
-  std::optional<FuseWay> way;  ///< the method; nothing: the best
-  double psnr_db = 40;         ///< target PSNR of texels, above 0 and at most 100
-  bool until_psnr = false;     ///< fit texels, worst first, only until `psnr_db` is reached
+  std::optional<FuseMethod> way;  ///< the method; nothing: the best
+  double psnr_db = 40;            ///< target PSNR of texels, above 0 and at most 100
+  bool until_psnr = false;        ///< fit texels, worst first, only until `psnr_db` is reached
   /// Time limit in seconds; 0: none. All texels get at least an initial guess. With a limit, the resulting bytes depend
   /// on timing.
   double seconds = 0;
@@ -39,7 +39,7 @@ struct FuseOptions {
 /// single texels and of texels mixed as in pixels.
 struct FuseTrial {
   int width = 0;  ///< width of the wider hidden layer
-  FuseWay way = FuseWay::keep;
+  FuseMethod way = FuseMethod::keep;
   double psnr_db = 0;
   std::string worst_node{};  ///< name of the node with the lowest PSNR; empty if all nodes are exact
   double seconds = 0;        ///< training and scoring time
@@ -85,7 +85,7 @@ struct FusePlan {
 
 /// Trains decoders on a sample of the texels and chooses one. Deterministic, except with a time limit. Throws
 /// FieldError for options that are out of range or contradictory.
-FusePlan plan_fuse(const Composition& composition, const Sightlines& sightlines, const FuseOptions& options,
+FusePlan plan_fuse(const Composition& composition, const VisibleDirections& sightlines, const FuseOptions& options,
                    const Progress& progress = {});
 
 /// Result of fuse().
@@ -96,7 +96,7 @@ struct Fused {
 
 /// Approximates a composition by one object with one decoder and 8 bytes per texel: each texel's features are fitted to
 /// its colours along its visible directions. The same bytes at any number of threads.
-Fused fuse(const Composition& composition, const Sightlines& sightlines, const FusePlan& plan,
+Fused fuse(const Composition& composition, const VisibleDirections& sightlines, const FusePlan& plan,
            const FuseOptions& options, const Progress& progress = {});
 
 /// Validates the options. Throws FieldError that names the invalid one.

@@ -50,13 +50,13 @@ void set_direction(const Vec3& direction, float coverage, Lanes* input) {
 }
 
 // Training data: a sample with its teachers and signatures.
-struct Lesson {
+struct TrainingData {
   const Composition& composition;
   const TexelSample& sample;
   std::vector<FeatureNetwork> teachers = networks_of(composition);
   std::vector<std::vector<Lanes>> signatures;  // per piece
 
-  Lesson(const Composition& c, const TexelSample& s) : composition(c), sample(s), signatures(s.pieces.size()) {
+  TrainingData(const Composition& c, const TexelSample& s) : composition(c), sample(s), signatures(s.pieces.size()) {
     tbb::parallel_for(std::size_t{0}, signatures.size(), [&](std::size_t k) {
       std::vector<Lanes> work(workspace());
       signatures[k].resize(signature_size);
@@ -74,10 +74,10 @@ struct Lesson {
 };
 
 // Trains the encoder, and the decoder if `decoder_moves`, end to end on the error of colours.
-void train_together(Student& student, const Lesson& lesson, int steps, bool decoder_moves, double rate,
+void train_together(Student& student, const TrainingData& lesson, int steps, bool decoder_moves, double rate,
                     const TrainingOptions& options, const Progress& progress) {
   const NetworkKernels& kernels = network_kernels();
-  constexpr std::size_t groups_a_step = 64, sightings_a_group = 2;
+  constexpr std::size_t groups_per_step = 64, view_samples_per_group = 2;
   std::vector<std::size_t> pieces;
   for (std::size_t k = 0; k < lesson.sample.pieces.size(); ++k)
     if (!stays(student, lesson.composition.parts[lesson.sample.pieces[k].part])) pieces.push_back(k);
@@ -95,21 +95,22 @@ void train_together(Student& student, const Lesson& lesson, int steps, bool deco
     decoder_gradients.clear();
     encoder_gradients.clear();
     tbb::parallel_for(std::size_t{0}, gradient_parts, [&](std::size_t part) {
-      Dice dice(options.seed + static_cast<std::uint64_t>(step) * gradient_parts + part);
+      SplitMix64 dice(options.seed + static_cast<std::uint64_t>(step) * gradient_parts + part);
       std::vector<Lanes> work(decoder_work + encoder_work + teacher_work);
       Lanes* const at_decoder = work.data();
       Lanes* const at_encoder = at_decoder + decoder_work;
       Lanes* const at_teacher = at_encoder + encoder_work;
-      for (std::size_t g = 0; g < groups_a_step / gradient_parts; ++g) {
+      for (std::size_t g = 0; g < groups_per_step / gradient_parts; ++g) {
         const std::size_t number = pieces[dice.below(pieces.size())];
         const TexelSample::Piece& piece = lesson.sample.pieces[number];
         Lanes features[texel_features], feature_slopes[texel_features] = {};
         kernels.forward(encoder.view(), lesson.signatures[number].data(), features, at_encoder);
-        for (std::size_t k = 0; k < sightings_a_group; ++k) {
+        for (std::size_t k = 0; k < view_samples_per_group; ++k) {
           const Vec3& direction = piece.directions[dice.below(piece.directions.size())];
-          const SightingKind kind = sighting_kind(dice.next() >> 32);
+          const ViewSampleKind kind = view_sample_kind(dice.next() >> 32);
           Lanes target[3], input[decoder_inputs], output[3], slopes[3], input_slopes[decoder_inputs];
-          teach(lesson.teacher_of(number), piece.group, direction, kind.coverage, kind.mix, target, at_teacher);
+          teacher_colors(lesson.teacher_of(number), piece.group, direction, kind.coverage, kind.mix, target,
+                         at_teacher);
           for (std::size_t c = 0; c < texel_features; ++c) {
             input[c] = mixed(features[c], kind.mix);
             for (float& value : input[c].at) value *= kind.coverage;
@@ -132,8 +133,8 @@ void train_together(Student& student, const Lesson& lesson, int steps, bool deco
                          encoder_gradients.parts[part].data(), nullptr, at_encoder);
       }
     });
-    const float step_rate = static_cast<float>(rate) * falling_rate(static_cast<double>(step) / steps);
-    constexpr double observations = groups_a_step * sightings_a_group * network_lanes;
+    const float step_rate = static_cast<float>(rate) * cosine_rate(static_cast<double>(step) / steps);
+    constexpr double observations = groups_per_step * view_samples_per_group * network_lanes;
     encoder_gradients.mean_into(gradient, observations);
     encoder_adam.step(encoder.values, gradient, step_rate);
     if (!decoder_moves) continue;
@@ -150,7 +151,7 @@ FeatureNetwork new_encoder(std::uint64_t seed) {
 
 }  // namespace
 
-TexelSample sampled(const Composition& composition, const Sightlines& sightlines, std::size_t texels,
+TexelSample sampled(const Composition& composition, const VisibleDirections& sightlines, std::size_t texels,
                     std::uint64_t seed, const Progress& progress) {
   const std::size_t wanted = (texels + network_lanes - 1) / network_lanes;
   std::vector<std::vector<std::uint32_t>> blocks_of_part(composition.parts.size());
@@ -160,7 +161,7 @@ TexelSample sampled(const Composition& composition, const Sightlines& sightlines
     texels_of_part[composition.blocks[b].part] += composition.blocks[b].opaque;
   }
   TexelSample sample;
-  Dice dice(seed);
+  SplitMix64 dice(seed);
   for (std::uint32_t part = 0; part < composition.parts.size(); ++part) {
     if (texels_of_part[part] == 0) continue;
     const auto share = static_cast<double>(texels_of_part[part]) / static_cast<double>(composition.opaque_texels);
@@ -189,7 +190,7 @@ TexelSample sampled(const Composition& composition, const Sightlines& sightlines
       piece.held_out = sightlines.directions(sites, held_out_directions, dice.next());
       sample.pieces.push_back(std::move(piece));
       if (g % 32 == 0)
-        progress.at("looking at texels",
+        progress.at("sampling texels",
                     static_cast<double>(sample.pieces.size()) / static_cast<double>(wanted + composition.parts.size()));
     }
   }
@@ -200,7 +201,7 @@ bool stays(const Student& student, const Composition::Part& part) {
   return student.keeps && student.branches.front().teacher == part.teacher && !part.bent && !part.light;
 }
 
-bool shown_exactly(const Student& student, const Composition::Part& part) {
+bool needs_only_rounding(const Student& student, const Composition::Part& part) {
   return student.exact && !part.bent && !part.light &&
          std::any_of(student.branches.begin(), student.branches.end(),
                      [&](const Student::Branch& branch) { return branch.teacher == part.teacher; });
@@ -215,24 +216,25 @@ std::vector<FeatureNetwork> networks_of(const Composition& composition) {
 Student keeping(const Composition& composition, const TexelSample& sample, std::size_t base,
                 const TrainingOptions& options, const Progress& progress) {
   const Decoder decoder =
-      fold_turn(*composition.teachers[base], composition.frames[base], Axes::forward, Axes::forward);
+      fold_rotation(*composition.teachers[base], composition.frames[base], Axes::forward, Axes::forward);
   Student student{FeatureNetwork(decoder),
                   new_encoder(options.seed),
                   {{base, composition.frames[base].transpose()}},
                   0,
                   true,
                   true};
-  train_together(student, Lesson(composition, sample), options.steps / 2, false, options.rate / 4, options, progress);
+  train_together(student, TrainingData(composition, sample), options.steps / 2, false, options.rate / 4, options,
+                 progress);
   return student;
 }
 
-Student adapted(const Student& student, const Composition& composition, const TexelSample& sample, std::size_t width,
-                const TrainingOptions& options, const Progress& progress) {
+Student fine_tuned(const Student& student, const Composition& composition, const TexelSample& sample, std::size_t width,
+                   const TrainingOptions& options, const Progress& progress) {
   Student result = student;
   result.keeps = result.exact = false;
   result.decoder = widened(student.decoder, width, options.seed + 5);
   // Half the learning rate, so that the decoder does not forget its teacher.
-  train_together(result, Lesson(composition, sample), options.steps, true, options.rate / 2, options, progress);
+  train_together(result, TrainingData(composition, sample), options.steps, true, options.rate / 2, options, progress);
   return result;
 }
 
@@ -240,7 +242,7 @@ Student from_scratch(const Composition& composition, const TexelSample& sample, 
                      const TrainingOptions& options, const Progress& progress) {
   Student student{FeatureNetwork(decoder_inputs, width, width, 3), new_encoder(options.seed), {}, 0, false, false};
   randomise(student.decoder, options.seed + 3);
-  train_together(student, Lesson(composition, sample), options.steps, true, options.rate, options, progress);
+  train_together(student, TrainingData(composition, sample), options.steps, true, options.rate, options, progress);
   return student;
 }
 
@@ -257,7 +259,7 @@ std::array<FeatureLevels, texel_features> feature_levels(int bits, AlphaCode cod
   return levels;
 }
 
-void store_in(const Student::Branch& branch, Lanes* features) {
+void encode_for(const Student::Branch& branch, Lanes* features) {
   for (std::size_t l = 0; l < network_lanes; ++l) {
     Eigen::Matrix<double, 8, 1> own;
     for (std::size_t c = 0; c < texel_features; ++c)
@@ -268,15 +270,15 @@ void store_in(const Student::Branch& branch, Lanes* features) {
   }
 }
 
-void first_guess(const Student& student, const FeatureNetwork& teacher, const Composition::Part& part,
-                 const TexelGroup& group, const std::vector<Sighting>& sightings, Lanes* features, Lanes* work) {
+void initial_guess(const Student& student, const FeatureNetwork& teacher, const Composition::Part& part,
+                   const TexelGroup& group, const std::vector<ViewSample>& view_samples, Lanes* features, Lanes* work) {
   const NetworkKernels& kernels = network_kernels();
   // All texels of a group get the same kind of guess, so that their features can be averaged.
   float least = std::numeric_limits<float>::infinity();
   const auto consider = [&](const Lanes* guess) {
     Lanes tried[texel_features], error;
     std::copy_n(guess, texel_features, tried);
-    kernels.fit_texels(student.decoder.view(), sightings.data(), sightings.size(), {}, tried, &error, work);
+    kernels.fit_texels(student.decoder.view(), view_samples.data(), view_samples.size(), {}, tried, &error, work);
     const float sum = std::accumulate(std::begin(error.at), std::end(error.at), 0.0F);
     if (!(sum < least)) return;
     least = sum;
@@ -292,7 +294,7 @@ void first_guess(const Student& student, const FeatureNetwork& teacher, const Co
   for (const Student::Branch& branch : student.branches) {
     if (student.encoder && branch.teacher != part.teacher) continue;
     std::copy_n(group.features, texel_features, guess);
-    store_in(branch, guess);
+    encode_for(branch, guess);
     consider(guess);
   }
 }

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <optional>
 
-#include "mesh_ops/features/sightings.h"
+#include "mesh_ops/features/view_samples.h"
 
 namespace rebake {
 
@@ -20,7 +20,7 @@ struct TexelSample {
 };
 /// Samples about `texels` texels. Each part gets groups in proportion to its texels, but at least two, and at least an
 /// equal share of an eighth of the sample.
-TexelSample sampled(const Composition& composition, const Sightlines& sightlines, std::size_t texels,
+TexelSample sampled(const Composition& composition, const VisibleDirections& sightlines, std::size_t texels,
                     std::uint64_t seed, const Progress& progress);
 
 /// The one decoder of a fused object, with maps that guess its features from those of the original decoders (teachers).
@@ -45,7 +45,7 @@ struct Student {
 /// Whether a part's texels stay unchanged, bit for bit.
 bool stays(const Student& student, const Composition::Part& part);
 /// Whether a part's texels need no fit, only rounding.
-bool shown_exactly(const Student& student, const Composition::Part& part);
+bool needs_only_rounding(const Student& student, const Composition::Part& part);
 
 struct TrainingOptions {
   int steps = 8000;    ///< Adam steps on decoder and encoder together; more steps gain little
@@ -67,11 +67,11 @@ Student keeping(const Composition& composition, const TexelSample& sample, std::
 /// rotation.
 Student side_by_side(const Composition& composition, const TexelSample& sample, std::size_t bent_turns);
 /// Maximum number of sectors.
-inline constexpr std::size_t most_branches = 4;
+inline constexpr std::size_t max_branches = 4;
 
 /// A student's decoder, widened and fine-tuned. Texels may be initialised by its branches.
-Student adapted(const Student& student, const Composition& composition, const TexelSample& sample, std::size_t width,
-                const TrainingOptions& options, const Progress& progress);
+Student fine_tuned(const Student& student, const Composition& composition, const TexelSample& sample, std::size_t width,
+                   const TrainingOptions& options, const Progress& progress);
 /// Trains decoder and encoder from random weights.
 Student from_scratch(const Composition& composition, const TexelSample& sample, std::size_t width,
                      const TrainingOptions& options, const Progress& progress);
@@ -80,11 +80,11 @@ Student from_scratch(const Composition& composition, const TexelSample& sample, 
 std::array<FeatureLevels, texel_features> feature_levels(int bits, AlphaCode code);
 
 /// Converts a teacher's features to those of a branch, in place.
-void store_in(const Student::Branch& branch, Lanes* features);
+void encode_for(const Student::Branch& branch, Lanes* features);
 
 /// Initial guess of features: by the best branch of their teacher or by the encoder, whichever is better.
-void first_guess(const Student& student, const FeatureNetwork& teacher, const Composition::Part& part,
-                 const TexelGroup& group, const std::vector<Sighting>& sightings, Lanes* features, Lanes* work);
+void initial_guess(const Student& student, const FeatureNetwork& teacher, const Composition::Part& part,
+                   const TexelGroup& group, const std::vector<ViewSample>& view_samples, Lanes* features, Lanes* work);
 
 /// Size of the workspace `work` of the functions above, in lanes.
 std::size_t workspace_of(const Student& student, const std::vector<FeatureNetwork>& teachers);

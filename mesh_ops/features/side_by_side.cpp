@@ -12,7 +12,7 @@ namespace {
 using Branch = Student::Branch;
 
 // The two features to which colours are least sensitive, over the sample.
-std::array<Eigen::Index, 2> least_features(const Composition& composition, const TexelSample& sample) {
+std::array<Eigen::Index, 2> least_sensitive_features(const Composition& composition, const TexelSample& sample) {
   const std::vector<FeatureNetwork> teachers = networks_of(composition);
   std::array<double, texel_features> change{};
   for (const TexelSample::Piece& piece : sample.pieces) {
@@ -20,13 +20,13 @@ std::array<Eigen::Index, 2> least_features(const Composition& composition, const
     std::vector<Lanes> work(network_kernels().workspace(teacher.view()));
     Lanes colors[3], moved[3];
     const Vec3& direction = piece.directions.front();
-    teach(teacher, piece.group, direction, 1, 0, colors, work.data());
+    teacher_colors(teacher, piece.group, direction, 1, 0, colors, work.data());
     for (std::size_t c = 0; c < texel_features; ++c) {
       // A step of the size of rounding errors: alpha channels of split folders have one bit less.
       TexelGroup other = piece.group;
       const float step = (c % 4 == 3 ? 4.0F : 2.0F) / 255;
       for (float& value : other.features[c].at) value += value > 0.5F ? -step : step;
-      teach(teacher, other, direction, 1, 0, moved, work.data());
+      teacher_colors(teacher, other, direction, 1, 0, moved, work.data());
       for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t l = 0; l < network_lanes; ++l) {
           const auto off = static_cast<double>(moved[k].at[l] - colors[k].at[l]);
@@ -43,8 +43,8 @@ std::array<Eigen::Index, 2> least_features(const Composition& composition, const
 
 // Up to `wanted` representative rotations of a teacher's bent texels: k-means with farthest-point initialisation, with
 // `known` as fixed centres.
-std::vector<Mat3> typical_turns(const Composition& composition, const TexelSample& sample, std::size_t teacher,
-                                std::vector<Mat3> known, std::size_t wanted) {
+std::vector<Mat3> representative_rotations(const Composition& composition, const TexelSample& sample,
+                                           std::size_t teacher, std::vector<Mat3> known, std::size_t wanted) {
   std::vector<Mat3> turns;
   for (const TexelSample::Piece& piece : sample.pieces) {
     const Composition::Part& part = composition.parts[piece.part];
@@ -79,7 +79,7 @@ std::vector<Mat3> typical_turns(const Composition& composition, const TexelSampl
   return {known.begin() + static_cast<std::ptrdiff_t>(fixed), known.end()};
 }
 
-// Up to most_branches branches: first the teachers of rigid texels, most texels first; then up to `bent_turns`
+// Up to max_branches branches: first the teachers of rigid texels, most texels first; then up to `bent_turns`
 // rotations per teacher of bent texels.
 std::vector<Branch> chosen_branches(const Composition& composition, const TexelSample& sample, std::size_t bent_turns) {
   struct Wanted {
@@ -97,13 +97,13 @@ std::vector<Branch> chosen_branches(const Composition& composition, const TexelS
   });
   std::vector<Branch> branches;
   for (const std::size_t k : order)
-    if (texels[k].rigid > 0 && branches.size() < most_branches) branches.push_back({k, Mat3::Identity()});
+    if (texels[k].rigid > 0 && branches.size() < max_branches) branches.push_back({k, Mat3::Identity()});
   for (const std::size_t k : order) {
     if (texels[k].bent == 0) continue;
     std::vector<Mat3> known;
     if (texels[k].rigid > 0) known.emplace_back(Mat3::Identity());
-    for (const Mat3& turn : typical_turns(composition, sample, k, known, bent_turns))
-      if (branches.size() < most_branches) branches.push_back({k, turn});
+    for (const Mat3& turn : representative_rotations(composition, sample, k, known, bent_turns))
+      if (branches.size() < max_branches) branches.push_back({k, turn});
   }
   // All texels are bent and none was sampled.
   if (branches.empty()) branches.push_back({order.front(), composition.frames[order.front()].transpose()});
@@ -142,7 +142,7 @@ Student side_by_side(const Composition& composition, const TexelSample& sample, 
                   false,
                   true};
   std::vector<Branch>& branches = student.branches;
-  const auto [c, e] = least_features(composition, sample);
+  const auto [c, e] = least_sensitive_features(composition, sample);
   const std::size_t n = branches.size();
   if (n > 1) student.selectors = 1U << c | 1U << e;
   // Distance of texels from the borders of their sector, so that rounding to bytes cannot bring them near a border.
@@ -163,7 +163,7 @@ Student side_by_side(const Composition& composition, const TexelSample& sample, 
       branch.offset[e] = inside * (r1.y() + r2.y());
     }
     Decoder decoder =
-        fold_turn(*composition.teachers[branch.teacher], branch.turn.transpose(), Axes::forward, Axes::forward);
+        fold_rotation(*composition.teachers[branch.teacher], branch.turn.transpose(), Axes::forward, Axes::forward);
     // The teacher's input is encode⁻¹ · (features − offset).
     decoder.weights0.topRows<8>() = branch.encode.inverse().transpose() * decoder.weights0.topRows<8>();
     decoder.bias0 -= decoder.weights0.topRows<8>().transpose() * branch.offset;

@@ -24,21 +24,21 @@ namespace {
 // size apart.
 constexpr int enough = 4;
 
-Vec3 random_direction(Dice& dice) {
+Vec3 random_direction(SplitMix64& dice) {
   const double z = 2 * dice.share() - 1, r = std::sqrt(std::max(0.0, 1 - z * z));
   const auto angle = elementary::sine_cosine(2 * std::numbers::pi * dice.share());
   return {r * angle.cosine, r * angle.sine, z};
 }
 
 // Random opaque points of a triangle.
-class ShownPoints {
+class OpaquePoints {
  public:
-  ShownPoints(const TextureSet& set, std::size_t f) : texels_(*set.texels), uv_(texel_corners(set, f)) {
+  OpaquePoints(const TextureSet& set, std::size_t f) : texels_(*set.texels), uv_(texel_corners(set, f)) {
     for (std::size_t k = 0; k < 3; ++k) corners_[k] = set.soup.positions()[set.soup.faces()[f][k]];
     // Opaque texels that overlap the triangle, each represented by the triangle's point nearest to its centre.
     const Vec2 low = uv_[0].cwiseMin(uv_[1]).cwiseMin(uv_[2]), high = uv_[0].cwiseMax(uv_[1]).cwiseMax(uv_[2]);
     if (!(low.allFinite() && high.allFinite())) return;
-    Dice dice(f);
+    SplitMix64 dice(f);
     std::size_t number = 0;
     for (int y = texel_within(low.y(), texels_.height()); y <= texel_within(high.y(), texels_.height()); ++y)
       for (int x = texel_within(low.x(), texels_.width()); x <= texel_within(high.x(), texels_.width()); ++x) {
@@ -58,7 +58,7 @@ class ShownPoints {
 
   bool none() const { return places_.empty(); }
   /// A random opaque point: with probability ½ uniform over the triangle, else the point of a random texel.
-  Vec3 random(Dice& dice) const {
+  Vec3 random(SplitMix64& dice) const {
     if (dice.below(2) == 0) {
       double a = dice.share(), b = dice.share();
       if (a + b > 1) a = 1 - a, b = 1 - b;
@@ -144,7 +144,7 @@ struct ColorSample {
 ColorSample sampled_colors(const BakedObject& object) {
   constexpr std::size_t wanted = 2048, directions = 6;
   ColorSample sample;
-  Dice dice(1);
+  SplitMix64 dice(1);
   for (std::size_t k = 0; k < directions; ++k) sample.directions.push_back(random_direction(dice));
   std::uint64_t opaque = 0;
   for (const TextureSet& set : object.sets) opaque += set.texels->opaque_count();
@@ -187,11 +187,12 @@ double squared_loss(const ColorSample& sample, const TexelColors& looks, const F
 
 }  // namespace
 
-double most_missed(std::size_t triangles, int rays) {
+double missed_share_bound(std::size_t triangles, int rays) {
   return 1 - std::pow(0.05 / static_cast<double>(std::max<std::size_t>(1, triangles)), 1.0 / std::max(1, rays));
 }
 
-Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_rays, const Progress& progress) {
+VisibilityReport traced_visibility(const BakedObject& object, const EyeRegion& eyes, int most_rays,
+                                   const Progress& progress) {
   const auto tree = rays_of(object);
   const double size = object.bounds().diagonal().norm();
   struct Sent {
@@ -204,15 +205,15 @@ Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_r
     for (std::size_t f = 0; f < object.sets[s].soup.triangle_count(); ++f) all.push_back({s, f});
   const auto send = [&](std::size_t triangle, int until) {
     Sent& sent = all[triangle];
-    const ShownPoints points(object.sets[sent.set], sent.face);
+    const OpaquePoints points(object.sets[sent.set], sent.face);
     sent.shows = !points.none();
     // A different random sequence for each call.
-    Dice dice(triangle * 64 + static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(sent.rays))));
+    SplitMix64 dice(triangle * 64 + static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(sent.rays))));
     while (sent.shows && sent.rays < until && sent.through < enough) {
       const Vec3 point = points.random(dice);
       Vec3 eye;
       if (!eyes.standpoints.empty()) {
-        const Standpoint& from = eyes.standpoints[dice.below(eyes.standpoints.size())];
+        const Viewpoint& from = eyes.standpoints[dice.below(eyes.standpoints.size())];
         eye = from.back.isZero(0) ? from.eye : Vec3(point + 1.5 * size * from.back);
       } else if (eyes.box) {
         const Vec3 share(dice.share(), dice.share(), dice.share());
@@ -239,7 +240,7 @@ Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_r
       if (all[open[k]].through > 0) ++found;
       const std::size_t now = ++done;
       if (now % 256 == 0)
-        progress.at("looking for what is seen", static_cast<double>(now) / static_cast<double>(open.size()));
+        progress.at("tracing visibility", static_cast<double>(now) / static_cast<double>(open.size()));
     });
     std::erase_if(open, [&](std::size_t k) { return all[k].through > 0 || !all[k].shows; });
     // The first round finds the clearly visible triangles. The rest counts as unseen after a further round that finds
@@ -247,7 +248,7 @@ Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_r
     more = !open.empty() && until < most_rays && (found > 0 || until == first_rays);
     if (more) until = std::min(2 * until, most_rays);
   }
-  Sightings seen;
+  VisibilityReport seen;
   seen.rays_each = until;
   for (const Sent& sent : all) {
     seen.rays += static_cast<std::uint64_t>(sent.rays);
@@ -268,7 +269,7 @@ BitsFound fewest_bits(const BakedObject& object, double psnr_db, const Progress&
   sample.colors = colors_of(sample, looks, found.bits);
   const double most = std::pow(10.0, -psnr_db / 10);
   for (int taken = 0;; ++taken) {
-    progress.at("fewer bits", taken / 56.0);
+    progress.at("reducing bits", taken / 56.0);
     double least = std::numeric_limits<double>::infinity();
     FeatureBits best = found.bits;
     for (std::size_t k = 0; k < 8; ++k) {
@@ -291,7 +292,7 @@ std::shared_ptr<const FeatureTexture> with_bits(const std::shared_ptr<const Feat
   return changed(texels, [&](int, int, const Texel& texel) { return texel.opaque() ? rounded(texel, bits) : texel; });
 }
 
-std::shared_ptr<const FeatureTexture> with_empty_rest(const TextureSet& set) {
+std::shared_ptr<const FeatureTexture> without_unused_texels(const TextureSet& set) {
   const int width = set.texels->width(), height = set.texels->height();
   std::vector<std::uint8_t> shown(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
   for (std::size_t f = 0; f < set.soup.triangle_count(); ++f) {

@@ -12,13 +12,13 @@ namespace rebake {
 
 /// Possible eye positions: these standpoints, else anywhere in the box, else all around the object.
 struct EyeRegion {
-  std::vector<Standpoint> standpoints;  ///< in object space
-  std::optional<Box> box;               ///< in world space
+  std::vector<Viewpoint> standpoints;  ///< in object space
+  std::optional<Box> box;              ///< in world space
   Affine world_to_object = Affine::Identity();
 };
 
 /// Visibility of triangles, from rays between random opaque texels and random eyes.
-struct Sightings {
+struct VisibilityReport {
   TriangleSet unseen;      ///< triangles that no ray reached
   int rays_each = 0;       ///< rays per unseen triangle
   std::uint64_t rays = 0;  ///< total number of rays
@@ -31,10 +31,11 @@ struct Sightings {
 /// Traces rays between random eyes and each triangle until four are unoccluded. For triangles that 1024 rays do not
 /// reach, the number of rays is doubled until a doubling finds nothing new or `most_rays` are traced. Triangles without
 /// an opaque texel are unseen. Only opaque texels occlude. The same result at any number of threads.
-Sightings look_from(const BakedObject& object, const EyeRegion& eyes, int most_rays, const Progress& progress = {});
+VisibilityReport traced_visibility(const BakedObject& object, const EyeRegion& eyes, int most_rays,
+                                   const Progress& progress = {});
 /// Upper bound, with 95 % confidence, of the unoccluded share of lines of sight of any of `triangles` triangles that
 /// `rays` rays each did not reach: (1 - share)^rays = 0.05 / triangles.
-double most_missed(std::size_t triangles, int rays);
+double missed_share_bound(std::size_t triangles, int rays);
 
 /// Number of bits per feature, 1 … 8; 8: unchanged.
 using FeatureBits = std::array<int, 8>;
@@ -53,6 +54,6 @@ std::shared_ptr<const FeatureTexture> with_bits(const std::shared_ptr<const Feat
 
 /// A set's texture with unused texels cleared: transparent ones, and those outside the rectangles of its triangles. The
 /// same pointer if nothing changes.
-std::shared_ptr<const FeatureTexture> with_empty_rest(const TextureSet& set);
+std::shared_ptr<const FeatureTexture> without_unused_texels(const TextureSet& set);
 
 }  // namespace rebake

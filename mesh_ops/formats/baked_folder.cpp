@@ -14,8 +14,8 @@
 #include "mesh_ops/formats/feature_png.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
-#include "mesh_ops/formats/turns_file.h"
-#include "mesh_ops/formats/turns_json.h"
+#include "mesh_ops/formats/rotations_file.h"
+#include "mesh_ops/formats/rotations_json.h"
 
 namespace rebake {
 
@@ -27,7 +27,7 @@ SourceFile source_of(const std::string& name, std::string_view bytes) {
   return {name, bytes.size(), content_hash(bytes)};
 }
 
-struct SetParts {
+struct SetComponents {
   std::vector<ObjMesh> chunks;
   std::vector<SourceFile> geometry;
   std::shared_ptr<const FeatureTexture> texels;
@@ -74,7 +74,7 @@ bool is_placeholder(const ObjMesh& chunk) {
 }
 
 // Resolves a set with both a whole file and chunks: they are the same mesh if they have equally many triangles.
-void settle_whole_and_chunks(SetParts& parts, std::vector<std::string>& assumptions) {
+void resolve_whole_and_chunks(SetComponents& parts, std::vector<std::string>& assumptions) {
   const std::string& whole = parts.geometry.front().name;
   if (parts.geometry.size() < 2 || whole.find('_') != std::string::npos) return;
   std::size_t in_chunks = 0;
@@ -82,8 +82,9 @@ void settle_whole_and_chunks(SetParts& parts, std::vector<std::string>& assumpti
     in_chunks += is_placeholder(parts.chunks[j]) ? 0 : parts.chunks[j].faces.size();
   const std::string& first = parts.geometry[1].name;
   if (in_chunks == parts.chunks.front().faces.size()) {
-    assumptions.push_back(fmt::format("{} and {} … have {} triangles each: they are taken for the same, and {} is read",
-                                      whole, first, in_chunks, whole));
+    assumptions.push_back(
+        fmt::format("{} and {} … have {} triangles each: they are assumed to be the same mesh, and {} is read", whole,
+                    first, in_chunks, whole));
     parts.chunks.resize(1);
     parts.geometry.resize(1);
   } else {
@@ -94,7 +95,7 @@ void settle_whole_and_chunks(SetParts& parts, std::vector<std::string>& assumpti
   }
 }
 
-TextureSet joined(SetParts& parts) {
+TextureSet joined(SetComponents& parts) {
   if (parts.chunks.size() > 1) std::erase_if(parts.chunks, is_placeholder);
   if (parts.chunks.empty()) return {};
   std::size_t vertex_count = 0, face_count = 0;
@@ -118,7 +119,7 @@ TextureSet joined(SetParts& parts) {
 
 }  // namespace
 
-std::size_t found_texture_sets(const fs::path& folder, std::size_t obj_num) {
+std::size_t count_texture_sets(const fs::path& folder, std::size_t obj_num) {
   const auto has_textures = [&](std::size_t set) {
     return fs::exists(folder / feature_name(Layout::split, set, 0)) &&
            fs::exists(folder / feature_name(Layout::split, set, 1));
@@ -161,18 +162,18 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
   const int said = mlp.obj_num.value_or(1);
   std::vector<std::string> assumptions;
   // If no set is found, reading reports the missing file.
-  const int found = unsplit ? 1 : static_cast<int>(found_texture_sets(folder, static_cast<std::size_t>(said)));
+  const int found = unsplit ? 1 : static_cast<int>(count_texture_sets(folder, static_cast<std::size_t>(said)));
   const int set_count = found > 0 ? found : said;
   if (!unsplit && found > 0 && has_geometry(folder, static_cast<std::size_t>(found) + (found < said ? 0 : 1)))
-    assumptions.push_back(fmt::format("files of shape{} are not read: the sets before it are not whole", found + 1));
+    assumptions.push_back(fmt::format("files of shape{} are not read: files of an earlier set are missing", found + 1));
   if (set_count != said)
     assumptions.push_back(
-        fmt::format("mlp.json says obj_num = {}, but the folder holds {} texture sets: all {} are read", said,
+        fmt::format("mlp.json says obj_num = {}, but the folder contains {} texture sets: all {} are read", said,
                     set_count, set_count));
   const AlphaCode code = unsplit ? AlphaCode::plain : AlphaCode::halved;
   const Layout naming = unsplit ? Layout::unsplit : Layout::split;
 
-  std::vector<SetParts> sets(static_cast<std::size_t>(set_count));
+  std::vector<SetComponents> sets(static_cast<std::size_t>(set_count));
   struct Job {
     std::size_t set;
     std::size_t chunk;
@@ -200,7 +201,7 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
       [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t k = range.begin(); k != range.end(); ++k) {
           const Job& job = jobs[k];
-          SetParts& parts = sets[job.set];
+          SetComponents& parts = sets[job.set];
           if (job.texels) {
             const std::string name0 = feature_name(naming, job.set, 0), name1 = feature_name(naming, job.set, 1);
             FileBytes feat0(folder / name0), feat1(folder / name1);
@@ -232,9 +233,9 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
   origin->mlp = source_of("mlp.json", mlp_text);
   origin->decoder = object->decoder;
   for (std::size_t i = 0; i < sets.size(); ++i) {
-    SetParts& parts = sets[i];
+    SetComponents& parts = sets[i];
     const std::string first = parts.geometry.front().name;
-    settle_whole_and_chunks(parts, assumptions);
+    resolve_whole_and_chunks(parts, assumptions);
     TextureSet set = joined(parts);
     if (set.soup.triangle_count() == 0) throw FileError(folder / first, "has no triangles");
     origin->sets.push_back({parts.geometry, parts.feat0, parts.feat1, set.soup.shared_positions(),
@@ -245,9 +246,9 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, Axe
   origin->assumptions = std::move(assumptions);
   object->origin = origin;
   if (const fs::path turns = folder / "turns.bin"; fs::exists(turns))
-    read_turns(read_file(turns), turns, object->sets);
+    read_rotations(read_file(turns), turns, object->sets);
   else if (const fs::path text = folder / "turns.json"; fs::exists(text))
-    read_turns_json(read_file(text), text, object->sets);
+    read_rotations_json(read_file(text), text, object->sets);
   // Exports replace whole folders. Half of the old and half of the new folder would be taken for a scene.
   if (identity() != before) throw FileError(folder, "was replaced while it was read; open it again");
   return object;

@@ -25,7 +25,7 @@ std::string format_of(const std::filesystem::path& path) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (ending != ".obj" && ending != ".off" && ending != ".ply")
-    throw FileError(path, "is no cage that can be read: its name must end in .obj, .off or .ply");
+    throw FileError(path, "is not in a supported cage format; use a name that ends in .obj, .off or .ply");
   return ending;
 }
 
@@ -34,7 +34,7 @@ void check_counts(const std::filesystem::path& path, const std::string& format, 
   std::istringstream text(bytes.substr(0, 4096));
   const auto check = [&](double count, const char* what) {
     if (count > static_cast<double>(bytes.size()))
-      throw FileError(path, fmt::format("its header promises {:.0f} {}, more than the file can hold", count, what));
+      throw FileError(path, fmt::format("its header declares {:.0f} {}, more than the file can contain", count, what));
   };
   double points = 0, faces = 0;
   if (format == ".ply") {
@@ -72,16 +72,17 @@ Cage read_cage(const std::filesystem::path& path) {
   const bool read = OpenMesh::IO::read_mesh(mesh, text, format, options);
   omerr().disconnect(complaints);
   omerr().connect(std::cerr);
-  if (!read || mesh.n_faces() == 0) throw FileError(path, "holds no mesh that can be read");
+  if (!read || mesh.n_faces() == 0) throw FileError(path, "contains no readable mesh");
   if (!complaints.str().empty())
-    throw FileError(path, "is non-manifold: a cage's edges belong to two triangles each, and its points to one fan");
+    throw FileError(
+        path, "is non-manifold: each edge of a cage must belong to two triangles, and each point to one triangle fan");
   Cage cage;
   for (const auto v : mesh.vertices()) {
     const auto& p = mesh.point(v);
     cage.vertices.emplace_back(p[0], p[1], p[2]);
   }
   for (const auto f : mesh.faces()) {
-    if (mesh.valence(f) != 3) throw FileError(path, "has faces of other than three corners; triangulate it first");
+    if (mesh.valence(f) != 3) throw FileError(path, "has faces that are not triangles; triangulate it first");
     Face face{};
     std::size_t k = 0;
     for (const auto v : mesh.fv_range(f)) face[k++] = static_cast<std::uint32_t>(v.idx());

@@ -25,7 +25,7 @@ double number(const json& value, const std::string& key) {
 
 double plane(const json& value, const std::string& key) {
   const double distance = number(value, key);
-  if (!(distance > 0)) throw FieldError(key, "must be greater than 0; left out, it is fitted to the scene");
+  if (!(distance > 0)) throw FieldError(key, "must be greater than 0; leave it out to fit it to the scene");
   return distance;
 }
 

@@ -8,7 +8,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
-#include "mesh_ops/features/turn_groups.h"
+#include "mesh_ops/features/rotation_groups.h"
 #include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/formats/scene_folder.h"
 #include "mesh_ops/formats/write_baked_folder.h"
@@ -17,16 +17,16 @@ namespace rebake {
 
 namespace {
 
-bool same_turn(const Soup& soup, std::size_t face, const Turn& turn) {
+bool has_rotation(const Soup& soup, std::size_t face, const PackedRotation& turn) {
   return soup.rotations() == nullptr ? turn.is_identity() : (*soup.rotations())[soup.faces()[face][0]] == turn;
 }
 
 // The distinct rotations of the faces of an object without bent faces.
-std::vector<Turn> distinct_turns(const BakedObject& object) {
-  std::vector<Turn> turns;
+std::vector<PackedRotation> distinct_rotations(const BakedObject& object) {
+  std::vector<PackedRotation> turns;
   for (const TextureSet& set : object.sets)
     for (const Face& face : set.soup.faces()) {
-      const Turn turn = set.soup.rotations() == nullptr ? Turn() : (*set.soup.rotations())[face[0]];
+      const PackedRotation turn = set.soup.rotations() == nullptr ? PackedRotation() : (*set.soup.rotations())[face[0]];
       if (turns.empty() || turns.back() != turn)
         if (std::find(turns.begin(), turns.end(), turn) == turns.end()) turns.push_back(turn);
       if (set.soup.rotations() == nullptr) break;
@@ -35,8 +35,8 @@ std::vector<Turn> distinct_turns(const BakedObject& object) {
 }
 
 // Rotation for bent faces: the most common rotation of the other faces, or the mean of the bent ones.
-Mat3 stand_in(const BakedObject& object, const TurnGroups& groups) {
-  const TurnGroups::Group* commonest = nullptr;
+Mat3 bent_rotation(const BakedObject& object, const RotationGroups& groups) {
+  const RotationGroups::Group* commonest = nullptr;
   for (std::uint32_t g = 0; g < groups.groups.size(); ++g)
     if (std::find(groups.group_of.begin(), groups.group_of.end(), g) != groups.group_of.end() &&
         (commonest == nullptr || groups.groups[g].faces > commonest->faces))
@@ -45,19 +45,20 @@ Mat3 stand_in(const BakedObject& object, const TurnGroups& groups) {
   Mat3 sum = Mat3::Zero();
   for (const TextureSet& set : object.sets)
     if (set.soup.rotations() != nullptr)
-      for (const Turn& turn : *set.soup.rotations()) sum += turn.matrix();
+      for (const PackedRotation& turn : *set.soup.rotations()) sum += turn.matrix();
   return local_rotation(sum).rotation;
 }
 
 // The object's triangles with rotation `turn` (or all), in world space and without rotations. Unchanged arrays are
 // shared.
-std::vector<TextureSet> world_sets(const BakedObject& object, const Turn& turn, bool all, const Affine& to_world) {
+std::vector<TextureSet> world_sets(const BakedObject& object, const PackedRotation& turn, bool all,
+                                   const Affine& to_world) {
   std::vector<TextureSet> sets;
   for (const TextureSet& set : object.sets) {
     Soup soup = set.soup;
     if (!all) {
       TriangleSet flags(soup.triangle_count());
-      for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = same_turn(soup, f, turn) ? 1 : 0;
+      for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = has_rotation(soup, f, turn) ? 1 : 0;
       soup = subset(soup, flags, 0, true);
       if (soup.triangle_count() == 0) continue;
     }
@@ -78,9 +79,9 @@ Scene without_bends(const Scene& scene, std::vector<std::string>* bent) {
   Scene result = scene;
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.visible || !placed.node->object || !placed.node->object->any_rotations()) continue;
-    const TurnGroups groups = turn_groups(*placed.node->object);
+    const RotationGroups groups = rotation_groups(*placed.node->object);
     if (groups.any_bent && bent != nullptr) bent->push_back(placed.node->name);
-    const Mat3 other = groups.any_bent ? stand_in(*placed.node->object, groups) : Mat3(Mat3::Identity());
+    const Mat3 other = groups.any_bent ? bent_rotation(*placed.node->object, groups) : Mat3(Mat3::Identity());
     auto object = std::make_shared<BakedObject>(*placed.node->object);
     std::size_t first = 0;
     for (TextureSet& set : object->sets) {
@@ -93,7 +94,7 @@ Scene without_bends(const Scene& scene, std::vector<std::string>* bent) {
       std::set<std::uint32_t> present(groups.group_of.begin() + static_cast<std::ptrdiff_t>(first),
                                       groups.group_of.begin() + static_cast<std::ptrdiff_t>(last));
       for (const std::uint32_t group : present)
-        give(group, group == TurnGroups::bent ? other : groups.groups[group].turn);
+        give(group, group == RotationGroups::bent ? other : groups.groups[group].turn);
       first = last;
     }
     result = with_changed(result, placed.node->id, [&](Node& node) { node.object = object; });
@@ -118,14 +119,14 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
     } catch (const std::invalid_argument& error) {
       throw EditError(fmt::format("node \"{}\": {}", placed.node->name, error.what()));
     }
-    const std::vector<Turn> turns = distinct_turns(object);
-    for (const Turn& turn : turns) {
+    const std::vector<PackedRotation> turns = distinct_rotations(object);
+    for (const PackedRotation& turn : turns) {
       std::vector<TextureSet> sets = world_sets(object, turn, turns.size() == 1, placed.to_world);
       const Mat3 whole = node_turn * turn.matrix();
       // Folds into the axes of an existing group, whose weights then may be equal.
       const auto folded_into = [&](Axes axes) {
         if (whole.isIdentity(0) && axes == object.axes) return object.decoder;
-        return std::make_shared<const Decoder>(fold_turn(*object.decoder, whole, object.axes, axes));
+        return std::make_shared<const Decoder>(fold_rotation(*object.decoder, whole, object.axes, axes));
       };
       Group* found = nullptr;
       for (Group& group : groups)
@@ -177,24 +178,26 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
   report.one_folder = nodes.size() == 1;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.node->object && !placed.visible)
-      report.notes.push_back(fmt::format("the hidden node \"{}\" is left out; save keeps it", placed.node->name));
+      report.notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
   if (!bent.empty())
     report.notes.push_back(
-        fmt::format("the format has no place for how bends turn colours: {} shows those from before; save keeps them",
+        fmt::format("the format cannot store how bends rotate colours: {} keeps the colours from before the bend; save "
+                    "keeps the rotations",
                     fmt::join(bent, ", ")));
   if (reordered)
     report.notes.emplace_back(
-        "objects of one decoder are drawn together now: where surfaces of two objects coincide exactly, another of "
+        "objects with the same decoder are now drawn together: where surfaces of two objects coincide exactly, the "
+        "other of "
         "them "
         "may show");
   AtomicFolder out(folder, options.sources, refuse_foreign_content);
   if (report.one_folder) {
     const BakedObject& object = *nodes.front().object;
     if (!scene.background.isOnes(0)) report.notes.emplace_back("the format has no background: viewers show white");
-    if (!scene.views.empty()) report.notes.emplace_back("the format has no named views: they are left out");
+    if (!scene.views.empty()) report.notes.emplace_back("the format has no named views: they are not exported");
     if (object.axes == Axes::forward)
       report.notes.emplace_back(
-          "the format does not say that this is a forward-facing scene: open it with --axes forward");
+          "the format does not record that this is a forward-facing scene: open it with --axes forward");
     write_baked_folder(out, {}, object, object.layout, report.notes, progress, false, options.page_side);
   } else {
     report.notes.push_back(

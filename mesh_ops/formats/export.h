@@ -21,8 +21,8 @@ struct ExportOptions {
 
 /// Result of writing a scene.
 struct ExportReport {
-  bool keeps_everything = false;  ///< whether reading the result gives the same scene
-  bool one_folder = true;         ///< MobileNeRF format: whether it is one plain folder, without scene.json
+  bool preserves_scene = false;  ///< whether reading the result gives the same scene
+  bool one_folder = true;        ///< MobileNeRF format: whether it is one plain folder, without scene.json
   std::size_t folders = 1;
   std::vector<std::string> notes;  ///< sentences for the user: data that was dropped, converted or cannot be stored
 };

@@ -35,8 +35,7 @@ class OtherPng : public RgbaRows {
                                         largest_png_side));
     if (layout.channels != 4)
       throw FileError(name, fmt::format("has {} channels; feature textures have 4 (RGBA)", layout.channels));
-    if (layout.type != "uint8")
-      throw FileError(name, fmt::format("is not 8 bits a channel (it holds {})", layout.type));
+    if (layout.type != "uint8") throw FileError(name, fmt::format("must have 8 bits per channel, not {}", layout.type));
     return std::make_unique<OtherPng>(std::move(reader), name);
   }
   OtherPng(std::unique_ptr<PictureReader> reader, const std::filesystem::path& name)
@@ -73,7 +72,7 @@ FeatureTexture read_feature_pngs(std::string_view feat0, const std::filesystem::
   const std::unique_ptr<RgbaRows> first = open_png(feat0, name0), second = open_png(feat1, name1);
   const int width = first->width(), height = first->height();
   if (width != second->width() || height != second->height())
-    throw FileError(name1, fmt::format("is {}×{} texels, but {} is {}×{}; both images of a set must be of one size",
+    throw FileError(name1, fmt::format("is {}×{} texels, but {} is {}×{}; both images of a set must have the same size",
                                        second->width(), second->height(), name0.filename().string(), width, height));
   return FeatureTexture::from_parts(width, height, code, [&](int, int count, Texel* texels) {
     // An isolated task group: otherwise a failure while other files are read in parallel would cancel this one, which
@@ -88,8 +87,8 @@ FeatureTexture read_feature_pngs(std::string_view feat0, const std::filesystem::
       }
     }
     if (!passed) return;
-    passed(0, first->bytes_passed());
-    passed(1, second->bytes_passed());
+    passed(0, first->bytes_consumed());
+    passed(1, second->bytes_consumed());
   });
 }
 

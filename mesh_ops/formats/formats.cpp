@@ -26,9 +26,10 @@ Scene read_rebake(const fs::path& folder, Axes /*stated in scene.json*/, const P
 
 ExportReport write_rebake(const Scene& scene, const fs::path& folder, const ExportOptions& options,
                           const Progress& progress) {
-  if (options.layout) throw FieldError("layout", "is not for Rebake scenes: every object keeps its own");
+  if (options.layout)
+    throw FieldError("layout", "does not apply to Rebake scenes: every object keeps its own; leave it out");
   ExportReport report;
-  report.keeps_everything = true;
+  report.preserves_scene = true;
   report.notes = save_scene_folder(scene, folder, options.sources, progress);
   return report;
 }
@@ -68,7 +69,7 @@ Scene read_any(const fs::path& path, Axes axes, const Progress& progress) {
   if (!fs::is_directory(folder)) throw FileError(folder, "is not a folder");
   for (const Format& format : formats())
     if (format.recognises(folder)) return format.read(folder, axes, progress);
-  throw FileError(folder, "holds neither mlp.json (a MobileNeRF folder) nor scene.json (a Rebake scene)");
+  throw FileError(folder, "contains neither mlp.json (a MobileNeRF folder) nor scene.json (a Rebake scene)");
 }
 
 std::vector<std::string> assumptions_of(const Scene& scene) {

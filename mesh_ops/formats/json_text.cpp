@@ -70,7 +70,7 @@ std::map<std::string, std::string> json_members(std::string_view text) {
   }
 }
 
-std::string json_place(std::string_view text, std::size_t byte) {
+std::string json_path(std::string_view text, std::size_t byte) {
   struct Level {
     bool is_object;
     std::string key;

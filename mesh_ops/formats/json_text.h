@@ -13,6 +13,6 @@ std::map<std::string, std::string> json_members(std::string_view text);
 
 /// Path to a byte of a JSON text, such as `"0_weights"[3][2]` (indices from 0); empty outside all members. The text
 /// need not be valid after that byte.
-std::string json_place(std::string_view text, std::size_t byte);
+std::string json_path(std::string_view text, std::size_t byte);
 
 }  // namespace rebake

@@ -27,7 +27,8 @@ const json& member(const json& root, const char* key, const std::filesystem::pat
 double number(const json& value, const std::string& where, const std::filesystem::path& name) {
   if (!value.is_number()) throw FileError(name, where + " is not a number");
   const double result = value.get<double>();
-  if (!std::isfinite(static_cast<float>(result))) throw FileError(name, where + " is beyond what 32-bit floats hold");
+  if (!std::isfinite(static_cast<float>(result)))
+    throw FileError(name, where + " is out of the range of 32-bit floats");
   return result;
 }
 
@@ -43,7 +44,7 @@ Eigen::VectorXd read_bias(const json& root, const char* key, const std::filesyst
 
 // Shape of a matrix for messages: "16×11", or a description if rows differ or it is no matrix.
 std::string shape_of(const json& values) {
-  if (!values.is_array()) return "no list";
+  if (!values.is_array()) return "not a list";
   if (values.empty() || !values[0].is_array()) return fmt::format("a list of {}", values.size());
   for (std::size_t r = 1; r < values.size(); ++r)
     if (!values[r].is_array() || values[r].size() != values[0].size())
@@ -102,7 +103,7 @@ json parsed(std::string_view text, const std::filesystem::path& name) {
   } catch (const json::parse_error& error) {
     // The error's byte counts from 1, and lies in or after the word.
     const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
-    const std::string word = word_at(text, byte), place = json_place(text, byte);
+    const std::string word = word_at(text, byte), place = json_path(text, byte);
     for (const char* other : {"NaN", "nan", "Infinity", "-Infinity", "inf", "-inf"})
       if (word == other) throw FileError(name, fmt::format("{} is {}, which is not a number", place, word));
     throw FileError(name, fmt::format("is not valid JSON{}: {}", place.empty() ? "" : " at " + place, error.what()));
@@ -131,7 +132,7 @@ json list_of(const Eigen::VectorXd& vector) {
 
 MlpFile read_mlp_json(std::string_view text, const std::filesystem::path& name) {
   const json root = parsed(text, name);
-  if (!root.is_object()) throw FileError(name, "must hold a JSON object");
+  if (!root.is_object()) throw FileError(name, "must contain a JSON object");
   MlpFile file;
   Decoder& d = file.decoder;
   d.bias0 = read_bias(root, "0_bias", name);
@@ -148,7 +149,8 @@ MlpFile read_mlp_json(std::string_view text, const std::filesystem::path& name) 
     file.others.erase(key);
   for (const auto& [key, value] : file.others)
     if (is_layer_key(key))
-      throw FileError(name, fmt::format("\"{}\" belongs to a further layer; decoders have three (0, 1 and 2)", key));
+      throw FileError(
+          name, fmt::format("\"{}\" belongs to an additional layer; decoders have three layers (0, 1 and 2)", key));
   return file;
 }
 

@@ -75,7 +75,7 @@ class Parser {
 
   double number() {
     skip_blanks();
-    if (at_ == line_end_) fail("is cut short: a number is missing");
+    if (at_ == line_end_) fail("is truncated: a number is missing");
     if (*at_ == '+') ++at_;
     double value = 0;
     const auto [stop, error] = std::from_chars(at_, line_end_, value);

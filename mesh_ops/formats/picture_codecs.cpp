@@ -23,7 +23,7 @@ bool known_extension(const std::filesystem::path& path) {
 }
 
 // Whether a PNG or JPEG contains its end marker; true for other formats.
-bool has_its_end(std::string_view bytes) {
+bool has_end_marker(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) {
     // PNG chunks: length, name, data, checksum.
     for (std::size_t at = 8; at + 12 <= bytes.size();) {
@@ -55,10 +55,10 @@ const PictureCodecs& picture_codecs(const std::filesystem::path& picture) {
   if (found.symbol == nullptr)
     throw FileError(picture,
                     "cannot be read: " + (found.problem.empty()
-                                              ? "librebake_pictures.so, which reads such pictures, lies neither beside "
+                                              ? "librebake_pictures.so, which reads such images, is neither beside "
                                                 "Rebake nor in lib/rebake; build or install Rebake again"
                                               : found.problem));
-  static const PictureCodecs* const codecs = reinterpret_cast<GivePictureCodecs>(found.symbol)();
+  static const PictureCodecs* const codecs = reinterpret_cast<PictureCodecsFactory>(found.symbol)();
   return *codecs;
 }
 
@@ -73,18 +73,18 @@ std::string picture_problem(const std::string& error, const std::filesystem::pat
   const auto left_out = [](char c) { return c == '.' || c == ' ' || c == '('; };
   while (!text.empty() && left_out(text.front())) text.erase(text.begin());
   while (!text.empty() && left_out(text.back())) text.pop_back();
-  return text.empty() ? "its format is not known" : text;
+  return text.empty() ? "its format is unknown" : text;
 }
 
 std::unique_ptr<PictureReader> open_picture(const std::filesystem::path& path) {
   const PictureCodecs& codecs = picture_codecs(path);
-  if (!has_its_end(read_file(path))) throw FileError(path, "is truncated: it ends before its picture does");
+  if (!has_end_marker(read_file(path))) throw FileError(path, "is truncated: its end marker is missing; copy it again");
   std::string error;
   std::unique_ptr<PictureReader> reader = codecs.open(path, error);
   if (reader) return reader;
   if (!known_extension(path))
-    throw FileError(path, std::string("is in no format of pictures that is known; use ").append(formats));
-  throw FileError(path, "cannot be read as a picture: " + picture_problem(error, path));
+    throw FileError(path, std::string("is not in a supported image format; use ").append(formats));
+  throw FileError(path, "cannot be read as an image: " + picture_problem(error, path));
 }
 
 }  // namespace rebake

@@ -71,7 +71,7 @@ std::unique_ptr<PictureReader> open_picture(const std::filesystem::path& path);
 std::string picture_problem(const std::string& error, const std::filesystem::path& path);
 
 /// Type of the module's exported function, which returns its codecs.
-using GivePictureCodecs = const PictureCodecs* (*)();
+using PictureCodecsFactory = const PictureCodecs* (*)();
 inline constexpr const char* picture_codecs_symbol = "rebake_picture_codecs";
 
 }  // namespace rebake

@@ -84,7 +84,7 @@ void check(const State& state, bool whole) {
 PngEncoder::PngEncoder(int width, int height, int channels, int compression, Sink sink)
     : state_(std::make_unique<State>()) {
   if ((channels != 3 && channels != 4) || width < 1 || height < 1)
-    throw std::invalid_argument("a PNG of no pixels, or of other channels than RGB or RGBA");
+    throw std::invalid_argument("a PNG needs at least one pixel, and 3 (RGB) or 4 (RGBA) channels");
   State& state = *state_;
   state.sink = std::move(sink);
   state.width = width;
@@ -103,13 +103,14 @@ void PngEncoder::write_rows(std::span<const std::uint8_t> pixels) {
   const std::size_t count = pixels.size() / state_->stride();
   if (count * state_->stride() != pixels.size() ||
       static_cast<std::size_t>(state_->rows) + count > static_cast<std::size_t>(state_->height))
-    throw std::invalid_argument("pixels of another size");
+    throw std::invalid_argument("the number of pixels does not match the size of the PNG");
   state_->rows += static_cast<int>(count);
   check(*state_, write(*state_, pixels.data(), count));
 }
 
 void PngEncoder::finish() {
-  if (state_->rows != state_->height) throw std::invalid_argument("pixels of another size");
+  if (state_->rows != state_->height)
+    throw std::invalid_argument("the number of pixels does not match the size of the PNG");
   check(*state_, end(*state_));
   state_->flush();
 }

@@ -38,7 +38,8 @@ class Chunks {
     if (at_ == bytes_.size()) return std::nullopt;
     const std::string_view rest = bytes_.substr(at_);
     if (rest.size() < 12 || big_endian(rest) > rest.size() - 12)
-      throw FileError(name_, fmt::format("is truncated: its last chunk, at byte {}, is not whole; copy it again", at_));
+      throw FileError(name_,
+                      fmt::format("is truncated: its last chunk, at byte {}, is incomplete; copy it again", at_));
     const std::size_t size = big_endian(rest);
     const std::string_view counted = rest.substr(4, 4 + size);
     const auto* first = reinterpret_cast<const unsigned char*>(counted.data());
@@ -80,12 +81,13 @@ class RgbaPng : public RgbaRows {
     if (first_ + count_ == height()) finish();
     const int unknown = first_unknown_png_filter(rows_.data(), count_, stride_);
     if (unknown < count_)
-      throw FileError(name_, fmt::format("is damaged: its row {} is filtered in no way of PNG", first_ + unknown));
+      throw FileError(name_,
+                      fmt::format("is damaged: row {} has an invalid filter type; copy it again", first_ + unknown));
     undo_png_filters(rows_.data(), count_, width(), above_.data());
     first_ += count_;
   }
   const std::uint8_t* row(int k) const override { return &rows_[static_cast<std::size_t>(k) * stride_ + 1]; }
-  std::size_t bytes_passed() const override {
+  std::size_t bytes_consumed() const override {
     return static_cast<std::size_t>(inflate_.next_in - reinterpret_cast<const std::uint8_t*>(bytes_.data()));
   }
 
@@ -113,7 +115,8 @@ class RgbaPng : public RgbaRows {
     const std::uint32_t in = inflate_.avail_in, out = inflate_.avail_out;
     const isal_block_state state = inflate_.block_state;
     if (const int failed = isal_inflate(&inflate_))
-      throw FileError(name_, fmt::format("is damaged: what it holds cannot be inflated (ISA-L says {})", failed));
+      throw FileError(name_,
+                      fmt::format("is damaged: its data cannot be inflated (ISA-L error {}); copy it again", failed));
     if (inflate_.avail_in < in || inflate_.avail_out < out || inflate_.block_state != state) return;
     const std::optional<Chunk> chunk = chunks_.next();
     if (!chunk || chunk->kind != "IDAT")
@@ -140,14 +143,15 @@ void check_header(const std::optional<Chunk>& chunk, const std::filesystem::path
   const std::uint32_t width = big_endian(chunk->data), height = big_endian(chunk->data.substr(4));
   constexpr std::uint32_t largest = largest_png_side;
   if (width < 1 || height < 1 || width > largest || height > largest)
-    throw FileError(name, fmt::format("declares {}×{} texels; 1 to {} a side can be read", width, height, largest));
+    throw FileError(name, fmt::format("declares {}×{} texels; 1 to {} per side can be read", width, height, largest));
   const int depth = static_cast<unsigned char>(chunk->data[8]), color = static_cast<unsigned char>(chunk->data[9]);
   const bool known = (color == 0 && (depth == 1 || depth == 2 || depth == 4 || depth == 8 || depth == 16)) ||
                      (color == 3 && (depth == 1 || depth == 2 || depth == 4 || depth == 8)) ||
                      ((color == 2 || color == 4 || color == 6) && (depth == 8 || depth == 16));
   if (!known || chunk->data[10] != 0 || chunk->data[11] != 0 || static_cast<unsigned char>(chunk->data[12]) > 1)
     throw FileError(
-        name, fmt::format("is damaged: its header names no PNG format (bit depth {}, colour type {})", depth, color));
+        name, fmt::format("is damaged: its header has an invalid format (bit depth {}, colour type {}); copy it again",
+                          depth, color));
 }
 
 }  // namespace

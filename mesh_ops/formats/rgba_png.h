@@ -25,7 +25,7 @@ class RgbaRows {
   /// The 4·width() bytes of row `k` of the rows just decoded.
   virtual const std::uint8_t* row(int k) const = 0;
   /// Number of bytes at the beginning of the file that will not be read again.
-  virtual std::size_t bytes_passed() const { return 0; }
+  virtual std::size_t bytes_consumed() const { return 0; }
 
  protected:
   RgbaRows(int width, int height) : width_(width), height_(height) {}

@@ -21,7 +21,7 @@ using nlohmann::json;
 namespace {
 
 // Files that Rebake adds to a MobileNeRF folder.
-constexpr std::array<std::string_view, 3> side_names{"turns.bin", "turns.json", "baked.bin"};
+constexpr std::array<std::string_view, 3> sidecar_names{"turns.bin", "turns.json", "baked.bin"};
 
 // Removes leading digits. Returns their number.
 std::size_t skip_digits(std::string_view& text) {
@@ -57,14 +57,14 @@ void add_baked_files(const fs::path& root, const fs::path& folder, std::vector<f
     return true;
   };
   if (!add("mlp.json")) return;
-  for (const std::string_view name : side_names) add(std::string(name));
+  for (const std::string_view name : sidecar_names) add(std::string(name));
   const json mlp = json::parse(read_file(root / folder / "mlp.json"), nullptr, false);
   const bool unsplit = !mlp.is_object() || !mlp.contains("obj_num");
   // All sets that reading would find, whatever mlp.json says.
   const std::size_t said = !unsplit && mlp.at("obj_num").is_number() && mlp.at("obj_num") > 0
                                ? static_cast<std::size_t>(std::min(mlp.at("obj_num").get<double>(), 1e6))
                                : 1;
-  const std::size_t sets = unsplit ? 1 : found_texture_sets(root / folder, said);
+  const std::size_t sets = unsplit ? 1 : count_texture_sets(root / folder, said);
   const Layout naming = unsplit ? Layout::unsplit : Layout::split;
   for (std::size_t set = 0; set < sets; ++set) {
     add(geometry_name(naming, set, 0));
@@ -77,7 +77,7 @@ void add_baked_files(const fs::path& root, const fs::path& folder, std::vector<f
 }  // namespace
 
 bool is_format_file_name(const std::string& name) {
-  if (name == "mlp.json" || name == "scene.json" || std::ranges::find(side_names, name) != side_names.end())
+  if (name == "mlp.json" || name == "scene.json" || std::ranges::find(sidecar_names, name) != sidecar_names.end())
     return true;
   std::string_view rest = name;
   if (!rest.starts_with("shape")) return false;
@@ -112,7 +112,7 @@ std::vector<fs::path> scene_files(const fs::path& folder) {
 std::uint64_t folder_hash(const fs::path& path) {
   const fs::path folder = scene_folder_of(path);
   std::error_code error;
-  if (!fs::is_directory(folder, error)) throw FileError(path, "is not there, or is not a folder");
+  if (!fs::is_directory(folder, error)) throw FileError(path, "does not exist, or is not a folder");
   std::string all;
   for (const fs::path& file : scene_files(folder))
     all += fmt::format("{} {:016x}\n", file.generic_string(), content_hash(read_file(folder / file)));
@@ -131,9 +131,8 @@ bool parses_with(const fs::path& file, const char* key) {
 void refuse_foreign_content(const fs::path& folder) {
   const std::set<std::string> own = named_folders(folder);
   const auto refuse = [&](const fs::path& path) {
-    throw FileError(folder,
-                    fmt::format("holds \"{}\", which is not part of the scene there; choose a new or empty folder",
-                                path.lexically_relative(folder).string()));
+    throw FileError(folder, fmt::format("contains \"{}\", which is not part of its scene; choose a new or empty folder",
+                                        path.lexically_relative(folder).string()));
   };
   // The files must also have the contents of a scene, not only the names.
   const bool is_scene = fs::exists(folder / "scene.json"), is_baked = fs::exists(folder / "mlp.json");

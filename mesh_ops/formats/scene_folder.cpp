@@ -12,7 +12,7 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/formats/baked_folder.h"
-#include "mesh_ops/formats/baked_places_file.h"
+#include "mesh_ops/formats/baked_positions_file.h"
 #include "mesh_ops/formats/camera_json.h"
 #include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/formats/write_baked_folder.h"
@@ -49,7 +49,7 @@ json node_json(const Node& node, const std::map<const BakedObject*, std::string>
         out["bodies"].push_back({{"folder", folder_of.at(body.object.get())},
                                  {"axes", axes_word(body.object->axes)},
                                  {"transform", affine_json(body.to_object)}});
-      if (any_baked_places(node.object->sets)) out["baked_places"] = true;
+      if (any_baked_positions(node.object->sets)) out["baked_places"] = true;
     }
   }
   if (!node.children.empty()) {
@@ -93,7 +93,7 @@ json light_json(const SceneLight& light) {
            {"bounce", color_json(light.bounce)},
            {"sun", sun_json(light.sun)}};
   if (light.up != Vec3::UnitY()) out["up"] = color_json(light.up);
-  if (light.picture) out["picture"] = picture_json(*light.picture, light.picture_turn);
+  if (light.picture) out["picture"] = picture_json(*light.picture, light.picture_rotation);
   return out;
 }
 
@@ -110,7 +110,7 @@ Vec3 read_normal(const json& list) {
   for (std::size_t c = 0; c < 3; ++c) normal[static_cast<Eigen::Index>(c)] = list.at(c).get<double>();
   // Unit vectors keep their bits.
   if (std::abs(normal.squaredNorm() - 1) > 1e-12) normal.stableNormalize();
-  if (!(normal.squaredNorm() > 0.5)) throw FieldError("normal", "must be a vector with a direction");
+  if (!(normal.squaredNorm() > 0.5)) throw FieldError("normal", "must be a vector other than zero");
   return normal;
 }
 
@@ -135,18 +135,18 @@ LightPicture read_picture(const json& value) {
   picture.path = value.at("path").get<std::string>();
   picture.content = value.at("content").get<std::string>();
   if (!value.at("side").is_number_unsigned() || value.at("side").get<std::uint64_t>() > 1024)
-    throw FieldError("light", "has a picture without a size");
+    throw FieldError("light", "has an environment map of an invalid size");
   const int side = value.at("side").get<int>();
   const json& radiance = value.at("radiance");
   if (side < 1 || radiance.size() != static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * 3)
-    throw FieldError("light", "has a picture whose radiances do not fill it");
+    throw FieldError("light", "has an environment map with the wrong number of radiances");
   picture.light.sky = SkyMap(side, [&, at = std::size_t{0}](const Vec3&) mutable {
     at += 3;
     return read_color({radiance[at - 3], radiance[at - 2], radiance[at - 1]});
   });
   constexpr std::size_t most_suns = 16;
   if (value.at("suns").size() > most_suns)
-    throw FieldError("light", fmt::format("has a picture with more than {} suns", most_suns));
+    throw FieldError("light", fmt::format("has an environment map with more than {} suns", most_suns));
   for (const json& sun : value.at("suns")) {
     picture.light.suns.push_back(read_sun(sun));
     // Unit vectors keep their bits.
@@ -177,10 +177,10 @@ SceneLight read_light(const json& value) {
   light.sun = read_sun(value.at("sun"));
   if (value.contains("picture")) {
     light.picture = std::make_shared<const LightPicture>(read_picture(value.at("picture")));
-    light.picture_turn = value.at("picture").at("turn").get<double>();
+    light.picture_rotation = value.at("picture").at("turn").get<double>();
   }
   if (light.source == SceneLight::Source::picture && !light.picture)
-    throw FieldError("light", "is of a picture, but holds none");
+    throw FieldError("light", "has the source \"picture\", but no picture");
   return light;
 }
 
@@ -214,7 +214,7 @@ class SceneReader {
         scene = with_added(scene, read_node(node, 0), NodeId::none, scene.roots.size());
       return scene;
     } catch (const json::exception& error) {
-      throw FileError(name_, std::string("does not hold what a scene needs: ") + error.what());
+      throw FileError(name_, std::string("is not a valid scene: ") + error.what());
     } catch (const FieldError& error) {
       throw FileError(name_, error.what());
     }
@@ -268,7 +268,7 @@ class SceneReader {
                                 read_affine(body.at("transform"), node)});
     if (places) {
       const fs::path file = folder_ / fs::path(folder).lexically_normal() / "baked.bin";
-      read_baked_places(read_file(file), file, bodies.size(), object->sets);
+      read_baked_positions(read_file(file), file, bodies.size(), object->sets);
     }
     known = object;
     return known;
@@ -279,7 +279,7 @@ class SceneReader {
       throw FileError(name_, fmt::format("axes \"{}\" is neither 360 nor forward", axes));
     const fs::path path = fs::path(relative).lexically_normal();
     if (path.is_absolute() || path.empty() || *path.begin() == "..")
-      throw FileError(name_, fmt::format("folder \"{}\" must lie below the scene", relative));
+      throw FileError(name_, fmt::format("folder \"{}\" must be inside the scene's folder", relative));
     auto& known = objects_[relative + '\n' + axes];
     if (known) return known;
     known = shared(*read_baked_folder(folder_ / path, axes == "forward" ? Axes::forward : Axes::y_up, progress_));
@@ -359,7 +359,7 @@ std::vector<std::string> save_scene_folder(const Scene& scene, const fs::path& f
   for (const PlacedNode& placed : placed_nodes(scene))
     if (!placed.node->saved_selections.empty())
       notes.push_back(
-          fmt::format("the stored selections of \"{}\" are left out; a project keeps them", placed.node->name));
+          fmt::format("the stored selections of \"{}\" are not saved; a project keeps them", placed.node->name));
   std::map<const BakedObject*, std::string> folder_of;
   std::vector<std::shared_ptr<const BakedObject>> written;
   AtomicFolder out(folder, guard, refuse_foreign_content);

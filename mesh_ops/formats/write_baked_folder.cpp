@@ -13,11 +13,11 @@
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/features/atlas.h"
 #include "mesh_ops/formats/baked_folder.h"
-#include "mesh_ops/formats/baked_places_file.h"
+#include "mesh_ops/formats/baked_positions_file.h"
 #include "mesh_ops/formats/feature_png.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
-#include "mesh_ops/formats/turns_file.h"
+#include "mesh_ops/formats/rotations_file.h"
 
 namespace rebake {
 
@@ -136,8 +136,8 @@ Fitted fitted(const BakedObject& object, Layout layout, bool all_texels, std::op
     const std::vector<PackedPage> before = as_pages(edited);
     if (area_of(packed) < area_of(before) || must_pack) {
       notes.push_back(fmt::format(
-          "edited texture sets were laid out again without unused texels: {} instead of {} texels "
-          "({} → {}); {} untouched sets are as they were",
+          "edited texture sets were repacked without unused texels: {} instead of {} texels "
+          "({} → {}); {} other sets are unchanged",
           counted(area_of(packed)), counted(area_of(before)), sizes_of(before), sizes_of(packed), result.kept.size()));
     } else {
       packed.clear();
@@ -159,9 +159,9 @@ std::string placeholder_chunk(const Soup& soup) {
 std::vector<std::string> geometry_texts(const Soup& soup, Layout layout) {
   const std::size_t faces = soup.triangle_count();
   if (layout != Layout::chunked) return {write_obj(soup.positions(), soup.uvs(), soup.faces(), 0, faces)};
-  std::vector<std::string> texts(chunks_a_set);
-  tbb::parallel_for(std::size_t{0}, chunks_a_set, [&](std::size_t j) {
-    const std::size_t first = faces * j / chunks_a_set, last = faces * (j + 1) / chunks_a_set;
+  std::vector<std::string> texts(chunks_per_set);
+  tbb::parallel_for(std::size_t{0}, chunks_per_set, [&](std::size_t j) {
+    const std::size_t first = faces * j / chunks_per_set, last = faces * (j + 1) / chunks_per_set;
     texts[j] =
         first == last ? placeholder_chunk(soup) : write_obj(soup.positions(), soup.uvs(), soup.faces(), first, last);
   });
@@ -250,8 +250,8 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
   out.write(folder / "mlp.json", *mlp);
   std::vector<TextureSet> sets;  // sets without textures
   for (const PackedPage& page : fit.pages) sets.push_back({page.soup, nullptr});
-  if (object.any_rotations()) out.write(folder / "turns.bin", write_turns(sets));
-  if (baked_places && any_baked_places(object.sets)) out.write(folder / "baked.bin", write_baked_places(sets));
+  if (object.any_rotations()) out.write(folder / "turns.bin", write_rotations(sets));
+  if (baked_places && any_baked_positions(object.sets)) out.write(folder / "baked.bin", write_baked_positions(sets));
   progress.at("writing", 1);
 }
 

@@ -39,7 +39,7 @@ class ArrayCache {
   }
   /// Returns the cached T; null if there is none or it is still being computed.
   template <class T>
-  std::shared_ptr<const T> if_there(const Arrays& arrays, const Settings& settings) {
+  std::shared_ptr<const T> try_get(const Arrays& arrays, const Settings& settings) {
     const std::shared_ptr<Entry> entry = entry_of(typeid(T), arrays, settings);
     const std::unique_lock lock(entry->making, std::try_to_lock);
     return lock ? std::static_pointer_cast<const T>(entry->value) : nullptr;

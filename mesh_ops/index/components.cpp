@@ -164,7 +164,7 @@ EdgeOpacity edge_opacity(const TextureSet& set) {
   return opacity;
 }
 
-SetParts set_parts(const WeldedCorners& corners, const EdgeTable& edges, const EdgeOpacity& opacity) {
+SetComponents set_components(const WeldedCorners& corners, const EdgeTable& edges, const EdgeOpacity& opacity) {
   UnionFind parts(corners.places.size() / 3);
   for_each_edge(edges, [&](std::span<const std::uint32_t> half_edges) {
     if (half_edges.size() > 1)
@@ -172,7 +172,7 @@ SetParts set_parts(const WeldedCorners& corners, const EdgeTable& edges, const E
           half_edges, [&](std::uint32_t e) { return upwards(corners, e, opacity.along[e]); },
           [](std::uint32_t e) { return e / 3; }, parts);
   });
-  SetParts result;
+  SetComponents result;
   result.part_of.resize(corners.places.size() / 3);
   for (std::uint32_t t = 0; t < result.part_of.size(); ++t) {
     const std::uint32_t root = parts.root(t);
@@ -181,7 +181,7 @@ SetParts set_parts(const WeldedCorners& corners, const EdgeTable& edges, const E
   return result;
 }
 
-Components joined_components(const WeldedCorners& corners, const std::vector<KnownSet>& sets) {
+Components joined_components(const WeldedCorners& corners, const std::vector<IndexedSet>& sets) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max(), shared = none - 1;
   std::vector<std::uint32_t> set_of(corners.place_count, none), part_of(corners.places.size() / 3);
   std::vector<std::size_t> first{0};

@@ -56,15 +56,15 @@ std::shared_ptr<const RayTree> with_arrays(std::shared_ptr<const RayTree> tree, 
 }  // namespace
 
 std::uint64_t memory_of(const std::vector<TriangleTraits>& traits) { return bytes_of(traits); }
-std::uint64_t memory_of(const std::vector<TriangleLooks>& looks) { return bytes_of(looks); }
-std::uint64_t memory_of(const SetParts& parts) { return bytes_of(parts.part_of); }
+std::uint64_t memory_of(const std::vector<TexelTraits>& looks) { return bytes_of(looks); }
+std::uint64_t memory_of(const SetComponents& parts) { return bytes_of(parts.part_of); }
 std::uint64_t memory_of(const EdgeOpacity& opacity) { return bytes_of(opacity.along); }
 std::uint64_t memory_of(const WeldedCorners& corners) { return bytes_of(corners.places); }
 std::uint64_t memory_of(const WeldedSet& set) { return memory_of(set.corners) + bytes_of(set.points); }
 std::uint64_t memory_of(const EdgeTable& edges) { return bytes_of(edges.half_edges) + bytes_of(edges.first_of); }
 std::uint64_t memory_of(const Components& parts) { return bytes_of(parts.part_of) + bytes_of(parts.triangles_in); }
-std::uint64_t memory_of(const DirectionUse& use) {
-  return sizeof(DirectionUse) +
+std::uint64_t memory_of(const DirectionInfluence& use) {
+  return sizeof(DirectionInfluence) +
          sizeof(double) * static_cast<std::uint64_t>(use.without->weights0.size() + use.without->weights1.size());
 }
 std::uint64_t memory_of(const std::optional<FeatureRange>&) { return sizeof(FeatureRange); }
@@ -92,8 +92,8 @@ static std::shared_ptr<const WeldedSet> welded_set(const TextureSet& set) {
   return cache().get<WeldedSet>(places_of(set), {}, [&] { return weld_set(set.soup); });
 }
 
-std::shared_ptr<const DirectionUse> direction_use_of(const std::shared_ptr<const Decoder>& decoder) {
-  return cache().get<DirectionUse>({decoder}, {}, [&] { return direction_use(*decoder); });
+std::shared_ptr<const DirectionInfluence> direction_influence_of(const std::shared_ptr<const Decoder>& decoder) {
+  return cache().get<DirectionInfluence>({decoder}, {}, [&] { return direction_influence(*decoder); });
 }
 std::shared_ptr<const std::optional<FeatureRange>> feature_range_of(
     const std::shared_ptr<const FeatureTexture>& texture) {
@@ -104,10 +104,10 @@ std::shared_ptr<const std::vector<TriangleTraits>> traits_of(const BakedObject& 
   ArrayCache::Arrays arrays = surface_of(object);
   arrays.push_back(object.decoder);
   return cache().get<std::vector<TriangleTraits>>(arrays, {}, [&] {
-    std::vector<std::shared_ptr<const std::vector<TriangleLooks>>> looks;
+    std::vector<std::shared_ptr<const std::vector<TexelTraits>>> looks;
     for (const TextureSet& set : object.sets) {
-      looks.push_back(cache().get<std::vector<TriangleLooks>>({set.texels, object.decoder}, shown_texels(set),
-                                                              [&] { return triangle_looks(set, *object.decoder); }));
+      looks.push_back(cache().get<std::vector<TexelTraits>>({set.texels, object.decoder}, shown_texels(set),
+                                                            [&] { return texel_traits(set, *object.decoder); }));
     }
     return triangle_traits(object, looks);
   });
@@ -123,7 +123,7 @@ std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tole
   return cache().get<EdgeTable>(geometry_of(object), {tolerance},
                                 [&] { return edges_between(*corners_of(object, tolerance)); });
 }
-std::shared_ptr<const Components> components_of(const BakedObject& object, const Joining& joining) {
+std::shared_ptr<const Components> components_of(const BakedObject& object, const Connectivity& joining) {
   return cache().get<Components>(surface_of(object), {joining.tolerance, joining.gap}, [&] {
     std::vector<std::shared_ptr<const EdgeOpacity>> opacity;
     for (const TextureSet& set : object.sets)
@@ -131,25 +131,25 @@ std::shared_ptr<const Components> components_of(const BakedObject& object, const
     if (joining.tolerance > 0 || joining.gap > 0)
       return opaque_components(object, *corners_of(object, joining.tolerance), *edges_of(object, joining.tolerance),
                                opacity, joining.gap);
-    std::vector<KnownSet> sets(object.sets.size());
+    std::vector<IndexedSet> sets(object.sets.size());
     tbb::parallel_for(std::size_t{0}, sets.size(), [&](std::size_t s) {
       const TextureSet& set = object.sets[s];
       const ArrayCache::Arrays places = places_of(set);
       ArrayCache::Arrays all = places;
       all.push_back(set.soup.shared_uvs());
       all.push_back(set.texels);
-      sets[s] = {opacity[s], cache().get<SetParts>(all, {}, [&] {
+      sets[s] = {opacity[s], cache().get<SetComponents>(all, {}, [&] {
                    const auto welded = welded_set(set);
                    const auto edges =
                        cache().get<EdgeTable>(places, {}, [&] { return edges_between(welded->corners); });
-                   return set_parts(welded->corners, *edges, *opacity[s]);
+                   return set_components(welded->corners, *edges, *opacity[s]);
                  })};
     });
     return joined_components(*corners_of(object), sets);
   });
 }
 // Marks the triangles as used after their tree, so that the cache evicts the tree, which owns them too, first.
-static void touch_triangles(const BakedObject& object) { cache().if_there<RayTriangles>(geometry_of(object), {}); }
+static void touch_triangles(const BakedObject& object) { cache().try_get<RayTriangles>(geometry_of(object), {}); }
 
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object) {
   ArrayCache::Arrays arrays = surface_of(object);
@@ -159,8 +159,8 @@ std::shared_ptr<const RayTree> rays_of(const BakedObject& object) {
   touch_triangles(object);
   return with_arrays(std::move(tree), std::move(arrays));
 }
-std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object) {
-  const auto triangles = cache().if_there<RayTriangles>(geometry_of(object), {});
+std::shared_ptr<const RayTree> try_rays_of(const BakedObject& object) {
+  const auto triangles = cache().try_get<RayTriangles>(geometry_of(object), {});
   if (!triangles) return nullptr;
   ArrayCache::Arrays arrays = surface_of(object);
   auto tree = cache().get<RayTree>(arrays, {}, [&] { return RayTree(triangles, object); });

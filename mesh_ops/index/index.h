@@ -18,14 +18,14 @@ std::shared_ptr<const std::vector<TriangleTraits>> traits_of(const BakedObject& 
 /// `tolerance`: welding distance in object units.
 std::shared_ptr<const WeldedCorners> corners_of(const BakedObject& object, double tolerance = 0);
 std::shared_ptr<const EdgeTable> edges_of(const BakedObject& object, double tolerance = 0);
-std::shared_ptr<const Components> components_of(const BakedObject& object, const Joining& joining = {});
+std::shared_ptr<const Components> components_of(const BakedObject& object, const Connectivity& joining = {});
 std::shared_ptr<const RayTree> rays_of(const BakedObject& object);
 /// Bounds of colours by which the frame plan skips effects, see decoder_bounds.h.
-std::shared_ptr<const DirectionUse> direction_use_of(const std::shared_ptr<const Decoder>& decoder);
+std::shared_ptr<const DirectionInfluence> direction_influence_of(const std::shared_ptr<const Decoder>& decoder);
 std::shared_ptr<const std::optional<FeatureRange>> feature_range_of(
     const std::shared_ptr<const FeatureTexture>& texture);
 /// As rays_of(), but null if the object's triangles are not indexed yet, for callers that must not wait.
-std::shared_ptr<const RayTree> rays_if_there(const BakedObject& object);
+std::shared_ptr<const RayTree> try_rays_of(const BakedObject& object);
 
 /// Ray queries through placed objects; instance k is objects[k].
 SceneRays rays_through(const std::vector<PlacedNode>& objects);

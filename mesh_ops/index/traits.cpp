@@ -36,7 +36,7 @@ struct Sum {
 };
 static_assert(std::endian::native == std::endian::little && sizeof(Texel) == 8);
 
-TriangleLooks looks_of(const TextureSet& set, const TexelReader& reader, std::size_t f) {
+TexelTraits looks_of(const TextureSet& set, const TexelReader& reader, std::size_t f) {
   const FeatureTexture& texels = *set.texels;
   const std::array<Vec2, 3> corners = texel_corners(set, f);
   Sum sum;
@@ -51,7 +51,7 @@ TriangleLooks looks_of(const TextureSet& set, const TexelReader& reader, std::si
     const Vec2 middle = (corners[0] + corners[1] + corners[2]) / 3;
     sum.add(&reader.sample(middle.x() / texels.width(), 1 - middle.y() / texels.height()), 1);
   }
-  TriangleLooks looks;
+  TexelTraits looks;
   looks.opacity = static_cast<float>(sum.opaque) / static_cast<float>(sum.all);
   if (sum.opaque > 0) {
     for (std::size_t k = 0; k < 8; ++k) looks.features[k] = static_cast<float>(sum.bytes[k]) / (255.0F * sum.opaque);
@@ -62,7 +62,7 @@ TriangleLooks looks_of(const TextureSet& set, const TexelReader& reader, std::si
 }
 
 // Decodes the colours of a batch of triangles, one per matrix column.
-void decode_colors(const Decoder& decoder, TriangleLooks* looks, Eigen::Index count) {
+void decode_colors(const Decoder& decoder, TexelTraits* looks, Eigen::Index count) {
   const Eigen::MatrixXf w0 = decoder.weights0.cast<float>().transpose();
   const Eigen::MatrixXf w1 = decoder.weights1.cast<float>().transpose();
   const Eigen::MatrixXf w2 = decoder.weights2.cast<float>().transpose();
@@ -87,8 +87,8 @@ void decode_colors(const Decoder& decoder, TriangleLooks* looks, Eigen::Index co
 
 }  // namespace
 
-std::vector<TriangleLooks> triangle_looks(const TextureSet& set, const Decoder& decoder) {
-  std::vector<TriangleLooks> looks(set.soup.triangle_count());
+std::vector<TexelTraits> texel_traits(const TextureSet& set, const Decoder& decoder) {
+  std::vector<TexelTraits> looks(set.soup.triangle_count());
   const TexelReader reader(*set.texels);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, looks.size(), 512),
                     [&](const tbb::blocked_range<std::size_t>& range) {
@@ -111,8 +111,8 @@ bool shows_opaque(const TextureSet& set, std::size_t triangle) {
   return texels.opaque_at(middle.x() / texels.width(), 1 - middle.y() / texels.height());
 }
 
-std::vector<TriangleTraits> triangle_traits(
-    const BakedObject& object, const std::vector<std::shared_ptr<const std::vector<TriangleLooks>>>& looks) {
+std::vector<TriangleTraits> triangle_traits(const BakedObject& object,
+                                            const std::vector<std::shared_ptr<const std::vector<TexelTraits>>>& looks) {
   std::vector<TriangleTraits> traits(object.triangle_count());
   std::size_t first = 0;
   for (std::size_t s = 0; s < object.sets.size(); ++s) {
@@ -121,7 +121,7 @@ std::vector<TriangleTraits> triangle_traits(
       const Face& face = soup.faces()[f];
       const std::vector<Vec3>& p = soup.positions();
       const Vec3 cross = (p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]);
-      const TriangleLooks& look = (*looks[s])[f];
+      const TexelTraits& look = (*looks[s])[f];
       TriangleTraits& one = traits[first + f];
       one.features = look.features;
       one.color = look.color;

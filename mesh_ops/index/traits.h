@@ -18,20 +18,20 @@ struct TriangleTraits {
 };
 
 /// The traits of a triangle that depend on its texels and the decoder, but not on vertex positions.
-struct TriangleLooks {
+struct TexelTraits {
   std::array<float, 8> features{};
   std::array<float, 3> color{};
   float opacity = 0;
 };
 /// Texel-dependent traits per triangle of a set. A triangle that contains no texel centre uses the texel at its
 /// centroid.
-std::vector<TriangleLooks> triangle_looks(const TextureSet& set, const Decoder& decoder);
+std::vector<TexelTraits> texel_traits(const TextureSet& set, const Decoder& decoder);
 
-/// Whether TriangleLooks::opacity of one triangle is above 0; decodes no colours.
+/// Whether TexelTraits::opacity of one triangle is above 0; decodes no colours.
 bool shows_opaque(const TextureSet& set, std::size_t triangle);
 
-/// Traits per triangle, in the object's numbering. `looks`: triangle_looks() per texture set.
-std::vector<TriangleTraits> triangle_traits(
-    const BakedObject& object, const std::vector<std::shared_ptr<const std::vector<TriangleLooks>>>& looks);
+/// Traits per triangle, in the object's numbering. `looks`: texel_traits() per texture set.
+std::vector<TriangleTraits> triangle_traits(const BakedObject& object,
+                                            const std::vector<std::shared_ptr<const std::vector<TexelTraits>>>& looks);
 
 }  // namespace rebake

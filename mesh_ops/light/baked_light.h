@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "mesh_ops/light/cached_light.h"
 #include "mesh_ops/light/gloss.h"
-#include "mesh_ops/light/kept_light.h"
 #include "mesh_ops/light/lighting.h"
 
 namespace rebake {
@@ -27,12 +27,12 @@ class BakedLight {
   double confidence = 0;               ///< of the estimated `light`, 0 … 1; 1 if it was given
   Radiance albedo{1, 1, 1};            ///< per channel: 90 % of the sites stay below this
 
-  /// Specular fit, computed on the first call. Only for objects for which may_mirror() holds.
+  /// Specular fit, computed on the first call. Only for objects for which has_single_body() holds.
   const std::shared_ptr<const GlossFit>& gloss();
   /// Whether the object has a single body, in its original place.
-  bool may_mirror() const { return bodies_.size() == 1 && bodies_.front().to_object.matrix().isIdentity(0); }
+  bool has_single_body() const { return bodies_.size() == 1 && bodies_.front().to_object.matrix().isIdentity(0); }
   /// Linear colour of each site, averaged over its visible sides.
-  const std::vector<Radiance>& shown_colors();
+  const std::vector<Radiance>& visible_colors();
   /// Light on the `wanted` sides as baked; on all sides if `wanted` is empty. `rays`: per half space.
   std::vector<SiteLight> as_baked(const std::vector<std::uint8_t>& wanted, int rays, const Progress& progress);
   const std::shared_ptr<const BakedObject>& object() const { return object_; }
@@ -42,7 +42,7 @@ class BakedLight {
   std::vector<SiteLight> among(const std::vector<Occluder>& others, int rays, const Progress& progress);
   /// The `wanted` sides (all sides if empty) that belong to a body.
   std::vector<std::uint8_t> of_body(std::size_t body, const std::vector<std::uint8_t>& wanted) const;
-  /// kept_light() with the cache of the options.
+  /// cached_light() with the cache of the options.
   std::vector<SiteLight> traced(const std::vector<LightSite>& at, const std::vector<std::uint8_t>& wanted,
                                 const std::vector<Occluder>& occluders, const Light& in, const Mat3& to_light, int rays,
                                 const Progress& progress) const;
@@ -52,11 +52,11 @@ class BakedLight {
   std::vector<BakedBody> bodies_;
   bool untouched_;
   const LightingOptions& options_;
-  std::vector<SiteLight> roughly_;  ///< light on both sides as baked, traced with 64 rays
+  std::vector<SiteLight> coarse_light_;  ///< light on both sides as baked, traced with 64 rays
   std::shared_ptr<const GlossFit> gloss_;
   std::vector<Radiance> shown_colors_;
-  std::map<int, std::vector<SiteLight>> of_shown_;  ///< light on the visible sides as baked, by number of rays
-  std::map<int, OpenRays> open_;                    ///< rays of visible sides that pass the object, by number of rays
+  std::map<int, std::vector<SiteLight>> visible_light_;  ///< light on the visible sides as baked, by number of rays
+  std::map<int, VisibilityFlags> open_;  ///< rays of visible sides that pass the object, by number of rays
 };
 
 /// BakedLight of all objects of a scene, created on first request. Objects that were read from the same files share

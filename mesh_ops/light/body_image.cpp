@@ -29,7 +29,7 @@ TriangleList opaque_triangles(const BakedObject& object) {
 
 }  // namespace
 
-ProxyMesh largest_piece(const Cage& whole) {
+ProxyMesh largest_component(const Cage& whole) {
   const std::vector<std::uint32_t> component = components(whole);
   std::map<std::uint32_t, std::size_t> sizes;
   for (const std::uint32_t c : component) ++sizes[c];
@@ -56,7 +56,7 @@ BodyImage body_image(const BakedObject& object, const std::vector<LightSite>& si
   constexpr double one_piece = 0.9, coarser = 1.4, coarsest = 0.3;
   for (double size = coarseness;; size = std::min(coarser * size, coarsest)) {
     const Cage whole = wrap(opaque, size, progress);
-    image.mesh = largest_piece(whole);
+    image.mesh = largest_component(whole);
     const auto share = static_cast<double>(image.mesh.vertices.size()) / static_cast<double>(whole.vertices.size());
     if (share >= one_piece || size >= coarsest) break;
   }

@@ -11,7 +11,7 @@
 namespace rebake {
 
 /// The connected component of a cage with the most vertices.
-ProxyMesh largest_piece(const Cage& whole);
+ProxyMesh largest_component(const Cage& whole);
 
 /// A smooth proxy body around an object's opaque surface, cut open and parametrised as an image.
 struct BodyImage {

@@ -15,14 +15,14 @@ double ChangeEstimate::share_beyond() const {
 }
 
 std::string ChangeEstimate::words() const {
-  if (places >= of) return fmt::format("all {} places were looked at", of);
+  if (places >= of) return fmt::format("sampled all {} places", of);
   return fmt::format(
-      "{} of {} places were looked at: with {:.0f} % confidence at most {:.2g} % change more than half of "
+      "sampled {} of {} places: with {:.0f} % confidence, at most {:.2g} % of them change by more than half of "
       "that",
       places, of, confidence * 100, share_beyond() * 100);
 }
 
-std::vector<std::size_t> picked_places(const std::vector<std::uint8_t>& places, std::size_t most) {
+std::vector<std::size_t> sample_places(const std::vector<std::uint8_t>& places, std::size_t most) {
   std::vector<std::size_t> all;
   for (std::size_t k = 0; k < places.size(); ++k)
     if (places[k] != 0) all.push_back(k);

@@ -24,6 +24,6 @@ struct ChangeEstimate {
 
 /// Indices of up to `most` of the non-zero places, sampled with a fixed seed (Floyd 1987); all of them if there are
 /// fewer.
-std::vector<std::size_t> picked_places(const std::vector<std::uint8_t>& places, std::size_t most);
+std::vector<std::size_t> sample_places(const std::vector<std::uint8_t>& places, std::size_t most);
 
 }  // namespace rebake

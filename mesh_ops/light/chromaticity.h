@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh_ops/scene/light.h"
+#include "mesh_ops/scene/scene_light.h"
 
 namespace rebake {
 

@@ -39,7 +39,7 @@ void lay_out(Mesh& mesh, DiskChart& chart) {
   auto uvs = mesh.add_property_map<Mesh::Vertex_index, Kernel::Point_2>("v:uv").first;
   const layout::Error_code code = layout::parameterize(mesh, Parameterizer(), border, uvs);
   if (code != layout::OK)
-    throw Error(fmt::format("the mesh cannot be laid out on a square: {}", layout::get_error_message(code)));
+    throw Error(fmt::format("the mesh cannot be parametrised over a square: {}", layout::get_error_message(code)));
   for (const auto v : mesh.vertices()) chart.uvs[v] = {uvs[v].x(), uvs[v].y()};
   // CGAL orders the border against the orientation of the triangles; mirroring restores the orientation.
   double area = 0;
@@ -60,7 +60,7 @@ DiskChart disk_chart(const ProxyMesh& mesh, int tips) {
   for (const Face& face : chart.faces)
     if (disk.add_face(Mesh::Vertex_index(face[0]), Mesh::Vertex_index(face[1]), Mesh::Vertex_index(face[2])) ==
         Mesh::null_face())
-      throw Error("two fans of triangles meet in one vertex: the mesh is not manifold");
+      throw Error("the mesh is not manifold: two fans of triangles share one vertex");
   chart.uvs.resize(chart.source.size());
   lay_out<layout::Discrete_conformal_map_parameterizer_3<Mesh, Border>>(disk, chart);
   if (folds(chart)) lay_out<layout::Mean_value_coordinates_parameterizer_3<Mesh, Border>>(disk, chart);

@@ -30,20 +30,21 @@ std::map<Edge, Sides> edges_of(const ProxyMesh& mesh) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = mesh.faces[f][k], b = mesh.faces[f][(k + 1) % 3];
       if (a == b || a >= mesh.vertices.size() || b >= mesh.vertices.size())
-        throw Error("a triangle names one vertex twice, or one that is not there");
+        throw Error("a triangle uses a vertex twice, or a vertex index out of range");
       Sides& sides = edges[edge_of(a, b)];
       sides.faces.push_back(f);
       sides.balance += a < b ? 1 : -1;
     }
-  if (edges.empty()) throw Error("there is no triangle to lay out");
+  if (edges.empty()) throw Error("the mesh has no triangles");
   UnionFind pieces(mesh.faces.size());
   std::size_t count = mesh.faces.size();
   for (const auto& [edge, sides] : edges) {
-    if (sides.faces.size() > 2) throw Error("more than two triangles meet in an edge: the mesh is not manifold");
-    if (sides.faces.size() == 2 && sides.balance != 0) throw Error("neighbouring triangles face opposite ways");
+    if (sides.faces.size() > 2) throw Error("the mesh is not manifold: more than two triangles share an edge");
+    if (sides.faces.size() == 2 && sides.balance != 0)
+      throw Error("the mesh is not consistently oriented: two adjacent triangles face opposite ways");
     if (sides.faces.size() == 2 && pieces.join(sides.faces[0], sides.faces[1])) --count;
   }
-  if (count > 1) throw Error("the mesh is not in one piece");
+  if (count > 1) throw Error("the mesh is not connected: it has more than one component");
   return edges;
 }
 

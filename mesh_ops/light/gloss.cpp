@@ -8,8 +8,8 @@
 
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/light/chromaticity.h"
+#include "mesh_ops/light/rotated_product.h"
 #include "mesh_ops/light/site_rays.h"
-#include "mesh_ops/light/turned_product.h"
 #include "mesh_ops/network/texel_colors.h"
 
 namespace rebake {
@@ -46,7 +46,7 @@ struct Views {
 
 // Candidate exponents. Broader lobes cannot be distinguished from diffuse colour.
 constexpr std::array<double, 7> sharpnesses{4, 8, 16, 32, 64, 128, 256};
-constexpr int views_a_side = 24;
+constexpr int views_per_side = 24;
 constexpr std::size_t most_sites = 6000;
 constexpr double few_sites = 50;
 
@@ -87,7 +87,7 @@ struct Equations {
 
 }  // namespace
 
-Gloss mirrored_light(const Light& light) {
+Gloss gloss_environment(const Light& light) {
   Light open = light;
   open.bounce = Radiance::Zero();
   Gloss gloss;
@@ -110,19 +110,19 @@ Radiance mirrored(const Gloss& gloss, const Vec3& direction, const Vec3& normal,
   return fresnel(std::abs(along)) * sum;
 }
 
-Openness shown_openness(const SiteLight& lit, float facing) {
-  Openness result(facing * lit.open[0] + (1 - facing) * lit.open[1], 0);
-  if (facing > 0) result[1] = lit.sunny[0];
+SiteVisibility surface_visibility(const SiteLight& lit, float facing) {
+  SiteVisibility result(facing * lit.open[0] + (1 - facing) * lit.open[1], 0);
+  if (facing > 0) result[1] = lit.sun_visibility[0];
   // A sun is above one side only.
-  if (facing < 1) result[1] = std::max(result[1], lit.sunny[1]);
+  if (facing < 1) result[1] = std::max(result[1], lit.sun_visibility[1]);
   return result;
 }
 
-GlossFit found_gloss(const BakedObject& object, const std::vector<std::shared_ptr<const LightChart>>& charts,
-                     const LightSites& sites, const std::vector<float>& facing, const std::vector<Radiance>& colors,
-                     const Light& light, const std::vector<SiteLight>& baked, const SceneRays& body) {
+GlossFit fitted_gloss(const BakedObject& object, const std::vector<std::shared_ptr<const LightChart>>& charts,
+                      const LightSites& sites, const std::vector<float>& facing, const std::vector<Radiance>& colors,
+                      const Light& light, const std::vector<SiteLight>& baked, const SceneRays& body) {
   GlossFit fit;
-  fit.gloss = mirrored_light(light);
+  fit.gloss = gloss_environment(light);
   fit.amounts.assign(sites.size(), Eigen::Vector2f::Zero());
   if (sites.size() == 0) return fit;
   const std::vector<std::uint32_t> clusters = chromaticity_clusters(colors);
@@ -133,7 +133,7 @@ GlossFit found_gloss(const BakedObject& object, const std::vector<std::shared_pt
     if (sites.baked[i].normal.squaredNorm() > 0.5) looked_at.push_back(i);
   const Mat3 axes = axes_matrix(object.axes);
   const TexelColors look(*object.decoder, {});
-  const std::vector<DiskPoint> disk = disk_points(views_a_side);
+  const std::vector<DiskPoint> disk = disk_points(views_per_side);
   std::vector<Views> views(looked_at.size());
   tbb::parallel_for(std::size_t{0}, looked_at.size(), [&](std::size_t n) {
     const std::size_t i = looked_at[n];
@@ -151,7 +151,7 @@ GlossFit found_gloss(const BakedObject& object, const std::vector<std::shared_pt
     seen.material = clusters[i];
     if (!set.texels->opaque(x, y)) return;
     const auto features = decode_features(TexelReader(*set.texels).at(x, y), set.texels->alpha_code());
-    const Openness open = shown_openness(baked[i], facing[i]);
+    const SiteVisibility open = surface_visibility(baked[i], facing[i]);
     // Occluded directions are skipped: the decoder was not fitted to them.
     std::vector<Vec3> directions;
     std::vector<Eigen::Index> sides{0};  // end of each side's directions
@@ -237,7 +237,8 @@ GlossFit found_gloss(const BakedObject& object, const std::vector<std::shared_pt
 std::shared_ptr<const GlossMap> gloss_map(const LightChart& chart, const LightSites& sites,
                                           const std::vector<LightSite>& now, std::size_t first,
                                           const std::shared_ptr<const GlossFit>& fit,
-                                          const std::vector<Openness>& before, const std::vector<Openness>& after) {
+                                          const std::vector<SiteVisibility>& before,
+                                          const std::vector<SiteVisibility>& after) {
   GlossMap map;
   map.gloss = {fit, &fit->gloss};
   for (GlossMap::Side* side : {&map.before, &map.after}) {

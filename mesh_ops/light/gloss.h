@@ -19,7 +19,7 @@ struct Gloss {
 };
 
 /// The environment of a light, with sharpness 0.
-Gloss mirrored_light(const Light& light);
+Gloss gloss_environment(const Light& light);
 /// Linear radiance reflected by a surface with unit `normal` (either side) towards an eye that looks along the unit
 /// `direction`. Schlick's Fresnel factor (1994) for a dielectric of index 1.5, scaled by `sky` and `suns`: 1 is smooth
 /// glass under an open sky.
@@ -36,14 +36,14 @@ struct GlossFit {
 /// Fits non-negative amounts per chromaticity cluster, and one sharpness for all, by least squares to the change of
 /// decoded colours over unoccluded view directions (`body` occludes). `colors`: per site; `baked`: light on the sites,
 /// in their space. The fit is empty if it explains less than a tenth of the change. Deterministic.
-GlossFit found_gloss(const BakedObject& object, const std::vector<std::shared_ptr<const LightChart>>& charts,
-                     const LightSites& sites, const std::vector<float>& facing, const std::vector<Radiance>& colors,
-                     const Light& light, const std::vector<SiteLight>& baked, const SceneRays& body);
+GlossFit fitted_gloss(const BakedObject& object, const std::vector<std::shared_ptr<const LightChart>>& charts,
+                      const LightSites& sites, const std::vector<float>& facing, const std::vector<Radiance>& colors,
+                      const Light& light, const std::vector<SiteLight>& baked, const SceneRays& body);
 
 /// Visibility at a site: shares of the sky and of suns, 0 … 1.
-using Openness = Eigen::Vector2f;
+using SiteVisibility = Eigen::Vector2f;
 /// Visibility at the visible surface of a site; `facing`: facing_of().
-Openness shown_openness(const SiteLight& lit, float facing);
+SiteVisibility surface_visibility(const SiteLight& lit, float facing);
 
 /// Change of the specular reflection of a texture set: normal and amounts per chart texel, as baked and as edited.
 struct GlossMap {
@@ -59,7 +59,8 @@ struct GlossMap {
 std::shared_ptr<const GlossMap> gloss_map(const LightChart& chart, const LightSites& sites,
                                           const std::vector<LightSite>& now, std::size_t first,
                                           const std::shared_ptr<const GlossFit>& fit,
-                                          const std::vector<Openness>& before, const std::vector<Openness>& after);
+                                          const std::vector<SiteVisibility>& before,
+                                          const std::vector<SiteVisibility>& after);
 
 /// Specular reflection at one point of a GlossMap: normals with sky amounts, and sun amounts, as baked and as edited.
 struct GlossPlace {

@@ -12,7 +12,7 @@
 
 namespace rebake {
 
-double facing_by_openness(double first, double second) {
+double facing_by_visibility(double first, double second) {
   constexpr double closed = 0.03, much = 0.1;
   const double least = std::max(closed, much * std::max(first, second));
   return (first > least) == (second > least) ? 0.5 : first > least ? 1 : 0;
@@ -22,7 +22,7 @@ namespace {
 
 std::size_t rays_to_sun(int rays) { return static_cast<std::size_t>(std::max(4, rays / 4)); }
 
-SiteBundles::MayPass may_pass(const SiteBundles& bundles, const OpenRays* known, std::size_t first_ray) {
+SiteBundles::MayPass may_pass(const SiteBundles& bundles, const VisibilityFlags* known, std::size_t first_ray) {
   if (known == nullptr) return {};
   return [&bundles, known, first_ray](std::size_t side, std::size_t ray) {
     const SiteBundles::Side& one = bundles.sides()[side];
@@ -41,7 +41,7 @@ std::size_t sets_for(int rays, std::size_t sites) {
 // Directions to points of a sun's disk, in the sites' space.
 std::vector<Vec3> sun_directions(const Sun& sun, const Mat3& to_light, const std::vector<DiskPoint>& disk,
                                  std::size_t set) {
-  const double r = std::tan(sun.radius), cosine = std::cos(own_angle(set)), sine = std::sin(own_angle(set));
+  const double r = std::tan(sun.radius), cosine = std::cos(sample_rotation(set)), sine = std::sin(sample_rotation(set));
   const Vec3 u = sun.direction.unitOrthogonal(), v = sun.direction.cross(u);
   std::vector<Vec3> directions;
   for (const DiskPoint& p : disk) {
@@ -54,8 +54,8 @@ std::vector<Vec3> sun_directions(const Sun& sun, const Mat3& to_light, const std
 // Adds irradiance by the suns to `lit`, and sets the suns' visibility. `known` and `found` may be null; their flags for
 // suns start at ray `first_ray`.
 void add_suns(std::vector<SiteLight>& lit, const SiteBundles& bundles, const Light& light, const Mat3& to_light,
-              const std::vector<DiskPoint>& disk, const OpenRays* known, OpenRays* found, std::size_t first_ray,
-              const Progress& progress, double from) {
+              const std::vector<DiskPoint>& disk, const VisibilityFlags* known, VisibilityFlags* found,
+              std::size_t first_ray, const Progress& progress, double from) {
   double all = 0;
   for (const Sun& sun : light.suns) all += sun.irradiance.sum();
   const auto count = static_cast<double>(disk.size());
@@ -85,7 +85,7 @@ void add_suns(std::vector<SiteLight>& lit, const SiteBundles& bundles, const Lig
   if (!(all > 0)) return;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const auto& [site, side, normal] = bundles.sides()[i];
-    lit[site].sunny[side] = static_cast<float>(seen[i] / all);
+    lit[site].sun_visibility[side] = static_cast<float>(seen[i] / all);
   }
 }
 
@@ -94,9 +94,9 @@ void add_suns(std::vector<SiteLight>& lit, const SiteBundles& bundles, const Lig
 static std::size_t words_of_side(int rays, std::size_t suns) {
   return (static_cast<std::size_t>(rays) + suns * rays_to_sun(rays) + 63) / 64;
 }
-OpenRays::OpenRays(std::size_t sites, int rays, std::size_t suns)
-    : words_a_side_(words_of_side(rays, suns)), words_(2 * sites * words_a_side_, 0) {}
-std::uint64_t OpenRays::memory_for(std::size_t sites, int rays, std::size_t suns) {
+VisibilityFlags::VisibilityFlags(std::size_t sites, int rays, std::size_t suns)
+    : words_per_side_(words_of_side(rays, suns)), words_(2 * sites * words_per_side_, 0) {}
+std::uint64_t VisibilityFlags::memory_for(std::size_t sites, int rays, std::size_t suns) {
   return std::uint64_t{2} * sites * words_of_side(rays, suns) * sizeof(std::uint64_t);
 }
 

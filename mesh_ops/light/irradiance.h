@@ -8,27 +8,27 @@
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/light/light_sites.h"
 #include "mesh_ops/rays/scene_rays.h"
-#include "mesh_ops/scene/light.h"
+#include "mesh_ops/scene/scene_light.h"
 
 namespace rebake {
 
 /// Light on the two sides of a site; [0] is the side that the normal points to.
 struct SiteLight {
   std::array<Radiance, 2> irradiance{Radiance(0, 0, 0), Radiance(0, 0, 0)};  ///< per side: irradiance / π, linear
-  std::array<float, 2> open{0, 0};   ///< per side: cosine-weighted visibility of the half space, 0 … 1
-  std::array<float, 2> sunny{0, 0};  ///< per side: visible share of the suns' irradiance, 0 … 1
+  std::array<float, 2> open{0, 0};            ///< per side: cosine-weighted visibility of the half space, 0 … 1
+  std::array<float, 2> sun_visibility{0, 0};  ///< per side: visible share of the suns' irradiance, 0 … 1
 };
 
 /// Share of the first side in the visible surface (1, ½ or 0), from the visibility of both sides. A side counts as
 /// hidden if its visibility is below 0.03 or below a tenth of the other's. Such a side is the inside of a body that has
 /// cracks or no bottom.
-double facing_by_openness(double first, double second);
+double facing_by_visibility(double first, double second);
 
 /// Visibility flags of rays from sites past one object: one bit per ray, in the order of traced_light(). Per side first
 /// the rays over the half space, then those to each sun.
-class OpenRays {
+class VisibilityFlags {
  public:
-  OpenRays(std::size_t sites, int rays, std::size_t suns);
+  VisibilityFlags(std::size_t sites, int rays, std::size_t suns);
   /// Memory in bytes.
   static std::uint64_t memory_for(std::size_t sites, int rays, std::size_t suns);
   bool at(std::size_t site, std::size_t side, std::size_t ray) const {
@@ -42,17 +42,17 @@ class OpenRays {
 
  private:
   std::size_t word(std::size_t site, std::size_t side, std::size_t ray) const {
-    return (2 * site + side) * words_a_side_ + ray / 64;
+    return (2 * site + side) * words_per_side_ + ray / 64;
   }
-  std::size_t words_a_side_;
+  std::size_t words_per_side_;
   std::vector<std::uint64_t> words_;
 };
 
 struct IrradianceOptions {
   int rays = 256;  ///< per half space; a quarter of it, at least 4, per sun
   /// Visibility of the same rays past occluders that `around` does not contain.
-  const OpenRays* known = nullptr;
-  OpenRays* found = nullptr;  ///< receives the visibility; no flag may be set yet
+  const VisibilityFlags* known = nullptr;
+  VisibilityFlags* found = nullptr;  ///< receives the visibility; no flag may be set yet
 };
 
 /// Traces light at sites among `around`; `to_light` rotates directions from their space into the light's. Sites share

@@ -70,9 +70,9 @@ void TransferTraining::set(std::size_t k, const std::vector<Vec3>& places, const
 LearntTransfer LearntTransfer::learnt(const TransferTraining& training, const Options& options,
                                       const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const Eigen::MatrixXf& rows = options.way == TransferWay::linear ? training.plain : training.local;
+  const Eigen::MatrixXf& rows = options.way == TransferMethod::linear ? training.plain : training.local;
   const Eigen::Index poses = rows.rows();
-  if (poses < 8) throw Error("transfer is learnt from at least 8 poses");
+  if (poses < 8) throw Error("too few poses: training needs at least 8");
   LearntTransfer model;
   model.way = options.way;
   model.probes = training.probes;
@@ -118,7 +118,7 @@ LearntTransfer LearntTransfer::learnt(const TransferTraining& training, const Op
     }
   }
   model.linear = ridge(inputs, scores, best_share);
-  if (options.way == TransferWay::turned_kernel) {
+  if (options.way == TransferMethod::rotated_kernel) {
     const Eigen::MatrixXd linear = ridge(kept_inputs, kept_scores, best_share);
     const Eigen::MatrixXd kept_places = coordinates(Eigen::all, kept), held_places = coordinates(Eigen::all, held);
     const Eigen::MatrixXd over = kept_scores - linear * kept_inputs, held_over = held_scores - linear * held_inputs;

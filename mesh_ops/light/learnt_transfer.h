@@ -12,11 +12,11 @@ namespace rebake {
 
 /// Method of predicting transfer from a pose. All but `linear` predict transfer in frames that rotate with the surface,
 /// so that rotation need not be learnt.
-enum class TransferWay {
-  linear,         ///< coefficients in the body's space are linear in the pose (as in precomputed transfer for morphable
-                  ///< models, MoMoPRT)
-  turned_linear,  ///< coefficients in rotated frames are linear in the pose
-  turned_kernel   ///< the same plus Gaussian kernels for the nonlinear remainder
+enum class TransferMethod {
+  linear,  ///< coefficients in the body's space are linear in the pose (as in precomputed transfer for morphable
+           ///< models, MoMoPRT)
+  rotated_linear,  ///< coefficients in rotated frames are linear in the pose
+  rotated_kernel   ///< the same plus Gaussian kernels for the nonlinear remainder
 };
 
 /// Training set: traced poses of one body, with the same sites in the same order.
@@ -28,7 +28,7 @@ struct TransferTraining {
   Eigen::MatrixXf plain;                        ///< the same in the body's space; empty unless requested
   double seconds = 0;                           ///< tracing time
 
-  /// Frames to store: TransferWay::linear needs both.
+  /// Frames to store: TransferMethod::linear needs both.
   enum class Frames { turned, both };
   TransferTraining(const std::vector<Vec3>& rest, std::size_t poses, Frames frames, std::size_t probe_count = 48);
   /// Sets pose `k`: position, rotation since rest and transfer of each site.
@@ -41,7 +41,7 @@ struct TransferTraining {
 class LearntTransfer {
  public:
   struct Options {
-    TransferWay way = TransferWay::turned_kernel;
+    TransferMethod way = TransferMethod::rotated_kernel;
     int rank = 48;  ///< number of principal components of coefficients
   };
   /// Principal components over the poses, with weights by ridge regression; an eighth of the poses is held out to
@@ -58,7 +58,7 @@ class LearntTransfer {
   std::uint64_t memory() const;
 
   // Stored in files:
-  TransferWay way = TransferWay::turned_kernel;
+  TransferMethod way = TransferMethod::rotated_kernel;
   std::vector<std::uint32_t> probes;
   PoseSpace space;
   Eigen::VectorXf mean;        ///< 16 per site

@@ -8,7 +8,7 @@
 
 namespace rebake {
 
-std::vector<LightDecision> summed_up(const std::vector<LightDecision>& decisions, std::size_t most) {
+std::vector<LightDecision> summarised(const std::vector<LightDecision>& decisions, std::size_t most) {
   // Decisions with a bound or an estimate are grouped regardless of their wording, which contains it.
   const auto reason = [](const LightDecision& one) {
     return std::tuple(!one.runs, one.kind, one.change > 0 ? std::string() : one.why);

@@ -20,6 +20,6 @@ struct LightDecision {
 };
 
 /// Summary for users: running effects first; more than `most` similar decisions of one kind become one line.
-std::vector<LightDecision> summed_up(const std::vector<LightDecision>& decisions, std::size_t most = 8);
+std::vector<LightDecision> summarised(const std::vector<LightDecision>& decisions, std::size_t most = 8);
 
 }  // namespace rebake

@@ -127,7 +127,7 @@ class Fit {
   Radiance light(Eigen::Index k) const { return {x_[0][k], x_[1][k], x_[2][k]}; }
 
   // Enables a brightness factor, the tone, per connected component.
-  void tell_parts_apart() { toned_ = true; }
+  void enable_tones() { toned_ = true; }
 
   // Weighted sum of the squared errors of all samples.
   double error() const {
@@ -135,8 +135,8 @@ class Fit {
     for (std::size_t i = 0; i < samples_.size(); ++i) sum += weight_[i] * residual(i).squaredNorm();
     return sum;
   }
-  // error() with one more sun, after refitting the light with fixed albedos. hold_still() must be called first: it
-  // computes the terms that all candidate suns share.
+  // error() with one more sun, after refitting the light with fixed albedos. freeze_equations() must be called first:
+  // it computes the terms that all candidate suns share.
   double error_with(const Eigen::VectorXd& sun) const {
     double sum = 0;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -156,7 +156,7 @@ class Fit {
     }
     return sum;
   }
-  void hold_still() {
+  void freeze_equations() {
     for (std::size_t c = 0; c < 3; ++c) held_[c] = equations(static_cast<int>(c));
   }
   double explained() const {
@@ -372,14 +372,14 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
     }
   });
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples[i].facing = facing_by_openness(1 - sides[i][0][lobe_count], 1 - sides[i][1][lobe_count]);
+    samples[i].facing = facing_by_visibility(1 - sides[i][0][lobe_count], 1 - sides[i][1][lobe_count]);
     samples[i].column = samples[i].facing * sides[i][0] + (1 - samples[i].facing) * sides[i][1];
   }
   Fit fit(samples, colors, lobes);
   fit.run({}, 12);
   // Tones are fitted before the search for a sun: otherwise bright leaves count as sunlit, and the sun is off by
   // degrees.
-  fit.tell_parts_apart();
+  fit.enable_tones();
   fit.run({}, 12);
   progress.at("estimating light", 0.7);
 
@@ -392,7 +392,7 @@ LightEstimate estimated_light(const LightSites& sites, const std::vector<Radianc
     FoundSun best;
     best.direction = lobes.center(static_cast<std::size_t>(brightest));
     const double without = fit.error();
-    fit.hold_still();
+    fit.freeze_equations();
     constexpr double first_step = 0.16;  // radians
     for (const double step : {first_step, 0.06, 0.025}) {
       const Vec3 center = best.direction, u = center.unitOrthogonal(), v = center.cross(u);

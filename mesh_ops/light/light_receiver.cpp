@@ -144,7 +144,7 @@ ChangeEstimate LightReceiver::sampled_change(bool self, bool removed, const Prog
   prepare(progress);
   std::vector<std::uint8_t> wanted(baked_->sites.size(), 0);
   ChangeEstimate estimate;
-  for (const std::size_t i : picked_places(baked_->sides, sampled_places)) {
+  for (const std::size_t i : sample_places(baked_->sides, sampled_places)) {
     wanted[i] = baked_->sides[i];
     ++estimate.places;
   }
@@ -170,25 +170,25 @@ ChangeEstimate LightReceiver::sampled_change(bool self, bool removed, const Prog
 
 std::shared_ptr<const GlossFit> LightReceiver::gloss(const Shared& shared, const Progress& progress) {
   prepare(progress);
-  if (shared.light != nullptr || in_world() || !baked_->may_mirror()) return nullptr;
+  if (shared.light != nullptr || in_world() || !baked_->has_single_body()) return nullptr;
   return baked_->gloss()->any() ? baked_->gloss() : nullptr;
 }
 
-std::string LightReceiver::why_matte(const Shared& shared) const {
-  if (shared.light != nullptr) return "it stands in another light than its own";
-  if (in_world()) return "it is sheared";
-  if (!baked_->may_mirror()) return "its bodies were joined or turned";
-  return "its colours do not change with the eye as mirrored light would";
+std::string LightReceiver::no_gloss_reason(const Shared& shared) const {
+  if (shared.light != nullptr) return "it is lit by another light than the one it was baked in";
+  if (in_world()) return "its node has a sheared transform";
+  if (!baked_->has_single_body()) return "it was merged from several objects, or rotated before a merge";
+  return "its colours do not depend on the view direction as specular reflection would";
 }
 
-ChangeEstimate LightReceiver::mirrored_change(const GlossFit& fit) const {
+ChangeEstimate LightReceiver::estimated_gloss_change(const GlossFit& fit) const {
   const LightSites& sites = baked_->sites;
   const std::vector<Vec3> directions = even_directions(24);
   // Only sites that rotated and reflect can change.
   std::vector<std::uint8_t> turned(sites.size());
   for (std::size_t i = 0; i < sites.size(); ++i)
     turned[i] = sites.baked[i].normal != sites.now[i].normal && !fit.amounts[i].isZero(0) ? 1 : 0;
-  const std::vector<std::size_t> picked = picked_places(turned, sampled_places);
+  const std::vector<std::size_t> picked = sample_places(turned, sampled_places);
   double most = 0;
   for (const std::size_t i : picked) {
     const LightSite &before = sites.baked[i], &after = sites.now[i];
@@ -228,14 +228,14 @@ LightReceiver::Change LightReceiver::change(bool self, bool removed, const std::
     before = light_before(self, removed, baked_->sides, rays, progress);
     after = light_after(casters, baked_->sides, rays, shared, progress);
   }
-  Change change{{}, {}, baked_->shown_colors(), {}};
-  if (gloss) change.mirrors = Mirrors{gloss, {}, {}};
+  Change change{{}, {}, baked_->visible_colors(), {}};
+  if (gloss) change.mirrors = GlossVisibility{gloss, {}, {}};
   for (std::size_t i = 0; i < baked_->sites.size(); ++i) {
     change.before.push_back(shown(i, before));
     change.after.push_back(shown(i, after));
     if (!gloss) continue;
-    change.mirrors->before.push_back(shown_openness(before[i], baked_->facing[i]));
-    change.mirrors->after.push_back(shown_openness(after[i], baked_->facing[i]));
+    change.mirrors->before.push_back(surface_visibility(before[i], baked_->facing[i]));
+    change.mirrors->after.push_back(surface_visibility(after[i], baked_->facing[i]));
   }
   return change;
 }
@@ -246,13 +246,13 @@ std::vector<std::shared_ptr<const LightMap>> LightReceiver::maps(const Change& c
 }
 
 // The cached model of the object's body; null if there is none or it cannot be parsed.
-std::shared_ptr<const TransferModel> LightReceiver::kept_model() const {
+std::shared_ptr<const TransferModel> LightReceiver::cached_model() const {
   const std::vector<BakedBody> bodies = bodies_of(object());
   if (options_.results == nullptr || bodies.size() != 1 || !bodies.front().to_object.matrix().isIdentity(0))
     return nullptr;
   const BakedObject& body = *bodies.front().object;
   const auto bytes = options_.results->find(transfer_model_key(body, baked_->sites.size()));
-  if (!bytes || !TurnedLight::same_triangles(body, object())) return nullptr;
+  if (!bytes || !DragLight::same_triangles(body, object())) return nullptr;
   try {
     auto model = std::make_shared<const TransferModel>(transfer_model_of(*bytes));
     return model->body == surface_hash(body) && model->sites == baked_->sites.size() ? model : nullptr;
@@ -261,20 +261,20 @@ std::shared_ptr<const TransferModel> LightReceiver::kept_model() const {
   }
 }
 
-std::shared_ptr<const TurnedLight> LightReceiver::turned(const Change& change, const std::vector<std::size_t>& casters,
-                                                         const Shared& shared, const Progress& progress) const {
+std::shared_ptr<const DragLight> LightReceiver::turned(const Change& change, const std::vector<std::size_t>& casters,
+                                                       const Shared& shared, const Progress& progress) const {
   // Sheared objects are traced in world space, in which their triangles do not rotate rigidly.
   if (in_world() || !settings_.self) return nullptr;
-  TurnedLight::Start start{
+  DragLight::Start start{
       placed().node->object, charts_, baked_->sites, baked_->facing, change.colors, change.before, change.after, {}, {},
-      kept_model(),          {},      change.mirrors};
+      cached_model(),        {},      change.mirrors};
   for (const std::size_t k : relatives_)
     if (k != own_) start.others.push_back(occluder(k));
   for (const std::size_t k : casters) start.others.push_back(occluder(k));
   std::vector<Occluder> occluders = start.others;
   occluders.push_back(occluder(own_));
   constexpr int rays = 64;
-  start.transfer = kept_transfer(now(), baked_->facing, occluders, rays, options_.results, progress);
+  start.transfer = cached_transfer(now(), baked_->facing, occluders, rays, options_.results, progress);
   const std::vector<BakedBody> bodies = bodies_of(object());
   for (const BakedBody& body : bodies) {
     if (shared.light != nullptr)
@@ -284,7 +284,7 @@ std::shared_ptr<const TurnedLight> LightReceiver::turned(const Change& change, c
                                                  ? Mat3(Mat3::Identity())
                                                  : Mat3(orthogonal_factor(body.to_object.linear()).transpose())});
   }
-  return std::make_shared<const TurnedLight>(std::move(start));
+  return std::make_shared<const DragLight>(std::move(start));
 }
 
 void LightReceiver::prepare(const Progress& progress) {
@@ -321,7 +321,7 @@ void LightReceiver::prepare(const Progress& progress) {
 const std::vector<LightSite>& LightReceiver::now() const { return in_world() ? in_world_ : baked_->sites.now; }
 
 Radiance LightReceiver::shown(std::size_t i, const std::vector<SiteLight>& lit) const {
-  return shown_light(lit[i], baked_->facing[i]);
+  return visible_irradiance(lit[i], baked_->facing[i]);
 }
 
 Occluder LightReceiver::occluder(std::size_t k) const {

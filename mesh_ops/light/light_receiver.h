@@ -41,13 +41,13 @@ class LightReceiver {
   /// it uses a light other than its own.
   std::shared_ptr<const GlossFit> gloss(const Shared& shared, const Progress& progress);
   /// Wording of the reason why gloss() is null.
-  std::string why_matte(const Shared& shared) const;
+  std::string no_gloss_reason(const Shared& shared) const;
   /// Estimated change of the reflection by rotation, from up to 2048 sites with 24 view directions each.
-  ChangeEstimate mirrored_change(const GlossFit& fit) const;
+  ChangeEstimate estimated_gloss_change(const GlossFit& fit) const;
   /// Irradiance (divided by π) of the sites as baked and with the running effects, and their colours.
   struct Change {
     std::vector<Radiance> before, after, colors;
-    std::optional<Mirrors> mirrors;
+    std::optional<GlossVisibility> mirrors;
   };
   /// `gloss`: null if highlights stay as baked.
   Change change(bool self, bool removed, const std::vector<std::size_t>& casters, const Shared& shared,
@@ -55,8 +55,8 @@ class LightReceiver {
   /// The correction of colours: one map per texture set; null entries change nothing.
   std::vector<std::shared_ptr<const LightMap>> maps(const Change& change) const;
   /// The correction in a form that follows dragged triangles; null if not possible.
-  std::shared_ptr<const TurnedLight> turned(const Change& change, const std::vector<std::size_t>& casters,
-                                            const Shared& shared, const Progress& progress) const;
+  std::shared_ptr<const DragLight> turned(const Change& change, const std::vector<std::size_t>& casters,
+                                          const Shared& shared, const Progress& progress) const;
 
   /// The light it was baked in, estimated or given. Throws EditError for a node with a singular transform.
   std::shared_ptr<const Light> light(const Progress& progress);
@@ -69,7 +69,7 @@ class LightReceiver {
   const BakedObject& object() const { return *placed().node->object; }
   const Affine& to_world() const { return placed().to_world; }
   bool anything_missing() const;
-  std::shared_ptr<const TransferModel> kept_model() const;
+  std::shared_ptr<const TransferModel> cached_model() const;
   bool in_world() const;
   Mat3 to_own_light() const;
   void prepare(const Progress& progress);

@@ -26,7 +26,7 @@ struct Surface {
 // Cosine (60°) between normals of adjacent faces above which they are one smooth surface. Below it there is an edge.
 constexpr double smooth_cosine = 0.5;
 // Height of a face beyond an edge, relative to its size, below which it occludes next to nothing.
-constexpr double stands_up = 0.1;
+constexpr double relevant_height = 0.1;
 
 // The faces around each welded vertex, as compressed rows.
 struct FacesAround {
@@ -98,8 +98,8 @@ void find_roughness(const WeldedCorners& welded, const FacesAround& around, Surf
           above = std::max(above, height);
           below = std::max(below, -height);
         }
-        if (above > stands_up * surface.pitch[a]) rough[0] += size;
-        if (below > stands_up * surface.pitch[a]) rough[1] += size;
+        if (above > relevant_height * surface.pitch[a]) rough[0] += size;
+        if (below > relevant_height * surface.pitch[a]) rough[1] += size;
       }
       for (std::size_t side = 0; side < 2; ++side)
         surface.roughness[f][k][side] = area > 0 ? std::sqrt(rough[side] / area) : 0;
@@ -125,7 +125,7 @@ Surface surface_of(const WeldedCorners& welded, std::vector<std::array<Vec3, 3>>
 
 // Offset of ray origins in facet sizes: small on smooth surfaces, up to half a facet on ragged ones, because a soup
 // would occlude itself.
-constexpr double least_offset = 0.02, offset_a_sine = 0.5;
+constexpr double least_offset = 0.02, offset_per_sine = 0.5;
 
 // The site at barycentric weights `w` of a face. `rough`: the surface as baked; its roughness counts, because bending
 // adds none.
@@ -148,7 +148,7 @@ LightSite site_at(const Surface& surface, const Surface& rough, std::size_t face
   for (std::size_t side = 0; side < 2; ++side) {
     double roughness = 0;
     for (std::size_t k = 0; k < 3; ++k) roughness += w[static_cast<Eigen::Index>(k)] * rough.roughness[face][k][side];
-    site.offset[side] = surface.pitch[face] * std::clamp(offset_a_sine * roughness, least_offset, 1.0);
+    site.offset[side] = surface.pitch[face] * std::clamp(offset_per_sine * roughness, least_offset, 1.0);
   }
   return site;
 }

@@ -38,13 +38,13 @@ std::vector<MatchedLight> matched_lights(const SceneLight& settings, std::vector
     // Those are not matched.
     const Radiance own = receivers[k].light(progress)->mean_irradiance();
     if (!((common.array() > 0).all() && (own.array() > 0).all())) {
-      result[k].why = "no light in all three channels could be told from colours of " +
+      result[k].why = "could not estimate light in all three channels from the colours of " +
                       (own.minCoeff() > 0 ? first : receivers[k]).name();
       continue;
     }
     result[k] = {std::make_shared<const Light>(first.light(progress)->scaled(own.cwiseQuotient(common))),
                  first.turn().transpose(),
-                 fmt::format("spread as that of {}; as bright and of the tint that it was", first.name())};
+                 fmt::format("distribution of light from {}, with its own brightness and tint", first.name())};
   }
   return result;
 }
@@ -103,24 +103,24 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     const bool self = settings.self && receiver.moved(), removed = settings.removed && receiver.missing();
     std::optional<std::size_t> own;
     if (!settings.self)
-      say("self-shadow", receiver.name(), 0, "not asked for");
+      say("self-shadow", receiver.name(), 0, "disabled in the light settings");
     else if (!self)
-      say("self-shadow", receiver.name(), 0, "no triangle moved against its object");
+      say("self-shadow", receiver.name(), 0, "no triangle moved relative to its object");
     else
       own = removed ? say("self-shadow", receiver.name(), 0, "")
                     : say_estimate("self-shadow", receiver.name(), receiver.sampled_change(true, false, progress));
     own_line[k] = own;
     if (own && !removed) candidates.push_back({*own, k, Candidate::Kind::self});
-    if (self && !settings.highlights) say("highlights", receiver.name(), 0, "not asked for");
+    if (self && !settings.highlights) say("highlights", receiver.name(), 0, "disabled in the light settings");
     if (self && settings.highlights) {
       gloss[k] = receiver.gloss(light_for(k), progress);
       if (gloss[k])
-        candidates.push_back({say_estimate("highlights", receiver.name(), receiver.mirrored_change(*gloss[k])), k,
-                              Candidate::Kind::highlights});
+        candidates.push_back({say_estimate("highlights", receiver.name(), receiver.estimated_gloss_change(*gloss[k])),
+                              k, Candidate::Kind::highlights});
       else
-        say("highlights", receiver.name(), 0, receiver.why_matte(light_for(k)));
+        say("highlights", receiver.name(), 0, receiver.no_gloss_reason(light_for(k)));
     }
-    if (receiver.missing() && !removed) say("removed shadow", receiver.name(), 0, "not asked for");
+    if (receiver.missing() && !removed) say("removed shadow", receiver.name(), 0, "disabled in the light settings");
     if (removed) {
       const std::size_t line =
           say_estimate("removed shadow", receiver.name(), receiver.sampled_change(receiver.moved(), true, progress));
@@ -131,7 +131,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       if (other == k || receiver.related(other)) continue;
       const std::string pair = fmt::format("{}→{}", receivers[other].name(), receiver.name());
       if (!settings.cast)
-        say("cast shadow", pair, 0, "not asked for");
+        say("cast shadow", pair, 0, "disabled in the light settings");
       else
         candidates.push_back({say("cast shadow", pair, receiver.cast_bound(other, light_for(k), progress), ""), k,
                               Candidate::Kind::cast, other});
@@ -151,17 +151,17 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
         (candidates[k].kind == Candidate::Kind::self || candidates[k].kind == Candidate::Kind::removed) &&
         matched(candidates[k].receiver);
     decision.runs = options.everything || in_other_light || sum > settings.budget;
-    decision.why = fmt::format("{} {:.3g} of 255, {:.3g} left out before it; budget {:.3g}{}",
+    decision.why = fmt::format("{} {:.3g} of 255, {:.3g} omitted before it; budget {:.3g}{}",
                                decision.estimated ? "about" : "at most", decision.change * 255, result.left_out * 255,
                                settings.budget * 255, decision.estimated ? "; estimate: " + decision.why : "");
     if (!decision.runs) result.left_out = sum;
     if (candidates[k].kind == Candidate::Kind::highlights)
-      decision.why += fmt::format("; accounts for {:.0f} % of how colours change with the eye",
+      decision.why += fmt::format("; explains {:.0f} % of the view dependence of colours",
                                   100 * gloss[candidates[k].receiver]->explained);
   }
   for (const auto& [line, other] : follows) {
     result.decisions[line].runs = result.decisions[other].runs;
-    result.decisions[line].why = "together with the removed shadow";
+    result.decisions[line].why = "traced together with the removed shadow";
   }
   // Highlights are traced together with the self-shadow: if they run, both run.
   for (const Candidate& candidate : candidates) {
@@ -169,7 +169,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     LightDecision& own = result.decisions[*own_line[candidate.receiver]];
     if (own.runs) continue;
     own.runs = true;
-    own.why = "together with the highlights";
+    own.why = "traced together with the highlights";
     result.left_out -= own.change;
   }
   const auto gloss_for = [&](std::size_t k) {
@@ -213,22 +213,22 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     for (const std::size_t decision : running) {
       result.decisions[decision].seconds = seconds / static_cast<double>(running.size());
       result.decisions[decision].took =
-          running.size() > 1 ? fmt::format("took {:.2f} s for all that changes {}", seconds, receivers[k].name())
+          running.size() > 1 ? fmt::format("took {:.2f} s for all effects on {}", seconds, receivers[k].name())
                              : fmt::format("took {:.2f} s", seconds);
     }
     if (estimated) {
       say("light estimate", receivers[k].name(), 0,
-          fmt::format("explains {:.0f} % of its colours' variance", 100 * receivers[k].confidence()));
+          fmt::format("explains {:.0f} % of the variance of its colours", 100 * receivers[k].confidence()));
       result.decisions.back().runs = true;
     }
   }
   result.estimated = std::any_of(result.decisions.begin(), result.decisions.end(),
                                  [](const LightDecision& one) { return !one.runs && one.estimated; });
-  result.summary = summed_up(result.decisions);
+  result.summary = summarised(result.decisions);
   return result;
 }
 
-std::optional<Lighting> turned_lighting(const Scene& start_scene, const Lighting& start, const Scene& scene) {
+std::optional<Lighting> dragged_lighting(const Scene& start_scene, const Lighting& start, const Scene& scene) {
   if (!scene.light || !start_scene.light || !(*scene.light == *start_scene.light)) return std::nullopt;
   const std::vector<PlacedNode> before = placed_nodes(start_scene), now = placed_nodes(scene);
   if (before.size() != now.size()) return std::nullopt;
@@ -244,12 +244,13 @@ std::optional<Lighting> turned_lighting(const Scene& start_scene, const Lighting
     const Clock::time_point began = Clock::now();
     result.maps[b.node->id] = turning->second->maps(*b.node->object);
     const double seconds = seconds_since(began);
-    std::string why = "turned along while triangles move";
+    std::string why = "preview: rotated with the moving triangles";
     if (const std::optional<double> range = turning->second->range_of(*b.node->object); range) {
       if (*range <= LearntTransfer::trusted_range)
-        why += ", and as was learnt of such poses";
+        why += ", corrected by the trained model";
       else
-        why += fmt::format("; {:.1f} times as far out as the poses that were learnt", *range);
+        why += fmt::format("; trained model not used: the pose is at {:.1f} times the range of its training poses",
+                           *range);
     }
     result.lights.try_emplace(b.node->id, turning->second->start().lights.front().light);
     const std::string name = "self-shadow " + b.node->name;
@@ -258,7 +259,7 @@ std::optional<Lighting> turned_lighting(const Scene& start_scene, const Lighting
     result.decisions.push_back(
         {"self-shadow", name, true, 0, seconds, why, fmt::format("took {:.0f} ms", 1000 * seconds)});
   }
-  result.summary = summed_up(result.decisions);
+  result.summary = summarised(result.decisions);
   return result;
 }
 

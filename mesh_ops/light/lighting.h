@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "mesh_ops/base/results.h"
+#include "mesh_ops/light/drag_light.h"
 #include "mesh_ops/light/light_decision.h"
-#include "mesh_ops/light/turned_light.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {
@@ -19,8 +19,8 @@ struct Lighting {
   std::map<NodeId, std::vector<std::shared_ptr<const LightMap>>> maps;
   std::map<NodeId, std::shared_ptr<const Light>> lights;  ///< the light each affected node was baked in
   std::vector<LightDecision> decisions;
-  std::vector<LightDecision> summary;                            ///< summed_up(decisions)
-  std::map<NodeId, std::shared_ptr<const TurnedLight>> turning;  ///< previews during drags (LightingOptions::turning)
+  std::vector<LightDecision> summary;                          ///< summarised(decisions)
+  std::map<NodeId, std::shared_ptr<const DragLight>> turning;  ///< previews during drags (LightingOptions::turning)
   double left_out = 0;  ///< sum of the bounds and estimates of omitted effects, in display colours
   /// Whether an effect was omitted because of an estimate: a few places may change more (ChangeEstimate). In pictures
   /// these are at most a share most_beyond of the pixels.
@@ -35,10 +35,10 @@ struct LightingOptions {
   int rays = 0;        ///< 0: the scene's setting
   double spacing = 4;  ///< distance of light nodes in texels; larger for objects with more than `most_nodes`
   std::size_t most_nodes = 400000;
-  bool everything = false;     ///< run all effects, for audits
-  Results* results = nullptr;  ///< cache of estimates and traced light; null for none
-  bool keep_traced = true;     ///< false: cache estimates only
-  std::set<NodeId> turning{};  ///< nodes whose triangles are about to be dragged
+  bool everything = false;         ///< run all effects, for audits
+  ResultCache* results = nullptr;  ///< cache of estimates and traced light; null for none
+  bool keep_traced = true;         ///< false: cache estimates only
+  std::set<NodeId> turning{};      ///< nodes whose triangles are about to be dragged
 };
 
 /// Computes the light effects that a scene calls for (none if Scene::light is null): decides by bounds, estimates
@@ -48,6 +48,6 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options = {}, co
 
 /// Updates `start` for a scene in which only triangles of nodes in start.turning have moved since; nothing is traced.
 /// Returns nothing if anything else has changed.
-std::optional<Lighting> turned_lighting(const Scene& start_scene, const Lighting& start, const Scene& scene);
+std::optional<Lighting> dragged_lighting(const Scene& start_scene, const Lighting& start, const Scene& scene);
 
 }  // namespace rebake

@@ -38,7 +38,7 @@ Box bounds(const ProxyMesh& mesh) {
   return box;
 }
 
-std::vector<Mat3> vertex_turns(const ProxyMesh& rest, const ProxyMesh& posed) {
+std::vector<Mat3> vertex_rotations(const ProxyMesh& rest, const ProxyMesh& posed) {
   std::vector<Mat3> sums(rest.vertices.size(), Mat3::Zero());
   for (const Face& face : rest.faces) {
     const Mat3 before = frame_of(rest, face);

@@ -17,7 +17,7 @@ Box bounds(const ProxyMesh& mesh);
 
 /// Rotation of the surface around each vertex between two poses with the same faces: the rotation part of the
 /// area-weighted mean motion of its triangles.
-std::vector<Mat3> vertex_turns(const ProxyMesh& rest, const ProxyMesh& posed);
+std::vector<Mat3> vertex_rotations(const ProxyMesh& rest, const ProxyMesh& posed);
 
 /// Sites at the vertices, with smooth normals; tangents rotate with the surface. Rays start one mesh cell above the
 /// mesh, because it only approximates the surface.

@@ -64,7 +64,8 @@ std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLigh
       std::nth_element(values.begin(), at, values.end());
       common[side] = *at;
     }
-    auto best = static_cast<float>(facing_by_openness(static_cast<double>(common[0]), static_cast<double>(common[1])));
+    auto best =
+        static_cast<float>(facing_by_visibility(static_cast<double>(common[0]), static_cast<double>(common[1])));
     if (best == 0.5F) {
       // Both sides may be visible: decided by colours if their difference is clear.
       constexpr double clearly = 0.8, byte_step = 0.01;
@@ -81,11 +82,11 @@ std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLigh
   return facing;
 }
 
-std::uint8_t shown_sides(float facing) {
+std::uint8_t visible_sides(float facing) {
   return static_cast<std::uint8_t>((facing > 0 ? 1 : 0) + (facing < 1 ? 2 : 0));
 }
 
-Radiance shown_light(const SiteLight& lit, float facing) {
+Radiance visible_irradiance(const SiteLight& lit, float facing) {
   const double f = static_cast<double>(facing);
   return f * lit.irradiance[0] + (1 - f) * lit.irradiance[1];
 }
@@ -111,9 +112,9 @@ std::vector<Radiance> site_colors(const BakedObject& object,
       for (std::size_t k = 0; k < fed.size(); ++k) {
         const double tilt = 0.7;
         const Vec3 aside = (k % 2 == 0 ? site.tangent : across) * (k % 4 < 2 ? 1 : -1);
-        const Vec3 towards_eye =
+        const Vec3 direction_to_eye =
             (std::cos(tilt) * (k < 4 ? 1 : -1) * site.normal + std::sin(tilt) * aside).normalized();
-        fed[k] = axes * -towards_eye;
+        fed[k] = axes * -direction_to_eye;
       }
       const double f = static_cast<double>(facing[i]);
       constexpr std::size_t most = 9 * 8;
@@ -194,7 +195,8 @@ std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::s
                                                         const LightSites& sites, const std::vector<Radiance>& colors,
                                                         const std::vector<Radiance>& before,
                                                         const std::vector<Radiance>& after,
-                                                        const std::vector<LightSite>& now, const Mirrors* mirrors) {
+                                                        const std::vector<LightSite>& now,
+                                                        const GlossVisibility* mirrors) {
   // λ from the typical irradiance, its 90th percentile over the sites.
   Radiance lambda = Radiance::Zero();
   for (int c = 0; c < 3 && !before.empty(); ++c) {

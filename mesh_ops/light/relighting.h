@@ -45,14 +45,14 @@ std::vector<float> facing_of(const LightSites& sites, const std::vector<SiteLigh
                              const std::vector<Radiance>& colors);
 
 /// The visible sides, as the `wanted` of traced_light().
-std::uint8_t shown_sides(float facing);
+std::uint8_t visible_sides(float facing);
 /// Irradiance / π of the visible surface.
-Radiance shown_light(const SiteLight& lit, float facing);
+Radiance visible_irradiance(const SiteLight& lit, float facing);
 
 /// Specular fit of sites, and their visibility as baked and as edited.
-struct Mirrors {
+struct GlossVisibility {
   std::shared_ptr<const GlossFit> fit;
-  std::vector<Openness> before, after;
+  std::vector<SiteVisibility> before, after;
 };
 
 /// Maps for c' = max(0, c + ρ (E₁ − E₀)) with ρ = (c E₀ + λ ρ_part) / (E₀² + λ): linear in c, and exactly the identity
@@ -65,6 +65,6 @@ std::vector<std::shared_ptr<const LightMap>> light_maps(const std::vector<std::s
                                                         const std::vector<Radiance>& before,
                                                         const std::vector<Radiance>& after,
                                                         const std::vector<LightSite>& now,
-                                                        const Mirrors* mirrors = nullptr);
+                                                        const GlossVisibility* mirrors = nullptr);
 
 }  // namespace rebake

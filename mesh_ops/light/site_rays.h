@@ -33,7 +33,7 @@ inline std::vector<DiskPoint> disk_points(int count) {
 }
 
 /// Rotation angle of the sample points of a site or set, pseudo-random, so that errors of neighbours differ.
-inline double own_angle(std::size_t number) {
+inline double sample_rotation(std::size_t number) {
   return 2 * std::numbers::pi * static_cast<double>(mixed(number, 0x51, 7) >> 11) * 0x1p-53;
 }
 
@@ -45,13 +45,13 @@ class SiteFrame {
         tangent_(site.tangent),
         across_(site.normal.cross(site.tangent)),
         from_(site.position + site.offset[back ? 1 : 0] * normal_),
-        cosine_(std::cos(own_angle(number))),
-        sine_(std::sin(own_angle(number))) {}
+        cosine_(std::cos(sample_rotation(number))),
+        sine_(std::sin(sample_rotation(number))) {}
 
   const Vec3& normal() const { return normal_; }
   /// Origin of rays.
   const Vec3& from() const { return from_; }
-  /// A sample point, rotated by own_angle().
+  /// A sample point, rotated by sample_rotation().
   DiskPoint turned(const DiskPoint& p) const { return {cosine_ * p.x - sine_ * p.y, sine_ * p.x + cosine_ * p.y}; }
   /// The unit direction above a point of the disk.
   Vec3 direction(const DiskPoint& point) const {

@@ -59,7 +59,7 @@ Transfer traced_transfer(std::span<const LightSite> sites, const SceneRays& arou
   return result;
 }
 
-Transfer turned_transfer(const Transfer& transfer, std::span<const Mat3> turns) {
+Transfer rotated_transfer(const Transfer& transfer, std::span<const Mat3> turns) {
   Transfer result = transfer;
   tbb::parallel_for(std::size_t{0}, result.sites.size(), [&](std::size_t i) {
     if (!turns[i].isIdentity(0)) result.sites[i] = sh::Rotation(turns[i]) * transfer.sites[i];

@@ -25,7 +25,7 @@ Transfer traced_transfer(std::span<const LightSite> sites, const SceneRays& arou
                          const Progress& progress = {});
 
 /// Transfer rotated with its surroundings: exact if the part moved rigidly and nothing else occludes it.
-Transfer turned_transfer(const Transfer& transfer, std::span<const Mat3> turns);
+Transfer rotated_transfer(const Transfer& transfer, std::span<const Mat3> turns);
 
 /// Root mean square difference divided by the root mean square of `truth`; 0 if both are 0.
 double relative_difference(const std::vector<sh::Coefficients>& transfer, const std::vector<sh::Coefficients>& truth);

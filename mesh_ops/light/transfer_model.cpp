@@ -36,7 +36,8 @@ class Reader {
   explicit Reader(std::string_view bytes) : rest_(bytes) {}
   template <class T>
   void operator()(T* values, std::size_t count) {
-    if (rest_.size() / sizeof(T) < count) throw Error("it ends too early");
+    if (rest_.size() / sizeof(T) < count)
+      throw Error("the file is truncated. Train the model again, or copy it again.");
     std::memcpy(values, rest_.data(), count * sizeof(T));
     rest_.remove_prefix(count * sizeof(T));
   }
@@ -93,11 +94,12 @@ Eigen::VectorXf TransferModel::predict(const PoseSpace::Place& place, const std:
   return net ? net->predict(keys_there) : learnt.predict(place);
 }
 
-TransferModel learnt_model(const TurnedLight& start,
-                           const std::function<std::shared_ptr<const BakedObject>(int k)>& pose,
-                           const TransferModelOptions& options, const Progress& progress) {
-  const TurnedLight::Start& from = start.start();
-  if (!from.object->bodies.empty()) throw Error("edits have changed the object already: learn from it as it was read");
+TransferModel trained_model(const DragLight& start,
+                            const std::function<std::shared_ptr<const BakedObject>(int k)>& pose,
+                            const TransferModelOptions& options, const Progress& progress) {
+  const DragLight::Start& from = start.start();
+  if (!from.object->bodies.empty())
+    throw Error("the object has already been edited; train on the object as it was read");
   std::vector<Vec3> places;
   for (const LightSite& site : from.sites.now) places.push_back(site.position);
   TransferModel model;
@@ -107,7 +109,7 @@ TransferModel learnt_model(const TurnedLight& start,
   model.rays = options.rays;
   std::optional<UnetTransfer::Training> images;
   if (options.net) {
-    need_unet_training();
+    require_unet_training();
     BodyImage image = body_image(*from.object, from.sites.now, from.facing, options.coarseness, progress);
     model.keys = image.sites;
     images.emplace(std::move(image.mesh), GeometryImage(image.chart, image_side));
@@ -131,11 +133,12 @@ TransferModel learnt_model(const TurnedLight& start,
   for (int k = -1; k < options.poses; ++k) {
     progress.at("tracing poses", std::max(0.0, static_cast<double>(k) / options.poses));
     const std::shared_ptr<const BakedObject> posed = k < 0 ? from.object : pose(k);
-    if (!start.fits(*posed)) throw Error("a pose has other triangles than the object; only move them");
+    if (!start.fits(*posed))
+      throw Error("a pose has other triangles than the object: the edit may only move triangles");
     std::vector<std::vector<Mat3>> turns;
     std::vector<Mat3> all_turns;
     for (std::size_t s = 0; s < from.charts.size(); ++s) {
-      turns.push_back(node_turns(from.object->sets[s], posed->sets[s], *from.charts[s]));
+      turns.push_back(node_rotations(from.object->sets[s], posed->sets[s], *from.charts[s]));
       all_turns.insert(all_turns.end(), turns.back().begin(), turns.back().end());
     }
     const std::vector<LightSite> sites = start.sites_on(*posed, turns);
@@ -147,7 +150,7 @@ TransferModel learnt_model(const TurnedLight& start,
       key_turns.push_back(all_turns[model.keys[i]]);
     }
     const std::vector<sh::Coefficients> transfer =
-        shown_transfer(key_sites, model.facing, rays_among({{posed, Affine::Identity()}}), options.rays);
+        visible_transfer(key_sites, model.facing, rays_among({{posed, Affine::Identity()}}), options.rays);
     if (k < 0) {
       at_rest.resize(static_cast<Eigen::Index>(transfer.size() * sh::count));
       for (std::size_t i = 0; i < transfer.size(); ++i)
@@ -164,9 +167,10 @@ TransferModel learnt_model(const TurnedLight& start,
   model.tracing_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   const PoseSpace seen(training.rest_probes, training.posed_probes);
   constexpr double least = 1e-6;  // of the body's size; smaller displacements are rounding errors
-  if (!(seen.largest > least)) throw Error("nothing moves in these poses: the edit must move triangles of the object");
+  if (!(seen.largest > least))
+    throw Error("nothing moves in the training poses: the edit must move triangles of the object");
   // Kernels would gain nothing (`rebake study transfer`).
-  model.learnt = LearntTransfer::learnt(training, {.way = TransferWay::turned_linear}, progress);
+  model.learnt = LearntTransfer::learnt(training, {.way = TransferMethod::rotated_linear}, progress);
   double off = 0, turned = 0, all = 0;
   for (int k = 0; k < options.poses; ++k) {
     if (!held_back(k)) continue;
@@ -223,14 +227,15 @@ std::string bytes_of(const TransferModel& model) {
 TransferModel transfer_model_of(std::string_view bytes) {
   std::uint64_t hash = 0;
   const std::size_t line = bytes.find('\n');
-  if (line == std::string_view::npos || bytes.size() < line + 1 + sizeof(hash)) throw Error("it is no transfer model");
+  if (line == std::string_view::npos || bytes.size() < line + 1 + sizeof(hash)) throw Error("not a transfer model");
   std::memcpy(&hash, bytes.data() + bytes.size() - sizeof(hash), sizeof(hash));
   const std::string_view whole = bytes.substr(0, bytes.size() - sizeof(hash));
   const auto head =
       nlohmann::json::parse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(line), nullptr, false);
   if (!head.is_object() || !head.contains("kind") || (head["kind"] != kind && head["kind"] != kind_with_net))
-    throw Error("it is no transfer model of this version");
-  if (content_hash(whole) != hash) throw Error("it is damaged: its checksum is another");
+    throw Error("not a transfer model of a supported version. Train the model again.");
+  if (content_hash(whole) != hash)
+    throw Error("the file is damaged: wrong checksum. Train the model again, or copy it again.");
   TransferModel model;
   std::optional<UnetTransfer::State> net;
   try {
@@ -244,7 +249,7 @@ TransferModel transfer_model_of(std::string_view bytes) {
     model.learnt.held_back_error = head.at("held_back_error");
     // Older files have it for networks only, in the member "net".
     model.turning_error = head.value("turning_error", 0.0);
-    model.learnt.way = TransferWay::turned_linear;
+    model.learnt.way = TransferMethod::rotated_linear;
     const Sizes n{head.at("keys"), head.at("probes"), head.at("dimensions"), head.at("components")};
     // The stated sizes are checked against the file before memory is allocated; in doubles, which do not overflow.
     const auto fits = [&](double values, std::size_t size) {
@@ -252,10 +257,10 @@ TransferModel transfer_model_of(std::string_view bytes) {
     };
     const auto keys = static_cast<double>(n.keys), probes = static_cast<double>(n.probes),
                dimensions = static_cast<double>(n.dimensions), components = static_cast<double>(n.components);
-    if (n.keys == 0 || n.probes == 0) throw Error("it has no points");
+    if (n.keys == 0 || n.probes == 0) throw Error("\"keys\" and \"probes\" in the first line must not be 0");
     if (!fits(keys * sh::count * (components + 1), sizeof(float)) ||
         !fits(probes * 3 * (dimensions + 1), sizeof(double)) || !fits(components * (dimensions + 1), sizeof(double)))
-      throw Error("it ends too early");
+      throw Error("the file is truncated. Train the model again, or copy it again.");
     const auto index = [](std::uint64_t value) { return static_cast<Eigen::Index>(value); };
     LearntTransfer& learnt = model.learnt;
     model.keys.resize(n.keys);
@@ -278,11 +283,11 @@ TransferModel transfer_model_of(std::string_view bytes) {
       model.turning_error = about.value("turning_error", model.turning_error);
       constexpr int most_channels = 64;
       if (net->channels < 8 || net->channels > most_channels || net->channels % 8 != 0)
-        throw Error("its net has another number of channels than 8, 16 … 64");
+        throw Error("\"channels\" in the first line must be a multiple of 8 from 8 to 64");
       const std::uint64_t vertices = about.at("vertices"), faces = about.at("faces");
       if (!fits(static_cast<double>(vertices), 2 * sizeof(double)) || !fits(static_cast<double>(faces), sizeof(Face)) ||
           !fits(static_cast<double>(unet_weight_count(net->channels)), sizeof(float)))
-        throw Error("it ends too early");
+        throw Error("the file is truncated. Train the model again, or copy it again.");
       net->chart.source.resize(vertices);
       net->chart.uvs.resize(vertices);
       net->chart.faces.resize(faces);
@@ -290,18 +295,18 @@ TransferModel transfer_model_of(std::string_view bytes) {
       net->mean.resize(learnt.mean.size());
     }
   } catch (const nlohmann::json::exception&) {
-    throw Error("its first line lacks something");
+    throw Error("a field in the first line is missing or has a wrong type");
   } catch (const std::logic_error&) {
-    throw Error("its first line lacks something");
+    throw Error("a field in the first line is missing or has a wrong type");
   }
   Reader reader(whole.substr(line + 1));
   visit_numbers(model, reader);
   if (net) visit_net(*net, reader);
-  if (!reader.done()) throw Error("it goes on behind its end");
+  if (!reader.done()) throw Error("unexpected data after the end of the model");
   for (const std::uint32_t key : model.keys)
-    if (key >= model.sites) throw Error("it names a site that is not there");
+    if (key >= model.sites) throw Error("a site index is out of range");
   for (const std::uint32_t probe : model.learnt.probes)
-    if (probe >= model.keys.size()) throw Error("it names a site that is not there");
+    if (probe >= model.keys.size()) throw Error("a site index is out of range");
   try {
     if (net) model.net.emplace(std::move(*net));
   } catch (const std::invalid_argument& error) {

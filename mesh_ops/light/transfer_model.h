@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "mesh_ops/light/drag_light.h"
 #include "mesh_ops/light/learnt_transfer.h"
-#include "mesh_ops/light/turned_light.h"
 #include "mesh_ops/light/unet_transfer.h"
 
 namespace rebake {
@@ -20,7 +20,7 @@ struct TransferModel {
   double tracing_seconds = 0;
   std::vector<std::uint32_t> keys;  ///< site indices
   std::vector<float> facing;        ///< per key: facing_of()
-  LearntTransfer learnt;  ///< linear model of the keys (turned_linear); gives the trusted range also with a network
+  LearntTransfer learnt;  ///< linear model of the keys (rotated_linear); gives the trusted range also with a network
   std::optional<UnetTransfer> net;  ///< predicts instead of `learnt`, if present; its vertices are the keys
   double net_error = 0;             ///< relative error of the network on the held-out poses
   double turning_error = 0;         ///< the same by rotation alone; 0 if an older file does not contain it
@@ -43,9 +43,9 @@ struct TransferModelOptions {
 /// Trains a model on poses of the object of `start`, which must be unedited. `pose(k)` returns the object in pose k,
 /// deterministically. Throws Error for an edited object, for poses with other triangles, and for a network without
 /// LibTorch.
-TransferModel learnt_model(const TurnedLight& start,
-                           const std::function<std::shared_ptr<const BakedObject>(int k)>& pose,
-                           const TransferModelOptions& options, const Progress& progress = {});
+TransferModel trained_model(const DragLight& start,
+                            const std::function<std::shared_ptr<const BakedObject>(int k)>& pose,
+                            const TransferModelOptions& options, const Progress& progress = {});
 
 /// Serialised form: a line of human-readable JSON, then numbers, then a hash over all.
 std::string bytes_of(const TransferModel& model);

@@ -79,8 +79,9 @@ Planes doubled(const Planes& in) {
 
 Unet::Unet(int side, int channels, std::vector<float> weights)
     : side_(side), channels_(channels), weights_(std::move(weights)) {
-  if (side < 64 || side % 64 != 0) throw std::invalid_argument("the side must be a multiple of 64");
-  if (weights_.size() != unet_weight_count(channels)) throw std::invalid_argument("another number of weights");
+  if (side < 64 || side % 64 != 0) throw std::invalid_argument("the side must be a positive multiple of 64");
+  if (weights_.size() != unet_weight_count(channels))
+    throw std::invalid_argument("the number of weights does not match the number of channels");
   const float* next = weights_.data();
   for (const UnetLayer& layer : unet_layers(channels)) {
     Packed packed{layer, {}, {}};
@@ -99,7 +100,8 @@ Unet::Unet(int side, int channels, std::vector<float> weights)
 
 std::vector<float> Unet::run(std::span<const float> image) const {
   const auto texels = static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_);
-  if (image.size() != unet_inputs * texels) throw std::invalid_argument("another size of image");
+  if (image.size() != unet_inputs * texels)
+    throw std::invalid_argument("the size of the image does not match the network");
   Planes x(unet_inputs, side_);
   for (int plane = 0; plane < unet_inputs; ++plane)
     for (int y = 0; y < side_; ++y)

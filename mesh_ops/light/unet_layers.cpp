@@ -5,7 +5,7 @@
 namespace rebake {
 
 std::vector<UnetLayer> unet_layers(int channels) {
-  if (channels < 8 || channels % 8 != 0) throw std::invalid_argument("channels must be a multiple of 8");
+  if (channels < 8 || channels % 8 != 0) throw std::invalid_argument("channels must be a positive multiple of 8");
   std::vector<UnetLayer> result{{unet_inputs, channels, 3, 1}};
   const auto residual = [&](int c) {
     result.push_back({c, c, 3, 1});

@@ -20,9 +20,9 @@ const ModuleSymbol& module() {
     ModuleSymbol result = module_symbol("librebake_unet.so", train_unet_symbol);
     if (result.symbol == nullptr && result.problem.empty())
       result.problem =
-          "librebake_unet.so, which trains nets, lies neither beside Rebake nor in lib/rebake; it is built where "
+          "the training module librebake_unet.so was not found beside Rebake or in lib/rebake. It is built if "
           "LibTorch "
-          "is: install libtorch-dev and libopenblas0-pthread, and build or install Rebake again";
+          "is installed: install libtorch-dev and libopenblas0-pthread, then build or install Rebake again.";
     return result;
   }();
   return found;
@@ -32,7 +32,7 @@ const ModuleSymbol& module() {
 
 bool can_train_unet() { return module().symbol != nullptr; }
 
-void need_unet_training() {
+void require_unet_training() {
   if (!can_train_unet()) throw Error(module().problem);
 }
 
@@ -40,8 +40,8 @@ Unet trained_unet(const UnetImages& images, const UnetTraining& training, const 
   const auto texels = static_cast<std::size_t>(images.side) * static_cast<std::size_t>(images.side);
   if (images.images.size() != images.poses * unet_inputs * texels ||
       images.targets.size() != images.poses * unet_outputs * texels || images.poses == 0)
-    throw std::invalid_argument("images of another size");
-  need_unet_training();
+    throw std::invalid_argument("the sizes of the training images do not match");
+  require_unet_training();
   struct Watch {
     const Progress& progress;
     std::exception_ptr thrown;

@@ -25,7 +25,7 @@ struct UnetTraining {
 /// Whether the training module is available. It is built if LibTorch is installed (samples/install_packages).
 bool can_train_unet();
 /// Throws Error with instructions if the training module is not available.
-void need_unet_training();
+void require_unet_training();
 /// Trains a Unet. Throws Error if the module is missing or fails, and std::invalid_argument for sizes that do not
 /// match.
 Unet trained_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress = {});

@@ -50,7 +50,7 @@ void check(const UnetTransfer::State& state) {
           [](const Vec2& uv) { return uv.allFinite() && uv.minCoeff() >= -1e-9 && uv.maxCoeff() <= 1 + 1e-9; }) &&
       all(state.chart.faces,
           [&](const Face& face) { return all(face, [&](std::uint32_t v) { return v < state.chart.source.size(); }); });
-  if (!fits) throw std::invalid_argument("a U-Net's image, mean and chart must go together");
+  if (!fits) throw std::invalid_argument("the sizes of the image, the mean and the chart of a U-Net do not match");
 }
 
 }  // namespace

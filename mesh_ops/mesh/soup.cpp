@@ -25,16 +25,16 @@ Soup::Soup(Positions positions, Uvs uvs, Faces faces, Attributes vertex_attribut
       faces_(std::move(faces)),
       vertex_attributes_(std::move(vertex_attributes)),
       face_attributes_(std::move(face_attributes)),
-      rotations_(vertex_attributes_.find<Turn>(rotation)) {
+      rotations_(vertex_attributes_.find<PackedRotation>(rotation)) {
   const std::size_t count = positions_->size();
   if (uvs_->size() != count) throw std::invalid_argument("a soup needs as many UVs as positions");
   for (const auto& [name, attribute] : vertex_attributes_)
-    if (attribute->size() != count) throw std::invalid_argument("a soup needs one " + name + " a vertex");
+    if (attribute->size() != count) throw std::invalid_argument("a soup needs one " + name + " per vertex");
   for (const auto& [name, attribute] : face_attributes_)
-    if (attribute->size() != faces_->size()) throw std::invalid_argument("a soup needs one " + name + " a face");
+    if (attribute->size() != faces_->size()) throw std::invalid_argument("a soup needs one " + name + " per face");
   for (const Face& face : *faces_) {
     for (const std::uint32_t vertex : face) {
-      if (vertex >= count) throw std::invalid_argument("a face names a vertex that is not there");
+      if (vertex >= count) throw std::invalid_argument("a face has a vertex index out of range");
       bounds_.extend((*positions_)[vertex]);
     }
   }
@@ -154,7 +154,8 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
 
   auto positions = std::make_shared<std::vector<Vec3>>(soup.positions());
   auto uvs = std::make_shared<std::vector<Vec2>>(soup.uvs());
-  std::vector<Turn> rotations = soup.rotations() != nullptr ? *soup.rotations() : std::vector<Turn>(positions->size());
+  std::vector<PackedRotation> rotations =
+      soup.rotations() != nullptr ? *soup.rotations() : std::vector<PackedRotation>(positions->size());
 
   const auto* displaced_before = soup.vertex_attributes().find<Eigen::Vector3f>(Soup::displacement);
   std::vector<Eigen::Vector3f> displacements =
@@ -172,7 +173,7 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
     Mat3 rotation = rotation_before;
     change(v, position, rotation);
     const bool moves = position != soup.positions()[v], rotates = rotation != rotation_before;
-    const Turn turn = rotates ? Turn(rotation) : rotations[v];
+    const PackedRotation turn = rotates ? PackedRotation(rotation) : rotations[v];
     if (!moves && !rotates) continue;
     any_position = any_position || moves;
     any_rotation = any_rotation || rotates;
@@ -200,7 +201,7 @@ Soup change_vertices(const Soup& soup, const std::vector<std::uint8_t>& flags, s
   const Attributes attributes = split ? soup.vertex_attributes().picked(old_vertex) : soup.vertex_attributes();
   return Soup(any_position || split ? Soup::Positions(positions) : soup.shared_positions(),
               split ? Soup::Uvs(uvs) : soup.shared_uvs(), split ? Soup::Faces(faces) : soup.shared_faces(),
-              attributes.with(Soup::rotation, Values<Turn>::of(std::move(rotations)))
+              attributes.with(Soup::rotation, Values<PackedRotation>::of(std::move(rotations)))
                   .with(Soup::displacement, Values<Eigen::Vector3f>::of(std::move(displacements))),
               soup.face_attributes());
 }

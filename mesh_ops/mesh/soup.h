@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "mesh_ops/base/turn.h"
+#include "mesh_ops/base/packed_rotation.h"
 #include "mesh_ops/base/types.h"
 #include "mesh_ops/mesh/attributes.h"
 
@@ -22,7 +22,7 @@ class Soup {
 
   Soup();
   /// Name of the vertex attribute for rotations: the orthogonal matrix by which edits rotated a vertex relative to its
-  /// object (type Turn).
+  /// object (type PackedRotation).
   static constexpr const char* rotation = "rotation";
   /// Name of the vertex attribute for displacements: how far edits moved a vertex since its light was baked (type
   /// Eigen::Vector3f, object space).
@@ -37,7 +37,7 @@ class Soup {
   const std::vector<Vec2>& uvs() const { return *uvs_; }
   const std::vector<Face>& faces() const { return *faces_; }
   /// Rotation per vertex; null if no vertex was rotated.
-  const std::vector<Turn>* rotations() const { return rotations_; }
+  const std::vector<PackedRotation>* rotations() const { return rotations_; }
   const Attributes& vertex_attributes() const { return vertex_attributes_; }
   const Attributes& face_attributes() const { return face_attributes_; }
   /// A copy with other face attributes.
@@ -67,7 +67,7 @@ class Soup {
   Faces faces_;
   Attributes vertex_attributes_;
   Attributes face_attributes_;
-  const std::vector<Turn>* rotations_ = nullptr;  ///< points into vertex_attributes_; null if absent
+  const std::vector<PackedRotation>* rotations_ = nullptr;  ///< points into vertex_attributes_; null if absent
   Box bounds_;
   std::shared_ptr<const Lineage> lineage_;
 };

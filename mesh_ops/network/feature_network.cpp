@@ -64,7 +64,7 @@ Decoder FeatureNetwork::to_decoder() const {
 }
 
 void randomise(FeatureNetwork& network, std::uint64_t seed) {
-  Dice dice(seed);
+  SplitMix64 dice(seed);
   float* value = network.values.data();
   for (const auto& [from, to] :
        {std::pair(network.inputs, network.hidden0), std::pair(network.hidden0, network.hidden1),
@@ -126,7 +126,7 @@ void Adam::step_one(std::size_t i, float& value, float gradient, float rate, int
   value -= rate * (mean_[i] / correction(beta1, steps)) / (std::sqrt(square_[i] / correction(beta2, steps)) + tiny);
 }
 
-float falling_rate(double share) {
+float cosine_rate(double share) {
   return static_cast<float>(0.01 + 0.99 * 0.5 * (1 + elementary::sine_cosine(std::numbers::pi * share).cosine));
 }
 

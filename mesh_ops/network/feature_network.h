@@ -49,12 +49,12 @@ class Adam {
 };
 
 /// Cosine schedule of the learning rate: falls from 1 to 0.01 while the share of done steps goes from 0 to 1.
-float falling_rate(double share);
+float cosine_rate(double share);
 
 /// Pseudo-random numbers (SplitMix64, Steele et al. 2014), the same on every machine.
-class Dice {
+class SplitMix64 {
  public:
-  explicit Dice(std::uint64_t seed) : state_(seed) {}
+  explicit SplitMix64(std::uint64_t seed) : state_(seed) {}
   /// 64 random bits.
   std::uint64_t next() {
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);

@@ -190,14 +190,14 @@ void backward(const NetworkView& network, const Lanes* inputs, const Lanes* outp
   evaluate_back(network, as_vectors(inputs), at.output_slopes, as_vectors(gradient), as_vectors(input_slopes), at);
 }
 
-// Mean features of four texels, for each used value of Sighting::mix; index 0 holds the texels' own features.
+// Mean features of four texels, for each used value of ViewSample::mix; index 0 holds the texels' own features.
 struct Mixed {
   static constexpr std::uint32_t ways = 5;
   Vector features[ways][features_count];
-  Mixed(const Vector* own, const Sighting* sightings, std::size_t count) {
+  Mixed(const Vector* own, const ViewSample* view_samples, std::size_t count) {
     bool wanted[ways] = {};
     for (std::size_t k = 0; k < count; ++k)
-      if (sightings[k].mix < ways) wanted[sightings[k].mix] = true;
+      if (view_samples[k].mix < ways) wanted[view_samples[k].mix] = true;
     for (std::uint32_t way = 0; way < ways; ++way)
       for (std::size_t c = 0; wanted[way] && c < features_count; ++c) {
         features[way][c] = own[c];
@@ -212,30 +212,30 @@ struct Mixed {
 };
 
 // Decoder inputs for a view sample. `own`: features to try; `before`: the features that `mixed` was computed from.
-REBAKE_INLINE void set_inputs(const Sighting& sighting, const Vector* own, const Vector* before, const Mixed& mixed,
-                              Vector* input) {
+REBAKE_INLINE void set_inputs(const ViewSample& view_sample, const Vector* own, const Vector* before,
+                              const Mixed& mixed, Vector* input) {
   for (std::size_t c = 0; c < features_count; ++c) {
     Vector value = own[c];
-    if (sighting.mix != 0) value = mixed.features[sighting.mix][c] + 0.25F * (own[c] - before[c]);
-    input[c] = sighting.coverage * value;
+    if (view_sample.mix != 0) value = mixed.features[view_sample.mix][c] + 0.25F * (own[c] - before[c]);
+    input[c] = view_sample.coverage * value;
   }
   for (std::size_t axis = 0; axis < 3; ++axis)
-    input[features_count + axis] = sighting.coverage * as_vector(sighting.direction[axis]);
+    input[features_count + axis] = view_sample.coverage * as_vector(view_sample.direction[axis]);
 }
 
 // Weighted sum of squared errors over view samples and channels.
-Vector error_of(const NetworkView& n, const Sighting* sightings, std::size_t count, const Vector* own,
+Vector error_of(const NetworkView& n, const ViewSample* view_samples, std::size_t count, const Vector* own,
                 const Vector* before, const Mixed& mixed, const Places& at) {
   Vector sum{}, out[3];
   for (std::size_t k = 0; k < count; ++k) {
-    set_inputs(sightings[k], own, before, mixed, at.input);
+    set_inputs(view_samples[k], own, before, mixed, at.input);
     evaluate(n, at.input, out, at);
     Vector here{};
     for (std::size_t c = 0; c < 3; ++c) {
-      const Vector off = out[c] - as_vector(sightings[k].target[c]);
+      const Vector off = out[c] - as_vector(view_samples[k].target[c]);
       here += off * off;
     }
-    sum += sightings[k].weight * here;
+    sum += view_samples[k].weight * here;
   }
   return sum;
 }
@@ -246,26 +246,26 @@ struct Model {
   Vector error, slope[features_count], curvature[triangle];
 };
 
-void linearise(const NetworkView& n, const Sighting* sightings, std::size_t count, const Vector* own,
+void linearise(const NetworkView& n, const ViewSample* view_samples, std::size_t count, const Vector* own,
                const Mixed& mixed, const Places& at, Model& model) {
   model.error = Vector{};
   for (Vector& v : model.slope) v = Vector{};
   for (Vector& v : model.curvature) v = Vector{};
   Vector out[3];
   for (std::size_t k = 0; k < count; ++k) {
-    const Sighting& sighting = sightings[k];
-    set_inputs(sighting, own, own, mixed, at.input);
+    const ViewSample& view_sample = view_samples[k];
+    set_inputs(view_sample, own, own, mixed, at.input);
     evaluate(n, at.input, out, at);
-    const float scale = sighting.coverage * (sighting.mix == 0 ? 1.F : 0.25F);
+    const float scale = view_sample.coverage * (view_sample.mix == 0 ? 1.F : 0.25F);
     for (std::size_t c = 0; c < 3; ++c) {
-      const Vector off = out[c] - as_vector(sighting.target[c]);
-      model.error += sighting.weight * (off * off);
+      const Vector off = out[c] - as_vector(view_sample.target[c]);
+      model.error += view_sample.weight * (off * off);
       for (std::size_t o = 0; o < 3; ++o) at.output_slopes[o] = Vector{};
       at.output_slopes[c] = scale * (out[c] * (1.F - out[c]));
       evaluate_back(n, at.input, at.output_slopes, nullptr, at.input_slopes, at);
       std::size_t place = 0;
       for (std::size_t i = 0; i < features_count; ++i) {
-        const Vector weighted = sighting.weight * at.input_slopes[i];
+        const Vector weighted = view_sample.weight * at.input_slopes[i];
         model.slope[i] += weighted * off;
         for (std::size_t j = 0; j <= i; ++j) model.curvature[place++] += weighted * at.input_slopes[j];
       }
@@ -330,7 +330,7 @@ void search_levels(const Model& model, const TexelFit& fit, const Vector* own, V
     }
 }
 
-void fit_texels(const NetworkView& decoder, const Sighting* sightings, std::size_t count, const TexelFit& fit,
+void fit_texels(const NetworkView& decoder, const ViewSample* view_samples, std::size_t count, const TexelFit& fit,
                 Lanes* features, Lanes* error, Lanes* work) {
   const Places at(decoder, as_vectors(work));
   Vector own[features_count], tried[features_count], step[features_count];
@@ -338,11 +338,11 @@ void fit_texels(const NetworkView& decoder, const Sighting* sightings, std::size
   Model model;
   Vector damping = all(1e-3F);
   for (std::size_t iteration = 0; iteration < fit.iterations; ++iteration) {
-    const Mixed mixed(own, sightings, count);
-    linearise(decoder, sightings, count, own, mixed, at, model);
+    const Mixed mixed(own, view_samples, count);
+    linearise(decoder, view_samples, count, own, mixed, at, model);
     step_of(model, own, damping, step);
     for (std::size_t c = 0; c < features_count; ++c) tried[c] = greatest(least(own[c] - step[c], all(1.F)), Vector{});
-    const Integers better = error_of(decoder, sightings, count, tried, own, mixed, at) < model.error;
+    const Integers better = error_of(decoder, view_samples, count, tried, own, mixed, at) < model.error;
     for (std::size_t c = 0; c < features_count; ++c) own[c] = better ? tried[c] : own[c];
     damping = greatest(better ? damping * 0.3F : damping * 8.F, all(1e-4F));
   }
@@ -350,19 +350,19 @@ void fit_texels(const NetworkView& decoder, const Sighting* sightings, std::size
     for (std::size_t c = 0; c < features_count; ++c)
       tried[c] = fit.levels[c].first + on_level(own[c], fit.levels[c]) * fit.levels[c].step;
     if (fit.search) {
-      const Mixed mixed(own, sightings, count);
-      linearise(decoder, sightings, count, own, mixed, at, model);
+      const Mixed mixed(own, view_samples, count);
+      linearise(decoder, view_samples, count, own, mixed, at, model);
       Vector found[features_count];
       for (std::size_t c = 0; c < features_count; ++c) found[c] = tried[c];
       search_levels(model, fit, own, found);
-      const Integers better = error_of(decoder, sightings, count, found, own, mixed, at) <
-                              error_of(decoder, sightings, count, tried, own, mixed, at);
+      const Integers better = error_of(decoder, view_samples, count, found, own, mixed, at) <
+                              error_of(decoder, view_samples, count, tried, own, mixed, at);
       for (std::size_t c = 0; c < features_count; ++c) tried[c] = better ? found[c] : tried[c];
     }
     for (std::size_t c = 0; c < features_count; ++c) own[c] = tried[c];
   }
-  const Mixed mixed(own, sightings, count);
-  as_vector(*error) = error_of(decoder, sightings, count, own, own, mixed, at);
+  const Mixed mixed(own, view_samples, count);
+  as_vector(*error) = error_of(decoder, view_samples, count, own, own, mixed, at);
   for (std::size_t c = 0; c < features_count; ++c) as_vector(features[c]) = own[c];
 }
 

@@ -26,7 +26,7 @@ inline constexpr std::size_t decoder_inputs = 11;  ///< 8 features and 3 compone
 inline constexpr std::size_t widest_layer = 256;   ///< largest hidden width that is evaluated in single precision
 
 /// One view sample per texel of a batch of 16: a view direction and the colour to reproduce.
-struct Sighting {
+struct ViewSample {
   Lanes direction[3];  ///< unit view direction, as fed to the decoder
   Lanes target[3];     ///< display colour, 0 … 1 per channel
   float coverage;      ///< share of a pixel covered by the texels; scales features and direction
@@ -62,7 +62,7 @@ struct NetworkKernels {
                    Lanes* gradient, Lanes* input_slopes, Lanes* workspace);
   /// Fits features[8] (0 … 1) of 16 texels to `count` view samples with a fixed decoder. `features` holds the initial
   /// values and receives the result; `error` receives its weighted sum of squared errors over samples and channels.
-  void (*fit_texels)(const NetworkView& decoder, const Sighting* sightings, std::size_t count, const TexelFit& fit,
+  void (*fit_texels)(const NetworkView& decoder, const ViewSample* view_samples, std::size_t count, const TexelFit& fit,
                      Lanes* features, Lanes* error, Lanes* workspace);
 };
 

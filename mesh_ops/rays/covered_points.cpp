@@ -61,7 +61,7 @@ constexpr float narrow = 1e-4F;
 
 template <bool endless, bool solid>
 void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes& axes, const PointGrid& grid,
-             float reach, const OpaqueAt& opaque, std::int32_t* marks) {
+             float reach, const OpacityQuery& opaque, std::int32_t* marks) {
   const auto along = [](const std::array<float, 3>& axis, Floats x, Floats y, Floats z) {
     return x * axis[0] + y * axis[1] + z * axis[2];
   };
@@ -161,7 +161,7 @@ void mark_by(const CornerColumns& corners, std::size_t triangles, const LineAxes
 }
 
 void mark_covered(const CornerColumns& corners, std::size_t triangles, const LineAxes& axes, const PointGrid& grid,
-                  float reach, const OpaqueAt& opaque, std::int32_t* marks) {
+                  float reach, const OpacityQuery& opaque, std::int32_t* marks) {
   const bool endless = reach > std::numeric_limits<float>::max(), solid = opaque.ask == nullptr;
   const auto mark = endless ? (solid ? mark_by<true, true> : mark_by<true, false>)
                             : (solid ? mark_by<false, true> : mark_by<false, false>);

@@ -31,7 +31,7 @@ struct LineAxes {
 };
 
 /// Opacity query for a point of a triangle, given by the barycentric weights b1 and b2 of its second and third corner.
-struct OpaqueAt {
+struct OpacityQuery {
   const void* of;                                                           ///< first argument of `ask`
   bool (*ask)(const void* of, std::uint32_t triangle, float b1, float b2);  ///< null: opaque everywhere
 };
@@ -39,7 +39,7 @@ struct OpaqueAt {
 /// Sets marks[i] to −1 for points that a triangle occludes within `reach` along the line; points already at −1 are
 /// skipped. Watertight: points on a shared edge are covered. Triangles with a NaN corner cover nothing.
 using MarkCovered = void (*)(const CornerColumns& corners, std::size_t triangles, const LineAxes& axes,
-                             const PointGrid& grid, float reach, const OpaqueAt& opaque, std::int32_t* marks);
+                             const PointGrid& grid, float reach, const OpacityQuery& opaque, std::int32_t* marks);
 
 /// Projects `count` points (x, y, z arrays) to u, v, w with a 3 × 4 matrix, in double precision, rounded to float.
 using ProjectPoints = void (*)(const std::array<const double*, 3>& points, std::size_t count,

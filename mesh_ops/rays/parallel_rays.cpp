@@ -142,7 +142,8 @@ ParallelRays::ParallelRays(const SceneRays& around, std::span<const Vec3> origin
       for (std::size_t axis = 0; axis < 3; ++axis) points_[axis].push_back(origin[static_cast<Eigen::Index>(axis)]);
       if (origin.allFinite()) box.extend(origin);
     }
-    blocks_.push_back(box.isEmpty() ? SceneRays::Ball{} : SceneRays::Ball{box.center(), box.diagonal().norm() / 2});
+    blocks_.push_back(box.isEmpty() ? SceneRays::BoundingSphere{}
+                                    : SceneRays::BoundingSphere{box.center(), box.diagonal().norm() / 2});
   }
   std::map<const RayTree*, std::size_t> numbers;
   for (const SceneRays::Placed& placed : around_.placed_) {
@@ -231,7 +232,7 @@ void ParallelRays::shade_by(std::size_t instance, const Vec3& direction, std::si
     return;
   }
   const Triangles& triangles = triangles_of(instance);
-  struct Asked {
+  struct PreviewRequest {
     const RayTree& tree;
     std::size_t set;
   };
@@ -239,11 +240,11 @@ void ParallelRays::shade_by(std::size_t instance, const Vec3& direction, std::si
     const std::array<std::vector<float>, 9>& columns = triangles.corners[set];
     CornerColumns corners{};
     for (std::size_t k = 0; k < 9; ++k) corners[k] = columns[k].data();
-    const Asked asked{tree, set};
-    OpaqueAt opaque{&asked, nullptr};
+    const PreviewRequest asked{tree, set};
+    OpacityQuery opaque{&asked, nullptr};
     if (!triangles.solid[set])
       opaque.ask = [](const void* of, std::uint32_t triangle, float b1, float b2) {
-        const auto& [in, number] = *static_cast<const Asked*>(of);
+        const auto& [in, number] = *static_cast<const PreviewRequest*>(of);
         return in.opaque(number, triangle, static_cast<double>(b1), static_cast<double>(b2));
       };
     kernels().mark_covered(corners, columns[0].size() - PointGrid::room, axes, *grid,

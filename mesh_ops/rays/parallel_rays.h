@@ -45,9 +45,9 @@ class ParallelRays {
                 std::span<std::uint8_t> hidden, Scratch& scratch) const;
 
   const SceneRays& around_;
-  std::array<std::vector<double>, 3> points_;  ///< origins: [axis][point]
-  std::vector<SceneRays::Ball> blocks_;        ///< bounding sphere per block of consecutive origins
-  std::vector<std::size_t> tree_of_;           ///< per instance: index in trees_
+  std::array<std::vector<double>, 3> points_;      ///< origins: [axis][point]
+  std::vector<SceneRays::BoundingSphere> blocks_;  ///< bounding sphere per block of consecutive origins
+  std::vector<std::size_t> tree_of_;               ///< per instance: index in trees_
   mutable std::vector<std::unique_ptr<Triangles>> trees_;
 };
 

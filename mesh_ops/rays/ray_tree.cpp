@@ -46,7 +46,7 @@ bool count_bytes(void* sum, ssize_t bytes, bool /*after*/) {
   return true;
 }
 
-void let_through_transparent(const RTCFilterFunctionNArguments* args) {
+void reject_transparent(const RTCFilterFunctionNArguments* args) {
   const auto* const surfaces = reinterpret_cast<const Context*>(args->context)->surfaces;
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
@@ -74,7 +74,7 @@ class RayTriangles::Impl {
  public:
   Impl(const BakedObject& object, const std::vector<std::uint32_t>* only)
       : device_(rtcNewDevice(instructions())), scene_(nullptr), some_(only != nullptr) {
-    if (device_ == nullptr) throw DeviceError("Embree cannot be started; is its library whole?");
+    if (device_ == nullptr) throw DeviceError("Embree cannot be started; reinstall its library");
     rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
     scene_ = rtcNewScene(device_);
     const Box box = object.bounds();
@@ -104,8 +104,8 @@ class RayTriangles::Impl {
       }
       first = end;
       triangle_count_ += counts_.back();
-      rtcSetGeometryIntersectFilterFunction(geometry, let_through_transparent);
-      rtcSetGeometryOccludedFilterFunction(geometry, let_through_transparent);
+      rtcSetGeometryIntersectFilterFunction(geometry, reject_transparent);
+      rtcSetGeometryOccludedFilterFunction(geometry, reject_transparent);
       rtcCommitGeometry(geometry);
       rtcAttachGeometry(scene_, geometry);
       rtcReleaseGeometry(geometry);
@@ -114,7 +114,7 @@ class RayTriangles::Impl {
     if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE) {
       release();
       throw DeviceError(error == RTC_ERROR_OUT_OF_MEMORY
-                            ? "there is not enough memory for the tree that rays are sent through"
+                            ? "there is not enough memory for the ray tracing hierarchy (Embree BVH)"
                             : "Embree reports error " + std::to_string(error));
     }
   }

@@ -16,7 +16,7 @@ constexpr std::uint32_t few = 4;
 SceneRays::SceneRays(std::vector<Instance> instances) {
   for (Instance& instance : instances) {
     const Box box = instance.tree->bounds();
-    Ball ball{instance.to_world * box.center(), 0};
+    BoundingSphere ball{instance.to_world * box.center(), 0};
     for (const auto corner : {Box::BottomLeftFloor, Box::BottomRightFloor, Box::TopLeftFloor, Box::TopRightFloor,
                               Box::BottomLeftCeil, Box::BottomRightCeil, Box::TopLeftCeil, Box::TopRightCeil})
       ball.radius = std::max(ball.radius, (instance.to_world * box.corner(corner) - ball.middle).norm());
@@ -28,7 +28,7 @@ SceneRays::SceneRays(std::vector<Instance> instances) {
 }
 
 void SceneRays::grow(std::uint32_t first, std::uint32_t end) {
-  const auto ball = [&](std::uint32_t k) -> const Ball& { return placed_[order_[k]].ball; };
+  const auto ball = [&](std::uint32_t k) -> const BoundingSphere& { return placed_[order_[k]].ball; };
   Box middles;
   for (std::uint32_t k = first; k < end; ++k) middles.extend(ball(k).middle);
   Branch branch{{middles.center(), 0}, first, end, 0};
@@ -54,7 +54,7 @@ void SceneRays::grow(std::uint32_t first, std::uint32_t end) {
   grow(half, end);
 }
 
-bool SceneRays::Ball::passed_by(const Vec3& origin, const Vec3& direction) const {
+bool SceneRays::BoundingSphere::missed_by(const Vec3& origin, const Vec3& direction) const {
   // Adds 1e-12 of the squared distance, far more than its rounding error. With NaN the result is false.
   const Vec3 to_middle = middle - origin;
   const double along = to_middle.dot(direction), squared = to_middle.squaredNorm(), length = direction.squaredNorm(),
@@ -72,14 +72,14 @@ bool SceneRays::any_near(const Vec3& origin, const Vec3& direction, Visit visit)
   while (count > 0) {
     const std::uint32_t number = waiting[--count];
     const Branch& branch = branches_[number];
-    if (number > 0 && branch.ball.passed_by(origin, direction)) continue;
+    if (number > 0 && branch.ball.missed_by(origin, direction)) continue;
     if (branch.second != 0) {
       waiting[count++] = branch.second;
       waiting[count++] = number + 1;
       continue;
     }
     for (std::uint32_t k = branch.first; k < branch.end; ++k)
-      if (!placed_[order_[k]].ball.passed_by(origin, direction) && visit(order_[k])) return true;
+      if (!placed_[order_[k]].ball.missed_by(origin, direction) && visit(order_[k])) return true;
   }
   return false;
 }
@@ -113,7 +113,7 @@ void SceneRays::nearest(Bundle& rays, double near) const {
     const Affine& to_object = placed_[k].to_object;
     bool any = near < 0;
     for (std::size_t ray = 0; ray < 8 && !any; ++ray)
-      any = rays.far[ray] >= near && !placed_[k].ball.passed_by(rays.origins[ray], rays.directions[ray]);
+      any = rays.far[ray] >= near && !placed_[k].ball.missed_by(rays.origins[ray], rays.directions[ray]);
     if (!any) continue;
     for (std::size_t ray = 0; ray < 8; ++ray) {
       local.origins[ray] = to_object * rays.origins[ray];

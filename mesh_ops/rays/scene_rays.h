@@ -50,24 +50,24 @@ class SceneRays {
  private:
   friend class ParallelRays;
   /// Bounding sphere in world space.
-  struct Ball {
+  struct BoundingSphere {
     Vec3 middle{0, 0, 0};
     double radius = 0;
 
     /// Whether a ray misses the sphere. Conservative: false within rounding.
-    bool passed_by(const Vec3& origin, const Vec3& direction) const;
+    bool missed_by(const Vec3& origin, const Vec3& direction) const;
   };
   /// An instance with its bounding sphere.
   struct Placed {
     std::shared_ptr<const RayTree> tree;
     Affine to_object;
     double size, reach;
-    Ball ball;
+    BoundingSphere ball;
   };
   /// Node of the sphere hierarchy, over order_[first] … order_[end − 1]. Its children are the next branch and branch
   /// `second`.
   struct Branch {
-    Ball ball;
+    BoundingSphere ball;
     std::uint32_t first, end;
     std::uint32_t second;  ///< 0 for a leaf
   };

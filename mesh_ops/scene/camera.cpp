@@ -43,9 +43,9 @@ void check(const Camera& camera) {
   if (!(camera.ortho_height >= 0) || !std::isfinite(camera.ortho_height))
     throw FieldError("ortho_height", "must be greater than 0 (orthographic), or 0 (perspective)");
   if (!(camera.near_plane >= 0) || !std::isfinite(camera.near_plane))
-    throw FieldError("near", "must be greater than 0");
+    throw FieldError("near", "must be greater than 0, or 0 to fit it to the scene");
   if (camera.far_plane != 0 && (!(camera.far_plane > camera.near_plane) || !std::isfinite(camera.far_plane)))
-    throw FieldError("far", "must be greater than near");
+    throw FieldError("far", "must be greater than near, or 0 to fit it to the scene");
   world_to_camera(camera);
 }
 
@@ -53,9 +53,9 @@ Camera with_planes(const Camera& camera, const Box& visible, double aspect) {
   constexpr double depth_range = 1e4;  // far / near, if the eye lies inside the visible box
   // Errors name the plane that the caller gave.
   if (camera.far_plane == 0 && !std::isfinite(depth_range * camera.near_plane))
-    throw FieldError("near", "is too far away: no far plane fits behind it");
+    throw FieldError("near", "is too far away: the far plane would not be finite");
   if (camera.near_plane == 0 && camera.far_plane != 0 && !(camera.far_plane / depth_range > 0))
-    throw FieldError("far", "is too close to the eye: no near plane fits before it");
+    throw FieldError("far", "is too close to the eye: the near plane would be 0");
   Camera result = camera;
   const bool extends = !visible.isEmpty() && visible.min().allFinite() && visible.max().allFinite() &&
                        (visible.center() != camera.eye || visible.min() != visible.max());
@@ -67,7 +67,7 @@ Camera with_planes(const Camera& camera, const Box& visible, double aspect) {
     return result;
   }
   const double farthest = (visible.center() - camera.eye).stableNorm() + visible.diagonal().stableNorm();
-  if (!std::isfinite(farthest)) throw FieldError("eye", "is farther from the scene than numbers reach");
+  if (!std::isfinite(farthest)) throw FieldError("eye", "is too far from the scene: the distance is not finite");
   if (result.far_plane == 0) result.far_plane = std::max(farthest, 2 * result.near_plane);
   if (result.near_plane == 0) {
     // Ratio of depth to distance in the picture's corner.

@@ -32,7 +32,8 @@ Ground ground_through(const std::array<Vec3, 3>& points) {
   const Vec3 along = a.stableNormalized(), across = b.stableNormalized();
   Vec3 normal = along.cross(across);
   const double sine = normal.norm();
-  if (!(sine > least_sine) || !points[0].allFinite()) throw std::invalid_argument("the points lie on one line");
+  if (!(sine > least_sine) || !points[0].allFinite())
+    throw std::invalid_argument("the points are collinear or not finite");
   normal /= sine;
   int largest = 1;
   if (std::abs(normal.y()) <= least_sine) normal.cwiseAbs().maxCoeff(&largest);

@@ -50,7 +50,7 @@ std::vector<BakedBody> bodies_of(const BakedObject& object) {
   return {{std::make_shared<const BakedObject>(object), Affine::Identity()}};
 }
 
-void keep_bodies(BakedObject& made, const BakedObject& of) {
+void record_bodies(BakedObject& made, const BakedObject& of) {
   if (made.bodies.empty()) made.bodies = bodies_of(of);
 }
 
@@ -75,7 +75,7 @@ static bool as_read(const BakedObject& object) {
                     });
 }
 
-bool same_reading(const BakedObject& a, const BakedObject& b) {
+bool same_source(const BakedObject& a, const BakedObject& b) {
   return as_read(a) && as_read(b) && a.axes == b.axes && a.layout == b.layout && a.origin->folder == b.origin->folder &&
          a.origin->mlp == b.origin->mlp &&
          std::equal(a.origin->sets.begin(), a.origin->sets.end(), b.origin->sets.begin(), b.origin->sets.end(),

@@ -93,11 +93,11 @@ struct BakedObject {
 std::vector<BakedBody> bodies_of(const BakedObject& object);
 /// Records the bodies of `of` in `made`, unless it has some. Must be called for an object derived from another by
 /// moving, removing or erasing triangles.
-void keep_bodies(BakedObject& made, const BakedObject& of);
+void record_bodies(BakedObject& made, const BakedObject& of);
 /// Whether both have the same arrays and transform.
 bool same_body(const BakedBody& a, const BakedBody& b);
 /// Whether both are unchanged since they were read from the same folder with identical files.
-bool same_reading(const BakedObject& a, const BakedObject& b);
+bool same_source(const BakedObject& a, const BakedObject& b);
 
 /// Number of flagged triangles.
 std::size_t count(const TriangleSet& triangles);

@@ -10,8 +10,8 @@
 
 #include "mesh_ops/scene/camera.h"
 #include "mesh_ops/scene/ground.h"
-#include "mesh_ops/scene/light.h"
 #include "mesh_ops/scene/object.h"
+#include "mesh_ops/scene/scene_light.h"
 
 namespace rebake {
 

@@ -59,7 +59,7 @@ TriangleSet filled(const EdgeTable& edges, const TriangleSet& selection, std::si
   return result;
 }
 
-TriangleSet joined_within(const WeldedCorners& corners, const TriangleSet& within, const TriangleSet& from) {
+TriangleSet connected_within(const WeldedCorners& corners, const TriangleSet& within, const TriangleSet& from) {
   UnionFind parts(corners.place_count);
   const std::vector<std::uint32_t>& places = corners.places;
   for (std::size_t t = 0; t < within.size(); ++t)
@@ -74,7 +74,7 @@ TriangleSet joined_within(const WeldedCorners& corners, const TriangleSet& withi
   return result;
 }
 
-TriangleSet joined_to(const WeldedCorners& corners, std::size_t triangle) {
+TriangleSet connected_to(const WeldedCorners& corners, std::size_t triangle) {
   UnionFind parts(corners.place_count);
   const std::vector<std::uint32_t>& places = corners.places;
   TriangleSet flags(places.size() / 3, 0);

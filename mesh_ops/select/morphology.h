@@ -13,8 +13,8 @@ TriangleSet shrunk(const WeldedCorners& corners, const TriangleSet& selection);
 TriangleSet filled(const EdgeTable& edges, const TriangleSet& selection, std::size_t largest);
 
 /// Connected component of a triangle, through shared welded vertices; ignores opacity.
-TriangleSet joined_to(const WeldedCorners& corners, std::size_t triangle);
+TriangleSet connected_to(const WeldedCorners& corners, std::size_t triangle);
 /// Triangles of `within` that are connected to one of `from`, through welded vertices of triangles in either set.
-TriangleSet joined_within(const WeldedCorners& corners, const TriangleSet& within, const TriangleSet& from);
+TriangleSet connected_within(const WeldedCorners& corners, const TriangleSet& within, const TriangleSet& from);
 
 }  // namespace rebake

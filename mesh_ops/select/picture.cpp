@@ -11,7 +11,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/index/index.h"
-#include "mesh_ops/select/seen_through.h"
+#include "mesh_ops/select/mask_culler.h"
 
 namespace rebake {
 
@@ -124,8 +124,8 @@ Vec3 Projector::eye_for(const Vec3& world) const {
   return world - back.dot(world - eye_) * back;
 }
 
-TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, const Projector& project,
-                            const PixelMask& mask, double nearest, double farthest) {
+TriangleSet projected_triangles(const BakedObject& object, const Affine& to_world, const Projector& project,
+                                const PixelMask& mask, double nearest, double farthest) {
   TriangleSet flags(object.triangle_count(), 0);
   std::size_t first = 0;
   for (const TextureSet& set : object.sets) {
@@ -141,14 +141,14 @@ TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, c
   return flags;
 }
 
-std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, const Projector& project,
-                                        const PixelMask& mask, double nearest, double farthest) {
+std::vector<TriangleSet> visible_triangles(const std::vector<PlacedNode>& objects, const Projector& project,
+                                           const PixelMask& mask, double nearest, double farthest) {
   std::vector<SceneRays::Instance> instances;
-  SeenThrough through(project, mask);
+  MaskCuller through(project, mask);
   for (const PlacedNode& placed : objects) {
     const BakedObject& object = *placed.node->object;
     through.look_at(object, placed.to_world);
-    instances.push_back({rays_seen_through(through, object), placed.to_world, object.bounds().diagonal().norm()});
+    instances.push_back({rays_for_mask(through, object), placed.to_world, object.bounds().diagonal().norm()});
   }
   const SceneRays scene(std::move(instances));
   std::vector<TriangleSet> flags;
@@ -184,7 +184,7 @@ std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, 
   return flags;
 }
 
-Standpoint standpoint_of(const Camera& camera, const Affine& to_object) {
+Viewpoint viewpoint_of(const Camera& camera, const Affine& to_object) {
   const Vec3 back = to_object.linear() * world_to_camera(camera).row(2).transpose();
   return {to_object * camera.eye, camera.orthographic() ? Vec3(back.normalized()) : Vec3::Zero()};
 }
@@ -198,7 +198,7 @@ const std::array<Vec3, 7> inner_points = {
 
 }  // namespace
 
-TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standpoint>& standpoints) {
+TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Viewpoint>& standpoints) {
   const auto rays = rays_of(object);
   const double size = object.bounds().diagonal().norm();
   TriangleSet flags(object.triangle_count(), 0);
@@ -232,7 +232,7 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standp
       bool seen = false;
       for (std::size_t k = 0; k < tried && !seen; ++k) {
         const Vec3& point = opaque[k * opaque.size() / tried];
-        for (const Standpoint& from : standpoints) {
+        for (const Viewpoint& from : standpoints) {
           // Parallel rays start outside the object.
           const Vec3 eye = from.back.isZero(0) ? from.eye : Vec3(point + 1.5 * size * from.back);
           // The ray ends before the point by more than the tree's error.
@@ -250,9 +250,9 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standp
   return flags;
 }
 
-std::vector<Standpoint> eyes_around(const Box& box, int count, double distance) {
+std::vector<Viewpoint> viewpoints_around(const Box& box, int count, double distance) {
   // Fibonacci lattice.
-  std::vector<Standpoint> eyes;
+  std::vector<Viewpoint> eyes;
   const double radius = distance * box.diagonal().norm() / 2;
   for (int i = 0; i < count; ++i) {
     const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z);

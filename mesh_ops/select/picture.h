@@ -60,28 +60,28 @@ class Projector {
 };
 
 /// Triangles whose centroid projects to a flagged pixel at a depth in [nearest, farthest], including occluded ones.
-TriangleSet triangles_under(const BakedObject& object, const Affine& to_world, const Projector& project,
-                            const PixelMask& mask, double nearest, double farthest);
+TriangleSet projected_triangles(const BakedObject& object, const Affine& to_world, const Projector& project,
+                                const PixelMask& mask, double nearest, double farthest);
 
 /// Per object: the triangles visible through the centre of a flagged pixel at a depth in [nearest, farthest]. The
 /// objects occlude each other. A triangle that covers no pixel centre is not found.
-std::vector<TriangleSet> triangles_seen(const std::vector<PlacedNode>& objects, const Projector& project,
-                                        const PixelMask& mask, double nearest, double farthest);
+std::vector<TriangleSet> visible_triangles(const std::vector<PlacedNode>& objects, const Projector& project,
+                                           const PixelMask& mask, double nearest, double farthest);
 
 /// Viewpoint in object space: a point, or a direction for parallel rays (a viewpoint at infinity).
-struct Standpoint {
+struct Viewpoint {
   Vec3 eye{0, 0, 0};   ///< ignored for parallel rays
   Vec3 back{0, 0, 0};  ///< unit vector towards the viewer for parallel rays; zero for a point
 };
 
 /// A camera's viewpoint in object space. `to_object`: transform from world to object space.
-Standpoint standpoint_of(const Camera& camera, const Affine& to_object);
+Viewpoint viewpoint_of(const Camera& camera, const Affine& to_object);
 
 /// Triangles without an opaque texel visible from any of the viewpoints. Tests up to 16 texels per triangle: one that
 /// is visible only through a gap smaller than their spacing counts as unseen.
-TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Standpoint>& standpoints);
+TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Viewpoint>& standpoints);
 
 /// `count` viewpoints spread evenly on a sphere around a box; its radius is `distance` times the box's half diagonal.
-std::vector<Standpoint> eyes_around(const Box& box, int count, double distance);
+std::vector<Viewpoint> viewpoints_around(const Box& box, int count, double distance);
 
 }  // namespace rebake

@@ -14,7 +14,7 @@ Vec3 centre(const Soup& soup, const Face& face) {
 
 }  // namespace
 
-FramePoints::FramePoints(CoordinateFrame frame, const PlacedNode& placed) {
+FrameTransform::FrameTransform(CoordinateFrame frame, const PlacedNode& placed) {
   if (frame == CoordinateFrame::world) from_object_ = metric_ = placed.to_world;
   if (frame != CoordinateFrame::bounds) return;
   const Box box = placed.node->object->bounds();
@@ -28,7 +28,7 @@ FramePoints::FramePoints(CoordinateFrame frame, const PlacedNode& placed) {
   }
 }
 
-ObjectRegion region_of(const FramePoints& points, const BoxRegion& box) {
+ObjectRegion region_of(const FrameTransform& points, const BoxRegion& box) {
   const Affine& from_object = points.from_object();
   const auto inside = [from_object, box](const Vec3& object_point) {
     const Vec3 p = from_object * object_point;
@@ -42,7 +42,7 @@ ObjectRegion region_of(const FramePoints& points, const BoxRegion& box) {
   return {inside, may_touch};
 }
 
-ObjectRegion region_of(const FramePoints& points, const SphereRegion& sphere) {
+ObjectRegion region_of(const FrameTransform& points, const SphereRegion& sphere) {
   const Vec3 center = points.metric() * points.to_object(sphere.center);
   const double radius = sphere.radius * points.radius_scale();
   const Affine& metric = points.metric();
@@ -57,7 +57,7 @@ ObjectRegion region_of(const FramePoints& points, const SphereRegion& sphere) {
   return {inside, may_touch};
 }
 
-ObjectRegion region_of(const FramePoints& points, const HalfSpaceRegion& half) {
+ObjectRegion region_of(const FrameTransform& points, const HalfSpaceRegion& half) {
   const auto inside = [from_object = points.from_object(), half](const Vec3& object_point) {
     return half.normal.dot(from_object * object_point - half.point) >= 0;
   };

@@ -25,9 +25,9 @@ struct HalfSpaceRegion {
 };
 
 /// Converts between object space and the coordinate frame of a region.
-class FramePoints {
+class FrameTransform {
  public:
-  FramePoints(CoordinateFrame frame, const PlacedNode& placed);
+  FrameTransform(CoordinateFrame frame, const PlacedNode& placed);
   const Affine& from_object() const { return from_object_; }
   Vec3 to_object(const Vec3& point) const { return from_object_.inverse() * point; }
   /// Factor from a radius in the frame to a distance in the space of metric().
@@ -49,9 +49,9 @@ struct ObjectRegion {
 };
 
 /// The region's functions are thread-safe.
-ObjectRegion region_of(const FramePoints& points, const BoxRegion& box);
-ObjectRegion region_of(const FramePoints& points, const SphereRegion& sphere);
-ObjectRegion region_of(const FramePoints& points, const HalfSpaceRegion& half);
+ObjectRegion region_of(const FrameTransform& points, const BoxRegion& box);
+ObjectRegion region_of(const FrameTransform& points, const SphereRegion& sphere);
+ObjectRegion region_of(const FrameTransform& points, const HalfSpaceRegion& half);
 
 /// Triangles whose centroid in object space is inside. `inside` is called from several threads at once.
 TriangleSet triangles_by_centre(const BakedObject& object, const std::function<bool(const Vec3&)>& inside);

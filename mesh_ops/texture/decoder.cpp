@@ -27,7 +27,7 @@ Color decode(const Decoder& decoder, const std::array<double, 8>& features, cons
   return logits.unaryExpr([](double v) { return 1 / (1 + std::exp(-v)); });
 }
 
-Decoder fold_turn(const Decoder& decoder, const Mat3& turn, Axes from, Axes to) {
+Decoder fold_rotation(const Decoder& decoder, const Mat3& turn, Axes from, Axes to) {
   Decoder folded = decoder;
   const Mat3 change = axes_matrix(to) * turn * axes_matrix(from).transpose();
   folded.weights0.bottomRows<3>() = change * decoder.weights0.bottomRows<3>();

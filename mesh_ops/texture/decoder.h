@@ -41,6 +41,6 @@ Color decode(const Decoder& decoder, const std::array<double, 8>& features, cons
 
 /// Rotates a decoder: the result maps direction d in axes `to` as `decoder` maps `turn`ᵀ · d in axes `from` (format.md,
 /// "View direction under edits": rows 8–10 become A_to · turn · A_from⁻¹ · B).
-Decoder fold_turn(const Decoder& decoder, const Mat3& turn, Axes from, Axes to);
+Decoder fold_rotation(const Decoder& decoder, const Mat3& turn, Axes from, Axes to);
 
 }  // namespace rebake

@@ -32,8 +32,8 @@ Eigen::VectorXd reach_of_direction(const Decoder& decoder) {
 
 }  // namespace
 
-DirectionUse direction_use(const Decoder& decoder) {
-  DirectionUse result;
+DirectionInfluence direction_influence(const Decoder& decoder) {
+  DirectionInfluence result;
   auto without = std::make_shared<Decoder>(decoder);
   without->weights0.bottomRows(3).setZero();
   result.without = std::move(without);

@@ -12,12 +12,12 @@
 namespace rebake {
 
 /// Influence of the view direction on a decoder's colours.
-struct DirectionUse {
+struct DirectionInfluence {
   double change = 0;  ///< upper bound of the change of a display colour between any unit direction and (0, 0, 0)
   /// The decoder with zero weights for the direction.
   std::shared_ptr<const Decoder> without;
 };
-DirectionUse direction_use(const Decoder& decoder);
+DirectionInfluence direction_influence(const Decoder& decoder);
 
 /// Range of each decoded feature.
 struct FeatureRange {

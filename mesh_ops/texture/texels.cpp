@@ -55,7 +55,7 @@ std::shared_ptr<const TexelTile::Texels> TexelTile::texels() const {
   constexpr int bytes = static_cast<int>(texel_count * sizeof(Texel));
   if (LZ4_decompress_safe(packed_.data(), reinterpret_cast<char*>(texels->data()), static_cast<int>(packed_.size()),
                           bytes) != bytes)
-    throw std::logic_error("a packed tile of texels was damaged in memory");
+    throw std::logic_error("a packed texel tile is corrupt in memory");
   return texels;
 }
 
@@ -146,22 +146,24 @@ bool FeatureTexture::opaque_at(double u, double v) const {
 }
 
 FeatureTexture::Change::Change(const FeatureTexture& from)
-    : texture_(std::make_shared<FeatureTexture>(from)), fresh_(from.tiles_.size()) {}
+    : texture_(std::make_shared<FeatureTexture>(from)), awaits_first_scene_(from.tiles_.size()) {}
 
 Texel& FeatureTexture::Change::at(int x, int y) {
   const std::size_t tile = texture_->tile_number(x, y);
-  if (fresh_[tile].empty()) fresh_[tile] = *texture_->tiles_[tile]->texels();
-  return fresh_[tile][static_cast<std::size_t>(y % TexelTile::size) * TexelTile::size +
-                      static_cast<std::size_t>(x % TexelTile::size)];
+  if (awaits_first_scene_[tile].empty()) awaits_first_scene_[tile] = *texture_->tiles_[tile]->texels();
+  return awaits_first_scene_[tile][static_cast<std::size_t>(y % TexelTile::size) * TexelTile::size +
+                                   static_cast<std::size_t>(x % TexelTile::size)];
 }
 
 bool FeatureTexture::Change::touched() const {
-  return std::any_of(fresh_.begin(), fresh_.end(), [](const auto& texels) { return !texels.empty(); });
+  return std::any_of(awaits_first_scene_.begin(), awaits_first_scene_.end(),
+                     [](const auto& texels) { return !texels.empty(); });
 }
 
 std::shared_ptr<const FeatureTexture> FeatureTexture::Change::finish() {
-  for (std::size_t k = 0; k < fresh_.size(); ++k)
-    if (!fresh_[k].empty()) texture_->tiles_[k] = std::make_shared<const TexelTile>(std::move(fresh_[k]), false);
+  for (std::size_t k = 0; k < awaits_first_scene_.size(); ++k)
+    if (!awaits_first_scene_[k].empty())
+      texture_->tiles_[k] = std::make_shared<const TexelTile>(std::move(awaits_first_scene_[k]), false);
   return std::move(texture_);
 }
 

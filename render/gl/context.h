@@ -18,16 +18,16 @@ class Context {
 
 /// Scope guard: makes a context current on this thread, and releases it at the end unless it was current before. Lets
 /// several threads draw one after the other.
-class Current {
+class CurrentContextScope {
  public:
-  explicit Current(Context& context) : context_(context), was_(context.is_current()) {
+  explicit CurrentContextScope(Context& context) : context_(context), was_(context.is_current()) {
     if (!was_) context_.make_current();
   }
-  ~Current() {
+  ~CurrentContextScope() {
     if (!was_) context_.release();
   }
-  Current(const Current&) = delete;
-  Current& operator=(const Current&) = delete;
+  CurrentContextScope(const CurrentContextScope&) = delete;
+  CurrentContextScope& operator=(const CurrentContextScope&) = delete;
 
  private:
   Context& context_;

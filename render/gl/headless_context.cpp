@@ -47,7 +47,8 @@ class HeadlessContext final : public Context {
   HeadlessContext() : display_(open_display()) {
     if (display_ == EGL_NO_DISPLAY)
       throw DeviceError(
-          "no OpenGL without a display here: EGL offers neither a device nor Mesa's surfaceless platform (install "
+          "OpenGL without a display is not available: EGL offers neither a device nor Mesa's surfaceless platform "
+          "(install "
           "libgl1-mesa-dri and libegl-mesa0)");
     eglBindAPI(EGL_OPENGL_API);
     for (const auto& [major, minor] : {std::pair{4, 5}, std::pair{3, 3}}) {

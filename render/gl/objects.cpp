@@ -46,8 +46,7 @@ class Shader {
 
 void check_memory(const char* what) {
   if (glGetError() == GL_OUT_OF_MEMORY)
-    throw DeviceError(
-        fmt::format("the GPU's memory does not hold the {}; use fewer samples or a smaller picture", what));
+    throw DeviceError(fmt::format("GPU memory is too small for the {}; use fewer samples or a smaller picture", what));
 }
 
 }  // namespace
@@ -81,10 +80,11 @@ Texture make_texture(unsigned internal_format, int width, int height, int bytes_
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   if (width > largest || height > largest)
-    throw DeviceError(fmt::format(
-        "this driver holds textures up to {0}×{0} texels; {1}×{2} are needed (smaller picture, fewer samples, or "
-        "export with --layout split)",
-        largest, width, height));
+    throw DeviceError(
+        fmt::format("the driver supports textures up to {0}×{0} texels, {1}×{2} are needed (use a smaller picture, "
+                    "fewer samples, or "
+                    "export with --layout split)",
+                    largest, width, height));
   unsigned name = 0;
   glGenTextures(1, &name);
   glBindTexture(GL_TEXTURE_2D, name);
@@ -144,7 +144,7 @@ Framebuffer make_framebuffer(const std::vector<const Texture*>& colors, const Te
   if (depth != nullptr) glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth->name(), 0);
   glDrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw DeviceError("this driver cannot draw into the buffers that rendering needs (integer and float targets)");
+    throw DeviceError("the driver does not support the integer and float render targets that are needed");
   return framebuffer;
 }
 

@@ -30,7 +30,7 @@ fs::path shader_folder() {
   }
   if (fs::is_directory(REBAKE_SOURCE_SHADERS, error)) return REBAKE_SOURCE_SHADERS;
   throw DeviceError(
-      "the shaders are not found: install the program with cmake --install, or keep the source tree where it was "
+      "shaders not found: install the program with cmake --install, or keep the source tree where it was "
       "built");
 }
 

@@ -8,9 +8,9 @@
 
 namespace rebake {
 
-NearbyOrder nearby_order(const Soup& soup, const std::vector<Face>& faces) {
+SpatialOrder spatial_order(const Soup& soup, const std::vector<Face>& faces) {
   std::vector<std::uint32_t> order(faces.size());
-  if (faces.size() <= faces_a_face_cluster) {
+  if (faces.size() <= max_faces_per_cluster) {
     std::iota(order.begin(), order.end(), 0U);
     return std::make_shared<const std::vector<std::uint32_t>>(std::move(order));
   }
@@ -32,12 +32,12 @@ NearbyOrder nearby_order(const Soup& soup, const std::vector<Face>& faces) {
 FaceClusters face_clusters(const Soup& soup, const std::vector<Face>& faces, const std::vector<std::uint32_t>& order,
                            const Vec3& center) {
   FaceClusters made;
-  made.clusters.resize((order.size() + faces_a_face_cluster - 1) / faces_a_face_cluster);
+  made.clusters.resize((order.size() + max_faces_per_cluster - 1) / max_faces_per_cluster);
   made.corners.resize(made.clusters.size());
   tbb::parallel_for(std::size_t{0}, made.clusters.size(), [&](std::size_t k) {
-    const std::size_t first = k * faces_a_face_cluster, count = std::min(faces_a_face_cluster, order.size() - first);
+    const std::size_t first = k * max_faces_per_cluster, count = std::min(max_faces_per_cluster, order.size() - first);
     FaceCluster cluster{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), {}};
-    for (std::size_t i = 0; i < faces_a_face_cluster; ++i) {
+    for (std::size_t i = 0; i < max_faces_per_cluster; ++i) {
       const Face& face = faces[order[first + std::min(i, count - 1)]];
       for (std::size_t c = 0; c < 3; ++c) {
         const Vec3& position = soup.positions()[face[c]];

@@ -11,7 +11,7 @@ namespace rebake {
 
 namespace {
 
-constexpr std::size_t texels_a_block = 16;
+constexpr std::size_t texels_per_block = 16;
 constexpr int strip = 4;  // rows per strip
 constexpr std::size_t channels = 8;
 // Rows of tiles per parallel task.
@@ -27,7 +27,7 @@ Bytes bytes_of(const Texel& texel) { return std::bit_cast<Bytes>(texel); }
 
 // The opaque texels of a block, and a mask of their positions.
 struct Gathered {
-  std::array<Bytes, texels_a_block> texels{};
+  std::array<Bytes, texels_per_block> texels{};
   std::size_t count = 0;
   std::uint32_t opaque = 0;
 };
@@ -109,7 +109,7 @@ void append_coded(const PackedRect& rect, const TexelReader& texels, std::size_t
           block.opaque |= std::uint32_t{1} << seen;
           block.texels[block.count++] = bytes_of(texel);
         }
-        if (++seen == texels_a_block) finish();
+        if (++seen == texels_per_block) finish();
       }
     }
     top += strip.rows;
@@ -137,7 +137,7 @@ CodedTexels coded(const std::vector<PackedRect>& rects, const FeatureTexture& te
       part.blocks_before.push_back(part.blocks.size());
       part.words_before.push_back(part.words.size());
       append_coded(rects[k], reader, part.words.size(), part.blocks, part.words);
-      if (part.words.size() > most_coded_words) throw std::length_error("too many texels for one set");
+      if (part.words.size() > max_coded_words) throw std::length_error("coded texels of a texture set exceed 128 MiB");
     }
   });
   CodedTexels result;
@@ -151,7 +151,7 @@ CodedTexels coded(const std::vector<PackedRect>& rects, const FeatureTexture& te
     }
     blocks += part.blocks.size();
     words += part.words.size();
-    if (words > most_coded_words) throw std::length_error("too many texels for one set");
+    if (words > max_coded_words) throw std::length_error("coded texels of a texture set exceed 128 MiB");
   }
   result.first_block.push_back(static_cast<std::uint32_t>(blocks));
   result.first_word.push_back(static_cast<std::uint32_t>(words));
@@ -173,8 +173,8 @@ Texel decoded(const CodedTexels& coded, const PackedRect& rect, std::size_t numb
   const Strip strip = strip_of(rect, y);
   const auto place = static_cast<std::size_t>(strip.top * rect.width +
                                               (strip.back ? rect.width - 1 - x : x) * strip.rows + y - strip.top);
-  const TexelBlock& block = coded.blocks[coded.first_block[number] + place / texels_a_block];
-  const std::uint32_t bit = std::uint32_t{1} << place % texels_a_block;
+  const TexelBlock& block = coded.blocks[coded.first_block[number] + place / texels_per_block];
+  const std::uint32_t bit = std::uint32_t{1} << place % texels_per_block;
   const std::uint32_t opaque = block.opaque_and_widths & 0xffffU;
   if ((opaque & bit) == 0) return {};
   const std::uint32_t widths = block.opaque_and_widths >> 16 | (block.widths_and_word & 0xffU) << 16;

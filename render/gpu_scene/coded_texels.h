@@ -33,10 +33,10 @@ struct CodedTexels {
 };
 
 /// Maximum number of 64-bit words that blocks can address: 128 MiB of data.
-inline constexpr std::size_t most_coded_words = std::size_t{1} << 24;
+inline constexpr std::size_t max_coded_words = std::size_t{1} << 24;
 
 /// Codes rectangles of a texture. `rects`: roughly in the order of the texture's tiles, to unpack tiles rarely.
-/// Throws std::length_error if the data exceed most_coded_words.
+/// Throws std::length_error if the data exceed max_coded_words.
 CodedTexels coded(const std::vector<PackedRect>& rects, const FeatureTexture& texels);
 
 /// Appends the blocks and data of a rectangle. Blocks address the data as if they began at word `first_word`.

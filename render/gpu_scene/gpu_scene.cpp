@@ -10,13 +10,13 @@ namespace rebake {
 
 namespace {
 
-constexpr std::size_t faces_a_cluster = 2048;
+constexpr std::size_t faces_per_draw_cluster = 2048;
 
 std::vector<GpuCluster> clusters_of(const Soup& soup, const std::vector<Face>& faces) {
-  std::vector<GpuCluster> clusters((faces.size() + faces_a_cluster - 1) / faces_a_cluster);
+  std::vector<GpuCluster> clusters((faces.size() + faces_per_draw_cluster - 1) / faces_per_draw_cluster);
   tbb::parallel_for(std::size_t{0}, clusters.size(), [&](std::size_t k) {
-    const std::size_t first = k * faces_a_cluster;
-    GpuCluster cluster{first, std::min(faces_a_cluster, faces.size() - first), {}};
+    const std::size_t first = k * faces_per_draw_cluster;
+    GpuCluster cluster{first, std::min(faces_per_draw_cluster, faces.size() - first), {}};
     for (std::size_t f = first; f < first + cluster.face_count; ++f)
       for (const std::uint32_t vertex : faces[f]) cluster.bounds.extend(soup.positions()[vertex]);
     clusters[k] = cluster;
@@ -28,9 +28,9 @@ std::vector<GpuCluster> clusters_of(const Soup& soup, const std::vector<Face>& f
 constexpr double each_upload = 65536, at_once = 8e6;
 
 // Surfaces that a scene no longer needs. Sets for which serves() is true can take them over.
-class Released {
+class ReleasedSurfaces {
  public:
-  Released(const std::vector<SurfaceKey>& keys, const std::map<SurfaceKey, GpuSurface>& surfaces)
+  ReleasedSurfaces(const std::vector<SurfaceKey>& keys, const std::map<SurfaceKey, GpuSurface>& surfaces)
       : surfaces_(surfaces) {
     for (const SurfaceKey& key : keys) left_.emplace(std::pair(key.uvs, key.faces), key);
   }
@@ -40,7 +40,7 @@ class Released {
     const auto [begin, end] = left_.equal_range({wanted.uvs, wanted.faces});
     const auto found = std::find_if(begin, end, [&](const auto& entry) {
       const GpuSurface& held = surfaces_.at(entry.second);
-      return entry.second.coded == coded && serves(held.made_for, held.source, set);
+      return entry.second.coded == coded && is_reusable_for(held.opacity_source, held.source, set);
     });
     if (found == end) return std::nullopt;
     const SurfaceKey key = found->second;
@@ -59,12 +59,12 @@ class Released {
 };
 
 // Whether two meshes differ in positions only, as during a drag.
-bool differs_in_place(const MeshKey& held, const MeshKey& wanted) {
+bool differs_in_positions(const MeshKey& held, const MeshKey& wanted) {
   return held.surface == wanted.surface && held.turns == nullptr && wanted.turns == nullptr;
 }
 
 // Replaces the positions of a resident mesh.
-void move_vertices(GpuMesh& mesh, PreparedMesh made) {
+void update_positions(GpuMesh& mesh, PreparedMesh made) {
   mesh.source = std::move(made.source);
   mesh.center = made.center;
   mesh.clusters = std::move(made.clusters);
@@ -182,14 +182,14 @@ void GpuScene::prepare(const Scene& scene, bool coded) {
   unsigned turn = 0;
   {
     const std::lock_guard lock(mutex_);
-    turn = ++turn_;
+    turn = ++prepare_calls_;
     held = held_surfaces_;
     for (const auto& [key, mesh] : held_meshes_) meshes.insert(key);
     for (const auto& [key, surface] : held_surfaces_) {
       surfaces.insert(key);
       shown[key] = surface.shown;
     }
-    for (const auto& [key, faces] : arriving_shown_) {
+    for (const auto& [key, faces] : staged_shown_) {
       surfaces.insert(key);
       shown[key] = faces;
     }
@@ -215,7 +215,7 @@ void GpuScene::prepare(const Scene& scene, bool coded) {
     const SurfaceKey key = surface_key(set, coded);
     // update() will take over a resident surface and upload its changed texels: nothing to prepare.
     if (std::any_of(held.begin(), held.end(), [&](const auto& entry) {
-          return entry.first.coded == coded && serves(entry.second.made_for, entry.second.source, set);
+          return entry.first.coded == coded && is_reusable_for(entry.second.opacity_source, entry.second.source, set);
         })) {
       taken_over.insert(key);
       continue;
@@ -223,14 +223,14 @@ void GpuScene::prepare(const Scene& scene, bool coded) {
     PreparedSurface made = prepared_surface(set, coded);
     shown[key] = made.shown;
     const std::lock_guard lock(mutex_);
-    prepared_surfaces_.insert_or_assign(key, Waiting<PreparedSurface>{std::move(made), turn});
+    prepared_surfaces_.insert_or_assign(key, PreparedEntry<PreparedSurface>{std::move(made), turn});
   }
   for (const TextureSet& set : missing.meshes) {
     const MeshKey key = mesh_key(set, coded);
     if (taken_over.contains(key.surface)) continue;
     PreparedMesh made = prepared(set, shown.at(key.surface));
     const std::lock_guard lock(mutex_);
-    prepared_meshes_.insert_or_assign(key, Waiting<PreparedMesh>{std::move(made), turn});
+    prepared_meshes_.insert_or_assign(key, PreparedEntry<PreparedMesh>{std::move(made), turn});
   }
 }
 
@@ -255,10 +255,10 @@ ResourceDiff GpuScene::difference(const Scene& scene, bool coded) const {
   return diff(held_meshes, held_surfaces, scene, coded);
 }
 
-void GpuScene::plan_arrival(const Scene& scene, bool coded) {
+void GpuScene::plan_staged_upload(const Scene& scene, bool coded) {
   const ResourceDiff change = difference(scene, coded);
-  Released released(change.released_surfaces, surfaces_);
-  Arrival plan{scene.roots, coded, changes_, {}, {}};
+  ReleasedSurfaces released(change.released_surfaces, surfaces_);
+  StagedUpload plan{scene.roots, coded, changes_, {}, {}};
   std::set<SurfaceKey> wanted;
   double bytes = 0;
   for (const TextureSet& set : change.surfaces) {
@@ -276,57 +276,58 @@ void GpuScene::plan_arrival(const Scene& scene, bool coded) {
       bytes += each_upload + 12.0 * static_cast<double>(set.soup.positions().size());
     }
   if (bytes <= at_once) {
-    forget_arrival();
+    evict_staged();
     plan.surfaces.clear();
     plan.meshes.clear();
   }
-  std::erase_if(arriving_meshes_, [&](const auto& entry) { return !wanted_meshes.contains(entry.first); });
-  std::erase_if(arriving_surfaces_, [&](const auto& entry) { return !wanted.contains(entry.first); });
-  arrival_ = std::move(plan);
+  std::erase_if(staged_meshes_, [&](const auto& entry) { return !wanted_meshes.contains(entry.first); });
+  std::erase_if(staged_surfaces_, [&](const auto& entry) { return !wanted.contains(entry.first); });
+  staged_upload_ = std::move(plan);
   const std::lock_guard lock(mutex_);
-  std::erase_if(arriving_shown_, [&](const auto& entry) { return !arriving_surfaces_.contains(entry.first); });
+  std::erase_if(staged_shown_, [&](const auto& entry) { return !staged_surfaces_.contains(entry.first); });
 }
 
-double GpuScene::arrive(const Scene& scene, bool coded, double milliseconds) {
-  if (!arrival_ || arrival_->roots != scene.roots || arrival_->coded != coded || arrival_->changes != changes_)
-    plan_arrival(scene, coded);
-  Arrival& plan = *arrival_;
+double GpuScene::upload_slice(const Scene& scene, bool coded, double milliseconds) {
+  if (!staged_upload_ || staged_upload_->roots != scene.roots || staged_upload_->coded != coded ||
+      staged_upload_->changes != changes_)
+    plan_staged_upload(scene, coded);
+  StagedUpload& plan = *staged_upload_;
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double, std::milli>(milliseconds);
   bool first = true;
   const auto goes_on = [&] { return std::exchange(first, false) || Clock::now() < end; };
   const double all = static_cast<double>(plan.surfaces.size() + 1);
-  for (; plan.surfaces_there < plan.surfaces.size(); ++plan.surfaces_there) {
-    const TextureSet& set = plan.surfaces[plan.surfaces_there];
+  for (; plan.surfaces_uploaded < plan.surfaces.size(); ++plan.surfaces_uploaded) {
+    const TextureSet& set = plan.surfaces[plan.surfaces_uploaded];
     const SurfaceKey key = surface_key(set, coded);
-    auto arriving = arriving_surfaces_.find(key);
-    if (arriving == arriving_surfaces_.end()) {
-      if (!goes_on()) return static_cast<double>(plan.surfaces_there) / all;
-      arriving = arriving_surfaces_.emplace(key, begin_upload(take_surface(set, coded))).first;
+    auto arriving = staged_surfaces_.find(key);
+    if (arriving == staged_surfaces_.end()) {
+      if (!goes_on()) return static_cast<double>(plan.surfaces_uploaded) / all;
+      arriving = staged_surfaces_.emplace(key, begin_upload(take_surface(set, coded))).first;
       const std::lock_guard lock(mutex_);
-      arriving_shown_.emplace(key, arriving->second.shown);
+      staged_shown_.emplace(key, arriving->second.shown);
     }
     GpuSurface& surface = arriving->second;
     do
-      if (!goes_on()) return (static_cast<double>(plan.surfaces_there) + surface.uploaded) / all;
-    while (!upload_more(surface));
+      if (!goes_on()) return (static_cast<double>(plan.surfaces_uploaded) + surface.uploaded) / all;
+    while (!upload_next_slice(surface));
   }
-  for (; plan.meshes_there < plan.meshes.size(); ++plan.meshes_there) {
-    const TextureSet& set = plan.meshes[plan.meshes_there];
-    if (arriving_meshes_.contains(mesh_key(set, coded))) continue;
+  for (; plan.meshes_uploaded < plan.meshes.size(); ++plan.meshes_uploaded) {
+    const TextureSet& set = plan.meshes[plan.meshes_uploaded];
+    if (staged_meshes_.contains(mesh_key(set, coded))) continue;
     if (!goes_on()) return (all - 1) / all;
-    const GpuSurface& surface = arriving_surfaces_.at(surface_key(set, coded));
-    arriving_meshes_.emplace(mesh_key(set, coded), upload(take_mesh(set, coded, surface), surface));
+    const GpuSurface& surface = staged_surfaces_.at(surface_key(set, coded));
+    staged_meshes_.emplace(mesh_key(set, coded), upload(take_mesh(set, coded, surface), surface));
   }
   return 1;
 }
 
-void GpuScene::forget_arrival() {
-  arrival_.reset();
-  arriving_meshes_.clear();
-  arriving_surfaces_.clear();
+void GpuScene::evict_staged() {
+  staged_upload_.reset();
+  staged_meshes_.clear();
+  staged_surfaces_.clear();
   const std::lock_guard lock(mutex_);
-  arriving_shown_.clear();
+  staged_shown_.clear();
 }
 
 void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) {
@@ -338,7 +339,7 @@ void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) 
     return;
   // If texels changed and none became opaque, takes over the resident surface and uploads the changed texels only.
   ++changes_;
-  Released released(change.released_surfaces, surfaces_);
+  ReleasedSurfaces released(change.released_surfaces, surfaces_);
   std::map<SurfaceKey, SurfaceKey> taken_over;
   std::erase_if(change.surfaces, [&](const TextureSet& set) {
     const std::optional<SurfaceKey> held = released.take(set, coded);
@@ -347,12 +348,12 @@ void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) 
     auto node = surfaces_.extract(*held);
     taken_over[*held] = key;
     node.key() = key;
-    texels_uploaded_ += take_over(node.mapped(), set);
+    texels_uploaded_ += reuse_surface(node.mapped(), set);
     surfaces_.insert(std::move(node));
     return true;
   });
   change.released_surfaces = released.left();
-  const auto rekeyed = [&](std::vector<MeshKey>::iterator held, const TextureSet& set) -> GpuMesh& {
+  const auto rekey_mesh = [&](std::vector<MeshKey>::iterator held, const TextureSet& set) -> GpuMesh& {
     auto node = meshes_.extract(*held);
     change.released_meshes.erase(held);
     node.key() = key(set);
@@ -368,14 +369,14 @@ void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) 
     auto& gone = change.released_meshes;
     auto held = std::find_if(gone.begin(), gone.end(), [&](const MeshKey& other) { return now(other) == key; });
     if (held != gone.end()) {
-      rekeyed(held, set).source = set;
+      rekey_mesh(held, set).source = set;
       return true;
     }
-    held =
-        std::find_if(gone.begin(), gone.end(), [&](const MeshKey& other) { return differs_in_place(now(other), key); });
+    held = std::find_if(gone.begin(), gone.end(),
+                        [&](const MeshKey& other) { return differs_in_positions(now(other), key); });
     if (held == gone.end()) return false;
     PreparedMesh made = take_mesh(set, coded, surface(set));
-    move_vertices(rekeyed(held, set), std::move(made));
+    update_positions(rekey_mesh(held, set), std::move(made));
     return true;
   });
   // Evicts before uploading, to limit the peak of memory.
@@ -384,32 +385,32 @@ void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) 
   std::set<SurfaceKey> came;  // taken over from arrive()
   for (const TextureSet& set : change.surfaces) {
     const SurfaceKey key = surface_key(set, coded);
-    auto arrived = arriving_surfaces_.extract(key);
+    auto arrived = staged_surfaces_.extract(key);
     if (arrived) came.insert(key);
     GpuSurface made = arrived ? std::move(arrived.mapped()) : begin_upload(take_surface(set, coded));
-    while (!upload_more(made)) {
+    while (!upload_next_slice(made)) {
     }
     texels_uploaded_ +=
         static_cast<std::uint64_t>(made.packing->width) * static_cast<std::uint64_t>(made.packing->height);
     surfaces_.emplace(key, std::move(made));
   }
   for (const TextureSet& set : change.meshes) {
-    auto arrived = arriving_meshes_.extract(key(set));
+    auto arrived = staged_meshes_.extract(key(set));
     if (arrived && came.contains(surface_key(set, coded)))
       meshes_.insert(std::move(arrived));
     else
       meshes_.emplace(key(set), upload(take_mesh(set, coded, surface(set)), surface(set)));
   }
-  if (arrival_ && arrival_->roots == scene.roots) forget_arrival();
+  if (staged_upload_ && staged_upload_->roots == scene.roots) evict_staged();
   const std::lock_guard lock(mutex_);
   held_meshes_.clear();
   for (const auto& [key, mesh] : meshes_) held_meshes_.emplace(key, mesh.source);
   held_surfaces_.clear();
   for (const auto& [key, surface] : surfaces_)
-    held_surfaces_.emplace(key, Held{surface.source, surface.made_for, surface.shown});
+    held_surfaces_.emplace(key, Held{surface.source, surface.opacity_source, surface.shown});
   std::erase_if(prepared_meshes_, [&](const auto& entry) { return held_meshes_.contains(entry.first); });
   std::erase_if(prepared_surfaces_, [&](const auto& entry) { return held_surfaces_.contains(entry.first); });
-  std::erase_if(arriving_shown_, [&](const auto& entry) { return held_surfaces_.contains(entry.first); });
+  std::erase_if(staged_shown_, [&](const auto& entry) { return held_surfaces_.contains(entry.first); });
 }
 
 std::uint64_t GpuScene::texel_bytes() const {

@@ -66,9 +66,9 @@ class GpuScene {
   /// Uploads a slice of the data that update() would upload for `scene`, beside the current data: for about
   /// `milliseconds`, and at least one piece. Returns the uploaded share, 0 … 1. Small changes are left to update(),
   /// which takes over the uploaded data.
-  double arrive(const Scene& scene, bool coded, double milliseconds);
+  double upload_slice(const Scene& scene, bool coded, double milliseconds);
   /// Evicts the data uploaded by arrive() for a scene that was not drawn.
-  void forget_arrival();
+  void evict_staged();
   /// Prepares data on the CPU that update() will upload. Callable from any thread; update() prepares the rest.
   void prepare(const Scene& scene, bool coded);
 
@@ -87,7 +87,7 @@ class GpuScene {
   PreparedMesh take_mesh(const TextureSet& set, bool coded, const GpuSurface& surface);
   PreparedSurface take_surface(const TextureSet& set, bool coded);
   ResourceDiff difference(const Scene& scene, bool coded) const;
-  void plan_arrival(const Scene& scene, bool coded);
+  void plan_staged_upload(const Scene& scene, bool coded);
 
   std::map<MeshKey, GpuMesh> meshes_;
   std::map<SurfaceKey, GpuSurface> surfaces_;
@@ -95,37 +95,37 @@ class GpuScene {
   bool coded_ = false;         ///< whether the current scene's texels are coded
   std::uint64_t changes_ = 0;  ///< number of changes of meshes_ and surfaces_
   /// Upload in slices of a scene that is not drawn yet.
-  struct Arrival {
+  struct StagedUpload {
     std::vector<NodePtr> roots;  ///< identify the scene
     bool coded = false;
-    std::uint64_t changes = 0;                         ///< value of changes_ when this was planned
-    std::vector<TextureSet> surfaces, meshes;          ///< sets to upload
-    std::size_t surfaces_there = 0, meshes_there = 0;  ///< number of uploaded ones
+    std::uint64_t changes = 0;                               ///< value of changes_ when this was planned
+    std::vector<TextureSet> surfaces, meshes;                ///< sets to upload
+    std::size_t surfaces_uploaded = 0, meshes_uploaded = 0;  ///< number of uploaded ones
   };
-  std::optional<Arrival> arrival_;
-  std::map<SurfaceKey, GpuSurface> arriving_surfaces_;
-  std::map<MeshKey, GpuMesh> arriving_meshes_;
+  std::optional<StagedUpload> staged_upload_;
+  std::map<SurfaceKey, GpuSurface> staged_surfaces_;
+  std::map<MeshKey, GpuMesh> staged_meshes_;
   std::uint64_t texels_uploaded_ = 0;
   // Guarded by mutex_, because prepare() uses them from other threads:
   std::mutex mutex_;
   /// A resident surface; `source` keeps the arrays alive whose addresses are in the key.
   struct Held {
     TextureSet source;
-    std::shared_ptr<const FeatureTexture> made_for;
+    std::shared_ptr<const FeatureTexture> opacity_source;
     ShownFaces shown;
   };
   std::map<MeshKey, TextureSet> held_meshes_;
-  std::map<SurfaceKey, ShownFaces> arriving_shown_;
+  std::map<SurfaceKey, ShownFaces> staged_shown_;
   std::map<SurfaceKey, Held> held_surfaces_;
   /// Prepared data that wait for update().
   template <class Prepared>
-  struct Waiting {
+  struct PreparedEntry {
     Prepared made;
     unsigned turn = 0;  ///< number of the last call of prepare() that needed it
   };
-  std::map<MeshKey, Waiting<PreparedMesh>> prepared_meshes_;
-  std::map<SurfaceKey, Waiting<PreparedSurface>> prepared_surfaces_;
-  unsigned turn_ = 0;  ///< number of calls of prepare()
+  std::map<MeshKey, PreparedEntry<PreparedMesh>> prepared_meshes_;
+  std::map<SurfaceKey, PreparedEntry<PreparedSurface>> prepared_surfaces_;
+  unsigned prepare_calls_ = 0;  ///< number of calls of prepare()
 };
 
 }  // namespace rebake

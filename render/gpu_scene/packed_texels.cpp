@@ -154,7 +154,7 @@ std::vector<std::uint8_t> changed_tiles(const FeatureTexture& before, const Feat
   return changed;
 }
 
-bool newly_opaque(const FeatureTexture& before, const FeatureTexture& after) {
+bool any_newly_opaque(const FeatureTexture& before, const FeatureTexture& after) {
   for (int row = 0; row < after.tile_rows(); ++row)
     for (int column = 0; column < after.tile_columns(); ++column) {
       const TexelTile &was = *before.tile(column, row), &is = *after.tile(column, row);

@@ -37,6 +37,6 @@ void fill_packed_rows(const TexelPacking& packing, const TexelReader& texels, in
 /// Flag per tile in row-major order: 1 if two textures of the same size do not share the tile.
 std::vector<std::uint8_t> changed_tiles(const FeatureTexture& before, const FeatureTexture& after);
 /// Whether any texel is opaque in `after` but not in `before`. Both have the same size.
-bool newly_opaque(const FeatureTexture& before, const FeatureTexture& after);
+bool any_newly_opaque(const FeatureTexture& before, const FeatureTexture& after);
 
 }  // namespace rebake

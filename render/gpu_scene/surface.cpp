@@ -46,12 +46,12 @@ std::uint64_t area_of(const std::vector<PackedRect>& rects) {
   return area;
 }
 
-// Codes texels; nullopt if they may exceed most_coded_words (a texel takes at most one word) or save less than a tenth:
+// Codes texels; nullopt if they may exceed max_coded_words (a texel takes at most one word) or save less than a tenth:
 // overlapping rectangles would be stored several times, and tiny ones are smaller uncoded.
-std::optional<CodedTexels> coded_where_worth(const TexelPacking& packing, const FeatureTexture& texels) {
+std::optional<CodedTexels> code_if_worthwhile(const TexelPacking& packing, const FeatureTexture& texels) {
   constexpr double most_coded = 0.9;  // share of the uncoded size
   const double plain = static_cast<double>(sizeof(Texel)) * packing.width * packing.height;
-  if (area_of(packing.rects) > most_coded_words) return std::nullopt;
+  if (area_of(packing.rects) > max_coded_words) return std::nullopt;
   if (static_cast<double>(sizeof(Texel) * area_of(packing.rects)) > 2 * plain) return std::nullopt;
   CodedTexels made = coded(packing.rects, texels);
   const std::size_t bytes = made.blocks.size() * sizeof(TexelBlock) + made.words.size() * sizeof(std::uint64_t);
@@ -109,9 +109,9 @@ bool touches(const PackedRect& rect, int tile_columns, const std::vector<std::ui
 
 // Recodes the rectangles in changed tiles, within the words allocated for them, and uploads runs of them at once.
 // Returns their number of texels; nullopt if they need more words.
-std::optional<std::uint64_t> recode_changed(const GpuCodedTexels& coded, const std::vector<PackedRect>& rects,
-                                            const TexelReader& texels, int tile_columns,
-                                            const std::vector<std::uint8_t>& changed) {
+std::optional<std::uint64_t> recode_changed_rects(const GpuCodedTexels& coded, const std::vector<PackedRect>& rects,
+                                                  const TexelReader& texels, int tile_columns,
+                                                  const std::vector<std::uint8_t>& changed) {
   std::uint64_t recoded = 0;
   std::vector<TexelBlock> blocks;
   std::vector<std::uint64_t> words;
@@ -146,11 +146,11 @@ PreparedSurface prepared_surface(const TextureSet& set, bool coded) {
   auto faces = std::make_shared<std::vector<Face>>();
   for (std::size_t f = 0; f < shows.size(); ++f)
     if (shows[f] != 0) faces->push_back(soup.faces()[f]);
-  made.shown.nearby = nearby_order(soup, *faces);
+  made.shown.nearby = spatial_order(soup, *faces);
   made.shown.faces = std::move(faces);
   const auto packing = std::make_shared<const TexelPacking>(pack_texels(set, shows));
   made.packing = packing;
-  if (coded) made.coded = coded_where_worth(*packing, *set.texels);
+  if (coded) made.coded = code_if_worthwhile(*packing, *set.texels);
   made.vertices.resize(soup.uvs().size());
   const double width = set.texels->width(), height = set.texels->height();
   tbb::parallel_for(std::size_t{0}, made.vertices.size(), [&](std::size_t v) {
@@ -188,14 +188,14 @@ GpuSurface begin_upload(PreparedSurface made) {
     surface.coded = begin_upload(std::move(*made.coded));
   else
     surface.texels = gl::make_texture(GL_RG32UI, made.packing->width, made.packing->height, sizeof(Texel));
-  surface.made_for = made.source.texels;
+  surface.opacity_source = made.source.texels;
   surface.source = std::move(made.source);
   surface.shown = std::move(made.shown);
   surface.packing = std::move(made.packing);
   return surface;
 }
 
-bool upload_more(GpuSurface& surface) {
+bool upload_next_slice(GpuSurface& surface) {
   if (surface.coded) {
     surface.uploaded = upload_some(*surface.coded);
     return surface.uploaded >= 1;
@@ -217,20 +217,21 @@ bool upload_more(GpuSurface& surface) {
   return true;
 }
 
-bool serves(const std::shared_ptr<const FeatureTexture>& made_for, const TextureSet& source, const TextureSet& set) {
+bool is_reusable_for(const std::shared_ptr<const FeatureTexture>& opacity_source, const TextureSet& source,
+                     const TextureSet& set) {
   return source.soup.shared_uvs() == set.soup.shared_uvs() && source.soup.shared_faces() == set.soup.shared_faces() &&
-         made_for->width() == set.texels->width() && made_for->height() == set.texels->height() &&
-         !newly_opaque(*made_for, *set.texels);
+         opacity_source->width() == set.texels->width() && opacity_source->height() == set.texels->height() &&
+         !any_newly_opaque(*opacity_source, *set.texels);
 }
 
-std::uint64_t take_over(GpuSurface& surface, const TextureSet& set) {
+std::uint64_t reuse_surface(GpuSurface& surface, const TextureSet& set) {
   const FeatureTexture &before = *surface.source.texels, &after = *set.texels;
   const std::vector<std::uint8_t> changed = changed_tiles(before, after);
   const TexelReader texels(after);
   if (surface.coded) {
     const std::vector<PackedRect>& rects = surface.packing->rects;
     surface.source = set;
-    if (const auto recoded = recode_changed(*surface.coded, rects, texels, after.tile_columns(), changed))
+    if (const auto recoded = recode_changed_rects(*surface.coded, rects, texels, after.tile_columns(), changed))
       return *recoded;
     // The indices of blocks stay the same, so that the vertices remain valid.
     surface.coded = begin_upload(coded(rects, after));

@@ -22,7 +22,7 @@ struct SurfaceVertex {
 /// Faces of a set that may show opaque texels, and a spatial order of them, which is reused when edits move vertices.
 struct ShownFaces {
   std::shared_ptr<const std::vector<Face>> faces;
-  NearbyOrder nearby;
+  SpatialOrder nearby;
 };
 
 /// Data of a texture set that do not depend on positions (faces, texels), prepared on the CPU for upload.
@@ -48,8 +48,9 @@ struct GpuCodedTexels {
 /// Faces and texels of a texture set on the GPU. Positions are in a GpuMesh.
 struct GpuSurface {
   TextureSet source;
-  std::shared_ptr<const FeatureTexture> made_for;  ///< texture whose opaque texels determined `shown` and `packing`
-  ShownFaces shown;                                ///< faces in the order of `indices`
+  std::shared_ptr<const FeatureTexture>
+      opacity_source;  ///< texture whose opaque texels determined `shown` and `packing`
+  ShownFaces shown;    ///< faces in the order of `indices`
   std::shared_ptr<const TexelPacking> packing;
   gl::Buffer vertices;
   gl::Buffer indices;
@@ -62,12 +63,13 @@ struct GpuSurface {
 /// Uploads vertices and indices, and allocates the texels.
 GpuSurface begin_upload(PreparedSurface made);
 /// Uploads the next slice of texels, at most a few milliseconds' worth. Returns whether it was the last.
-bool upload_more(GpuSurface& surface);
+bool upload_next_slice(GpuSurface& surface);
 
-/// Whether a surface of `source`, with GpuSurface::made_for, can be reused for `set`: both share UVs and faces,
+/// Whether a surface of `source`, with GpuSurface::opacity_source, can be reused for `set`: both share UVs and faces,
 /// textures have the same size, and no texel has become opaque.
-bool serves(const std::shared_ptr<const FeatureTexture>& made_for, const TextureSet& source, const TextureSet& set);
+bool is_reusable_for(const std::shared_ptr<const FeatureTexture>& opacity_source, const TextureSet& source,
+                     const TextureSet& set);
 /// Reuses a surface for `set`, for which it serves(): uploads the changed texels and returns their number.
-std::uint64_t take_over(GpuSurface& surface, const TextureSet& set);
+std::uint64_t reuse_surface(GpuSurface& surface, const TextureSet& set);
 
 }  // namespace rebake

@@ -15,8 +15,8 @@ constexpr std::size_t most_tiles = 64;
 // Share of the picture above which a whole frame is as fast, because partial frames run without occlusion culling.
 constexpr double most_pixels = 1.0 / 3;
 
-bool same_frame(const NodeFrame& a, const NodeFrame& b) {
-  return a.decoder == b.decoder && a.alpha_code == b.alpha_code && a.world_to_fed == b.world_to_fed;
+bool same_frame(const DecodeFrame& a, const DecodeFrame& b) {
+  return a.decoder == b.decoder && a.alpha_code == b.alpha_code && a.world_to_decoder == b.world_to_decoder;
 }
 
 bool same_view(const View& a, const View& b) {
@@ -88,16 +88,16 @@ PixelRect showing(const Draw& draw, const std::vector<PixelRect>& changed, const
 }  // namespace
 
 ChangedPixels changed_pixels(const FramePlan* before, const FramePlan& now) {
-  if (before == nullptr) return {std::nullopt, "there is no picture yet"};
+  if (before == nullptr) return {std::nullopt, "no frame has been drawn yet"};
   if (!same_view(before->view, now.view) || before->options != now.options)
-    return {std::nullopt, "the view is another than in the last frame"};
+    return {std::nullopt, "the view or the options changed since the last frame"};
   if (now.guides.inspect != Guides::Inspect::none) return {std::nullopt, "triangles are inspected"};
   const bool same =
       before->overlays == now.overlays && before->guides == now.guides && before->background == now.background &&
       before->decoders == now.decoders &&
       std::equal(before->frames.begin(), before->frames.end(), now.frames.begin(), now.frames.end(), same_frame) &&
       std::equal(before->draws.begin(), before->draws.end(), now.draws.begin(), now.draws.end(), same_but_texels);
-  if (!same) return {std::nullopt, "more than texels changed since the last frame"};
+  if (!same) return {std::nullopt, "not only texels changed since the last frame"};
   PixelRect pixels;
   bool any = false;
   for (std::size_t k = 0; k < now.draws.size(); ++k) {
@@ -109,13 +109,14 @@ ChangedPixels changed_pixels(const FramePlan* before, const FramePlan& now) {
   }
   // If the same frame is requested again, the caller wants it to be drawn.
   if (!any) return {std::nullopt, "nothing changed since the last frame"};
-  pixels = around(pixels, mark_pixels, now.view);
+  pixels = around(pixels, mask_radius, now.view);
   const auto area = [](double width, double height) { return width * height; };
   if (area(pixels.right - pixels.left, pixels.bottom - pixels.top) >
       most_pixels * area(now.view.width, now.view.height))
     return {std::nullopt, "texels changed in much of the picture since the last frame"};
-  return {pixels, fmt::format("texels changed since the last frame in {}×{} of {}×{} pixels; the others stay",
-                              pixels.right - pixels.left, pixels.bottom - pixels.top, now.view.width, now.view.height)};
+  return {pixels,
+          fmt::format("texels changed since the last frame in {}×{} of {}×{} pixels; the other pixels are reused",
+                      pixels.right - pixels.left, pixels.bottom - pixels.top, now.view.width, now.view.height)};
 }
 
 }  // namespace rebake

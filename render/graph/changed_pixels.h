@@ -5,7 +5,7 @@
 namespace rebake {
 
 /// Radius, in pixels, within which a pixel of the mask affects tints and outlines (selection.frag, outline.frag).
-inline constexpr int mark_pixels = 4;
+inline constexpr int mask_radius = 4;
 
 /// The part of a frame that may differ from the frame before it, if it is worthwhile to draw only that part.
 struct ChangedPixels {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr const Effect* table[] = {
     &effects::geometry,       &effects::supersampling, &effects::view_direction,
-    &effects::node_frames,    &effects::turned_rays,   &effects::light,
+    &effects::node_frames,    &effects::rotated_rays,  &effects::light,
     &effects::light_offset,   &effects::highlights,    &effects::decoder_compositing,
     &effects::ray_per_sample, &effects::resolve,       &effects::forward,
     &effects::culling,        &effects::occlusion,     &effects::hidden_objects,
@@ -24,12 +24,12 @@ std::string plural(std::size_t count, const std::string& one, const std::string&
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-std::string drawn_words(const FramePlan& plan) {
+std::string describe_draws(const FramePlan& plan) {
   return fmt::format("{}, {}", plural(plan.draws.size(), "draw", "draws"),
                      plural(plan.triangles, "triangle", "triangles"));
 }
 
-std::string decoder_words(const FramePlan& plan) {
+std::string describe_decoder(const FramePlan& plan) {
   const Decoder& d = *plan.decoders.front();
   return fmt::format("decoder 11-{}-{}-3, weights as {}", d.hidden0(), d.hidden1(),
                      plan.options.weights == RenderOptions::Weights::constants ? "constants" : "a buffer");

@@ -36,8 +36,8 @@ struct FrameFacts {
   const DeviceFacts& device;
   /// Numbers of: draws with triangles rotated apart from their object; visible nodes out of view; nodes hidden by an
   /// edit.
-  std::size_t turned_draws = 0, culled = 0, hidden = 0;
-  std::string why_kept;  ///< reason why unchanged pixels are reused or not
+  std::size_t rotated_draws = 0, culled = 0, hidden = 0;
+  std::string why_partial_frame;  ///< reason why unchanged pixels are reused or not
 
   bool any_draw() const { return !plan.draws.empty(); }
   bool forward() const { return plan.options.shading == RenderOptions::Shading::forward; }
@@ -66,7 +66,7 @@ struct Effect {
 };
 
 namespace effects {
-extern const Effect geometry, supersampling, view_direction, node_frames, turned_rays, light, light_offset, highlights,
+extern const Effect geometry, supersampling, view_direction, node_frames, rotated_rays, light, light_offset, highlights,
     decoder_compositing, ray_per_sample, resolve, forward, culling, occlusion, hidden_objects, kept_pixels,
     coded_texels, inspect, selection, outline, guides;
 }
@@ -77,11 +77,11 @@ std::span<const Effect* const> effect_table();
 /// A count with its noun: "3 draws".
 std::string plural(std::size_t count, const std::string& one, const std::string& many);
 /// Size of a plan in words: "3 draws, 1200 triangles".
-std::string drawn_words(const FramePlan& plan);
+std::string describe_draws(const FramePlan& plan);
 /// The first decoder in words: "decoder 11-16-16-3, weights as constants". Requires a draw.
-std::string decoder_words(const FramePlan& plan);
+std::string describe_decoder(const FramePlan& plan);
 /// Size of textures in bytes above which texels are coded by default.
-inline constexpr std::uint64_t coded_from = std::uint64_t{256} << 20;
+inline constexpr std::uint64_t min_coded_bytes = std::uint64_t{256} << 20;
 inline constexpr const char* nothing_in_view = "nothing is in view";
 
 }  // namespace rebake

@@ -13,7 +13,7 @@ namespace {
 
 void check_declared(const Effect& effect, std::span<const Use> uses, Target target, const char* what) {
   if (std::none_of(uses.begin(), uses.end(), [&](const Use& use) { return use.target == target; }))
-    throw std::logic_error(std::string(effect.name) + " does not say that it " + what + " this target");
+    throw std::logic_error(std::string(effect.name) + " does not declare that it " + what + " this target");
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ namespace rebake {
 
 namespace {
 
-constexpr std::size_t most_constant_decoders = 4;
-constexpr std::size_t most_constant_weights = 4096;
+constexpr std::size_t max_constant_decoders = 4;
+constexpr std::size_t max_constant_weights = 4096;
 
 // Constants omit zero weights, of which decoders fused side by side have many.
 std::size_t weight_count(const Decoder& d) {
@@ -36,10 +36,10 @@ std::size_t decoder_index(FramePlan& plan, const std::shared_ptr<const Decoder>&
   return plan.decoders.size() - 1;
 }
 
-std::size_t frame_index(FramePlan& plan, const NodeFrame& frame) {
+std::size_t frame_index(FramePlan& plan, const DecodeFrame& frame) {
   for (std::size_t k = 0; k < plan.frames.size(); ++k)
     if (plan.frames[k].decoder == frame.decoder && plan.frames[k].alpha_code == frame.alpha_code &&
-        plan.frames[k].world_to_fed == frame.world_to_fed)
+        plan.frames[k].world_to_decoder == frame.world_to_decoder)
       return k;
   plan.frames.push_back(frame);
   return plan.frames.size() - 1;
@@ -68,30 +68,30 @@ RenderOptions::Texels chosen(RenderOptions::Texels texels, std::uint64_t bytes, 
   using Texels = RenderOptions::Texels;
   if (!device.reads_coded_texels) return Texels::plain;
   if (texels != Texels::automatic) return texels;
-  return bytes > coded_from ? Texels::coded : Texels::plain;
+  return bytes > min_coded_bytes ? Texels::coded : Texels::plain;
 }
 
 // Omits the view direction if it changes no decoder's colours by more than `unseen`.
-void leave_out_direction(FramePlan& plan) {
+void omit_view_direction(FramePlan& plan) {
   for (const auto& decoder : plan.decoders)
-    plan.direction_change = std::max(plan.direction_change, direction_use_of(decoder)->change);
+    plan.direction_change = std::max(plan.direction_change, direction_influence_of(decoder)->change);
   // A light map may amplify a change of colours by any factor.
   const bool lit = std::any_of(plan.draws.begin(), plan.draws.end(), [](const Draw& d) { return d.light != nullptr; });
   if (plan.options.everything || plan.draws.empty() || plan.direction_change > (lit ? 0 : unseen)) return;
-  plan.sees_direction = false;
+  plan.uses_view_direction = false;
   plan.left_out += plan.direction_change;
   std::vector<std::size_t> frame_of;
-  const std::vector<NodeFrame> frames = std::exchange(plan.frames, {});
-  for (const NodeFrame& frame : frames)
+  const std::vector<DecodeFrame> frames = std::exchange(plan.frames, {});
+  for (const DecodeFrame& frame : frames)
     frame_of.push_back(frame_index(plan, {frame.decoder, Mat3::Identity(), frame.alpha_code}));
   for (Draw& draw : plan.draws) draw.frame = frame_of[draw.frame];
   for (auto& decoder : plan.decoders)
-    if (!decoder->weights0.bottomRows(3).isZero(0)) decoder = direction_use_of(decoder)->without;
+    if (!decoder->weights0.bottomRows(3).isZero(0)) decoder = direction_influence_of(decoder)->without;
 }
 
 // Reduces the samples to 1 per pixel if everything that a pixel may show differs by at most `unseen`, background
 // included.
-void leave_out_samples(FramePlan& plan) {
+void reduce_samples(FramePlan& plan) {
   if (plan.options.everything || plan.view.samples == 1 || plan.draws.empty()) return;
   // Per decoder: range of the features in all textures that a pixel may mix.
   std::vector<std::optional<FeatureRange>> features(plan.decoders.size());
@@ -113,8 +113,8 @@ void leave_out_samples(FramePlan& plan) {
       colors.join(color_range(*plan.decoders[k], *features[k], static_cast<double>(covered) / plan.view.samples));
   if (colors.widest() > unseen) return;
   plan.left_out += colors.widest();
-  plan.why_one_sample = fmt::format(
-      "what is in view and the background differ by at most {:.2g} of 255, however covered", colors.widest() * 255);
+  plan.why_reduced_samples =
+      fmt::format("everything in view and the background differ by at most {:.2g} of 255", colors.widest() * 255);
   plan.view.samples = 1;
 }
 
@@ -132,7 +132,7 @@ void plan_passes(FramePlan& plan, const FrameFacts& facts, bool overlays) {
 
 }  // namespace
 
-bool codes_texels(const Scene& scene, RenderOptions::Texels texels, const DeviceFacts& device) {
+bool uses_coded_texels(const Scene& scene, RenderOptions::Texels texels, const DeviceFacts& device) {
   TextureBytes textures;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.node->object) textures.add(*placed.node->object);
@@ -148,7 +148,8 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
   check(view);
   if (options.shading == RenderOptions::Shading::forward && view.samples != 1)
     throw FieldError("shading",
-                     "forward needs 1 sample: with more, the format averages features before it decodes them");
+                     "forward shading needs 1 sample per pixel, because features are averaged before decoding; set "
+                     "samples to 1, or shading to deferred");
   FramePlan result;
   result.view = view;
   if (guides != nullptr && guides->inspect != Guides::Inspect::none) result.view.samples = 1;
@@ -182,8 +183,9 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
         } catch (const std::invalid_argument& error) {
           throw EditError(fmt::format("node \"{}\": {}", placed.node->name, error.what()));
         }
-        const Mat3 world_to_fed = axes_matrix(object.axes) * turn.transpose();
-        frame = frame_index(result, {decoder_index(result, object.decoder), world_to_fed, set.texels->alpha_code()});
+        const Mat3 world_to_decoder = axes_matrix(object.axes) * turn.transpose();
+        frame =
+            frame_index(result, {decoder_index(result, object.decoder), world_to_decoder, set.texels->alpha_code()});
       }
       any_in_view = true;
       result.covered = join(result.covered, *rect);
@@ -197,12 +199,12 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
     }
     if (!any_in_view) ++culled;
   }
-  leave_out_direction(result);
-  leave_out_samples(result);
+  omit_view_direction(result);
+  reduce_samples(result);
   if (result.options.weights == RenderOptions::Weights::automatic) {
     std::size_t weights = 0;
     for (const auto& decoder : result.decoders) weights += weight_count(*decoder);
-    result.options.weights = result.decoders.size() <= most_constant_decoders && weights <= most_constant_weights
+    result.options.weights = result.decoders.size() <= max_constant_decoders && weights <= max_constant_weights
                                  ? RenderOptions::Weights::constants
                                  : RenderOptions::Weights::buffer;
   }
@@ -227,7 +229,7 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
 std::string describe(const std::vector<PlannedPass>& passes) {
   std::string out;
   for (const PlannedPass& pass : passes)
-    out += fmt::format("{:<9} {:<20} {}\n", pass.runs ? "runs" : "left out", pass.name, pass.why);
+    out += fmt::format("{:<9} {:<20} {}\n", pass.runs ? "runs" : "skipped", pass.name, pass.why);
   return out;
 }
 

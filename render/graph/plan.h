@@ -55,16 +55,16 @@ struct FramePlan;
 
 /// Properties of the device and results of earlier frames that a plan depends on.
 struct DeviceFacts {
-  std::size_t occlusion_from = 20'000;  ///< number of triangles in view from which occlusion culling pays
+  std::size_t min_culling_triangles = 20'000;  ///< number of triangles in view from which occlusion culling pays
   /// Share of the triangles in view that the last occlusion culling found visible, if too large for culling to pay;
   /// otherwise 0.
-  double shown_share = 0;
+  double visible_share = 0;
   bool reads_coded_texels = true;    ///< whether buffer textures are large enough for coded texels
   const FramePlan* shown = nullptr;  ///< plan of the picture in the render targets; null if unknown
 };
 
 /// Whether a scene's texels are coded on the GPU. Hidden nodes count too, because their texels are resident.
-bool codes_texels(const Scene& scene, RenderOptions::Texels texels, const DeviceFacts& device = {});
+bool uses_coded_texels(const Scene& scene, RenderOptions::Texels texels, const DeviceFacts& device = {});
 
 /// Results of occlusion culling in a frame.
 struct OcclusionCounts {
@@ -80,9 +80,9 @@ struct OcclusionCounts {
 
 /// How samples are decoded: the decoder, the orientation of view directions, and the coding of alpha. Nodes that agree
 /// in all three share one.
-struct NodeFrame {
+struct DecodeFrame {
   std::size_t decoder = 0;  ///< index into FramePlan::decoders
-  Mat3 world_to_fed;        ///< rotates directions from world space into the space of the decoder
+  Mat3 world_to_decoder;    ///< rotates directions from world space into the space of the decoder
   AlphaCode alpha_code = AlphaCode::halved;
 };
 
@@ -115,14 +115,14 @@ struct FramePlan {
   Color background{1, 1, 1};
   std::vector<Draw> draws;
   std::vector<std::shared_ptr<const Decoder>> decoders;  ///< distinct decoders in view
-  std::vector<NodeFrame> frames;                         ///< distinct, in view
+  std::vector<DecodeFrame> frames;                       ///< distinct, in view
   std::vector<PlannedPass> passes;
   PixelRect covered;                ///< bounding rectangle of the pixels to draw
   bool kept = false;                ///< whether targets keep their contents outside `covered`
   double left_out = 0;              ///< bound of the change of display colours by skipped work, 0 … 2 · unseen
   double direction_change = 0;      ///< bound of the change of display colours by the view direction
-  bool sees_direction = true;       ///< whether the view direction is fed to decoders
-  std::string why_one_sample;       ///< reason if fewer samples are taken than the view asks for, otherwise empty
+  bool uses_view_direction = true;  ///< whether the view direction is fed to decoders
+  std::string why_reduced_samples;  ///< reason if fewer samples are taken than the view asks for, otherwise empty
   std::size_t triangles = 0;        ///< of all draws
   std::uint64_t texture_bytes = 0;  ///< of all textures of the scene, at 8 bytes per texel
   bool overlays = false;            ///< whether `guides` are drawn

@@ -18,13 +18,13 @@ namespace rebake {
 namespace {
 
 // Maximum number of representatives whose combinations are all enumerated: 31 for 5.
-constexpr std::size_t most_combined = 5;
-constexpr std::size_t most_kinds = 12;  // maximum number of kinds that are represented
+constexpr std::size_t max_combined_nodes = 5;
+constexpr std::size_t max_node_kinds = 12;  // maximum number of kinds that are represented
 // Pixels per side. Not a power of two, like most windows: llvmpipe recompiles programs for power-of-two textures.
 constexpr int side = 24;
 
 // Number of the preamble that a light map needs: 0 without, 1 or 2 without or with offset, plus 2 with gloss.
-int light_of(const LightMap* light) {
+int light_variant(const LightMap* light) {
   return light == nullptr ? 0 : (light->offset.empty() ? 1 : 2) + (light->gloss ? 2 : 0);
 }
 
@@ -42,7 +42,8 @@ Kind kind_of(const PlacedNode& placed, const Lighting* lighting) {
   const BakedObject& object = *placed.node->object;
   Kind kind{object.decoder, object.any_rotations(), {}};
   for (std::size_t s = 0; s < object.sets.size(); ++s)
-    kind.lights.insert(lighting != nullptr ? light_of(lighting->map_of(placed.node->id, s, object.sets[s]).get()) : 0);
+    kind.lights.insert(lighting != nullptr ? light_variant(lighting->map_of(placed.node->id, s, object.sets[s]).get())
+                                           : 0);
   return kind;
 }
 
@@ -59,7 +60,7 @@ std::vector<PlacedNode> representatives(const Scene& scene, const Lighting* ligh
     if (!placed.visible || !placed.node->object || placed.node->object->triangle_count() == 0) continue;
     const Kind kind = kind_of(placed, lighting);
     const auto known = std::find_if(held.begin(), held.end(), [&](const Held& one) { return one.kind == kind; });
-    if (known == held.end() ? held.size() >= most_kinds : known->both) continue;
+    if (known == held.end() ? held.size() >= max_node_kinds : known->both) continue;
     Mat3 turn;
     try {
       turn = orthogonal_factor(placed.to_world.linear());
@@ -121,22 +122,22 @@ ProgramVariant variant_of(const FramePlan& plan) {
   if (plan.options.weights == RenderOptions::Weights::constants) variant.decoders = plan.decoders;
   std::uint64_t draws = 0;  // bit per combination of rotation and light map
   for (const Draw& draw : plan.draws)
-    draws |= std::uint64_t{1} << (5 * (draw.set.soup.rotations() != nullptr ? 1 : 0) + light_of(draw.light.get()));
+    draws |= std::uint64_t{1} << (5 * (draw.set.soup.rotations() != nullptr ? 1 : 0) + light_variant(draw.light.get()));
   variant.flags = fmt::format("{}/{}/{}/{}:", static_cast<int>(plan.options.weights),
                               static_cast<int>(plan.options.shading), plan.view.samples, draws);
   for (const Effect* effect :
-       {&effects::geometry, &effects::node_frames, &effects::turned_rays, &effects::light, &effects::light_offset,
+       {&effects::geometry, &effects::node_frames, &effects::rotated_rays, &effects::light, &effects::light_offset,
         &effects::highlights, &effects::ray_per_sample, &effects::resolve, &effects::forward})
     variant.flags += plan.runs(*effect) ? '1' : '0';
   return variant;
 }
 
-std::vector<FrameToCome> frames_to_come(const Scene& scene, const View& view, const RenderOptions& options,
-                                        const Lighting* lighting) {
+std::vector<PrecompileFrame> precompile_frames(const Scene& scene, const View& view, const RenderOptions& options,
+                                               const Lighting* lighting) {
   const std::vector<PlacedNode> nodes = representatives(scene, lighting);
   const std::uint64_t all = (std::uint64_t{1} << nodes.size()) - 1;
   std::vector<std::uint64_t> some{all};
-  if (nodes.size() <= most_combined) {
+  if (nodes.size() <= max_combined_nodes) {
     for (std::uint64_t which = 1; which < all; ++which) some.push_back(which);
   } else {
     for (std::size_t a = 0; a < nodes.size(); ++a)
@@ -145,13 +146,13 @@ std::vector<FrameToCome> frames_to_come(const Scene& scene, const View& view, co
   // Most likely combinations first: all nodes, then each alone.
   std::stable_sort(some.begin() + 1, some.end(),
                    [](std::uint64_t a, std::uint64_t b) { return std::popcount(a) < std::popcount(b); });
-  std::vector<FrameToCome> result;
+  std::vector<PrecompileFrame> result;
   std::vector<ProgramVariant> known;
   for (const std::uint64_t which : some) {
     const Scene part = of_nodes(scene, nodes, which);
     if (part.roots.empty() || world_bounds(part).isEmpty()) continue;
     for (const int samples : std::set<int>{1, view.samples}) {
-      FrameToCome frame{part, small_view(part, view, samples)};
+      PrecompileFrame frame{part, small_view(part, view, samples)};
       ProgramVariant variant = variant_of(plan(part, frame.view, options, nullptr, lighting));
       if (std::find(known.begin(), known.end(), variant) != known.end()) continue;
       known.push_back(std::move(variant));

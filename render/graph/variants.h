@@ -17,14 +17,14 @@ struct ProgramVariant {
 ProgramVariant variant_of(const FramePlan& plan);
 
 /// A small frame of some of a scene's nodes, drawn off screen to compile programs before a camera needs them.
-struct FrameToCome {
+struct PrecompileFrame {
   Scene scene;
   View view;
 };
 /// Frames that together use all programs that views of a scene may need: one per ProgramVariant, most likely ones
 /// first. Combines representatives of similar nodes, at the samples of `view` and at 1: all combinations of up to 5
 /// representatives; of more only all together, each alone, and pairs. Pure.
-std::vector<FrameToCome> frames_to_come(const Scene& scene, const View& view, const RenderOptions& options,
-                                        const Lighting* lighting);
+std::vector<PrecompileFrame> precompile_frames(const Scene& scene, const View& view, const RenderOptions& options,
+                                               const Lighting* lighting);
 
 }  // namespace rebake

@@ -6,7 +6,7 @@ namespace rebake {
 
 void check(const View& view) {
   if (view.width < 1 || view.width > 16384 || view.height < 1 || view.height > 16384)
-    throw FieldError("size", "must be 1 to 16384 pixels a side");
+    throw FieldError("size", "must be 1 to 16384 pixels per side");
   if (view.samples != 1 && view.samples != 4 && view.samples != 16 && view.samples != 64)
     throw FieldError("samples", "must be 1, 4 or 16 (or 64 for references)");
   check(view.camera);

@@ -5,9 +5,9 @@ namespace rebake {
 namespace {
 
 std::optional<Decision> decide(const FrameFacts& facts) {
-  const std::string in_object = "clusters of triangles out of view are left out";
+  const std::string in_object = "clusters of triangles out of view are culled";
   if (facts.culled > 0)
-    return Decision{true, plural(facts.culled, "object is", "objects are") + " out of view and cost no draw" +
+    return Decision{true, plural(facts.culled, "object is", "objects are") + " out of view and not drawn" +
                               (facts.any_draw() ? "; of the others, " + in_object : "")};
   if (facts.any_draw()) return Decision{true, in_object};
   return Decision{false, "no object is shown"};

@@ -13,7 +13,7 @@ void execute(const PassInput& input) {
   begin_geometry(plan, 1);
   const std::string decoder = decoder_preamble(input);
   const auto use = [&](const Draw& draw) -> const gl::Program& {
-    const NodeFrame& frame = plan.frames[draw.frame];
+    const DecodeFrame& frame = plan.frames[draw.frame];
     const gl::Program& shader =
         program(input.state, "geometry.vert", "forward.frag",
                 fmt::format("#define TURNED_MESH {}\n", draw.set.soup.rotations() != nullptr ? 1 : 0) +
@@ -37,7 +37,7 @@ void execute(const PassInput& input) {
 
 std::optional<Decision> decide(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
-  if (facts.forward()) return Decision{true, drawn_words(facts.plan) + "; " + decoder_words(facts.plan)};
+  if (facts.forward()) return Decision{true, describe_draws(facts.plan) + "; " + describe_decoder(facts.plan)};
   return Decision{false, facts.plan.view.samples > 1
                              ? "features are averaged over a pixel's samples before they are decoded"
                              : "deferred shading decodes each pixel once"};

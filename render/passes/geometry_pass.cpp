@@ -8,7 +8,7 @@ namespace rebake {
 namespace {
 
 void execute(const PassInput& input) {
-  const bool has_frames = input.plan.runs(effects::node_frames), has_rays = input.plan.runs(effects::turned_rays);
+  const bool has_frames = input.plan.runs(effects::node_frames), has_rays = input.plan.runs(effects::rotated_rays);
   std::vector<Target> colors{Target::features};
   if (has_frames) colors.push_back(Target::frames);
   if (has_rays) colors.push_back(Target::rays);
@@ -50,22 +50,22 @@ void execute(const PassInput& input) {
 std::optional<Decision> decide(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   if (facts.forward()) return Decision{false, "forward shading decodes while drawing"};
-  return Decision{true, drawn_words(facts.plan)};
+  return Decision{true, describe_draws(facts.plan)};
 }
 
 std::optional<Decision> decide_supersampling(const FrameFacts& facts) {
   const View& view = facts.plan.view;
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
-  if (!facts.plan.why_one_sample.empty()) return Decision{false, facts.plan.why_one_sample};
-  if (view.samples == 1) return Decision{false, "1 sample a pixel is asked for"};
-  return Decision{true, fmt::format("{} samples a pixel: buffers of {}×{}", view.samples, view.width * view.side(),
-                                    view.height * view.side())};
+  if (!facts.plan.why_reduced_samples.empty()) return Decision{false, facts.plan.why_reduced_samples};
+  if (view.samples == 1) return Decision{false, "1 sample per pixel is requested"};
+  return Decision{true, fmt::format("{} samples per pixel: render targets of {}×{}", view.samples,
+                                    view.width * view.side(), view.height * view.side())};
 }
 
 std::optional<Decision> decide_view_direction(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   const double change = facts.plan.direction_change;
-  if (!facts.plan.sees_direction)
+  if (!facts.plan.uses_view_direction)
     return Decision{false, change == 0 ? "no decoder in view depends on it"
                                        : fmt::format("changes colours by at most {:.2g} of 255", change * 255)};
   return Decision{true, "colours depend on it"};
@@ -80,14 +80,14 @@ std::optional<Decision> decide_node_frames(const FrameFacts& facts) {
 
 std::optional<Decision> decide_turned_rays(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
-  if (!facts.plan.sees_direction) return Decision{false, "no decoder in view is fed a direction"};
-  if (facts.turned_draws == 0) return Decision{false, "no triangle was turned apart from its object"};
-  return Decision{true, plural(facts.turned_draws, "draw has", "draws have") + " turned triangles"};
+  if (!facts.plan.uses_view_direction) return Decision{false, "no decoder in view depends on the view direction"};
+  if (facts.rotated_draws == 0) return Decision{false, "no triangle was rotated relative to its object"};
+  return Decision{true, plural(facts.rotated_draws, "draw has", "draws have") + " rotated triangles"};
 }
 
 constexpr Use writes[] = {{Target::features},
                           {Target::frames, &effects::node_frames},
-                          {Target::rays, &effects::turned_rays},
+                          {Target::rays, &effects::rotated_rays},
                           {Target::light_gain, &effects::light},
                           {Target::light_offset, &effects::light_offset},
                           {Target::depth}};
@@ -98,6 +98,6 @@ const Effect effects::geometry{"geometry", Effect::Kind::colors, decide, execute
 const Effect effects::supersampling{"supersampling", Effect::Kind::colors, decide_supersampling};
 const Effect effects::view_direction{"view direction", Effect::Kind::colors, decide_view_direction};
 const Effect effects::node_frames{"node frames", Effect::Kind::colors, decide_node_frames};
-const Effect effects::turned_rays{"turned rays", Effect::Kind::colors, decide_turned_rays};
+const Effect effects::rotated_rays{"turned rays", Effect::Kind::colors, decide_turned_rays};
 
 }  // namespace rebake

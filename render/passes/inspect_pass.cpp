@@ -53,9 +53,9 @@ void execute(const PassInput& input) {
 }
 
 std::optional<Decision> decide(const FrameFacts& facts) {
-  if (facts.plan.guides.inspect == Guides::Inspect::none) return Decision{false, "colours are asked for"};
+  if (facts.plan.guides.inspect == Guides::Inspect::none) return Decision{false, "the view shows colours"};
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
-  return Decision{true, "another look than colours is asked for"};
+  return Decision{true, "a debug view is on"};
 }
 
 constexpr Use writes[] = {{Target::picture}, {Target::depth}};

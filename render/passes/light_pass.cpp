@@ -24,16 +24,16 @@ std::optional<Decision> decide_offset(const FrameFacts& facts) {
   if (!facts.any_draw() || lit_draws(facts.plan) == 0) return std::nullopt;
   const std::size_t dark = lit_draws(facts.plan, [](const LightMap&map) { return !map.offset.empty(); }),
                     glossy = lit_draws(facts.plan, [](const LightMap&map) { return map.gloss != nullptr; });
-  if (dark > 0) return Decision{true, "something baked in the dark is lit in " + plural(dark, "draw", "draws")};
-  if (glossy > 0) return Decision{true, "highlights are added to what factors do"};
-  return Decision{false, "factors do: nothing was baked in the dark"};
+  if (dark > 0) return Decision{true, "surfaces baked in the dark are lit in " + plural(dark, "draw", "draws")};
+  if (glossy > 0) return Decision{true, "highlights need an additive term"};
+  return Decision{false, "gains suffice: nothing was baked in the dark"};
 }
 
 std::optional<Decision> decide_highlights(const FrameFacts& facts) {
   if (!facts.any_draw() || lit_draws(facts.plan) == 0) return std::nullopt;
   const std::size_t glossy = lit_draws(facts.plan, [](const LightMap& map) { return map.gloss != nullptr; });
-  if (glossy == 0) return Decision{false, "nothing that turned mirrors its light"};
-  return Decision{true, "light is mirrored by what turned in " + plural(glossy, "draw", "draws")};
+  if (glossy == 0) return Decision{false, "no rotated surface is specular"};
+  return Decision{true, "specular reflections rotate in " + plural(glossy, "draw", "draws")};
 }
 
 }  // namespace

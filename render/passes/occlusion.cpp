@@ -26,7 +26,7 @@ struct OcclusionState {
 
   using Key = std::pair<NodeId, std::size_t>;  ///< node, first triangle of the set
   /// Visibility from one camera: a prediction for the next frame from a camera nearby, which may be wrong.
-  struct Memory {
+  struct CameraVisibility {
     Camera camera;
     std::map<Key, std::vector<std::uint8_t>> faces;  ///< flags per face
     /// Identity of a draw for which the visibility was found.
@@ -43,14 +43,14 @@ struct OcclusionState {
     OcclusionCounts counts;            ///< of the test per sample
     std::vector<std::uint8_t> blocks;  ///< OcclusionState::blocks of that test
   };
-  std::vector<Memory> memories;  ///< most recently used last
-  std::vector<float> depth;      ///< nearness per sample, as in DepthPyramid
+  std::vector<CameraVisibility> visibilities;  ///< most recently used last
+  std::vector<float> depth;                    ///< nearness per sample, as in DepthPyramid
   DepthPyramid pyramid;
   std::vector<std::uint8_t> blocks;  ///< per 16×16 pixels: 1 if something may have been drawn
   int block_columns = 0;
 };
 
-bool OcclusionState::Memory::Drawn::operator==(const Drawn& other) const {
+bool OcclusionState::CameraVisibility::Drawn::operator==(const Drawn& other) const {
   const auto same = [](const std::weak_ptr<const void>& a, const std::weak_ptr<const void>& b) {
     return !a.owner_before(b) && !b.owner_before(a);
   };
@@ -63,10 +63,10 @@ namespace {
 constexpr int block_pixels = 16;
 // Number of frames at rest after which triangles are tested per sample. Later frames draw the triangles found visible.
 // The test takes about as long as drawing the triangles that it removes.
-constexpr int looked_closely = 2;
+constexpr int frames_before_sample_test = 2;
 // If the second pass has at most a quarter as many triangles as the first, it is drawn on top. Otherwise all visible
 // triangles are drawn again.
-constexpr std::size_t few_missing = 4;
+constexpr std::size_t missing_ratio = 4;
 
 // A cluster in view: indices of its set and within the set.
 struct Candidate {
@@ -75,7 +75,7 @@ struct Candidate {
 };
 
 // Whether visibility from one camera predicts visibility from another.
-bool near_by(const Camera& a, const Camera& b) {
+bool is_near(const Camera& a, const Camera& b) {
   const Vec3 to_a = a.target - a.eye, to_b = b.target - b.eye;
   constexpr double most_turned = 0.9;  // cosine of the angle: 26°
   constexpr double most_moved = 0.25;  // share of the distance to the target
@@ -86,16 +86,17 @@ bool near_by(const Camera& a, const Camera& b) {
 
 // Removes and returns the latest memory of a camera nearby; an empty one if there is none. Keeps up to three memories,
 // so that views can alternate, and evicts the oldest.
-OcclusionState::Memory recalled(std::vector<OcclusionState::Memory>& memories, const Camera& camera) {
+OcclusionState::CameraVisibility take_nearby_visibility(std::vector<OcclusionState::CameraVisibility>& visibilities,
+                                                        const Camera& camera) {
   constexpr std::size_t most = 3;
-  OcclusionState::Memory found;
-  for (std::size_t k = memories.size(); k-- > 0;) {
-    if (!near_by(memories[k].camera, camera)) continue;
-    found = std::move(memories[k]);
-    memories.erase(memories.begin() + static_cast<std::ptrdiff_t>(k));
+  OcclusionState::CameraVisibility found;
+  for (std::size_t k = visibilities.size(); k-- > 0;) {
+    if (!is_near(visibilities[k].camera, camera)) continue;
+    found = std::move(visibilities[k]);
+    visibilities.erase(visibilities.begin() + static_cast<std::ptrdiff_t>(k));
     break;
   }
-  if (memories.size() >= most) memories.erase(memories.begin());
+  if (visibilities.size() >= most) visibilities.erase(visibilities.begin());
   return found;
 }
 
@@ -118,8 +119,8 @@ class Frame {
     state_.block_columns = (input.plan.view.width + block_pixels - 1) / block_pixels;
     const int rows = (input.plan.view.height + block_pixels - 1) / block_pixels;
     state_.blocks.assign(static_cast<std::size_t>(state_.block_columns) * static_cast<std::size_t>(rows), 0);
-    OcclusionState::Memory before = recalled(state_.memories, input.plan.view.camera);
-    OcclusionState::Memory& now = state_.memories.emplace_back();
+    OcclusionState::CameraVisibility before = take_nearby_visibility(state_.visibilities, input.plan.view.camera);
+    OcclusionState::CameraVisibility& now = state_.visibilities.emplace_back();
     now.camera = input.plan.view.camera;
     now.raster = {input.plan.view.width, input.plan.view.height, side_, static_cast<int>(input.plan.options.shading)};
     for (const Draw& draw : input.plan.draws)
@@ -148,7 +149,7 @@ class Frame {
   }
 
   void draw(const std::function<void()>& clear) {
-    OcclusionState::Memory& memory = state_.memories.back();
+    OcclusionState::CameraVisibility& memory = state_.visibilities.back();
     // Nothing has changed: draws the triangles that the test per sample found visible.
     if (memory.known) {
       gather(OcclusionState::close);
@@ -180,13 +181,13 @@ class Frame {
     });
     const std::size_t missing = gather(OcclusionState::pending).back();
     bool any_tie_found = false;
-    if (missing > 0 && missing <= first / few_missing) {
-      timed([&] { any_tie_found = any_tie(); });
+    if (missing > 0 && missing <= first / missing_ratio) {
+      timed([&] { any_tie_found = any_depth_tie(); });
       draw_gathered();
     }
     counts().triangles_drawn = first + missing;
     // Draws all visible triangles again, in scene order. If many were missing, this is faster than a test for ties.
-    if (any_tie_found || missing > first / few_missing) {
+    if (any_tie_found || missing > first / missing_ratio) {
       gather(OcclusionState::shown);
       clear();
       draw_gathered();
@@ -201,7 +202,7 @@ class Frame {
     counts().clusters_hidden = candidates.size() - counts().clusters_drawn;
     for (const Set& set : sets_)
       for (std::uint8_t& flags : *set.flags) flags &= OcclusionState::shown | OcclusionState::close;
-    if (!looks_closely()) return;
+    if (!tests_per_sample()) return;
     memory.counts = counts();
     memory.counts.milliseconds = 0;
     memory.counts.known = true;
@@ -229,7 +230,7 @@ class Frame {
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
 
-  bool looks_closely() const { return state_.memories.back().frames_at_rest >= looked_closely; }
+  bool tests_per_sample() const { return state_.visibilities.back().frames_at_rest >= frames_before_sample_test; }
   OcclusionCounts& counts() { return input_.state.occlusion_counts; }
 
   ScreenBounder bounder(const Draw& draw) const {
@@ -297,7 +298,7 @@ class Frame {
   // Tests candidates against the Hi-Z pyramid. Visible triangles become `shown`, and `pending` if not drawn yet.
   void look(const std::vector<Candidate>& candidates) {
     using Where = ScreenBounds::Where;
-    const bool closely = looks_closely();
+    const bool closely = tests_per_sample();
     tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
       const Set& set = sets_[candidates[k].set];
       ClusterBounds triangles;
@@ -367,14 +368,14 @@ class Frame {
 
   // Whether a sample of the gathered triangles has the same depth as the drawn sample (occlusion query). Of such ties,
   // the later triangle in scene order must win, which may have been drawn first.
-  bool any_tie() {
+  bool any_depth_tie() {
     GLint function = GL_LEQUAL;
     glGetIntegerv(GL_DEPTH_FUNC, &function);
     // Restores the state even if drawing throws; later frames would draw nothing otherwise.
-    struct Quiet {
+    struct TieQueryScope {
       GLuint query = 0;
       GLenum function;
-      explicit Quiet(GLenum usual) : function(usual) {
+      explicit TieQueryScope(GLenum usual) : function(usual) {
         glGenQueries(1, &query);
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
         glDepthMask(GL_FALSE);
@@ -385,15 +386,15 @@ class Frame {
         if (!ended) glEndQuery(GL_ANY_SAMPLES_PASSED);
         ended = true;
       }
-      ~Quiet() {
+      ~TieQueryScope() {
         end();
         glDepthFunc(function);
         glDepthMask(GL_TRUE);
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         glDeleteQueries(1, &query);
       }
-      Quiet(const Quiet&) = delete;
-      Quiet& operator=(const Quiet&) = delete;
+      TieQueryScope(const TieQueryScope&) = delete;
+      TieQueryScope& operator=(const TieQueryScope&) = delete;
       bool ended = false;
     } quiet(static_cast<GLenum>(function));
     draw_gathered();
@@ -459,21 +460,22 @@ std::optional<Decision> decide(const FrameFacts& facts) {
   using Occlusion = RenderOptions::Occlusion;
   const FramePlan& plan = facts.plan;
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
-  if (plan.options.occlusion == Occlusion::off) return Decision{false, "all triangles are to be drawn"};
-  if (plan.kept) return Decision{false, "only what may show in changed pixels is drawn"};
+  if (plan.options.occlusion == Occlusion::off) return Decision{false, "switched off: all triangles are drawn"};
+  if (plan.kept) return Decision{false, "only changed pixels are drawn"};
   if (plan.options.occlusion == Occlusion::automatic) {
-    if (plan.triangles < facts.device.occlusion_from)
-      return Decision{false, fmt::format("{} are drawn sooner than looked at; here it pays from {} on",
-                                         plural(plan.triangles, "triangle", "triangles"), facts.device.occlusion_from)};
+    if (plan.triangles < facts.device.min_culling_triangles)
+      return Decision{false,
+                      fmt::format("{}: drawing is faster than testing; culling pays from {} on this device",
+                                  plural(plan.triangles, "triangle", "triangles"), facts.device.min_culling_triangles)};
     // The overhead per set is as large as the time to draw a few triangles.
-    if (plan.triangles < faces_a_face_cluster * plan.draws.size())
-      return Decision{false, fmt::format("{} with few triangles each are drawn sooner than looked at",
+    if (plan.triangles < max_faces_per_cluster * plan.draws.size())
+      return Decision{false, fmt::format("{} with few triangles each: drawing is faster than testing",
                                          plural(plan.draws.size(), "object", "objects"))};
-    if (facts.device.shown_share > 0)
-      return Decision{false, fmt::format("when it was looked, {:.0f} % of the triangles in view showed",
-                                         100 * facts.device.shown_share)};
+    if (facts.device.visible_share > 0)
+      return Decision{false, fmt::format("in the last test, {:.0f} % of the triangles in view were visible",
+                                         100 * facts.device.visible_share)};
   }
-  return Decision{true, "hidden triangles are left out"};
+  return Decision{true, "occluded triangles are culled"};
 }
 
 }  // namespace

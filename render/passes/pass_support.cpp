@@ -120,8 +120,8 @@ glm::mat3 to_glm(const Mat3& matrix) {
   return result;
 }
 
-Mat3 camera_to_fed(const FramePlan& plan, const NodeFrame& frame) {
-  return frame.world_to_fed * world_to_camera(plan.view.camera).transpose();
+Mat3 camera_to_fed(const FramePlan& plan, const DecodeFrame& frame) {
+  return frame.world_to_decoder * world_to_camera(plan.view.camera).transpose();
 }
 
 glm::vec2 alpha_factors(AlphaCode code) { return code == AlphaCode::halved ? glm::vec2(2, -1) : glm::vec2(1, 0); }
@@ -279,7 +279,7 @@ namespace {
 Eigen::Matrix4d drawn_projection(const FramePlan& plan) {
   Eigen::Matrix4d part = Eigen::Matrix4d::Identity();
   if (plan.kept) {
-    const PixelRect c = around(plan.covered, mark_pixels, plan.view);
+    const PixelRect c = around(plan.covered, mask_radius, plan.view);
     const double width = plan.view.width, height = plan.view.height;
     part(0, 0) = width / (c.right - c.left);
     part(1, 1) = height / (c.bottom - c.top);
@@ -315,7 +315,7 @@ void draw_clusters(const GpuMesh& mesh, const Eigen::Matrix4d& object_to_clip) {
 }
 
 // Whether two draws share all bindings and differ only in their transform.
-bool bound_alike(const Draw& a, const Draw& b) {
+bool same_bindings(const Draw& a, const Draw& b) {
   const Soup &first = a.set.soup, &second = b.set.soup;
   return a.frame == b.frame && !a.light && !b.light && first.rotations() == nullptr && second.rotations() == nullptr &&
          first.shared_positions() == second.shared_positions() && first.shared_uvs() == second.shared_uvs() &&
@@ -336,7 +336,7 @@ void draw_all_sets(const PassInput& input, const std::function<const gl::Program
   const GpuMesh* mesh = nullptr;
   GLint place = -1;
   for (const Draw& draw : input.plan.draws) {
-    if (bound != nullptr && bound_alike(*bound, draw)) {
+    if (bound != nullptr && same_bindings(*bound, draw)) {
       Eigen::Matrix4d to_camera = draw.to_camera.matrix();
       to_camera.topRightCorner<3, 1>() += draw.to_camera.linear() * mesh->center;
       glUniformMatrix4fv(place, 1, GL_FALSE, glm::value_ptr(to_glm(Eigen::Matrix4d(to_clip * to_camera))));
@@ -451,7 +451,7 @@ void begin_mask(const PassInput& input) {
   input.draw_to({Target::mask}, false);
   begin_overlay(input.plan);
   // Passes share the mask, so the margin around plan.covered holds marks of another pass.
-  if (input.plan.kept) restrict_to(around(input.plan.covered, mark_pixels, input.plan.view), input.plan.view, 1);
+  if (input.plan.kept) restrict_to(around(input.plan.covered, mask_radius, input.plan.view), input.plan.view, 1);
   const float nothing[4] = {};
   glClearBufferfv(GL_COLOR, 0, nothing);
   glEnable(GL_BLEND);

@@ -21,7 +21,7 @@ void bind_decoders(const PassInput& input, const gl::Program& program);
 
 glm::mat3 to_glm(const Mat3& matrix);
 /// Rotation from camera space into the space of the directions that are fed to the decoder.
-Mat3 camera_to_fed(const FramePlan& plan, const NodeFrame& frame);
+Mat3 camera_to_fed(const FramePlan& plan, const DecodeFrame& frame);
 /// Factor and offset that decode the stored alpha in unpack.glsl.
 glm::vec2 alpha_factors(AlphaCode code);
 

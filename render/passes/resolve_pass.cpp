@@ -10,7 +10,7 @@ namespace {
 // Contents of frame_table in resolve.frag.
 std::vector<float> frame_table(const FramePlan& plan) {
   std::vector<float> table;
-  for (const NodeFrame& frame : plan.frames) {
+  for (const DecodeFrame& frame : plan.frames) {
     const glm::mat3 rotation = to_glm(camera_to_fed(plan, frame));
     for (int column = 0; column < 3; ++column)
       table.insert(table.end(), {rotation[column].x, rotation[column].y, rotation[column].z, 0.0F});
@@ -27,7 +27,7 @@ void bind(int unit, GLenum target, unsigned texture) {
 
 void execute(const PassInput& input) {
   const FramePlan& plan = input.plan;
-  const bool has_frames = plan.runs(effects::node_frames), has_rays = plan.runs(effects::turned_rays);
+  const bool has_frames = plan.runs(effects::node_frames), has_rays = plan.runs(effects::rotated_rays);
   const int side = plan.view.side();
   input.draw_to({Target::picture}, false);
   glViewport(0, 0, plan.view.width, plan.view.height);
@@ -81,14 +81,14 @@ void execute(const PassInput& input) {
 std::optional<Decision> decide(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   if (facts.forward()) return Decision{false, "forward shading decodes while drawing"};
-  return Decision{true, decoder_words(facts.plan)};
+  return Decision{true, describe_decoder(facts.plan)};
 }
 
 std::optional<Decision> decide_compositing(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   const std::size_t count = facts.plan.decoders.size();
   if (count == 1) return Decision{false, "one decoder in view"};
-  if (facts.forward()) return Decision{false, "at 1 sample no pixel is mixed"};
+  if (facts.forward()) return Decision{false, "at 1 sample per pixel, no pixel mixes decoders"};
   return Decision{true, fmt::format("{} decoders in view", count)};
 }
 
@@ -103,8 +103,8 @@ std::optional<Decision> decide_ray_per_sample(const FrameFacts& facts) {
   constexpr double widest_single_ray = 1.0 / 256;
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   if (facts.forward() || facts.plan.view.samples == 1) return Decision{false, "a pixel has one sample"};
-  if (!facts.plan.sees_direction) return Decision{false, "no decoder in view is fed a direction"};
-  if (facts.plan.frames.size() > 1 || facts.turned_draws > 0)
+  if (!facts.plan.uses_view_direction) return Decision{false, "no decoder in view depends on the view direction"};
+  if (facts.plan.frames.size() > 1 || facts.rotated_draws > 0)
     return Decision{true, "samples of a pixel may differ in orientation"};
   const double pixel = pixel_span(facts.plan.view);
   if (pixel > widest_single_ray) return Decision{true, fmt::format("a pixel spans {:.2g} of its distance", pixel)};
@@ -115,7 +115,7 @@ std::optional<Decision> decide_ray_per_sample(const FrameFacts& facts) {
 
 constexpr Use reads[] = {{Target::features},
                          {Target::frames, &effects::node_frames},
-                         {Target::rays, &effects::turned_rays},
+                         {Target::rays, &effects::rotated_rays},
                          {Target::light_gain, &effects::light},
                          {Target::light_offset, &effects::light_offset}};
 constexpr Use writes[] = {{Target::picture}};

@@ -91,7 +91,7 @@ ScreenBounds ScreenBounder::box(const Box& box) const {
 }
 
 void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& bounds) const {
-  constexpr std::size_t count = faces_a_face_cluster;
+  constexpr std::size_t count = max_faces_per_cluster;
   const auto number = [](double value) { return static_cast<float>(value); };
   const float x_room = number(clip_error_.x() + clip_error_.w()), y_room = number(clip_error_.y() + clip_error_.w()),
               z_room = number(clip_error_.z() + clip_error_.w());

@@ -23,7 +23,7 @@ struct ScreenBounds {
 /// Bounds of a cluster's triangles, as one array per field for SIMD.
 struct ClusterBounds {
   template <class T>
-  using Each = std::array<T, faces_a_face_cluster>;
+  using Each = std::array<T, max_faces_per_cluster>;
   Each<std::int32_t> left, bottom, right, top;  ///< as ScreenBounds::samples; empty if no sample is covered
   Each<float> nearness;      ///< upper bound; infinity for triangles so thin that their depth is rounding noise
   Each<std::int32_t> where;  ///< ScreenBounds::Where

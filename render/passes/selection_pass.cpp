@@ -59,7 +59,7 @@ std::optional<Decision> decide(const FrameFacts& facts) {
   const FramePlan& plan = facts.plan;
   const auto selected = static_cast<std::size_t>(
       std::count_if(plan.draws.begin(), plan.draws.end(), [](const Draw& draw) { return draw.selection != nullptr; }));
-  if (!plan.guides.selection) return Decision{false, "selections are not to be shown"};
+  if (!plan.guides.selection) return Decision{false, "selections are hidden"};
   if (selected == 0) return Decision{false, "nothing in view is selected"};
   return Decision{true, plural(selected, "draw has", "draws have") + " selected triangles"};
 }

@@ -28,20 +28,20 @@ using namespace rebake::bakery;
 constexpr int picture = 400;  // side of the pictures in pixels
 
 // Four cameras around a model, from its camera function.
-std::vector<Camera> around_it(const std::function<Camera(double, double)>& camera) {
+std::vector<Camera> four_cameras(const std::function<Camera(double, double)>& camera) {
   std::vector<Camera> cameras;
   for (int k = 0; k < 4; ++k) cameras.push_back(camera((k + 0.5) / 4, std::fmod(0.3 + k * 0.618, 1.0)));
   return cameras;
 }
 
 // A baked quad of a model.
-struct QuadOf {
+struct BakedQuad {
   std::size_t patch;
   int column, row;
 };
-std::vector<QuadOf> quads_of(const Model& model) {
+std::vector<BakedQuad> quads_of(const Model& model) {
   constexpr int cell = 17;
-  std::vector<QuadOf> quads;
+  std::vector<BakedQuad> quads;
   for (std::size_t p = 0; p < model.patches.size(); ++p) {
     const Patch& patch = model.patches[p];
     for (int row = 0; row < patch.rows; ++row)
@@ -59,7 +59,7 @@ std::vector<QuadOf> quads_of(const Model& model) {
 // Per triangle of a sample: the patch that it was baked from.
 std::vector<std::size_t> patch_of_triangles(const Model& model) {
   std::vector<std::size_t> patch_of;
-  for (const QuadOf& quad : quads_of(model)) patch_of.insert(patch_of.end(), 2, quad.patch);
+  for (const BakedQuad& quad : quads_of(model)) patch_of.insert(patch_of.end(), 2, quad.patch);
   return patch_of;
 }
 
@@ -71,7 +71,7 @@ struct Case {
   RadianceField::Shade carried;  // display colours of the edited model's patches under the light as baked
   std::function<Vec3(std::size_t patch, double u, double v)> irradiance;  // irradiance / π as baked
   std::vector<Camera> cameras;
-  std::vector<QuadOf> quads;                        // quads of the edited model
+  std::vector<BakedQuad> quads;                     // quads of the edited model
   std::vector<std::vector<std::size_t>> number_of;  // [object][triangle]: 2 · index in `quads` + its half
 };
 
@@ -110,7 +110,7 @@ Image painted(const Case& c, const Camera& camera, const RadianceField::Shade& s
         const double w1 = (p - c0).cross(c2 - c0).dot(n) / n.squaredNorm(),
                      w2 = (c1 - c0).cross(p - c0).dot(n) / n.squaredNorm();
         const std::size_t number = c.number_of[hit->instance][hit->triangle];
-        const QuadOf& quad = c.quads[number / 2];
+        const BakedQuad& quad = c.quads[number / 2];
         const double a = number % 2 == 0 ? w1 + w2 : w1, b = number % 2 == 0 ? w2 : w1 + w2;
         const Patch& patch = c.edited.patches[quad.patch];
         sum += shade(quad.patch, std::clamp((quad.column + a) / patch.columns, 0.0, 1.0),
@@ -220,7 +220,7 @@ Case bent_ficus(const Scene& ficus_scene, const RadianceField& rest, const Model
   c.quads = quads_of(model);
   c.number_of.resize(1);
   for (std::size_t t = 0; t < c.quads.size() * 2; ++t) c.number_of[0].push_back(t);
-  c.cameras = around_it(model.camera);
+  c.cameras = four_cameras(model.camera);
   return c;
 }
 
@@ -248,7 +248,7 @@ Case cut_ficus(const Scene& ficus_scene, const RadianceField& rest, const Model&
   TriangleSet flags;
   for (const std::size_t patch : patch_of_triangles(model)) flags.push_back(keeps[patch] ? 1 : 0);
   auto object = std::make_shared<BakedObject>(*node->object);
-  keep_bodies(*object, *node->object);
+  record_bodies(*object, *node->object);
   std::size_t first = 0;
   for (TextureSet& set : object->sets) {
     const std::size_t total = set.soup.triangle_count();
@@ -259,7 +259,7 @@ Case cut_ficus(const Scene& ficus_scene, const RadianceField& rest, const Model&
   c.quads = quads_of(c.edited);
   c.number_of.resize(1);
   for (std::size_t t = 0; t < c.quads.size() * 2; ++t) c.number_of[0].push_back(t);
-  c.cameras = around_it(model.camera);
+  c.cameras = four_cameras(model.camera);
   return c;
 }
 
@@ -362,8 +362,10 @@ Scene baked_with(Model model, const Vec3& sun) {
 
 int main(int argc, char** argv) {
   if (argc < 2 || argc > 3) {
-    fmt::print(stderr,
-               "Usage: rebake_light_truth SAMPLES [PICTURES]\nMeasures corrected light against traced truth.\n");
+    fmt::print(
+        stderr,
+        "Compares corrected light with ray-traced ground truth.\nUsage: rebake_light_truth SAMPLES [PICTURES]\n  "
+        "SAMPLES    folder of the baked sample scenes\n  PICTURES   folder to write the compared pictures to\n");
     return 2;
   }
   try {
@@ -387,7 +389,7 @@ int main(int argc, char** argv) {
     place.linear() *= 0.6;
     measure(renderer,
             beside("kettle beside the ficus", plant_scene, plant_field, plant, pot_scene, pot_field, pot, place,
-                   around_it(plant.camera)),
+                   four_cameras(plant.camera)),
             plant, out, 3);
     // The courtyard has another sun, so the kettle is baked again under it.
     Model lit_pot = pot;
@@ -396,7 +398,7 @@ int main(int argc, char** argv) {
     place.translation() = Vec3(1.5, 0.25, 1.5);
     measure(renderer,
             beside("kettle in the courtyard", baked_with(yard, yard.sun), yard_field, yard, baked_with(pot, yard.sun),
-                   lit_field, lit_pot, place, around_it(around({1.4, 0.2, 1.4}, 1.5, 25, 60))),
+                   lit_field, lit_pot, place, four_cameras(around({1.4, 0.2, 1.4}, 1.5, 25, 60))),
             yard, out, 4);
     return 0;
   } catch (const rebake::Error& error) {

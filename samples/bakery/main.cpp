@@ -55,7 +55,7 @@ double make(const Model& model, const std::filesystem::path& out, const BakeOpti
     }
   }
   fmt::print(
-      "{:<10} {:>7} triangles {:>8} texels  baked in {:5.1f} s  held-out views: mean {:.2f} dB, least {:.2f} dB\n",
+      "{:<10} {:>7} triangles {:>8} texels  baked in {:5.1f} s  held-out views: mean {:.2f} dB, worst {:.2f} dB\n",
       model.name, object->triangle_count(), object->opaque_texel_count(), bake_seconds, sum / held_out_views, least);
   std::fflush(stdout);
   return sum / held_out_views;
@@ -65,12 +65,12 @@ double make(const Model& model, const std::filesystem::path& out, const BakeOpti
 
 int main(int argc, char** argv) {
   constexpr const char* usage =
-      "Bakes the sample scenes and compares 20 held-out views of each with the traced truth.\n"
+      "Bakes the sample scenes and compares 20 held-out views of each with ray-traced ground truth.\n"
       "Usage: rebake_bakery -o FOLDER [--epochs N] [--pictures FOLDER] [ficus] [kettle] [courtyard] [shelf]\n"
       "  -o, --out FOLDER    folder for the baked scenes\n"
-      "  --epochs N          passes of the fit\n"
-      "  --pictures FOLDER   also write some held-out views there, baked and true\n"
-      "Without names, all are baked.\n";
+      "  --epochs N          training epochs (default 40)\n"
+      "  --pictures FOLDER   also write some held-out views there: ground truth and baked\n"
+      "Without names, all scenes are baked.\n";
   const option long_options[] = {{"out", required_argument, nullptr, 'o'},
                                  {"epochs", required_argument, nullptr, 'e'},
                                  {"pictures", required_argument, nullptr, 'p'},
@@ -96,16 +96,16 @@ int main(int argc, char** argv) {
       fmt::print("{}", usage);
       return 0;
     } else {
-      return refuse("see above");
+      return refuse("invalid option (see above)");
     }
   }
   const std::vector<std::string> names(argv + optind, argv + argc);
-  if (out.empty()) return refuse("--out is missing");
+  if (out.empty()) return refuse("--out FOLDER is required");
   try {
     const std::vector<Model> models{ficus(), kettle(), courtyard(), shelf()};
     for (const std::string& name : names)
       if (std::none_of(models.begin(), models.end(), [&](const Model& model) { return model.name == name; }))
-        return refuse("\"" + name + "\" is no sample");
+        return refuse("\"" + name + "\" is not a sample (ficus, kettle, courtyard, shelf)");
     if (!pictures.empty()) std::filesystem::create_directories(pictures);
     double sum = 0;
     int count = 0;

@@ -37,12 +37,12 @@ struct Piece {
 };
 
 // Four of five pieces are around the middle, the others on a backdrop. Pieces of 2 columns have 16 vertices at 9
-// positions, those of 3 columns have 24 at 12; their mixture gives vertices_a_point.
+// positions, those of 3 columns have 24 at 12; their mixture gives vertices_per_point.
 Piece piece_of(const LargeSceneOptions& options, std::uint64_t number) {
   const Numbers random(options.seed, 1);
   const double narrow_places = 9, wide_places = 12;
   // s is the share of wide pieces: vertices = 16 (1 − s) + 24 s, positions = 9 (1 − s) + 12 s.
-  const double r = options.vertices_a_point,
+  const double r = options.vertices_per_point,
                wide = std::clamp((r * narrow_places - 16) / (8 - r * (wide_places - narrow_places)), 0.0, 1.0);
   const Vec3 direction =
       Vec3(random.between(-1, 1, number, 0), random.between(-1, 1, number, 1), random.between(-1, 1, number, 2))

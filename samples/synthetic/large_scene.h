@@ -13,7 +13,7 @@ struct LargeSceneOptions {
   int texture_side = 4096;          ///< width and height of each texture in texels
   double extent = 16;               ///< coordinates are within ±extent
   double opaque_share = 0.59;       ///< opaque share of all texels, 0 … 1
-  double vertices_a_point = 1.9;    ///< mean number of vertices per distinct position (welded point)
+  double vertices_per_point = 1.9;  ///< mean number of vertices per distinct position (welded point)
   unsigned seed = 1;
 };
 

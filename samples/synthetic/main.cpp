@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   if (!right || std::string_view(argv[1]).starts_with("-")) {
     fmt::print(stderr,
                "Writes a synthetic scene as large as a real unbounded one (8 texture sets of 8 chunks), for "
-               "measurements.\nUsage: rebake_synthetic FOLDER [TRIANGLES, at least 16; 723000 if left out]\n");
+               "benchmarks.\nUsage: rebake_synthetic FOLDER [TRIANGLES]\n  TRIANGLES   at least 16 (default 723000)\n");
     return 2;
   }
   try {

@@ -93,9 +93,9 @@ View inside_view(const BakedObject& nine) {
 }
 
 // A view that orbits its target.
-class Turn {
+class OrbitingView {
  public:
-  explicit Turn(const View& view) : view_(view), away_(view.camera.eye - view.camera.target) {}
+  explicit OrbitingView(const View& view) : view_(view), away_(view.camera.eye - view.camera.target) {}
   View by(double degrees) const {
     View view = view_;
     if (degrees != 0)
@@ -124,7 +124,7 @@ void hidden_triangles(benchmark::State& state, Hidden hidden, bool inside) {
   const Scene scene = scene_of(inside ? tiled_subject : subject());
   RenderOptions options;
   options.occlusion = hidden == Hidden::drawn ? RenderOptions::Occlusion::off : RenderOptions::Occlusion::on;
-  const Turn turn(view);
+  const OrbitingView turn(view);
   double degrees = 0;
   renderer.time_frame(scene, view, options, false);
   renderer.time_frame(scene, view, options, false);
@@ -241,7 +241,7 @@ void many_textures(benchmark::State& state, RenderOptions::Texels texels) {
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     state.counters["megabytes"] = static_cast<double>(gl::memory_use().now - before) / 1e6;
   }
-  const Turn turn(view);
+  const OrbitingView turn(view);
   renderer.time_frame(scene, view, options, false);
   renderer.time_frame(scene, view, options, false);
   double degrees = 0;
@@ -304,7 +304,7 @@ void first_look(benchmark::State& state) {
     state.PauseTiming();
     auto renderer = std::make_unique<Renderer>();
     renderer->time_frame(scene, {}, {}, false);
-    while (state.range(0) != 0 && renderer->make_ahead(scene, {}, {}, nullptr)) {
+    while (state.range(0) != 0 && renderer->compile_next_program(scene, {}, {}, nullptr)) {
     }
     state.ResumeTiming();
     renderer->time_frame(scene, there, {}, false);

@@ -70,7 +70,7 @@ void bind(benchmark::State& state) {
 }
 
 // Computes weights without storing them.
-void weigh(benchmark::State& state, bool gradients) {
+void compute_weights(benchmark::State& state, bool gradients) {
   const Case& mic = mic_case();
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(state.range(0)));
@@ -219,8 +219,12 @@ void drag_preview(benchmark::State& state) {
 
 BENCHMARK(weigh_far)->Arg(2)->Arg(3)->Arg(5)->Arg(8)->Arg(20)->Unit(benchmark::kMillisecond);
 BENCHMARK(bind)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(weigh, mean_value, false)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(weigh, mean_value_with_gradients, true)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(compute_weights, mean_value, false)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(compute_weights, mean_value_with_gradients, true)
+    ->Arg(1)
+    ->Arg(2)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 BENCHMARK(green)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(drag_positions)->Args({2, 1000000})->Args({2, 10})->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(drag_corners)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -31,7 +31,7 @@ const BakedObject& object_of(const Scene& scene) { return *scene.roots[0]->objec
 Camera camera_of(const Scene& scene) { return framing(world_bounds(scene), 1, false); }
 
 // A copy with its own arrays, for which no index is cached.
-BakedObject unknown(const BakedObject& object) {
+BakedObject uncached_copy(const BakedObject& object) {
   BakedObject fresh = object;
   fresh.decoder = std::make_shared<const Decoder>(*object.decoder);
   for (TextureSet& set : fresh.sets) {
@@ -44,7 +44,7 @@ BakedObject unknown(const BakedObject& object) {
 void index(benchmark::State& state) {
   for (auto _ : state) {
     state.PauseTiming();
-    const BakedObject fresh = unknown(object_of(scene_at(state.range(0))));
+    const BakedObject fresh = uncached_copy(object_of(scene_at(state.range(0))));
     state.ResumeTiming();
     prepare_index(fresh);
   }
@@ -52,7 +52,7 @@ void index(benchmark::State& state) {
 void index_part(benchmark::State& state, void (*part)(const BakedObject&)) {
   for (auto _ : state) {
     state.PauseTiming();
-    const BakedObject fresh = unknown(object_of(scene_at(state.range(0))));
+    const BakedObject fresh = uncached_copy(object_of(scene_at(state.range(0))));
     state.ResumeTiming();
     part(fresh);
   }
@@ -184,7 +184,7 @@ void release(benchmark::State& state) {
   bend.target.selection = true;
   bend.degrees = 30;
   const std::vector<Edit> edits{bend};
-  const CarriedOut made = carried_out(scene, edits);
+  const AppliedEdits made = apply_edits(scene, edits);
   for (auto _ : state) {
     state.PauseTiming();
     Document document(scene);

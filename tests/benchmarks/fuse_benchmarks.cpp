@@ -43,7 +43,7 @@ void fuse_scene(benchmark::State& state, const FuseOptions& options) {
   const double before = peak_bytes();
   for (auto _ : state) {
     const Composition composition = composed(scene, 4096);
-    const Sightlines sightlines(scene);
+    const VisibleDirections sightlines(scene);
     const Fused fused = fuse(composition, sightlines, plan_fuse(composition, sightlines, options), options);
     const auto texels = static_cast<double>(composition.opaque_texels);
     state.counters["texels"] = texels;

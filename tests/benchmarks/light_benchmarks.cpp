@@ -57,7 +57,7 @@ BENCHMARK(TransferOfLeavesOnOneCore)
 void TransferOfSheetOnOneCore(benchmark::State& state) {
   const PosedBody sheet = bumpy_sheet(74);
   const ProxyMesh bent = sheet.bent(static_cast<double>(state.range(1)));
-  trace_on_one_core(state, vertex_sites(sheet.rest, bent, vertex_turns(sheet.rest, bent)),
+  trace_on_one_core(state, vertex_sites(sheet.rest, bent, vertex_rotations(sheet.rest, bent)),
                     rays_among({{solid_object(bent), Affine::Identity()}}));
 }
 BENCHMARK(TransferOfSheetOnOneCore)
@@ -115,7 +115,7 @@ void ManyKettles(benchmark::State& state) {
 BENCHMARK(ManyKettles)->Arg(4)->Arg(12)->Arg(26)->Unit(benchmark::kMillisecond)->Iterations(1)->UseRealTime();
 
 // A cache of results in memory.
-struct InMemory final : Results {
+struct InMemoryResults final : ResultCache {
   std::map<std::string, std::string> held;
   std::optional<std::string> find(const std::string& key) override {
     const auto it = held.find(key);
@@ -130,18 +130,18 @@ struct InMemory final : Results {
 void DraggedBranch(benchmark::State& state) {
   const Scene rest = with(ficus(), {in_sky}), bent = with(rest, {bent_by(static_cast<int>(state.range(0)))});
   const NodeId node = rest.roots.front()->id;
-  InMemory results;
+  InMemoryResults results;
   LightingOptions options{.rays = 256, .results = &results, .turning = {node}};
   Lighting start = lighting_of(rest, options);
   if (state.range(1) != 0) {
-    const TransferModel model = learnt_model(
+    const TransferModel model = trained_model(
         *start.turning.at(node), [&](int k) { return with(rest, {bent_by(3 * k - 90)}).roots.front()->object; },
         {.poses = 60, .rays = 128});
     results.keep(transfer_model_key(*rest.roots.front()->object, model.sites), bytes_of(model));
     start = lighting_of(rest, options);
   }
-  const TurnedLight& turning = *start.turning.at(node);
-  for (auto _ : state) benchmark::DoNotOptimize(turned_lighting(rest, start, bent)->left_out);
+  const DragLight& turning = *start.turning.at(node);
+  for (auto _ : state) benchmark::DoNotOptimize(dragged_lighting(rest, start, bent)->left_out);
   const Lighting truth = lighting_of(bent, {.rays = 256, .turning = {node}});
   const std::vector<Radiance>& traced = truth.turning.at(node)->start().after;
   const std::vector<Radiance> turned = turning.light_on(*bent.roots.front()->object);
@@ -170,7 +170,7 @@ void DraggedFrame(benchmark::State& state) {
   std::vector<Lighting> lights;
   for (int k = 0; k < 8; ++k) {
     scenes.push_back(with(rest, {bent_by(30 + k)}));
-    lights.push_back(*turned_lighting(rest, start, scenes[follows ? static_cast<std::size_t>(k) : 0]));
+    lights.push_back(*dragged_lighting(rest, start, scenes[follows ? static_cast<std::size_t>(k) : 0]));
   }
   View view;
   view.camera.eye = {0.7, 1.2, 5.6};

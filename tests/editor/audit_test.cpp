@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-struct InMemory final : Results {
+struct InMemoryResults final : ResultCache {
   std::map<std::string, std::string> held;
   std::optional<std::string> find(const std::string& key) override {
     const auto it = held.find(key);
@@ -109,7 +109,7 @@ View view_from(const Vec3& eye) {
 // Compares pictures with the effects planned for `budget` (in 1/255) with pictures of all effects. Returns the sum of
 // the bounds of omitted effects, in display colours 0 … 1.
 double left_out_within_bounds(const Scene& edited, double budget, const std::vector<View>& views) {
-  static InMemory results;  // cache of traced light, shared by all cases
+  static InMemoryResults results;  // cache of traced light, shared by all cases
   static Renderer renderer;
   // A coarse light chart, for speed; bounds and light use the same nodes.
   LightingOptions options{.rays = 64, .spacing = 8, .most_nodes = 6000, .results = &results};
@@ -138,14 +138,14 @@ class Audit : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Samples, Audit, ::testing::ValuesIn(edited_samples),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
-TEST_P(Audit, WhatWasLeftOutStaysWithinItsBounds) {
+TEST_P(Audit, OmittedEffectsStayWithinBounds) {
   static const Scene before = samples();
   const Scene edited = with(before, GetParam().edits);
   const std::vector<View> views{view_from({2.5, 2, 3}), view_from({-3, 1, 1}), view_from({0.5, -1, -3.5})};
   double most_left_out = 0;
   for (const double budget : is_deep ? std::vector{1.0, 6.0, 40.0} : std::vector{6.0, 40.0})
     most_left_out = std::max(most_left_out, left_out_within_bounds(edited, budget, views));
-  EXPECT_EQ(most_left_out > 0, GetParam().leaves_out) << "the case does not test what it should";
+  EXPECT_EQ(most_left_out > 0, GetParam().leaves_out) << "this case must omit an effect if and only if it is marked so";
 }
 
 // Random scenes for the audit: one sample or both, with one to four edits that move, remove or add something.
@@ -214,7 +214,7 @@ class RandomScript {
   std::string said_;
 };
 
-TEST(RandomAudit, WhatWasLeftOutOfRandomScriptsStaysWithinItsBounds) {
+TEST(RandomAudit, OmittedEffectsStayWithinBounds) {
   int left_out = 0;
   for (int seed = 1; seed <= cases(3, 200); ++seed) {
     RandomScript script(static_cast<unsigned>(seed));
@@ -223,7 +223,7 @@ TEST(RandomAudit, WhatWasLeftOutOfRandomScriptsStaysWithinItsBounds) {
     const double budget = script.budget();
     left_out += left_out_within_bounds(scene, budget, {script.view(), script.view()}) > 0 ? 1 : 0;
   }
-  EXPECT_GT(left_out, is_deep ? 20 : -1) << "the scripts do not test what they should";
+  EXPECT_GT(left_out, is_deep ? 20 : -1) << "too few scripts omit an effect";
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "editor/commands/session.h"
+#include "editor/actions/session.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/scene_files.h"
@@ -23,7 +23,7 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 // Light knows the geometry at baking time after delete, transform, separate, merge, remove, erase, duplicate and bend.
-TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
+TEST(LightEdit, EditsRememberBakedGeometry) {
   const Scene scene = with_light(table());
   EXPECT_TRUE(lighting_of(scene).maps.empty());
   const auto after = [](const Scene& from, std::vector<json> lines) {
@@ -56,7 +56,7 @@ TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
   // A copy is another object and does not replace the removed part.
   const Scene copied = after(cut, {{{"op", "duplicate"}, {"node", "table"}, {"translate", {2.1, 0, 0}}}});
   EXPECT_TRUE(runs(lighting_of(copied), "removed shadow table"));
-  EXPECT_NE(decided(lighting_of(copied), "cast shadow table.2→table"), nullptr);
+  EXPECT_NE(decision_named(lighting_of(copied), "cast shadow table.2→table"), nullptr);
   // Bent slightly and then cut: both changes are traced together.
   const Scene both = after(
       scene, {{{"op", "bend"}, {"node", "table"}, {"degrees", 0.01}, {"axis", {1, 0, 0}}, {"direction", {0, 1, 0}}},
@@ -77,7 +77,7 @@ TEST(LightEdit, EditsRememberWhatLightWasBakedOn) {
 }
 
 // A saved scene stores the geometry that light was baked on: read again, light gives the same picture.
-TEST_F(DocumentTest, SavedScenesKeepWhatLightWasBakedOn) {
+TEST_F(DocumentTest, SavedScenesStoreBakedGeometry) {
   const Scene scene = with_light(table());
   const json box = {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}};
   const json separate = {{"op", "separate"}, {"node", "table"}, {"as", "box"}};
@@ -114,7 +114,8 @@ TEST_F(DocumentTest, SavedScenesKeepWhatLightWasBakedOn) {
     EXPECT_EQ(before.maps.size(), after.maps.size());
     const Image lit = renderer.render(made, view, {}, &before), again = renderer.render(back, view, {}, &after);
     EXPECT_EQ(lit, again);
-    EXPECT_NE(lit == renderer.render(made, view), after.maps.size() > 0) << "light is to be seen where it changes any";
+    EXPECT_NE(lit == renderer.render(made, view), after.maps.size() > 0)
+        << "light must change the picture if it has maps";
     // Saved again, the files are the same, without duplicates.
     format_named("rebake").write(back, path(name + " again"), {}, {});
     EXPECT_EQ(scene_files(path(name)), scene_files(path(name + " again")));
@@ -143,7 +144,7 @@ TEST_F(DocumentTest, SavedScenesKeepWhatLightWasBakedOn) {
   EXPECT_EQ(read_file(path("dark/scene.json")), read_file(path("unlit/scene.json")));
 }
 
-TEST_F(DocumentTest, WhatLightWasBakedOnIsReadAsFarAsItCanBe) {
+TEST_F(DocumentTest, ReadsExtremeBakedGeometryAndRejectsInvalid) {
   const Scene scene = with_light(table());
   const json box = {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}};
   const auto moved_by = [&](double way) {
@@ -177,7 +178,7 @@ TEST_F(DocumentTest, WhatLightWasBakedOnIsReadAsFarAsItCanBe) {
   };
   EXPECT_TRUE(refused("bodies", [](json& node) { node["bodies"] = {{"a", node["bodies"][0]}}; }));
   EXPECT_TRUE(refused("bodies", [](json& node) { node["bodies"] = json::array(); }));
-  EXPECT_TRUE(refused("below the scene", [](json& node) { node["bodies"][0]["folder"] = "../near/table"; }));
+  EXPECT_TRUE(refused("must be inside the scene's folder", [](json& node) { node["bodies"][0]["folder"] = "../near/table"; }));
   EXPECT_TRUE(refused("12 numbers", [](json& node) { node["bodies"][0]["transform"] = {1, 2}; }));
   fs::remove(path("near/table/baked.bin"));
   EXPECT_TRUE(refused("baked.bin", [](json&) {}));

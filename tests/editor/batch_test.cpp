@@ -45,7 +45,7 @@ class Batch : public ::testing::Test {
   std::map<std::string, std::string> messages;
 };
 
-TEST_F(Batch, EveryResultIsThatOfTheScriptAlone) {
+TEST_F(Batch, ResultsMatchASingleRun) {
   options.jobs = 2;
   EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::done}, {"c", Status::done}}));
   const std::string alone = (folder_.path() / "alone").string();
@@ -59,7 +59,7 @@ TEST_F(Batch, EveryResultIsThatOfTheScriptAlone) {
   EXPECT_EQ(folder_bytes(options.out), once) << "a second run gives the same bytes";
 }
 
-TEST_F(Batch, ResumeRemembersAMissedQuality) {
+TEST_F(Batch, ResumeRemembersMissedPsnr) {
   export_scene(scene_of(made_object({.columns = 4, .rows = 2, .seed = 99})), folder_.path() / "other", {});
   write_text(options.script,
              R"({"op": "import", "path": ")" + (folder_.path() / "other").string() + R"("}
@@ -73,20 +73,20 @@ TEST_F(Batch, ResumeRemembersAMissedQuality) {
     const std::vector<BatchResult> results = run_batch(options, {}, [](const BatchResult&) {});
     ASSERT_EQ(results.size(), 1U);
     EXPECT_EQ(results[0].status, status) << results[0].message;
-    EXPECT_TRUE(results[0].below_asked);
-    EXPECT_NE(results[0].message.find("missed the psnr"), std::string::npos);
+    EXPECT_TRUE(results[0].below_requested_psnr);
+    EXPECT_NE(results[0].message.find("an export is below the requested psnr; the log"), std::string::npos);
     options.resume = true;
   }
 }
 
-TEST_F(Batch, FailuresStandAlone) {
+TEST_F(Batch, FailuresAreIsolated) {
   fs::remove(folder_.path() / "scenes/b/mlp.json");
   EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::failed}, {"c", Status::done}}));
   EXPECT_NE(messages["b"].find("scenes/b"), std::string::npos) << messages["b"];
   EXPECT_FALSE(fs::exists(options.out / "b"));
 }
 
-TEST_F(Batch, ResumeLeavesOutWhatIsDoneAndStillHolds) {
+TEST_F(Batch, ResumeSkipsValidResults) {
   fs::rename(folder_.path() / "scenes/b/mlp.json", folder_.path() / "kept");
   run();
   fs::rename(folder_.path() / "kept", folder_.path() / "scenes/b/mlp.json");
@@ -118,7 +118,7 @@ TEST_F(Batch, ShardsShareTheScenes) {
       << first;
 }
 
-TEST_F(Batch, ResumeLooksAtThePictureOfLightToo) {
+TEST_F(Batch, ResumeChecksTheEnvironmentMap) {
   const auto sky = folder_.path() / "sky.exr";
   write_light_picture(sky, 16, [](const Vec3&) { return Radiance(1, 1, 1); });
   write_text(options.script, R"({"op": "light", "source": "picture", "picture": "{sky}"})");
@@ -130,7 +130,7 @@ TEST_F(Batch, ResumeLooksAtThePictureOfLightToo) {
   EXPECT_EQ(run()["a"], Status::done);
 }
 
-TEST_F(Batch, ResumeLooksAtEverythingThatWasReadAndWritten) {
+TEST_F(Batch, ResumeChecksInputsAndOutputs) {
   export_scene(scene_of(made_object({.columns = 8, .rows = 4, .seed = 9})), folder_.path() / "more", {});
   write_text(options.script, R"({"op": "import", "path": "{also}", "as": "more"})");
   options.variables = {"also=" + (folder_.path() / "more").string()};
@@ -138,15 +138,15 @@ TEST_F(Batch, ResumeLooksAtEverythingThatWasReadAndWritten) {
   EXPECT_EQ(run()["a"], Status::done);
   EXPECT_EQ(run()["a"], Status::skipped);
   std::ofstream(folder_.path() / "more/mlp.json", std::ios::app) << " ";
-  EXPECT_EQ(run()["a"], Status::done) << "what the script imported is another";
+  EXPECT_EQ(run()["a"], Status::done) << "an imported scene has changed";
   EXPECT_EQ(run()["a"], Status::skipped);
   for (const auto& file : fs::recursive_directory_iterator(options.out / "a"))
     if (file.path().extension() == ".png") fs::resize_file(file.path(), 100);
   EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::skipped}, {"c", Status::skipped}}))
-      << "a result that was cut off is made again";
+      << "a truncated result must be made again";
 }
 
-TEST_F(Batch, ShardsFindOutThatTheyExportToOneFolder) {
+TEST_F(Batch, ShardsDetectACommonOutputFolder) {
   write_text(options.script, R"({"op": "export", "out": "{to}/same"})");
   options.variables = {"to=" + folder_.path().string()};
   std::size_t done = 0, failed = 0;
@@ -163,7 +163,7 @@ TEST_F(Batch, ShardsFindOutThatTheyExportToOneFolder) {
 }
 
 // A script that exports onto another input scene would replace it before it is processed.
-TEST_F(Batch, NothingIsWrittenOverAnyScene) {
+TEST_F(Batch, RejectsExportsOverInputScenes) {
   const auto before = folder_bytes(folder_.path() / "scenes");
   write_text(options.script, R"({"op": "export", "out": "{to}/b"})");
   options.variables = {"to=" + (folder_.path() / "scenes").string()};
@@ -178,7 +178,7 @@ TEST_F(Batch, NothingIsWrittenOverAnyScene) {
   EXPECT_THROW(batch_scenes(options), FileError);
 }
 
-TEST_F(Batch, NothingIsWrittenOverWhatAnotherScriptReads) {
+TEST_F(Batch, RejectsExportsOverImportsOfOtherScenes) {
   const auto other = [&](const std::string& name) { return folder_.path() / "others" / name; };
   for (const char* name : {"a", "b", "c"}) export_scene(scene_of(made_object()), other(name), {});
   const auto before = folder_bytes(folder_.path() / "others");
@@ -197,7 +197,7 @@ TEST_F(Batch, NothingIsWrittenOverWhatAnotherScriptReads) {
     for (const auto& [name, status] : run()) EXPECT_EQ(status, Status::done) << name << ": " << messages[name];
 }
 
-TEST_F(Batch, ReportsReplaceNoFileThatTheScriptReads) {
+TEST_F(Batch, RejectsReportOverInputFile) {
   write_text(folder_.path() / "cage-of-a.obj", "v 0 0 0\n");
   write_text(options.script, R"({"op": "cage", "mesh": "{to}/cage-of-{name}.obj"})");
   options.variables = {"to=" + folder_.path().string()};
@@ -206,7 +206,7 @@ TEST_F(Batch, ReportsReplaceNoFileThatTheScriptReads) {
 }
 
 // Links in place of the batch's own files are replaced; their targets are not written to.
-TEST_F(Batch, ItsOwnFilesFollowNoLinks) {
+TEST_F(Batch, OwnFilesDoNotFollowLinks) {
   run();
   write_text(folder_.path() / "precious", "kept");
   for (const char* file : {"a.log", "a.files", "a.done"}) {
@@ -217,7 +217,7 @@ TEST_F(Batch, ItsOwnFilesFollowNoLinks) {
   EXPECT_EQ(read_file(folder_.path() / "precious"), "kept");
 }
 
-TEST_F(Batch, NamesWithLineBreaksAndNamesOfReportsDoNoHarm) {
+TEST_F(Batch, HandlesLineBreaksAndReportNamesInSceneNames) {
   fs::rename(folder_.path() / "scenes/a", folder_.path() / "scenes/a\nb");
   EXPECT_EQ(run()["a\nb"], Status::done);
   options.resume = true;
@@ -227,7 +227,7 @@ TEST_F(Batch, NamesWithLineBreaksAndNamesOfReportsDoNoHarm) {
   EXPECT_THROW(batch_scenes(options), FieldError);
 }
 
-TEST_F(Batch, AScriptMayExportItself) {
+TEST_F(Batch, ScriptsMayExportThemselves) {
   write_text(options.script, R"({"op": "export", "out": "{to}/{name}-own"})");
   options.variables = {"to=" + folder_.path().string()};
   run();
@@ -236,11 +236,11 @@ TEST_F(Batch, AScriptMayExportItself) {
   options.resume = true;
   EXPECT_EQ(run()["a"], Status::skipped);
   fs::remove_all(folder_.path() / "a-own");
-  EXPECT_EQ(run()["a"], Status::done) << "its result is gone";
+  EXPECT_EQ(run()["a"], Status::done) << "the result was deleted";
   EXPECT_TRUE(fs::exists(folder_.path() / "a-own/mlp.json"));
 }
 
-TEST_F(Batch, AReportThatCannotBeWrittenEndsTheBatch) {
+TEST_F(Batch, UnwritableReportStopsTheBatch) {
   run();
   options.resume = true;
   std::size_t reports = 0;
@@ -252,21 +252,21 @@ TEST_F(Batch, AReportThatCannotBeWrittenEndsTheBatch) {
   EXPECT_EQ(reports, 1U);
 }
 
-TEST_F(Batch, TwoScenesCannotHaveOneResult) {
+TEST_F(Batch, RejectsOneOutputForTwoScenes) {
   write_text(options.script, R"({"op": "export", "out": "{to}/same"})");
   options.variables = {"to=" + folder_.path().string()};
   EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::failed}, {"c", Status::failed}}));
-  EXPECT_NE(messages["b"].find("is written for a too"), std::string::npos) << messages["b"];
+  EXPECT_NE(messages["b"].find("is also written for a"), std::string::npos) << messages["b"];
 }
 
-TEST_F(Batch, TwoScenesCannotHaveOneProject) {
+TEST_F(Batch, RejectsOneProjectForTwoScenes) {
   write_text(options.script, R"({"op": "save_project", "out": "{to}/same.rebake"})");
   options.variables = {"to=" + folder_.path().string()};
   EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::failed}, {"c", Status::failed}}));
-  EXPECT_NE(messages["b"].find("is written for a too"), std::string::npos) << messages["b"];
+  EXPECT_NE(messages["b"].find("is also written for a"), std::string::npos) << messages["b"];
 }
 
-TEST_F(Batch, AResultNeverReplacesItsScene) {
+TEST_F(Batch, RejectsOutputOverScenes) {
   options.out = folder_.path() / "scenes";
   EXPECT_THROW(batch_scenes(options), FieldError);
   // A results folder or a plain file among the scenes is not taken for a scene.
@@ -276,7 +276,7 @@ TEST_F(Batch, AResultNeverReplacesItsScene) {
   EXPECT_EQ(run().size(), 3U);
 }
 
-TEST_F(Batch, PatternsThatMatchNothingAndNamesTwiceAreRefused) {
+TEST_F(Batch, RejectsEmptyPatternsAndDuplicateNames) {
   options.scenes = {"/no/such/*"};
   EXPECT_THROW(batch_scenes(options), FieldError);
   fs::create_directories(folder_.path() / "more/a");

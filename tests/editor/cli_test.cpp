@@ -52,7 +52,7 @@ TEST_F(Cli, InfoAsJson) {
   for (const char* key : {"opaque_texels", "bounds", "memory"}) EXPECT_TRUE(info.contains(key)) << key;
 }
 
-TEST_F(Cli, RenderCompareAndTimes) {
+TEST_F(Cli, RenderCompareAndTiming) {
   const Outcome o = rebake_run("render " + in("ball") + " -o " + in("a.png") + " --size 64x48 --time 2 --plan --json");
   ASSERT_EQ(o.code, 0) << o.text;
   const auto report = nlohmann::json::parse(o.text);
@@ -64,7 +64,7 @@ TEST_F(Cli, RenderCompareAndTimes) {
   EXPECT_EQ(rebake_run("compare " + in("a.png") + " " + in("b.png") + " --min-psnr 90").code, 3);
 }
 
-TEST_F(Cli, LongWorkSaysHowLongItTakesBeforeItStarts) {
+TEST_F(Cli, AnnouncesDurationOfLongWork) {
   const std::string import = R"({"op": "import", "path": ")" + in("ball") + "\"}\n";
   const std::string moves = R"("moves": [{"points": [0], "translate": [1, 0, 0]}]})";
   write_text(in("fine.jsonl"), import + R"({"op": "cage", "node": "ball", "wrap": 0.019, )" + moves);
@@ -77,7 +77,7 @@ TEST_F(Cli, LongWorkSaysHowLongItTakesBeforeItStarts) {
 }
 
 // If standard error is closed, a new journal must not get its file descriptor, or messages would be written into it.
-TEST_F(Cli, ClosedOrFullStreamsHarmNothing) {
+TEST_F(Cli, SurvivesClosedOrFullStreams) {
   write_text(in("s.jsonl"), R"({"op": "import", "path": ")" + in("ball") + "\"}\n" +
                                 R"({"op": "select", "all": true})" + "\n" + R"({"op": "no such thing"})" + "\n");
   EXPECT_EQ(run("(" REBAKE_PROGRAM, "run " + in("s.jsonl") + " --journal " + in("j") + " 2>&-)").code, 1);
@@ -88,10 +88,10 @@ TEST_F(Cli, ClosedOrFullStreamsHarmNothing) {
   EXPECT_EQ(run("(" REBAKE_PROGRAM, "info " + in("ball") + " --json > /dev/full)").code, 1);
 }
 
-TEST_F(Cli, AnEmptyJournalNameIsWrongUse) { EXPECT_EQ(rebake_run("run " + in("ball") + " --journal ''").code, 2); }
+TEST_F(Cli, RejectsEmptyJournalName) { EXPECT_EQ(rebake_run("run " + in("ball") + " --journal ''").code, 2); }
 
 // A wrong path for a report must not overwrite a project, mesh or scene file.
-TEST_F(Cli, ReportsReplaceNothingButReports) {
+TEST_F(Cli, ReportsOverwriteOnlyReports) {
   write_text(in("m.obj"), "v 0 0 0\n");
   const std::string plain = "export " + in("ball") + " --plain -o " + in("out") + " --report ";
   EXPECT_EQ(rebake_run(plain + in("m.obj")).code, 1);
@@ -110,7 +110,7 @@ TEST_F(Cli, ReportsReplaceNothingButReports) {
   EXPECT_EQ(read_file(in("kept.jsonl")), before);
 }
 
-TEST_F(Cli, OutputsReplaceNothingThatTheirRunReads) {
+TEST_F(Cli, RejectsOutputsOverInputs) {
   write_text(in("m.obj"), "v 0 0 0\n");
   const Outcome trained = rebake_run("light train " + in("ball") + " -o " + in("m.obj") + " --edit '" +
                                      R"({"op": "cage", "mesh": ")" + in("m.obj") + R"("})" + "'");
@@ -126,16 +126,16 @@ TEST_F(Cli, OutputsReplaceNothingThatTheirRunReads) {
   EXPECT_EQ(folder_bytes(in("ball")), before);
 }
 
-TEST_F(Cli, ATerminalSeesABarThatIsWipedAgain) {
+TEST_F(Cli, TerminalShowsAndErasesProgressBar) {
   write_text(in("s.jsonl"), R"({"op": "import", "path": ")" + in("ball") + R"("})");
   const Outcome seen = run("TERM=xterm script -qec '" REBAKE_PROGRAM " run " + in("s.jsonl") + "' /dev/null", "");
   EXPECT_EQ(seen.code, 0) << seen.text;
   EXPECT_NE(seen.text.find("\r\033[K"), std::string::npos) << seen.text;
   EXPECT_NE(seen.text.find("[###"), std::string::npos) << seen.text;
-  EXPECT_EQ(seen.text.find("\\x"), std::string::npos) << "control codes are no text: " << seen.text;
+  EXPECT_EQ(seen.text.find("\\x"), std::string::npos) << "control codes must not be escaped: " << seen.text;
 }
 
-TEST_F(Cli, WithoutItsModulesItSaysWhichPictureAndWhatToDo) {
+TEST_F(Cli, MissingModulesAreNamedWithARemedy) {
   write_png({1, 1, {1, 2, 3}}, in("a.png"), {});
   const std::string alone = in("rebake");
   std::filesystem::copy_file(REBAKE_PROGRAM, alone);
@@ -149,7 +149,7 @@ TEST_F(Cli, WithoutItsModulesItSaysWhichPictureAndWhatToDo) {
   EXPECT_NE(trained.text.find("libtorch-dev"), std::string::npos) << trained.text;
 }
 
-TEST_F(Cli, WrongUseIsTwoFailureIsOne) {
+TEST_F(Cli, ExitCodes) {
   EXPECT_EQ(rebake_run("").code, 2);
   EXPECT_EQ(rebake_run("rendr").code, 2);
   EXPECT_EQ(rebake_run("--help").code, 0);
@@ -165,7 +165,7 @@ TEST_F(Cli, PipedOutputHasNoColourOrBars) {
   EXPECT_EQ(rebake_run("info /no/such").text.find('\033'), std::string::npos);
 }
 
-TEST_F(Cli, FullDiskLeavesWhatWasThere) {
+TEST_F(Cli, FullDiskKeepsPreviousExport) {
   std::filesystem::copy(folder_.path() / "ball", folder_.path() / "out");
   const auto before = folder_bytes(folder_.path() / "out");
   // A file size limit simulates a full disk; it applies to root too.
@@ -177,7 +177,7 @@ TEST_F(Cli, FullDiskLeavesWhatWasThere) {
 }
 
 // A run that fails after some edits keeps them in its journal.
-TEST_F(Cli, RecoverWritesNoProjectOfNothingAndNamesWhatIsGone) {
+TEST_F(Cli, RecoverNamesMissingSourcesAndWritesNoEmptyProject) {
   write_file_atomically(in("s.jsonl"),
                         R"({"op": "import", "path": ")" + in("ball") + R"("})" + "\n" +
                             R"({"op": "hide", "node": "ball"})" + "\n" + R"({"op": "hide", "node": "nobody"})" + "\n",
@@ -187,12 +187,12 @@ TEST_F(Cli, RecoverWritesNoProjectOfNothingAndNamesWhatIsGone) {
   const Outcome gone = rebake_run("recover " + in("j") + " -o " + in("p.rebake"));
   EXPECT_EQ(gone.code, 1) << gone.text;
   EXPECT_NE(gone.text.find("--source '" + in("ball") + "=NEW'"), std::string::npos) << gone.text;
-  EXPECT_FALSE(std::filesystem::exists(in("p.rebake"))) << "it would stand in the way of the next attempt";
+  EXPECT_FALSE(std::filesystem::exists(in("p.rebake"))) << "a file would block the next attempt";
   const Outcome wrong = rebake_run("recover " + in("j") + " -o " + in("p.rebake --source ") + in("bal=") + in("moved"));
-  EXPECT_NE(wrong.text.find("nothing was read from"), std::string::npos) << wrong.text;
+  EXPECT_NE(wrong.text.find("contains no source"), std::string::npos) << wrong.text;
   EXPECT_NE(wrong.text.find(in("ball")), std::string::npos) << wrong.text;
   const Outcome missed = rebake_run("recover " + in("j") + " -o " + in("p.rebake --source ") + in("ball=") + in("mov"));
-  EXPECT_NE(missed.text.find("looked for at " + in("mov")), std::string::npos) << missed.text;
+  EXPECT_NE(missed.text.find("(expected at " + in("mov")), std::string::npos) << missed.text;
   const Outcome found =
       rebake_run("recover " + in("j") + " -o " + in("p.rebake --source ") + in("ball=") + in("moved"));
   EXPECT_EQ(found.code, 0) << found.text;
@@ -205,7 +205,7 @@ TEST_F(Cli, RecoverWritesNoProjectOfNothingAndNamesWhatIsGone) {
   EXPECT_FALSE(std::filesystem::exists(in("q.rebake")));
 }
 
-TEST_F(Cli, RecoverReplacesNoProjectThatHoldsMore) {
+TEST_F(Cli, RecoverKeepsProjectWithMoreEdits) {
   const std::string import = R"({"op": "import", "path": ")" + in("ball") + R"("})" + "\n",
                     hide = R"({"op": "hide", "node": "ball"})"
                            "\n";
@@ -220,13 +220,13 @@ TEST_F(Cli, RecoverReplacesNoProjectThatHoldsMore) {
   const std::string project = read_file(in("p.rebake"));
   const Outcome refused = rebake_run("recover " + in("j") + " --replace -o " + in("p.rebake"));
   EXPECT_EQ(refused.code, 1);
-  EXPECT_NE(refused.text.find("holds 2 edits, more than the 1"), std::string::npos) << refused.text;
+  EXPECT_NE(refused.text.find("contains 2 edits, more than the 1"), std::string::npos) << refused.text;
   EXPECT_EQ(read_file(in("p.rebake")), project);
   EXPECT_TRUE(std::filesystem::exists(in("j")));
   EXPECT_EQ(rebake_run("recover " + in("j") + " -o " + in("q.rebake")).code, 0);
 }
 
-TEST_F(Cli, RecoverTakesPathsThatHoldEqualsSigns) {
+TEST_F(Cli, RecoverAcceptsEqualsSignsInPaths) {
   std::filesystem::rename(in("ball"), in("a=b"));
   write_file_atomically(in("s.jsonl"),
                         R"({"op": "import", "path": ")" + in("a=b") + "\"}\n" +
@@ -254,15 +254,15 @@ TEST_F(Cli, RecoverFindsTheMovedSourcesOfAProject) {
   EXPECT_EQ(found.code, 0) << found.text;
   EXPECT_EQ(rebake_run("info " + in("q.rebake")).code, 0);
   EXPECT_TRUE(std::filesystem::exists(in("p.rebake")));
-  EXPECT_EQ(rebake_run(relink + in("p.rebake")).code, 1) << "it is there already";
+  EXPECT_EQ(rebake_run(relink + in("p.rebake")).code, 1) << "the project exists already";
   EXPECT_EQ(rebake_run(relink + in("p.rebake --replace")).code, 0);
   EXPECT_EQ(rebake_run("info " + in("p.rebake")).code, 0);
 }
 
-TEST_F(Cli, ExportSaysThatItReplaces) {
-  EXPECT_EQ(rebake_run("export " + in("ball") + " -o " + in("out")).text.find("took the place"), std::string::npos);
+TEST_F(Cli, ExportReportsReplacement) {
+  EXPECT_EQ(rebake_run("export " + in("ball") + " -o " + in("out")).text.find("note: the existing folder was replaced"), std::string::npos);
   const Outcome again = rebake_run("export " + in("ball") + " -o " + in("out"));
-  EXPECT_NE(again.text.find("took the place of the folder that was there"), std::string::npos) << again.text;
+  EXPECT_NE(again.text.find("note: the existing folder was replaced"), std::string::npos) << again.text;
 }
 
 // Projects do not store undone edits: a journal that contains nothing else stays.
@@ -274,14 +274,14 @@ TEST_F(Cli, RecoverKeepsAJournalOfUndoneEdits) {
   ASSERT_EQ(rebake_run("run " + in("s.jsonl") + " --journal " + in("j")).code, 1);
   const Outcome undone = rebake_run("recover " + in("j") + " -o " + in("p.rebake"));
   EXPECT_EQ(undone.code, 1);
-  EXPECT_NE(undone.text.find("only edits that were undone"), std::string::npos) << undone.text;
+  EXPECT_NE(undone.text.find("contains only undone edits, so no project is"), std::string::npos) << undone.text;
   EXPECT_TRUE(std::filesystem::exists(in("j")));
   EXPECT_FALSE(std::filesystem::exists(in("p.rebake")));
   write_file_atomically(in("torn"), read_file(in("j")).substr(0, 60), {});
   const Outcome torn = rebake_run("recover " + in("torn") + " -o " + in("p.rebake"));
-  EXPECT_NE(torn.text.find("the first was being written"), std::string::npos) << torn.text;
+  EXPECT_NE(torn.text.find("contains no complete edit: the program ended"), std::string::npos) << torn.text;
   const Outcome twice = rebake_run("recover " + in("j") + " -o " + in("p.rebake --source a=b --source ./a=c"));
-  EXPECT_NE(twice.text.find("nothing was read from"), std::string::npos) << twice.text;
+  EXPECT_NE(twice.text.find("contains no source"), std::string::npos) << twice.text;
 }
 
 }  // namespace

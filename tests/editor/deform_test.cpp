@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-#include "editor/commands/session.h"
+#include "editor/actions/session.h"
 #include "editor/edits/deform/deforming.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
@@ -36,7 +36,7 @@ class DeformScript : public ::testing::Test {
     } catch (const ScriptError& error) {
       EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
     }
-    EXPECT_EQ(session.scene().roots, before.roots) << "nothing is lost";
+    EXPECT_EQ(session.scene().roots, before.roots) << "a failed edit must not change the scene";
   }
   Image picture() {
     View view;
@@ -53,7 +53,7 @@ class DeformScript : public ::testing::Test {
 };
 
 // Each stage of a deformation reports its progress and can be cancelled; the scene is then unchanged.
-TEST_F(DeformScript, LongDeformationsReportAndStopWhereverTheyAre) {
+TEST_F(DeformScript, LongDeformationsReportProgressAndCancel) {
   const Scene before = session.scene();
   const std::string moves = R"("moves": [{"points": [0], "translate": [0.1, 0, 0]}]})";
   for (const auto& [stage, line] :
@@ -73,7 +73,7 @@ TEST_F(DeformScript, LongDeformationsReportAndStopWhereverTheyAre) {
 }
 
 // While the window's tool holds the coordinates of a drag, the committed edit reuses them, with the same result.
-TEST_F(DeformScript, ACageTakesTheHarmonicCoordinatesThatAreHeld) {
+TEST_F(DeformScript, CageEditReusesHeldHarmonicCoordinates) {
   const std::string line =
       R"({"op": "cage", "node": "ball", "lattice": [2, 2, 2], "coordinates": "harmonic", "resolution": 16, )"
       R"("moves": [{"points": [0, 1], "translate": [0.3, 0, 0.1]}]})";
@@ -95,7 +95,7 @@ TEST_F(DeformScript, ACageTakesTheHarmonicCoordinatesThatAreHeld) {
   EXPECT_EQ(ball().sets[0].soup.positions(), moved);
 }
 
-TEST_F(DeformScript, ARigidMotionByACageIsThatOfTheNode) {
+TEST_F(DeformScript, RigidCageMotionMatchesNodeMotion) {
   const char* const moves =
       R"("moves": [{"box": {"min": [-9, -9, -9], "max": [9, 9, 9]}, "translate": [0.2, 0.1, -0.3], )"
       R"("rotate": {"axis": [1, 2, 0.5], "degrees": 70}, "pivot": [0, 0, 0]}]})";
@@ -103,7 +103,7 @@ TEST_F(DeformScript, ARigidMotionByACageIsThatOfTheNode) {
   const Image by_node = picture();
   run(R"({"op": "undo"})");
   const Image before = picture();
-  EXPECT_LT(compare(by_node, before, 2).psnr_db, 30) << "the motion shows";
+  EXPECT_LT(compare(by_node, before, 2).psnr_db, 30) << "the motion must change the picture";
   for (const char* cage :
        {R"("lattice": [2, 2, 2])", R"("wrap": 0.2)", R"("lattice": [1, 1, 1], "coordinates": "green")",
         R"("wrap": 0.2, "coordinates": "harmonic", "resolution": 16)"}) {
@@ -116,7 +116,7 @@ TEST_F(DeformScript, ARigidMotionByACageIsThatOfTheNode) {
 
 // All points of a box that is its own cage lie on faces, edges and corners of the cage, where gradients are one-sided
 // limits.
-TEST_F(DeformScript, ABoxTurnedByItsOwnCageLooksAsTurned) {
+TEST_F(DeformScript, BoxRotatedByItsOwnCageMatchesRotatedNode) {
   const Cage cells = lattice_cage(Box(Vec3(-0.75, -0.875, -0.625), Vec3(0.75, 0.875, 0.625)), 4, 4, 4);
   std::string text = "mtllib shape0.mtl\n";
   std::vector<Vec2> uvs;
@@ -159,7 +159,7 @@ TEST_F(DeformScript, ABoxTurnedByItsOwnCageLooksAsTurned) {
   }
 }
 
-TEST_F(DeformScript, OnlyBentObjectsPayForTheirTurnsAndThePlanSaysSo) {
+TEST_F(DeformScript, PlanRotatesRaysOnlyForBentObjects) {
   View view;
   view.camera.eye = {0, 0, 4};
   const std::string before = describe(plan(session.scene(), view).passes);
@@ -169,7 +169,7 @@ TEST_F(DeformScript, OnlyBentObjectsPayForTheirTurnsAndThePlanSaysSo) {
   EXPECT_EQ(describe(plan(session.scene(), view).passes), before);
 }
 
-TEST_F(DeformScript, EveryDeformationIsOneLine) {
+TEST_F(DeformScript, EveryDeformationRunsAsOneLine) {
   for (
       const char* line :
       {R"({"op": "bend", "node": "ball", "degrees": 40})",
@@ -184,22 +184,22 @@ TEST_F(DeformScript, EveryDeformationIsOneLine) {
     said.clear();
     run(line);
     EXPECT_NE(find(session.scene(), "ball")->object, before) << line;
-    EXPECT_NE(said.find("deformed, least det J"), std::string::npos) << said;
+    EXPECT_NE(said.find("deformed, minimum det J"), std::string::npos) << said;
     run(R"({"op": "undo"})");
     EXPECT_EQ(find(session.scene(), "ball")->object, before);
   }
 }
 
-TEST_F(DeformScript, AFoldIsReportedAndCanBeSelected) {
+TEST_F(DeformScript, FoldsAreReportedAndSelectable) {
   run(R"({"op": "bend", "node": "ball", "degrees": 300})");
-  EXPECT_NE(said.find("folds or collapses"), std::string::npos) << said;
+  EXPECT_NE(said.find("are folded or collapsed (det J ≤ 0):"), std::string::npos) << said;
   run(R"({"op": "select_folded"})");
   const std::size_t folded = count(*find(session.scene(), "ball")->selection);
   EXPECT_GT(folded, 10U);
   EXPECT_LT(folded, 1000U);
 }
 
-TEST_F(DeformScript, APointNamedTwiceMovesOnceAndGrowthIsReported) {
+TEST_F(DeformScript, DuplicatePointsMoveOnceAndGrowthIsReported) {
   run(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [7], "translate": [0.5, 0, 0]}]})");
   const auto once = ball().sets[0].soup.positions();
   run(R"({"op": "undo"})");
@@ -209,12 +209,12 @@ TEST_F(DeformScript, APointNamedTwiceMovesOnceAndGrowthIsReported) {
   run(R"({"op": "duplicate", "node": "ball", "as": "second"})");
   EXPECT_EQ(said.find("deformed"), std::string::npos) << "nothing was";
   run(R"({"op": "cage", "node": "second", "lattice": [1, 1, 1], "moves": [{"points": [[0, 7]], "scale": 2}]})");
-  EXPECT_NE(said.find("least det J 8"), std::string::npos) << said;
+  EXPECT_NE(said.find("minimum det J 8"), std::string::npos) << said;
   run(R"({"op": "cage", "node": "second", "lattice": [1, 1, 1], "moves": [{"points": [0], "translate": [10, 1, 1]}]})");
-  EXPECT_NE(said.find("the moved cage cuts through itself"), std::string::npos) << said;
+  EXPECT_NE(said.find("the moved cage intersects itself ("), std::string::npos) << said;
 }
 
-TEST_F(DeformScript, AJournaledCageNeedsNoFile) {
+TEST_F(DeformScript, JournalStoresTheCageMesh) {
   write_text(folder_.path() / "cage.obj",
              "v -2 -2 -2\nv 4 -2 -2\nv -2 4 -2\nv -2 -2 4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   run(R"({"op": "cage", "node": "ball", "mesh": "{here}/cage.obj", "moves": [{"points": [3], "translate": [0, 0, 3]}]})");
@@ -226,13 +226,13 @@ TEST_F(DeformScript, AJournaledCageNeedsNoFile) {
   EXPECT_EQ(ball().sets[0].soup.positions(), after);
 }
 
-TEST_F(DeformScript, ScenesKeepTurnsAndPlainFoldersSayWhatTheyLose) {
+TEST_F(DeformScript, ScenesStoreRotationsPlainFoldersReportTheLoss) {
   run(R"({"op": "twist", "node": "ball", "degrees": 120})");
   const Image bent = picture();
   said.clear();
   run(R"({"op": "export", "out": "{here}/plain"}
 {"op": "save", "out": "{here}/scene"})");
-  EXPECT_NE(said.find("how bends turn colours: ball"), std::string::npos) << said;
+  EXPECT_NE(said.find("how bends rotate colours: ball"), std::string::npos) << said;
   EXPECT_NE(said.find("dB PSNR over four sides"), std::string::npos) << said;
   run(R"({"op": "remove", "node": "ball"}
 {"op": "import", "path": "{here}/scene", "as": "ball"})");
@@ -243,12 +243,12 @@ TEST_F(DeformScript, ScenesKeepTurnsAndPlainFoldersSayWhatTheyLose) {
   EXPECT_EQ(ball().sets[0].soup.rotations(), nullptr);
 }
 
-TEST_F(DeformScript, ExportKeepsWhatItCanOfTurns) {
+TEST_F(DeformScript, ExportKeepsRigidRotations) {
   // A rigid motion by a cage is no bend: it is folded into the decoder, as a node's rotation is.
   run(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [[0, 7]], "rotate": {"axis": [0, 1, 0], "degrees": 90}}]})");
   const Image turned = picture();
   run(R"({"op": "export", "out": "{here}/turned"})");
-  EXPECT_EQ(said.find("how bends turn"), std::string::npos) << said;
+  EXPECT_EQ(said.find("keeps the colours from before the bend; save"), std::string::npos) << said;
   run(R"({"op": "import", "path": "{here}/turned", "as": "read"}
 {"op": "remove", "node": "ball"})");
   EXPECT_GE(compare(picture(), turned, 2).psnr_db, 50);
@@ -258,35 +258,36 @@ TEST_F(DeformScript, ExportKeepsWhatItCanOfTurns) {
 {"op": "bend", "node": "read", "degrees": 5, "box": {"min": [0, 0, 0], "max": [1, 0.1, 1]}, "frame": "bounds"})");
   const Scene flat = without_bends(session.scene());
   std::size_t quarter = 0;
-  for (const Turn& turn : *find(flat, "read")->object->sets[0].soup.rotations())
+  for (const PackedRotation& turn : *find(flat, "read")->object->sets[0].soup.rotations())
     quarter += std::abs(turn.matrix()(0, 2)) > 0.99 ? 1 : 0;
   EXPECT_GT(quarter, 500U);
 }
 
-TEST_F(DeformScript, PartsTurnedApartSayWhatTheirSeamsLose) {
+TEST_F(DeformScript, ReportsSeamsBetweenRotatedParts) {
   run(R"({"op": "select", "node": "ball", "half_space": {"point": [0, 0, 0], "normal": [0, 1, 0]}}
 {"op": "transform", "node": "ball", "selection": true, "rotate": {"axis": [0, 1, 0], "degrees": 40}, "pivot": [0, 0, 0]}
 {"op": "export", "out": "{here}/apart"})");
-  EXPECT_NE(said.find("parts of one decoder that are turned apart"), std::string::npos) << said;
+  EXPECT_NE(said.find("parts with different rotations now have"), std::string::npos) << said;
   said.clear();
   run(R"({"op": "undo"}
 {"op": "transform", "node": "ball", "translate": [0, 1, 0]}
 {"op": "export", "out": "{here}/whole"})");
-  EXPECT_EQ(said.find("turned apart"), std::string::npos) << said;
+  EXPECT_EQ(said.find("different rotations"), std::string::npos) << said;
 }
 
-TEST_F(DeformScript, ASphereWithoutACagePointTakesTheNearestWhereItMay) {
+TEST_F(DeformScript, EmptySphereTakesTheNearestPointIfAllowed) {
   const std::string sphere =
       R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"sphere": {"center": [1.5, 1.4, 1.3], "radius": 0.01}, "translate": [0.5, 0, 0])";
-  expect_error(sphere + "}]}", "no cage point lies inside");
+  expect_error(sphere + "}]}", "contains no cage vertex");
   run(sphere + R"(, "nearest": true}]})");
   const auto one = ball().sets[0].soup.positions();
   run(R"({"op": "undo"})");
   run(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [7], "translate": [0.5, 0, 0]}]})");
-  EXPECT_EQ(ball().sets[0].soup.positions(), one) << "the corner at the greatest x, y and z";
+  EXPECT_EQ(ball().sets[0].soup.positions(), one)
+      << "the nearest cage point is the corner with the greatest x, y and z";
 }
 
-TEST_F(DeformScript, BadInputSaysWhatToDo) {
+TEST_F(DeformScript, InvalidInputNamesARemedy) {
   expect_error(R"({"op": "cage", "node": "ball", "moves": []})", "at least one move");
   expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1], "moves": [{"points": [0]}]})",
                "three whole numbers");
@@ -295,9 +296,9 @@ TEST_F(DeformScript, BadInputSaysWhatToDo) {
   expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "wrap": 0.1, "moves": [{"points": [0]}]})",
                "at most one of");
   expect_error(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [8]}]})",
-               "the cage has 8 points");
+               "the cage has 8 vertices");
   expect_error(R"({"op": "cage", "node": "ball", "moves": [{"box": {"min": [5, 5, 5], "max": [6, 6, 6]}}]})",
-               "no cage point lies inside");
+               "contains no cage vertex");
   expect_error(R"({"op": "cage", "node": "ball", "moves": [{"translate": [1, 0, 0]}]})",
                "exactly one of points, box and sphere");
   expect_error(R"({"op": "cage", "node": "ball", "wrap": 3, "moves": [{"points": [0]}]})", "between 0.005 and 0.5");
@@ -305,7 +306,7 @@ TEST_F(DeformScript, BadInputSaysWhatToDo) {
   const std::string small =
       R"("mesh": {"vertices": [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]], "faces": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]}, )";
   expect_error(R"({"op": "cage", "node": "ball", "coordinates": "green", )" + small + R"("moves": [{"points": [0]}]})",
-               "lie outside the cage");
+               "are outside the cage");
   expect_error(R"({"op": "cage", "node": "ball", "coordinates": "bary", "moves": [{"points": [0]}]})",
                "must be mean_value");
   expect_error(
@@ -313,17 +314,17 @@ TEST_F(DeformScript, BadInputSaysWhatToDo) {
       "encloses nothing");
   expect_error(
       R"({"op": "cage", "node": "ball", "lattice": [40, 40, 40], "coordinates": "harmonic", "resolution": 256, "moves": [{"points": [0]}]})",
-      "2 at most");
+      "at most 2 GB");
   expect_error(
       R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [[0, 7]], "translate": [1e308, 0, 0]}]})",
-      "beyond what numbers can hold");
+      "would be too large");
   expect_error(R"({"op": "bend", "degrees": 10})", "no triangle is selected");
   expect_error(R"({"op": "taper", "node": "ball", "factor": 2, "spine": [[0, 0, 0], [0, 1, 0]]})", "leave it out");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 9, "origin": [0, 0, 0], "spine": [[0, 0, 0], [0, 1, 0]]})",
-               "contradicts the spine");
+               "cannot be combined with spine, which begins at");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 9, "spine": [[0, 0, 0]]})", "spine");
-  expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "axis": [0, 0, 0]})", "must have a length");
-  expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "from": 2, "to": 1})", "must lie below to");
+  expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "axis": [0, 0, 0]})", "must be finite and not zero");
+  expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "from": 2, "to": 1})", "must be less than to");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10, "falloff": -1})", "must not be negative");
   expect_error(R"({"op": "taper", "node": "ball", "factor": -1})", "not negative");
   expect_error(R"({"op": "handles", "node": "ball", "moves": [{"points": [0]}], "iterations": 0})",

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "editor/commands/session.h"
+#include "editor/actions/session.h"
 #include "editor/document/document.h"
 #include "editor/document/project.h"
 #include "editor/edits/nodes/import.h"
@@ -51,14 +51,14 @@ TEST_F(DocumentTest, UndoAndRedoWalkTheSameScenes) {
   EXPECT_EQ(exported(document.scene()), last);
   document.undo();
   act(document, R"({"op": "rename", "node": "part", "name": "piece"})");
-  EXPECT_FALSE(document.redo()) << "a new edit forgets what was undone";
+  EXPECT_FALSE(document.redo()) << "a new edit drops undone edits";
 }
 
-TEST_F(DocumentTest, WhatWasCarriedOutOnAnotherGroundIsDoneAgain) {
+TEST_F(DocumentTest, RecomputesPreviewResultsForAnotherGround) {
   Document document;
   import(document);
   const Edit move = read_edit({{"op", "transform"}, {"node", "ball"}, {"translate", {0, 1, 0}}}, document.scene());
-  const CarriedOut made = carried_out(document.scene(), {move});
+  const AppliedEdits made = apply_edits(document.scene(), {move});
   act(document, R"({"op": "ground", "height": -3})");
   document.edits({move}, {}, &made);
   EXPECT_EQ(document.scene().ground.height, -3);
@@ -66,7 +66,7 @@ TEST_F(DocumentTest, WhatWasCarriedOutOnAnotherGroundIsDoneAgain) {
 
 // A preview's result is committed as it is if it was computed from the same scene and edits; otherwise edits are
 // applied again.
-TEST_F(DocumentTest, WhatIsCarriedOutAlreadyIsNotDoneAgain) {
+TEST_F(DocumentTest, ReusesMatchingPreviewResults) {
   Document document;
   document.keep_journal(path("journal"));
   import(document);
@@ -76,21 +76,22 @@ TEST_F(DocumentTest, WhatIsCarriedOutAlreadyIsNotDoneAgain) {
         document.scene())};
   };
   const Scene start = document.scene();
-  const CarriedOut made = carried_out(start, bend(30));
+  const AppliedEdits made = apply_edits(start, bend(30));
   document.edits(bend(30), {}, &made);
   EXPECT_EQ(document.scene().roots, made.scenes.back().roots);
   document.adjust(bend(30), {}, &made);
-  EXPECT_EQ(document.scene().roots, made.scenes.back().roots) << "the step before it is what that was made of";
+  EXPECT_EQ(document.scene().roots, made.scenes.back().roots)
+      << "the result was computed from the scene before the step";
   const auto bent = exported(document.scene());
   document.undo();
   document.edits(bend(30));
   EXPECT_EQ(exported(document.scene()), bent) << "the same bytes either way";
   EXPECT_NE(document.scene().roots, made.scenes.back().roots);
   document.edits(bend(30), {}, &made);
-  EXPECT_NE(document.scene().roots, made.scenes.back().roots) << "it stands on another scene";
+  EXPECT_NE(document.scene().roots, made.scenes.back().roots) << "the result is for another scene";
   document.undo(2);
   document.edits(bend(31), {}, &made);
-  EXPECT_NE(document.scene().roots, made.scenes.back().roots) << "another edit was wanted";
+  EXPECT_NE(document.scene().roots, made.scenes.back().roots) << "the result is for another edit";
   document = Document();
   const Scene back = Document::recover(path("journal")).document.scene();
   Document other;
@@ -99,7 +100,7 @@ TEST_F(DocumentTest, WhatIsCarriedOutAlreadyIsNotDoneAgain) {
   EXPECT_EQ(exported(back), exported(other.scene()));
 }
 
-TEST_F(DocumentTest, AThrownEditLeavesEverything) {
+TEST_F(DocumentTest, FailedEditChangesNothing) {
   Document document;
   import(document);
   const auto node = document.scene().roots[0];
@@ -108,7 +109,7 @@ TEST_F(DocumentTest, AThrownEditLeavesEverything) {
   EXPECT_EQ(document.history().undo_count(), 1U);
 }
 
-TEST_F(DocumentTest, OldScenesAreDroppedWithinTheBudgetAndComputedAgain) {
+TEST_F(DocumentTest, EvictsScenesWithinBudgetAndRecomputes) {
   Document all, tight({}, 1);
   work(all);
   work(tight);
@@ -124,7 +125,7 @@ TEST_F(DocumentTest, OldScenesAreDroppedWithinTheBudgetAndComputedAgain) {
 }
 
 // Opening a long project, or recomputing an evicted scene, must not hold all scenes on the way in memory.
-TEST_F(DocumentTest, ScenesOnTheWayAreLetGoOf) {
+TEST_F(DocumentTest, ReleasesIntermediateScenes) {
   Document document;
   import(document);
   for (int k = 0; k < 40; ++k) act(document, R"({"op": "bend", "node": "ball", "degrees": 1, "axis": [0, 1, 0]})");
@@ -140,7 +141,7 @@ TEST_F(DocumentTest, ScenesOnTheWayAreLetGoOf) {
     most = std::max(most, alive());
   });
   EXPECT_EQ(passed.size(), document.history().undo_count());
-  EXPECT_LE(most, 3U) << "the one before, this one, and one that is shared";
+  EXPECT_LE(most, 3U) << "the previous scene, this one, and a shared one";
 
   Document tight = Document::open(path("long.rebake"), {}, {}, 1);
   EXPECT_EQ(tight.history().kept(), 2U);
@@ -173,7 +174,7 @@ TEST_F(DocumentTest, SharedPartsAreCountedOnce) {
   EXPECT_LT(document.history().memory(), one + 20 * 1000) << "a moved node shares its triangles and texels";
 }
 
-TEST_F(DocumentTest, AJournalGivesTheWorkBack) {
+TEST_F(DocumentTest, RecoversFromJournal) {
   Document document;
   document.keep_journal(path("j"));
   work(document);
@@ -188,7 +189,7 @@ TEST_F(DocumentTest, AJournalGivesTheWorkBack) {
   EXPECT_EQ(exported(recovered.document.scene()), bytes);
 }
 
-TEST_F(DocumentTest, EditsMadeTogetherAreOneStepEverywhere) {
+TEST_F(DocumentTest, JoinedEditsAreOneStep) {
   Document document;
   document.keep_journal(path("j"));
   import(document);
@@ -214,7 +215,7 @@ TEST_F(DocumentTest, EditsMadeTogetherAreOneStepEverywhere) {
   EXPECT_TRUE(document.undo());
   EXPECT_TRUE(document.redo_step());
   EXPECT_EQ(document.scene().roots, hidden.roots);
-  EXPECT_FALSE(document.undo(9)) << "all that was asked for, or nothing";
+  EXPECT_FALSE(document.undo(9)) << "undo must do all requested steps or none";
   EXPECT_EQ(document.scene().roots, hidden.roots);
 
   document.save(path("p.rebake"));
@@ -228,7 +229,7 @@ TEST_F(DocumentTest, EditsMadeTogetherAreOneStepEverywhere) {
   }
 }
 
-TEST_F(DocumentTest, AStepThatNoJournalTakesIsNotUndone) {
+TEST_F(DocumentTest, UndoFailsIfTheJournalCannotBeWritten) {
   Document document;
   document.keep_journal(path("j"));
   import(document);
@@ -276,7 +277,7 @@ TEST_F(DocumentTest, ScriptJournalAndProjectGiveTheSameBytes) {
   EXPECT_EQ(exported(session.scene()), bytes);
 }
 
-TEST_F(DocumentTest, AJournalCutAtAnyByteLosesTheEditInFlightAtMost) {
+TEST_F(DocumentTest, TruncatedJournalLosesAtMostTheLastEdit) {
   Document document;
   document.keep_journal(path("j"));
   for (int k = 0; k < 3; ++k) act(document, json{{"op", "background"}, {"color", {k / 3.0, 0, 0}}});
@@ -298,7 +299,7 @@ TEST_F(DocumentTest, AJournalCutAtAnyByteLosesTheEditInFlightAtMost) {
   }
 }
 
-TEST_F(DocumentTest, KilledAtAnyMomentAndTwiceTheReportedEditsAreThere) {
+TEST_F(DocumentTest, ReportedEditsSurviveKills) {
   // The child reports each finished edit by one byte. Both the first run and the recovered one are killed.
   std::mt19937 random(11);
   int in_flight = 0;
@@ -332,7 +333,7 @@ TEST_F(DocumentTest, KilledAtAnyMomentAndTwiceTheReportedEditsAreThere) {
       kill(child, SIGKILL);
       int status = 0;
       waitpid(child, &status, 0);
-      ASSERT_TRUE(WIFSIGNALED(status)) << "the child failed by itself";
+      ASSERT_TRUE(WIFSIGNALED(status)) << "the child was not killed but failed";
       char byte = 0;
       while (read(ends[0], &byte, 1) == 1) ++reported;
       close(ends[0]);
@@ -350,30 +351,30 @@ TEST_F(DocumentTest, KilledAtAnyMomentAndTwiceTheReportedEditsAreThere) {
   RecordProperty("killed_between_disk_and_report", in_flight);
 }
 
-TEST_F(DocumentTest, BadJournalsAreRefusedWithWhatIsWrong) {
+TEST_F(DocumentTest, RejectsInvalidJournalsWithReason) {
   const auto says = [&](const std::string& bytes, const std::string& what) {
     std::ofstream(path("bad"), std::ios::binary) << bytes;
     const std::string error = error_of([&] { Document::recover(path("bad")); });
     EXPECT_NE(error.find(what), std::string::npos) << error;
-    EXPECT_EQ(read_file(path("bad")), bytes) << "left as it was";
+    EXPECT_EQ(read_file(path("bad")), bytes) << "the file must not change";
   };
-  says(std::string(300, 'x'), "is not a journal");
+  says(std::string(300, 'x'), "is not a Rebake journal");
   {
     Document document;
     document.keep_journal(path("j"));
     for (int k = 0; k < 3; ++k) act(document, R"({"op": "background", "color": [0, 0, 1]})");
-    EXPECT_NE(error_of([&] { Document().keep_journal(path("j")); }).find("is there already"), std::string::npos);
-    EXPECT_NE(error_of([&] { Document::recover(path("j")); }).find("written by another Rebake"), std::string::npos);
+    EXPECT_NE(error_of([&] { Document().keep_journal(path("j")); }).find("already exists"), std::string::npos);
+    EXPECT_NE(error_of([&] { Document::recover(path("j")); }).find("is in use by another Rebake process"), std::string::npos);
   }
   const auto line = [](const std::string& text) { return hash_text(content_hash(text)) + " " + text + "\n"; };
   says(line(R"({"rebake_journal":4})"), "newer version");
 }
 
-TEST_F(DocumentTest, WhatIsNoJournalIsLeftAlone) {
+TEST_F(DocumentTest, LeavesOtherFilesAlone) {
   for (const std::string& bytes :
        {std::string("my shopping list\n"), std::string("0123456789abcdef {\n"), std::string("x")}) {
     write_text(path("notes.txt"), bytes);
-    EXPECT_NE(error_of([&] { Document::recover(path("notes.txt")); }).find("is not a journal"), std::string::npos);
+    EXPECT_NE(error_of([&] { Document::recover(path("notes.txt")); }).find("is not a Rebake journal"), std::string::npos);
     EXPECT_EQ(read_file(path("notes.txt")), bytes);
   }
   EXPECT_NE(error_of([&] { Document::recover(path("sources")); }).find("not a file"), std::string::npos);
@@ -385,7 +386,7 @@ TEST_F(DocumentTest, WhatIsNoJournalIsLeftAlone) {
   EXPECT_EQ(Document::recover(path("empty")).edits, 1U);
 }
 
-TEST_F(DocumentTest, HiddenAndLockedNodesAreLeftOutWhereNoneIsNamed) {
+TEST_F(DocumentTest, SkipsHiddenAndLockedNodesByDefault) {
   Document document;
   import(document);
   act(document, R"({"op": "duplicate", "node": "ball", "as": "kept"})");
@@ -419,25 +420,25 @@ TEST_F(DocumentTest, ProjectsMoveWithTheirSourcesAndReportWhatChanged) {
   const Document opened = Document::open(path("elsewhere/p.rebake"));
   EXPECT_EQ(exported(opened.scene()), bytes);
   EXPECT_TRUE(opened.scene().views.contains("front"));
-  EXPECT_NE(error_of([&] { Document::open(path("p.rebake")); }).find("sources/ball is not there any more"),
+  EXPECT_NE(error_of([&] { Document::open(path("p.rebake")); }).find("sources/ball no longer exists"),
             std::string::npos);
   std::ofstream(path("elsewhere/sources/ball/mlp.json"), std::ios::app) << " ";
   EXPECT_NE(error_of([&] { Document::open(path("elsewhere/p.rebake")); }).find("sources/ball has changed"),
             std::string::npos);
 }
 
-TEST_F(DocumentTest, BadProjectsAreRefusedWithWhatIsWrong) {
+TEST_F(DocumentTest, RejectsInvalidProjectsWithReason) {
   const auto says = [&](const std::string& text, const std::string& what) {
     write_text(path("bad.rebake"), text);
     const std::string error = error_of([&] { Document::open(path("bad.rebake")); });
     EXPECT_NE(error.find(what), std::string::npos) << error;
   };
   says("{", "is not a valid project");
-  says("{}", "is not a project of Rebake");
+  says("{}", "is not a Rebake project");
   says(R"({"rebake_project": 9, "sources": [], "edits": []})", "newer version");
   says(R"({"rebake_project": 1, "edits": []})", "sources");
   says(R"({"rebake_project": 1, "sources": [], "edits": [{"op": "remove", "node": 3}]})", "edit 1: ");
-  says(R"({"rebake_project": 1, "sources": [], "edits": [{"op": "render"}]})", "is no edit");
+  says(R"({"rebake_project": 1, "sources": [], "edits": [{"op": "render"}]})", "is not an edit");
 }
 
 TEST_F(DocumentTest, MergedNodesKeepTheirSelections) {
@@ -483,7 +484,7 @@ TEST_F(DocumentTest, SeparateThenMergeGivesTheOriginalBytes) {
 }
 
 // A node keeps its name even if a project later finds its folder under another name, through a link or after a move.
-TEST_F(DocumentTest, ImportsKeepTheNameThatTheirNodeGot) {
+TEST_F(DocumentTest, ImportsKeepNodeNames) {
   std::filesystem::create_directory_symlink(path("sources/ball"), path("link"));
   Document document;
   for (int twice = 0; twice < 2; ++twice)

@@ -60,9 +60,9 @@ std::shared_ptr<const BakedObject> noisy_sheet(int side) {
   return object;
 }
 
-TEST(ExportMemory, ALargeEditedSetIsInMemoryOnce) {
+TEST(ExportMemory, LargeEditedSetIsInMemoryOnce) {
 #ifdef REBAKE_SANITIZED
-  GTEST_SKIP() << "sanitizers need memory of their own";
+  GTEST_SKIP() << "sanitizers use additional memory";
 #endif
   const TemporaryFolder folder;
   constexpr int side = 4096;

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "editor/commands/session.h"
+#include "editor/actions/session.h"
 #include "editor/edits/nodes/import.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
@@ -38,7 +38,7 @@ class Guards : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Guards, OutputsLeaveTheJournalOfTheRunAlone) {
+TEST_F(Guards, RejectsOutputsOverTheJournal) {
   fs::create_directory_symlink(path("."), path("link"));
   for (const std::string out : {"work.journal", "link/work.journal", "./work.journal"})
     for (const std::string line :
@@ -58,17 +58,17 @@ TEST_F(Guards, OutputsLeaveTheJournalOfTheRunAlone) {
   EXPECT_EQ(program("recover {}/work.journal -o {}/back.rebake --replace"), 0) << log();
 }
 
-TEST_F(Guards, ProjectsDoNotReplaceTheJournalOfAnotherRun) {
+TEST_F(Guards, RejectsProjectOverAnotherJournal) {
   write("script.jsonl", import_line() + R"({"op": "no such op"})");
   EXPECT_EQ(program("run {}/script.jsonl --journal {}/other.rebake"), 1);
   write("save.jsonl",
         import_line() + fmt::format("{{\"op\": \"save_project\", \"out\": \"{}\"}}", path("other.rebake").string()));
   EXPECT_EQ(program("run {}/save.jsonl"), 1);
-  EXPECT_NE(log().find("is a journal that may hold work"), std::string::npos) << log();
+  EXPECT_NE(log().find("is a journal that may contain unsaved work:"), std::string::npos) << log();
   EXPECT_EQ(program("recover {}/other.rebake -o {}/back.rebake"), 0) << log();
 }
 
-TEST_F(Guards, AnEditFailsWhenItsJournalIsGone) {
+TEST_F(Guards, EditFailsWithoutItsJournal) {
   Session session;
   session.document.keep_journal(path("work.journal"));
   Import import;
@@ -78,13 +78,13 @@ TEST_F(Guards, AnEditFailsWhenItsJournalIsGone) {
     fs::remove(path("work.journal"));
     if (replaced) write("work.journal", "something else");
     EXPECT_THROW(session.edit(import), FileError);
-    EXPECT_EQ(session.scene().roots.size(), 1U) << "not acknowledged, so not done";
+    EXPECT_EQ(session.scene().roots.size(), 1U) << "an edit that is not acknowledged must not be applied";
   }
   session.document.discard_journal();
-  EXPECT_EQ(read_file(path("work.journal")), "something else") << "another's file stays";
+  EXPECT_EQ(read_file(path("work.journal")), "something else") << "a foreign file must stay";
 }
 
-TEST_F(Guards, AJournalInsideOfASceneRefusesItsImport) {
+TEST_F(Guards, RejectsImportThatContainsTheJournal) {
   fs::copy(REBAKE_SOURCE "/samples/scenes/kettle", path("kettle"), fs::copy_options::recursive);
   Session session;
   session.document.keep_journal(path("kettle/work.journal"));
@@ -95,7 +95,7 @@ TEST_F(Guards, AJournalInsideOfASceneRefusesItsImport) {
   session.document.discard_journal();
 }
 
-TEST_F(Guards, ScenesOfLaterLinesAreReplacedAsAWholeOnly) {
+TEST_F(Guards, LaterImportsMayOnlyBeReplacedAsAWhole) {
   const auto line_of = [&](const char* form) { return fmt::format(fmt::runtime(form), path("later").string()); };
   fs::copy(fs::path(REBAKE_SOURCE) / "samples/scenes/kettle", path("later"), fs::copy_options::recursive);
   const std::string render =
@@ -117,7 +117,7 @@ TEST_F(Guards, ScenesOfLaterLinesAreReplacedAsAWholeOnly) {
   EXPECT_EQ(program("run {}/script.jsonl"), 0) << log();
 }
 
-TEST_F(Guards, OutputsLeaveWhatTheRunReadsAlone) {
+TEST_F(Guards, RejectsOutputsOverInputs) {
   write("script.jsonl", import_line());
   EXPECT_EQ(program("run {}/script.jsonl --list-files {}/script.jsonl"), 1);
   EXPECT_EQ(read_file(path("script.jsonl")), import_line());
@@ -143,7 +143,7 @@ TEST_F(Guards, OutputsLeaveWhatTheRunReadsAlone) {
               "\"translate\": [0, 0, 1]}}]}}\n{{\"op\": \"render\", \"out\": \"{0}\", \"width\": 16, \"height\": 16}}",
               path("cage.obj").string()));
   EXPECT_EQ(program("run {}/script.jsonl"), 1);
-  EXPECT_NE(log().find("the mesh of a cage that this run reads"), std::string::npos) << log();
+  EXPECT_NE(log().find("a cage mesh that this run reads"), std::string::npos) << log();
   EXPECT_EQ(read_file(path("cage.obj")), mesh);
 }
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "editor/commands/plain_scene.h"
+#include "editor/actions/plain_scene.h"
 #include "mesh_ops/light/lighting.h"
 #include "render/graph/effects.h"
 #include "render/picture.h"
@@ -79,11 +79,11 @@ View looking(const Vec3& direction) {
 
 int middle(const Image& image) { return image.rgb[(32 * 65 + 32) * 3]; }
 
-TEST(Highlights, StayWithTheLightWhenASurfaceTurns) {
+TEST(Highlights, StayWithTheLightOfARotatedSurface) {
   const double degrees = 45, radians = degrees * std::numbers::pi / 180;
   const Scene scene = tilted(plate(6), degrees);
   const Lighting lighting = lighting_of(scene);
-  ASSERT_TRUE(runs(lighting, "highlights plate")) << decided(lighting, "highlights plate")->why;
+  ASSERT_TRUE(runs(lighting, "highlights plate")) << decision_named(lighting, "highlights plate")->why;
   const TextureSet& set = scene.roots.front()->object->sets.front();
   const auto map = lighting.map_of(scene.roots.front()->id, 0, set);
   ASSERT_TRUE(map && map->gloss);
@@ -128,7 +128,7 @@ Vec3 towards_highlight(double degrees) {
   return sun - 2 * now.dot(sun) * now;
 }
 
-TEST(Highlights, OfAMirroredNodeAreThoseOfTheMirroredScene) {
+TEST(Highlights, MirroredNodeMatchesMirroredScene) {
   // Mirroring at a plane that contains the sun and the axis of the tilt, which reverses the tilt.
   const Vec3 across = Vec3::UnitX().cross(sun).normalized();
   const Mat3 mirror = Mat3::Identity() - 2 * across * across.transpose();
@@ -137,7 +137,7 @@ TEST(Highlights, OfAMirroredNodeAreThoseOfTheMirroredScene) {
                                 [&](Node& node) { node.to_parent.linear() = mirror; });
   const Scene scene = tilted(plate(6), 45), other = tilted(in_sun(mirrored_plate), -45);
   const Lighting lighting = lighting_of(scene), other_lighting = lighting_of(other);
-  ASSERT_TRUE(runs(other_lighting, "highlights plate")) << decided(other_lighting, "highlights plate")->why;
+  ASSERT_TRUE(runs(other_lighting, "highlights plate")) << decision_named(other_lighting, "highlights plate")->why;
   Renderer renderer;
   for (const Vec3& direction : {towards_highlight(45), Vec3(Vec3(0.1, -0.8, -0.5).normalized())}) {
     const View view = looking(direction), other_view = looking(mirror * direction);
@@ -147,13 +147,13 @@ TEST(Highlights, OfAMirroredNodeAreThoseOfTheMirroredScene) {
   }
 }
 
-TEST(Highlights, OfSeveralPatchesAreThoseOfOne) {
+TEST(Highlights, SeveralPatchesMatchOne) {
   // The second patch has the opposite normal: both sides of a surface reflect.
   const std::vector<LitQuad> two{flat_quad({-1, 0, -1}, {0, 0, 2}, {0.9, 0, 0}, 4, 2),
                                  flat_quad({-0.1, 0, -1}, {1.1, 0, 0}, {0, 0, 2}, 2, 4)};
   const Scene scene = tilted(plate(6), 45), other = tilted(in_sun(unlit_plate(6, two)), 45);
   const Lighting lighting = lighting_of(scene), other_lighting = lighting_of(other);
-  ASSERT_TRUE(runs(other_lighting, "highlights plate")) << decided(other_lighting, "highlights plate")->why;
+  ASSERT_TRUE(runs(other_lighting, "highlights plate")) << decision_named(other_lighting, "highlights plate")->why;
   Renderer renderer;
   const View view = looking(towards_highlight(45));
   const Image as_one = renderer.render(scene, view, {}, &lighting),
@@ -166,7 +166,7 @@ TEST(Highlights, OfSeveralPatchesAreThoseOfOne) {
   }
 }
 
-TEST(Highlights, AreInPlainFolders) {
+TEST(Highlights, PlainFoldersContainHighlights) {
   const Scene scene = tilted(plate(6), 45);
   const Lighting lighting = lighting_of(scene);
   FuseOptions options;
@@ -179,31 +179,32 @@ TEST(Highlights, AreInPlainFolders) {
   const int lit = middle(renderer.render(scene, view, {}, &lighting)), unlit = middle(renderer.render(scene, view)),
             baked = middle(renderer.render(plain, view));
   ASSERT_GT(lit, unlit + 20);
-  EXPECT_GT(baked, unlit + 0.8 * (lit - unlit)) << "most of what light adds: " << unlit << " to " << lit;
+  EXPECT_GT(baked, unlit + 0.8 * (lit - unlit))
+      << "most of the added light must be in the folder: " << unlit << " to " << lit;
 }
 
-TEST(Highlights, OfMatteSurfacesAreLeftOut) {
+TEST(Highlights, OmittedForMatteSurfaces) {
   const Scene scene = tilted(plate(0), 30);
   const Lighting lighting = lighting_of(scene);
-  const LightDecision* decision = decided(lighting, "highlights plate");
+  const LightDecision* decision = decision_named(lighting, "highlights plate");
   ASSERT_NE(decision, nullptr);
   EXPECT_FALSE(decision->runs);
-  EXPECT_NE(decision->why.find("do not change with the eye"), std::string::npos);
+  EXPECT_NE(decision->why.find("its colours do not depend on the view direction"), std::string::npos);
   EXPECT_TRUE(runs(lighting, "self-shadow plate"));
   EXPECT_FALSE(plan(scene, looking({0, -1, 0}), {}, nullptr, &lighting).runs(effects::highlights));
 }
 
-TEST(Highlights, AreLeftOutWhereNobodyAsksForThem) {
+TEST(Highlights, OmittedIfNotRequested) {
   Scene scene = tilted(plate(6), 30);
   scene = apply(scene, read_edit({{"op", "light"}, {"source", "sky"}, {"effects", {"self"}}}, scene)).scene;
   const Lighting lighting = lighting_of(scene);
-  ASSERT_NE(decided(lighting, "highlights plate"), nullptr);
-  EXPECT_EQ(decided(lighting, "highlights plate")->why, "not asked for");
+  ASSERT_NE(decision_named(lighting, "highlights plate"), nullptr);
+  EXPECT_EQ(decision_named(lighting, "highlights plate")->why, "disabled in the light settings");
   // Without a rotation there is no decision about highlights.
-  EXPECT_EQ(decided(lighting_of(plate(6)), "highlights plate"), nullptr);
+  EXPECT_EQ(decision_named(lighting_of(plate(6)), "highlights plate"), nullptr);
 }
 
-TEST(Gloss, MirrorsByFresnelTheSkyAndSuns) {
+TEST(Gloss, ReflectsSkyAndSunsByFresnel) {
   Gloss gloss;
   for (sh::Coefficients& channel : gloss.sky) channel[0] = 2 / sh::basis({0, 0, 1})[0];
   gloss.suns = {{Vec3(0, 0, 1), 0.01, Radiance(3, 2, 1)}};

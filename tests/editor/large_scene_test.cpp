@@ -8,7 +8,7 @@
 namespace rebake::test {
 namespace {
 
-TEST(LargeScene, IsLikeARealOneAtATenthOfItsSize) {
+TEST(LargeScene, MatchesStatisticsOfRealScenes) {
   // The same ratios with a tenth of the triangles and texels.
   const LargeSceneOptions options{.triangles = 72'300, .texture_side = 1295};
   const auto object = large_synthetic_scene(options);
@@ -24,7 +24,7 @@ TEST(LargeScene, IsLikeARealOneAtATenthOfItsSize) {
   EXPECT_GE(box.diagonal().norm(), options.extent);
 }
 
-TEST(LargeScene, IsTheSameEveryTime) {
+TEST(LargeScene, IsDeterministic) {
   const LargeSceneOptions options{.sets = 2, .triangles = 400, .texture_side = 200};
   const auto a = large_synthetic_scene(options), b = large_synthetic_scene(options);
   for (std::size_t s = 0; s < 2; ++s) {

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "editor/commands/plain_scene.h"
-#include "editor/commands/session.h"
+#include "editor/actions/plain_scene.h"
+#include "editor/actions/session.h"
 #include "editor/document/project.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/scene_folder.h"
@@ -23,7 +23,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-TEST(LightEdit, IsReadBackAsItWasWritten) {
+TEST(LightEdit, RoundTripsThroughJson) {
   const Scene scene = table();
   const json line = {{"op", "light"},        {"effects", {"self", "match"}}, {"source", "sky"}, {"zenith", {1, 2, 3}},
                      {"sun", {0, 1, 1}},     {"sun_degrees", 3.5},           {"budget", 2},     {"rays", 128},
@@ -38,7 +38,7 @@ TEST(LightEdit, IsReadBackAsItWasWritten) {
   EXPECT_EQ(apply(lit, read_edit({{"op", "light"}, {"effects", {"none"}}}, lit)).scene.light, nullptr);
 }
 
-TEST(LightEdit, NamesTheFieldThatIsWrong) {
+TEST(LightEdit, ErrorsNameTheField) {
   const Scene scene = table();
   for (const auto& [field, value] : std::vector<std::pair<std::string, json>>{{"effects", {"shade"}},
                                                                               {"effects", json::array()},
@@ -61,7 +61,7 @@ TEST(LightEdit, NamesTheFieldThatIsWrong) {
   }
 }
 
-TEST_F(DocumentTest, LightIsUndoneAndSavedWithTheScene) {
+TEST_F(DocumentTest, UndoesAndSavesLight) {
   Document document;
   act(document, R"({"op": "light", "effects": ["cast"], "source": "sky"})");
   ASSERT_NE(document.scene().light, nullptr);
@@ -76,14 +76,14 @@ TEST_F(DocumentTest, LightIsUndoneAndSavedWithTheScene) {
   EXPECT_EQ(*back.light, *scene.light);
 }
 
-Scene last_scene(const fs::path& project, const Relinked& links = {}) {
+Scene last_scene(const fs::path& project, const SourceLinks& links = {}) {
   Scene last;
   read_project(
       project, [&](const History::Entry&, const Scene& after) { last = after; }, links);
   return last;
 }
 
-TEST_F(DocumentTest, PictureOfLightIsASourceLikeWhatIsImported) {
+TEST_F(DocumentTest, EnvironmentMapIsASource) {
   write_light_picture(path("sky.exr"), 64, [](const Vec3& d) { return Radiance(1 + d.x(), 1 + d.y(), 1); });
   Document document;
   document.keep_journal(path("journal"));
@@ -107,11 +107,11 @@ TEST_F(DocumentTest, PictureOfLightIsASourceLikeWhatIsImported) {
   try {
     last_scene(path("beside.rebake"));
     ADD_FAILURE() << "opened without its picture";
-  } catch (const SourcesGone& gone) {
+  } catch (const SourcesUnavailable& gone) {
     ASSERT_EQ(gone.sources.size(), 1U);
     EXPECT_EQ(gone.sources[0].path, path("sky.exr"));
   }
-  const Relinked links{{path("sky.exr"), path("elsewhere/sky.exr")}};
+  const SourceLinks links{{path("sky.exr"), path("elsewhere/sky.exr")}};
   EXPECT_EQ(last_scene(path("beside.rebake"), links).light->picture->light, light.picture->light);
   document = Document();
   EXPECT_EQ(Document::recover(path("journal")).gone.size(), 1U);
@@ -123,10 +123,10 @@ TEST_F(DocumentTest, PictureOfLightIsASourceLikeWhatIsImported) {
                FileError);
   // Another picture at the same path is not accepted.
   write_light_picture(path("sky.exr"), 64, [](const Vec3&) { return Radiance(1, 1, 1); });
-  EXPECT_THROW(last_scene(path("beside.rebake")), SourcesGone);
+  EXPECT_THROW(last_scene(path("beside.rebake")), SourcesUnavailable);
 }
 
-TEST_F(DocumentTest, SavedScenesHoldThePictureOfTheirLight) {
+TEST_F(DocumentTest, SavedScenesContainTheirEnvironmentMap) {
   write_light_picture(path("sky.exr"), 512, [](const Vec3& d) {
     return d.dot(Vec3(0.6, 0.8, 0)) > 0.9998 ? Radiance(2000, 2000, 1000) : Radiance(1 + d.x(), 1 + d.y(), 1);
   });
@@ -148,7 +148,7 @@ TEST_F(DocumentTest, SavedScenesHoldThePictureOfTheirLight) {
   EXPECT_EQ(*given_light(*back.light), *given_light(*scene.light));
 }
 
-TEST(LightEdit, APlainFolderShowsWhatLightMakesOfColours) {
+TEST(LightEdit, PlainFolderContainsCorrectedColours) {
   Scene scene = with_light(table());
   for (const json& line : std::vector<json>{
            {{"op", "select"}, {"box", {{"min", {-0.4, 0.01, -0.4}}, {"max", {0.4, 1, 0.4}}}}}, {{"op", "delete"}}})
@@ -157,10 +157,10 @@ TEST(LightEdit, APlainFolderShowsWhatLightMakesOfColours) {
   ASSERT_FALSE(lighting.maps.empty());
   PlainReport report;
   FuseOptions options;
-  options.way = FuseWay::keep;
+  options.way = FuseMethod::keep;
   options.training.steps = 500;
   const Scene plain = plain_scene(scene, lighting, options, report, {});
-  EXPECT_FALSE(report.exact) << "one decoder, nothing bent: but the colours are others";
+  EXPECT_FALSE(report.exact) << "one decoder and no bend, but corrected colours";
   EXPECT_EQ(plain.light, nullptr);
   Renderer renderer;
   measure_pictures(renderer, scene, lighting, plain, report, {}, 200);
@@ -176,11 +176,11 @@ TEST(LightEdit, APlainFolderShowsWhatLightMakesOfColours) {
   EXPECT_TRUE(exact.exact);
 }
 
-TEST(LightEdit, ResultsAreFoundAgain) {
+TEST(LightEdit, CachesResults) {
   const Scene scene = with_light(table());
   const Edit bend = read_edit({{"op", "bend"}, {"node", "table"}, {"degrees", 40}, {"axis", {0, 1, 0}}}, scene);
   const Scene bent = apply(scene, bend).scene;
-  Remembered results;
+  CountingResults results;
   const Lighting first = lighting_of(bent, {.results = &results});
   const int before = results.found;
   const std::size_t held = results.held.size();
@@ -200,7 +200,7 @@ TEST(LightEdit, ResultsAreFoundAgain) {
 }
 
 // Light changes pictures of edited scenes; pictures of unedited scenes keep every byte.
-TEST(LightEdit, PicturesChangeWithTheLightOnly) {
+TEST(LightEdit, ChangesPicturesOnlyWhereLightChanges) {
   const Scene scene = with_light(table());
   const Scene cut = [&] {
     Scene made = scene;

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "editor/commands/views.h"
-#include "editor/gui/view/lens.h"
+#include "editor/actions/views.h"
+#include "editor/gui/view/viewport_projection.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -31,7 +31,7 @@ TEST(Navigation, OrbitingKeepsTheDistanceAndStopsAtThePoles) {
   EXPECT_LT(direction.y(), 1);
 }
 
-TEST(Navigation, ASceneOpensOnItsDenseMiddleNotOutsideItsBackdrop) {
+TEST(Navigation, FramesTheDenseCentreOfAScene) {
   Scene scene = scene_of(made_object({.columns = 64, .rows = 32}), "thing");
   const Camera alone = framing_of(scene, 1);
   Node backdrop;
@@ -53,7 +53,7 @@ TEST(Navigation, ASceneOpensOnItsDenseMiddleNotOutsideItsBackdrop) {
   EXPECT_NEAR(both.target.x(), 3, 1e-6);
 }
 
-TEST(Navigation, APathPassesItsViewsAndTurnsBetweenThem) {
+TEST(Navigation, CameraPathPassesViewsOnArcs) {
   Camera other = camera();
   other.eye = camera().target + Eigen::AngleAxisd(1.2, Vec3::UnitY()) * (camera().eye - camera().target);
   Camera third = orbited(other, 100, 30, height);
@@ -67,37 +67,37 @@ TEST(Navigation, APathPassesItsViewsAndTurnsBetweenThem) {
   const double distance = (camera().eye - camera().target).norm();
   double longest = 0;
   for (std::size_t k = 0; k < 11; ++k) {
-    EXPECT_NEAR((path[k].eye - path[k].target).norm(), distance, 1e-9) << "no shortcut through the middle";
+    EXPECT_NEAR((path[k].eye - path[k].target).norm(), distance, 1e-9) << "the path must keep the orbit distance";
     longest = std::max(longest, (path[k + 1].eye - path[k].eye).norm());
   }
   EXPECT_LT(longest, 0.3 * distance) << "no jumps";
   EXPECT_LT((camera_path({camera()}, 3).back().eye - camera().eye).norm(), 1e-12);
 }
 
-TEST(Navigation, AFullTurnComesBack) {
+TEST(Navigation, FullOrbitReturns) {
   Camera moved = camera();
   for (int k = 0; k < 8; ++k) moved = orbited(moved, 2.0 * height / 8, 0, height);
   EXPECT_LT((moved.eye - camera().eye).norm(), 1e-12);
 }
 
-TEST(Navigation, PanningTakesTheTargetWithThePointer) {
-  for (const Camera& from : {camera(), projected_otherwise(camera())}) {
-    const Vec2 before = *Lens(from, width, height).pixel(from.target);
+TEST(Navigation, PanMovesTheTargetWithThePointer) {
+  for (const Camera& from : {camera(), toggled_projection(camera())}) {
+    const Vec2 before = *ViewportProjection(from, width, height).pixel(from.target);
     const Camera moved = panned(from, 30, -20, height);
-    const Vec2 after = *Lens(moved, width, height).pixel(from.target);
+    const Vec2 after = *ViewportProjection(moved, width, height).pixel(from.target);
     EXPECT_LT((after - before - Vec2(30, -20)).norm(), 1e-9);
   }
 }
 
 TEST(Navigation, ZoomingKeepsThePointUnderThePointer) {
   const Vec3 point(0.8, 0.4, -0.5);
-  for (const Camera& from : {camera(), projected_otherwise(camera())}) {
-    const Vec2 before = *Lens(from, width, height).pixel(point);
+  for (const Camera& from : {camera(), toggled_projection(camera())}) {
+    const Vec2 before = *ViewportProjection(from, width, height).pixel(point);
     Camera moved = from;
     for (int k = 0; k < 10; ++k) moved = zoomed(moved, point, 0.8);
-    EXPECT_LT((*Lens(moved, width, height).pixel(point) - before).norm(), 1e-7);
-    EXPECT_NEAR(Lens(moved, width, height).unit(point), Lens(from, width, height).unit(point) * std::pow(0.8, 10),
-                1e-15);
+    EXPECT_LT((*ViewportProjection(moved, width, height).pixel(point) - before).norm(), 1e-7);
+    EXPECT_NEAR(ViewportProjection(moved, width, height).unit(point),
+                ViewportProjection(from, width, height).unit(point) * std::pow(0.8, 10), 1e-15);
     // Endless zooming ends before numbers underflow.
     for (int k = 0; k < 1000; ++k) moved = zoomed(moved, point, 0.5);
     EXPECT_NO_THROW(check(moved));
@@ -106,9 +106,9 @@ TEST(Navigation, ZoomingKeepsThePointUnderThePointer) {
 
 TEST(Navigation, FramingShowsAllOfABoxAtAnyAspect) {
   const Box box(Vec3(-3, -1, -2), Vec3(1, 0.5, 0));
-  for (const Camera& from : {camera(), projected_otherwise(camera())})
+  for (const Camera& from : {camera(), toggled_projection(camera())})
     for (const double aspect : {0.3, 1.0, 3.0}) {
-      const Lens lens(framed(from, box, aspect), static_cast<int>(600 * aspect), 600);
+      const ViewportProjection lens(framed(from, box, aspect), static_cast<int>(600 * aspect), 600);
       for (int corner = 0; corner < 8; ++corner) {
         const auto pixel = lens.pixel(box.corner(static_cast<Box::CornerType>(corner)));
         ASSERT_TRUE(pixel);
@@ -119,7 +119,7 @@ TEST(Navigation, FramingShowsAllOfABoxAtAnyAspect) {
     }
 }
 
-TEST(Navigation, AxisViewsLookAlongThem) {
+TEST(Navigation, AxisViewsLookAlongTheAxis) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {-1.0, 1.0}) {
       const Camera moved = along_axis(camera(), sign * Vec3::Unit(axis));
@@ -136,55 +136,58 @@ TEST(Navigation, AxisViewsLookAlongThem) {
     }
 }
 
-TEST(Navigation, AnotherProjectionKeepsTheTargetsSizeAndComesBack) {
-  const Camera flat = projected_otherwise(camera());
+TEST(Navigation, ProjectionSwitchKeepsSizeAndReturns) {
+  const Camera flat = toggled_projection(camera());
   ASSERT_TRUE(flat.orthographic());
   EXPECT_NO_THROW(check(flat));
-  EXPECT_NEAR(Lens(camera(), width, height).unit(camera().target), Lens(flat, width, height).unit(camera().target),
-              1e-15);
-  const Camera back = projected_otherwise(flat);
+  EXPECT_NEAR(ViewportProjection(camera(), width, height).unit(camera().target),
+              ViewportProjection(flat, width, height).unit(camera().target), 1e-15);
+  const Camera back = toggled_projection(flat);
   EXPECT_FALSE(back.orthographic());
   EXPECT_LT((back.eye - camera().eye).norm(), 1e-12);
   // Zooming in and out again restores the camera, including its depth range.
   const Box around(Vec3(-1, -1, -1), Vec3(1, 1, 1));
-  const Camera begun = with_depth_for(flat, around);
+  const Camera begun = with_clip_planes_for(flat, around);
   Camera there = begun;
-  for (int k = 0; k < 40; ++k) there = with_depth_for(zoomed(there, {0.1, 0.2, 0.3}, 0.8), around);
-  for (int k = 0; k < 40; ++k) there = with_depth_for(zoomed(there, {0.1, 0.2, 0.3}, 1.25), around);
+  for (int k = 0; k < 40; ++k) there = with_clip_planes_for(zoomed(there, {0.1, 0.2, 0.3}, 0.8), around);
+  for (int k = 0; k < 40; ++k) there = with_clip_planes_for(zoomed(there, {0.1, 0.2, 0.3}, 1.25), around);
   EXPECT_LT((there.eye - begun.eye).norm(), 1e-9);
   EXPECT_NEAR(there.far_plane, begun.far_plane, 1e-9);
   // However far one zooms in, nothing is clipped in front of the eye, and the picture stays the same.
   const Box box(Vec3(-1, -1, -1), Vec3(1, 1, 1));
-  const Camera close = zoomed(flat, flat.target, 1e-3), cleared = with_depth_for(close, box);
+  const Camera close = zoomed(flat, flat.target, 1e-3), cleared = with_clip_planes_for(close, box);
   EXPECT_EQ(cleared.ortho_height, close.ortho_height);
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 point = box.corner(static_cast<Box::CornerType>(corner));
-    EXPECT_GT(Lens(cleared, width, height).depth(point), cleared.near_plane);
-    EXPECT_LT((*Lens(cleared, width, height).pixel(point) - *Lens(close, width, height).pixel(point)).norm(), 1e-6);
+    EXPECT_GT(ViewportProjection(cleared, width, height).depth(point), cleared.near_plane);
+    EXPECT_LT((*ViewportProjection(cleared, width, height).pixel(point) -
+               *ViewportProjection(close, width, height).pixel(point))
+                  .norm(),
+              1e-6);
   }
 }
 
-TEST(Navigation, DepthRangesHoldTheSceneFromAnywhere) {
+TEST(Navigation, DepthRangeContainsTheScene) {
   const Box box(Vec3(-1, -1, -1), Vec3(1, 1, 1));
   for (const double away : {0.01, 1.0, 100.0, 1e5}) {
     Camera moved = camera();
     moved.eye = moved.target + Vec3(0, 0, away);
-    moved = with_depth_for(moved, box);
+    moved = with_clip_planes_for(moved, box);
     EXPECT_NO_THROW(check(moved));
     EXPECT_GT(moved.far_plane, (box.center() - moved.eye).norm() + 1);
   }
 }
 
-TEST(Lens, PixelAndRayAreInverse) {
-  for (const Camera& from : {camera(), projected_otherwise(camera())}) {
-    const Lens lens(from, width, height);
+TEST(ViewportProjection, PixelAndRayAreInverse) {
+  for (const Camera& from : {camera(), toggled_projection(camera())}) {
+    const ViewportProjection lens(from, width, height);
     for (const Vec2& pixel : {Vec2(0, 0), Vec2(320, 240), Vec2(637.5, 12.25)}) {
       const ViewRay ray = lens.ray(pixel);
       const Vec3 point = ray.origin + 3 * ray.direction;
       EXPECT_LT((*lens.pixel(point) - pixel).norm(), 1e-9);
       EXPECT_NEAR(lens.depth(point), 3, 1e-12);
       EXPECT_LT((*lens.pixel(point + lens.motion(point, {7, -5})) - pixel - Vec2(7, -5)).norm(), 1e-9);
-      EXPECT_LT(ray.direction.normalized().dot(lens.towards_eye(point)), -1 + 1e-12);
+      EXPECT_LT(ray.direction.normalized().dot(lens.direction_to_eye(point)), -1 + 1e-12);
     }
     const ViewRay middle = lens.ray({320, 240});
     EXPECT_EQ(lens.pixel(middle.origin - middle.direction).has_value(), from.orthographic());

@@ -1,5 +1,5 @@
 // Plain export of any scene: PSNR of its pictures. The thresholds are those that the documentation promises.
-#include "editor/commands/plain_scene.h"
+#include "editor/actions/plain_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include <numbers>
 #include <random>
 
-#include "editor/commands/export.h"
-#include "editor/commands/session.h"
-#include "editor/commands/views.h"
+#include "editor/actions/export_action.h"
+#include "editor/actions/session.h"
+#include "editor/actions/views.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/formats.h"
@@ -53,7 +53,7 @@ Scene two(const std::shared_ptr<const BakedObject>& a, const std::shared_ptr<con
   return with_added(scene, node, NodeId::none, 99);
 }
 
-TEST(Plain, TwoRealDecodersReachFortyDecibels) {
+TEST(Plain, TwoRealDecodersReach40Decibels) {
   REBAKE_ONLY_DEEP();
   const auto ball = morpheus_object("lego_ball", 24), tractor = morpheus_object("lego_tractor", 24);
   if (!ball) GTEST_SKIP() << "REBAKE_TEST_DATA has no lego_ball";
@@ -61,7 +61,7 @@ TEST(Plain, TwoRealDecodersReachFortyDecibels) {
   EXPECT_GE(report.whole.psnr_db, 40);
 }
 
-TEST(Plain, TwoRealDecodersInOneOfTheirWidthReachThirtySeven) {
+TEST(Plain, TwoRealDecodersReach37DecibelsAtTheirWidth) {
   REBAKE_ONLY_DEEP();
   const auto ball = morpheus_object("lego_ball", 24), tractor = morpheus_object("lego_tractor", 24);
   if (!ball) GTEST_SKIP() << "REBAKE_TEST_DATA has no lego_ball";
@@ -84,7 +84,7 @@ Scene edited(const std::vector<const char*>& lines) {
   return document.scene();
 }
 
-TEST(Plain, SamplesComposedReachFortyFourDecibels) {
+TEST(Plain, ComposedSamplesReach44Decibels) {
   REBAKE_ONLY_DEEP();
   const Scene scene = edited({R"({"op": "import", "as": "ficus"})", R"({"op": "import", "as": "kettle"})",
                               R"({"op": "transform", "node": "kettle", "translate": [1.25, -0.55, 0.5], "scale": 0.7,
@@ -96,13 +96,13 @@ TEST(Plain, SamplesComposedReachFortyFourDecibels) {
   // worst view has 36 dB. With one sample per pixel nothing is mixed.
   PlainReport made;
   const Scene plain = plain_scene(scene, {}, {}, made, {});
-  for (View view : judging_views(scene, 400)) {
+  for (View view : measurement_views(scene, 400)) {
     view.samples = 1;
     EXPECT_GE(compare(renderer().render(scene, view), renderer().render(plain, view), 2).psnr_db, 48);
   }
 }
 
-TEST(Plain, ABentBranchKeepsItsColours) {
+TEST(Plain, BentBranchReaches46Decibels) {
   REBAKE_ONLY_DEEP();
   const Scene scene =
       edited({R"({"op": "import", "as": "ficus"})",
@@ -128,7 +128,7 @@ TEST(Plain, ABentBranchKeepsItsColours) {
 }
 
 // If texels of a leaf use different branches, it is full of specks, which PSNR alone does not show.
-TEST(Plain, ABentBranchBesideAKettleHasFewSpecks) {
+TEST(Plain, BentBranchWithKettleHasFewSpecks) {
   REBAKE_ONLY_DEEP();
   const Scene scene =
       edited({R"({"op": "import", "as": "ficus"})", R"({"op": "import", "as": "kettle"})",
@@ -136,7 +136,7 @@ TEST(Plain, ABentBranchBesideAKettleHasFewSpecks) {
               R"({"op": "bend", "node": "ficus", "degrees": 70, "axis": [1, 0.3, 0], "direction": [0, -1, 0],
                   "box": {"min": [0.52, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds", "falloff": 0.15})"});
   FuseOptions options;
-  options.way = FuseWay::side_by_side;
+  options.way = FuseMethod::side_by_side;
   options.iterations = 2;
   const PlainReport report = plain_report(scene, options, 400);
   // With mixed branches: 37.8 dB and a share of 0.0042.
@@ -201,7 +201,7 @@ std::shared_ptr<const BakedObject> square(int side, int opaque, double sign) {
 }
 
 // An object of few texels may fill the picture: the decoder of the larger object alone would show it at 16.7 dB.
-TEST(Plain, ObjectsOfFewTexelsKeepTheirColours) {
+TEST(Plain, SmallObjectsKeepTheirColours) {
   for (const int large : is_deep ? std::vector{96, 272, 512} : std::vector{272}) {
     const auto small = square(64, 17, 1), other = square(1024, large, -1);
     Scene scene;
@@ -223,7 +223,7 @@ TEST(Plain, ObjectsOfFewTexelsKeepTheirColours) {
       EXPECT_GE(part.errors.psnr_db, 60) << part.node << " beside " << large;
     // From all sides, at edges of one object over the other, features are mixed before decoding instead of colours
     // after it.
-    for (const PlainReport::OfNode& of : report.nodes) EXPECT_GE(of.psnr_db, 40) << of.node << " beside " << large;
+    for (const PlainReport::NodeQuality& of : report.nodes) EXPECT_GE(of.psnr_db, 40) << of.node << " beside " << large;
     // Views from the front and from the back contain no such edge.
     for (const double side : {1.0, -1.0}) {
       View view;
@@ -265,14 +265,14 @@ std::shared_ptr<const BakedObject> random_square(std::mt19937& random, int opaqu
 
 // For two objects with any ratio of texels: if decoders side by side reproduce both well, the chosen method must
 // reproduce each of them as well.
-TEST(Plain, ChoosesNothingWorseForEitherObjectThanSideBySide) {
+TEST(Plain, NeverWorseThanSideBySide) {
   std::mt19937 random(11);
   int held = 0;
   for (int k = 0; k < cases(1, 20); ++k) {
     const double ratio = std::exp(std::uniform_real_distribution<double>(0, std::log(1000.0))(random));
     const auto few = static_cast<int>(8 + random() % 8), many = static_cast<int>(few * std::sqrt(ratio));
     const Scene scene = two(random_square(random, few), random_square(random, many));
-    const auto worst_part = [&](std::optional<FuseWay> way) {
+    const auto worst_part = [&](std::optional<FuseMethod> way) {
       FuseOptions options;
       options.training.steps = 50;
       options.way = way;
@@ -284,7 +284,7 @@ TEST(Plain, ChoosesNothingWorseForEitherObjectThanSideBySide) {
       for (const FuseReport::Part& part : report.texels.parts) worst = std::min(worst, part.errors.psnr_db);
       return worst;
     };
-    if (worst_part(FuseWay::side_by_side) < 50) continue;
+    if (worst_part(FuseMethod::side_by_side) < 50) continue;
     ++held;
     EXPECT_GE(worst_part(std::nullopt), 50) << "case " << k << ", 1 : " << ratio;
   }
@@ -313,7 +313,7 @@ class PlainExport : public DocumentTest {
   std::string said_;
 };
 
-TEST_F(PlainExport, IsOneFolderThatReadsBackAsItWasMeasured) {
+TEST_F(PlainExport, ExportedFolderHasTheReportedPsnr) {
   run(session_, action_);
   EXPECT_FALSE(std::filesystem::exists(path("plain") / "scene.json"));
   const Scene read = read_any(path("plain"), Axes::y_up);
@@ -327,7 +327,7 @@ TEST_F(PlainExport, IsOneFolderThatReadsBackAsItWasMeasured) {
   EXPECT_NE(said_.find("texels"), std::string::npos);
 }
 
-TEST_F(PlainExport, IsExactWhereOneDecoderIs) {
+TEST_F(PlainExport, ExactForOneDecoder) {
   act(session_.document, R"({"op": "remove", "node": "ball.2"})");
   run(session_, action_);
   EXPECT_NE(said_.find("exactly"), std::string::npos);
@@ -335,7 +335,7 @@ TEST_F(PlainExport, IsExactWhereOneDecoderIs) {
 }
 
 // Invisibly small rotations do not count as another orientation, and no triangle is lost.
-TEST_F(PlainExport, IsExactForTurnsThatNobodySees) {
+TEST_F(PlainExport, ExactForInvisibleRotations) {
   act(session_.document, R"({"op": "remove", "node": "ball.2"})");
   act(session_.document,
       R"({"op": "select", "node": "ball", "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds"})");
@@ -346,8 +346,8 @@ TEST_F(PlainExport, IsExactForTurnsThatNobodySees) {
   EXPECT_EQ(read_any(path("plain"), Axes::y_up).roots[0]->object->triangle_count(), triangles);
 }
 
-TEST_F(PlainExport, StoppedOrRefusedLeavesWhatWasThere) {
-  action_.way = FuseWay::side_by_side;  // the fastest method
+TEST_F(PlainExport, CancelOrFailureKeepsPreviousFolder) {
+  action_.way = FuseMethod::side_by_side;  // the fastest method
   run(session_, action_);
   const auto before = folder_bytes(path("plain"));
   std::atomic<bool> stop = false;
@@ -361,7 +361,7 @@ TEST_F(PlainExport, StoppedOrRefusedLeavesWhatWasThere) {
     PowerLoss calls;
     calls.fail_at(8, ENOSPC);
     const ReplacedFileCalls full(calls);
-    action_.way = FuseWay::side_by_side;
+    action_.way = FuseMethod::side_by_side;
     action_.keep = "auto";
     EXPECT_THROW(run(session_, action_), FileError);
   }

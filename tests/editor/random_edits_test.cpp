@@ -15,7 +15,7 @@ using nlohmann::json;
 using RandomEdits = DocumentTest;
 
 // Checks that selections match their triangles, and that IDs and names are unique.
-void expect_sound(const Scene& scene) {
+void expect_valid(const Scene& scene) {
   std::set<std::uint64_t> ids;
   std::set<std::string> names;
   for (const PlacedNode& placed : placed_nodes(scene)) {
@@ -33,7 +33,7 @@ void expect_sound(const Scene& scene) {
   }
 }
 
-TEST_F(RandomEdits, ThousandsOfRandomEditsKeepEveryInvariantAndUndoToTheStart) {
+TEST_F(RandomEdits, KeepInvariantsAndUndoToTheStart) {
   export_scene(scene_of(made_object({.columns = 6, .rows = 4, .cell = 4})), path("sources/small"), {});
   Document document({}, 256 << 20);  // less than all scenes need
   std::mt19937 random(3);
@@ -131,17 +131,17 @@ TEST_F(RandomEdits, ThousandsOfRandomEditsKeepEveryInvariantAndUndoToTheStart) {
     }
     if (random() % 20 == 0) document.undo();
     if (random() % 40 == 0) document.redo();
-    if (k % 10 == 0) expect_sound(document.scene());
+    if (k % 10 == 0) expect_valid(document.scene());
     if (HasFatalFailure()) FAIL() << line.dump();
   }
   EXPECT_GT(done, 375U * thorough);
   EXPECT_GT(refused, 13U * thorough);
-  while (document.undo()) expect_sound(document.scene());
+  while (document.undo()) expect_valid(document.scene());
   EXPECT_TRUE(document.scene().roots.empty());
   EXPECT_EQ(document.history().undo_count(), 0U);
 }
 
-TEST_F(RandomEdits, SelectAndItsInverseAreAll) {
+TEST_F(RandomEdits, SelectionAndInverseCoverEverything) {
   Document document;
   import(document);
   for (const json& region :

@@ -48,7 +48,7 @@ class Recovery : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Recovery, AFlippedByteAnywhereLeavesEverythingBeforeIt) {
+TEST_F(Recovery, RecoversEverythingBeforeAFlippedBit) {
   const std::string bytes = journal(42);
   std::mt19937 random(1);
   for (int trial = 0; trial < 200; ++trial) {
@@ -64,23 +64,23 @@ TEST_F(Recovery, AFlippedByteAnywhereLeavesEverythingBeforeIt) {
     if (line > 0) {
       EXPECT_EQ(recovered.torn, at + 1 == bytes.size()) << at;
       EXPECT_TRUE(recovered.torn || recovered.lost.size() >= std::max<std::size_t>(1, 43 - line))
-          << at << ": what is lost is listed";
+          << at << ": lost edits must be listed";
     }
     EXPECT_EQ(read_file(path("damaged")).substr(0, damaged.size() / 2), damaged.substr(0, damaged.size() / 2));
   }
 }
 
-TEST_F(Recovery, JournalsOfEarlierVersionsTakeNoLinesThatOlderProgramsMisread) {
+TEST_F(Recovery, DoesNotAppendToOlderJournals) {
   const auto line = [](const std::string& text) { return hash_text(content_hash(text)) + " " + text + "\n"; };
   write(path("old"),
         line(R"({"rebake_journal":2})") + line(R"({"edit":{"color":[0.0,0.0,0.5],"op":"background"},"n":1})"));
   Document::Recovered recovered = Document::recover(path("old"));
   EXPECT_EQ(recovered.edits, 1U);
-  EXPECT_FALSE(recovered.document.keeps_journal()) << "a new journal is begun";
+  EXPECT_FALSE(recovered.document.keeps_journal()) << "a new journal must be begun";
   EXPECT_TRUE(recovered.journal);
 }
 
-TEST_F(Recovery, AnAdjustedStepIsThereAsItWasOrAsItIsWhereverTheProgramEnds) {
+TEST_F(Recovery, AdjustedStepIsAtomic) {
   const auto background = [](double blue) {
     Background edit;
     edit.color = Vec3(0, 0, blue);
@@ -103,13 +103,13 @@ TEST_F(Recovery, AnAdjustedStepIsThereAsItWasOrAsItIsWhereverTheProgramEnds) {
     fs::remove(path("cut"));
   }
   // If the new step fails, the old one and the journal stay.
-  StoreView nameless;
-  EXPECT_THROW(document.adjust({nameless}), Error);
+  StoreView header_damaged;
+  EXPECT_THROW(document.adjust({header_damaged}), Error);
   EXPECT_EQ(document.scene().background, Vec3(0, 0, 0.75));
   EXPECT_EQ(read_file(path("journal")), after);
 }
 
-TEST_F(Recovery, WhatStandsBehindDamageIsListedAndTheJournalStaysAsItIs) {
+TEST_F(Recovery, ListsEditsBehindDamageAndKeepsTheJournal) {
   std::string bytes = journal(5);
   const std::size_t at = bytes.find("0.02");
   bytes[at] = '7';
@@ -119,12 +119,12 @@ TEST_F(Recovery, WhatStandsBehindDamageIsListedAndTheJournalStaysAsItIs) {
   ASSERT_EQ(recovered.lost.size(), 3U);
   EXPECT_EQ(recovered.lost[0], "line 5 is damaged");
   EXPECT_NE(recovered.lost[1].find("line 6: background (behind the damage)"), std::string::npos) << recovered.lost[1];
-  EXPECT_FALSE(recovered.document.keeps_journal()) << "nothing is written behind damage";
+  EXPECT_FALSE(recovered.document.keeps_journal()) << "no edit may be written behind damage";
   recovered.document.edit(Background{});
   EXPECT_EQ(read_file(path("damaged")), bytes);
 }
 
-TEST_F(Recovery, MovedSourcesAreNamedAndFoundWhereTheyLieNow) {
+TEST_F(Recovery, NamesAndRelinksMovedSources) {
   journal(3);
   fs::create_directory(path("elsewhere"));
   fs::rename(path("sources/ball"), path("elsewhere/ball"));
@@ -149,13 +149,13 @@ TEST_F(Recovery, MovedSourcesAreNamedAndFoundWhereTheyLieNow) {
           .edits,
       4U);
   EXPECT_THROW(Document::recover(path("journal"), {{path("source"), path("elsewhere")}}), FieldError)
-      << "a link that nothing uses is a slip";
+      << "an unused link must be rejected";
   // Another scene at the new path is not accepted.
   export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("other"), {});
   EXPECT_EQ(Document::recover(path("journal"), {{path("sources/ball"), path("other")}}).edits, 0U);
 }
 
-TEST_F(Recovery, OnePathWithTwoContentsIsFoundInTwoPlaces) {
+TEST_F(Recovery, RelinksTwoSourcesOfOnePath) {
   Document document;
   document.keep_journal(path("journal"));
   const auto import = [&] {
@@ -168,12 +168,12 @@ TEST_F(Recovery, OnePathWithTwoContentsIsFoundInTwoPlaces) {
   export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("sources/ball"), {});
   import();
   const std::vector<std::string> warnings = document.save(path("p.rebake"));
-  ASSERT_EQ(warnings.size(), 1U) << "the first is not there any more";
-  EXPECT_NE(warnings[0].find("has changed since it was read"), std::string::npos) << warnings[0];
+  ASSERT_EQ(warnings.size(), 1U) << "the first source is missing";
+  EXPECT_NE(warnings[0].find("has changed since it was imported"), std::string::npos) << warnings[0];
   document = Document();
-  EXPECT_THROW(Document::open(path("p.rebake")), SourcesGone);
+  EXPECT_THROW(Document::open(path("p.rebake")), SourcesUnavailable);
   // The second source is at its old path, then moved too.
-  Relinked links{{path("sources/ball"), path("first")}};
+  SourceLinks links{{path("sources/ball"), path("first")}};
   EXPECT_EQ(Document::open(path("p.rebake"), links).history().undo_count(), 2U);
   fs::rename(path("sources/ball"), path("second"));
   links.emplace(path("sources/ball"), path("second"));
@@ -181,7 +181,7 @@ TEST_F(Recovery, OnePathWithTwoContentsIsFoundInTwoPlaces) {
   EXPECT_EQ(Document::recover(path("journal"), links).edits, 2U);
 }
 
-TEST_F(Recovery, AnImportThatWasUndoneNeedsNoSource) {
+TEST_F(Recovery, UndoneImportNeedsNoSource) {
   export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("sources/wrong"), {});
   const auto background = [](Document& document, double blue) {
     Background edit;
@@ -209,14 +209,14 @@ TEST_F(Recovery, AnImportThatWasUndoneNeedsNoSource) {
     EXPECT_EQ(recovered.edits, 4U);
     EXPECT_EQ(recovered.document.scene().background, made.background);
     EXPECT_EQ(recovered.document.scene().roots.size(), 1U);
-    EXPECT_FALSE(recovered.document.keeps_journal()) << "it holds more than this history does";
+    EXPECT_FALSE(recovered.document.keeps_journal()) << "the journal contains more edits than the history";
   }
   // An import that is not undone still needs its source.
   fs::rename(path("sources/ball"), path("ball"));
   EXPECT_FALSE(Document::recover(path("journal")).lost.empty());
 }
 
-TEST_F(Recovery, ProjectsOpenUnderAnySpellingOfTheirFolder) {
+TEST_F(Recovery, OpensProjectsByAnyPath) {
   fs::create_directories(path("real/projects"));
   fs::create_directory_symlink(path("real/projects"), path("link"));
   Document document;
@@ -235,7 +235,7 @@ TEST_F(Recovery, ProjectsOpenUnderAnySpellingOfTheirFolder) {
   EXPECT_EQ(Document::open(path("link/q.rebake")).history().undo_count(), 1U);
 }
 
-TEST_F(Recovery, NoFlippedBitOpensAsAnotherProject) {
+TEST_F(Recovery, RejectsProjectWithFlippedBit) {
   Document document;
   work(document, 12);
   document.save(path("p.rebake"));
@@ -260,16 +260,16 @@ TEST_F(Recovery, NoFlippedBitOpensAsAnotherProject) {
   EXPECT_EQ(Document::open(path("hand.rebake")).scene().background, Color(1, 0, 0));
 }
 
-TEST_F(Recovery, AJournalGoesOnlyWhenItsProjectIsOnTheDisk) {
+TEST_F(Recovery, RemovesJournalOnlyAfterProjectIsSynced) {
   Document document;
   document.keep_journal(path("journal"));
   work(document, 2);
   PowerLoss calls;
   const ReplacedFileCalls in_use(calls);
   document.save(path("p.rebake"));
-  EXPECT_EQ(calls.trouble(), "");
+  EXPECT_EQ(calls.violations(), "");
   document.discard_journal();
-  EXPECT_EQ(calls.trouble(), "");
+  EXPECT_EQ(calls.violations(), "");
   const auto& log = calls.log();
   const auto renamed =
       std::find_if(log.begin(), log.end(), [](const std::string& call) { return call.starts_with("rename"); });
@@ -280,27 +280,27 @@ TEST_F(Recovery, AJournalGoesOnlyWhenItsProjectIsOnTheDisk) {
   EXPECT_NE(unlinked, log.end());
 }
 
-TEST_F(Recovery, EveryEditIsOnTheDiskBeforeItCounts) {
+TEST_F(Recovery, SyncsEveryEditBeforeItIsApplied) {
   PowerLoss calls;
   const ReplacedFileCalls in_use(calls);
   Document document;
   document.keep_journal(path("journal"));
-  EXPECT_EQ(calls.trouble(), "");
+  EXPECT_EQ(calls.violations(), "");
   work(document, 1);
-  EXPECT_EQ(calls.trouble(), "");
+  EXPECT_EQ(calls.violations(), "");
   for (const int error : {ENOSPC, EIO}) {
     PowerLoss full;
     full.fail_at(0, error);
     const ReplacedFileCalls fails(full);
     EXPECT_THROW(document.edit(Background{}), FileError);
-    EXPECT_EQ(document.history().undo_count(), 2U) << "not done, since it is not safe";
+    EXPECT_EQ(document.history().undo_count(), 2U) << "an edit without a journal line must not be applied";
   }
   document.edit(Background{});
   EXPECT_EQ(document.history().undo_count(), 3U);
 }
 
 // Each of these would overwrite or change a source.
-TEST_F(Recovery, SourcesAreProtectedAlsoWhileTheirImportIsUndone) {
+TEST_F(Recovery, ProtectsSourcesOfUndoneImports) {
   Document document;
   work(document, 0);
   document.undo();

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "editor/commands/session.h"
+#include "editor/actions/session.h"
 #include "editor/document/document.h"
 #include "editor/fields/codec.h"
 #include "editor/script/script.h"
@@ -24,7 +24,7 @@ Eigen::Quaterniond random_turn(std::mt19937& random) {
   return {normal(random), normal(random), normal(random), normal(random)};
 }
 
-TEST(Rotation, IsNormalisedOnceAndReadBackToTheSameBits) {
+TEST(Rotation, NormalisesOnceAndRoundTripsBitExactly) {
   std::mt19937 random(7);
   for (int k = 0; k < 20000; ++k) {
     Eigen::Quaterniond raw = random_turn(random);
@@ -105,7 +105,7 @@ Edit random_edit(std::mt19937& random, const Scene& scene) {
   }
 }
 
-TEST(Replay, ScriptJournalAndProjectGiveTheSessionsOwnBytes) {
+TEST(Replay, ScriptJournalAndProjectGiveTheSameBytes) {
   const TemporaryFolder folder;
   const auto at = [&](const std::string& name) { return folder.path() / name; };
   export_scene(scene_of(made_object({.columns = 8, .rows = 6})), at("ball"), {});
@@ -143,7 +143,7 @@ TEST(Replay, ScriptJournalAndProjectGiveTheSessionsOwnBytes) {
 }
 
 // An edit that no file can store, such as one with NaN, is rejected before it is applied.
-TEST(Replay, WhatCannotBeReadBackIsNotDone) {
+TEST(Replay, RejectsUnreadableEdits) {
   const TemporaryFolder folder;
   export_scene(scene_of(made_object({.columns = 4, .rows = 2})), folder.path() / "ball", {});
   Document document;

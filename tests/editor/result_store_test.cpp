@@ -18,7 +18,7 @@ std::size_t files_in(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder, error), fs::directory_iterator()));
 }
 
-TEST(ResultStore, FindsWhatItKeptAndNothingElse) {
+TEST(ResultStore, FindsStoredResultsOnly) {
   const TemporaryFolder folder;
   ResultStore store(folder.path() / "deep/er");
   EXPECT_FALSE(store.find("wrap1-1"));
@@ -31,7 +31,7 @@ TEST(ResultStore, FindsWhatItKeptAndNothingElse) {
   EXPECT_NE(result_key("wrap1", "x"), result_key("wrap2", "x"));
 }
 
-TEST(ResultStore, DamagedFilesCountAsNotThere) {
+TEST(ResultStore, IgnoresAndRemovesDamagedFiles) {
   const TemporaryFolder folder;
   ResultStore store(folder.path());
   store.keep("k", "some bytes");
@@ -46,7 +46,7 @@ TEST(ResultStore, DamagedFilesCountAsNotThere) {
   EXPECT_FALSE(store.find("k"));
 }
 
-TEST(ResultStore, KeepsToItsLimitAndDropsWhatWasNotUsedForLongest) {
+TEST(ResultStore, EvictsLeastRecentlyUsedWithinLimit) {
   const TemporaryFolder folder;
   ResultStore store(folder.path(), 300);
   const std::string block(80, 'x');  // 96 bytes on the disk
@@ -66,7 +66,7 @@ TEST(ResultStore, KeepsToItsLimitAndDropsWhatWasNotUsedForLongest) {
   EXPECT_EQ(files_in(folder.path()), 3U);
 }
 
-TEST(ResultStore, LeftoversOfKilledWritesAreSwept) {
+TEST(ResultStore, RemovesLeftoversOfKilledWrites) {
   const TemporaryFolder folder;
   ResultStore store(folder.path());
   for (const char* name : {"old.result.x.partial", "new.result.x.partial"})
@@ -74,10 +74,10 @@ TEST(ResultStore, LeftoversOfKilledWritesAreSwept) {
   fs::last_write_time(folder.path() / "old.result.x.partial", fs::file_time_type::clock::now() - std::chrono::hours(2));
   store.keep("k", "bytes");
   EXPECT_FALSE(fs::exists(folder.path() / "old.result.x.partial"));
-  EXPECT_TRUE(fs::exists(folder.path() / "new.result.x.partial")) << "somebody may be writing it";
+  EXPECT_TRUE(fs::exists(folder.path() / "new.result.x.partial")) << "another process may be writing it";
 }
 
-TEST(ResultStore, AFolderThatCannotBeWrittenIsNoTrouble) {
+TEST(ResultStore, IgnoresUnwritableFolder) {
   const TemporaryFolder folder;
   write_file_atomically(folder.path() / "file", "", {});
   ResultStore store(folder.path() / "file" / "results");
@@ -86,9 +86,9 @@ TEST(ResultStore, AFolderThatCannotBeWrittenIsNoTrouble) {
 }
 
 // A wrap is computed once: replay, opening and redo find it, with the same bytes as without a store.
-class KeptWraps : public DocumentTest {
+class StoredWraps : public DocumentTest {
  protected:
-  ~KeptWraps() override { keep_results_in(nullptr); }
+  ~StoredWraps() override { set_result_cache(nullptr); }
   void bend(Document& document) const {
     import(document);
     act(document,
@@ -96,12 +96,12 @@ class KeptWraps : public DocumentTest {
   }
 };
 
-TEST_F(KeptWraps, AreFoundByReplayOpeningAndUndo) {
+TEST_F(StoredWraps, ReusedByReplayOpeningAndRedo) {
   Document without;
   bend(without);
   const auto bytes = exported(without.scene());
   const auto store = std::make_shared<ResultStore>(path("results"));
-  keep_results_in(store);
+  set_result_cache(store);
   Document first;
   bend(first);
   EXPECT_EQ(store->found(), 0U);

@@ -26,7 +26,7 @@ class Revise : public DocumentTest {
   }
 };
 
-TEST_F(Revise, StartsFromTheSceneBeforeTheStepThatItRevises) {
+TEST_F(Revise, AppliesToTheSceneBeforeTheRevisedStep) {
   Document document, direct;
   import(document);
   import(direct);
@@ -35,9 +35,9 @@ TEST_F(Revise, StartsFromTheSceneBeforeTheStepThatItRevises) {
   document.revise({moved(document, 0, 0.5)});
   direct.edit(moved(direct, 0, 0.5));
   EXPECT_TRUE(exported(document.scene()) == exported(direct.scene()));
-  EXPECT_EQ(document.history().edits().size(), 2U) << "scripts hold the last revision only";
+  EXPECT_EQ(document.history().edits().size(), 2U) << "scripts contain the last revision only";
   EXPECT_TRUE(document.undo_step());
-  EXPECT_NE(document.scene().roots, rest.roots) << "back at the first release";
+  EXPECT_NE(document.scene().roots, rest.roots) << "undo must return to the first drag";
   EXPECT_TRUE(document.undo_step());
   EXPECT_EQ(document.scene().roots, rest.roots);
   EXPECT_TRUE(document.redo_step());
@@ -45,7 +45,7 @@ TEST_F(Revise, StartsFromTheSceneBeforeTheStepThatItRevises) {
   EXPECT_TRUE(exported(document.scene()) == exported(direct.scene()));
 }
 
-TEST_F(Revise, RandomStepsSurviveUndoJournalsProjectsAndASmallBudget) {
+TEST_F(Revise, RandomStepsSurviveUndoRecoveryAndEviction) {
   // Compared with a list of exported scenes for the same steps.
   std::mt19937 random(7);
   for (int round = 0; round < cases(3, 30); ++round) {
@@ -101,7 +101,7 @@ TEST_F(Revise, RandomStepsSurviveUndoJournalsProjectsAndASmallBudget) {
   }
 }
 
-TEST_F(Revise, TitlesCountThePointsThatMoved) {
+TEST_F(Revise, TitlesCountMovedPoints) {
   Document document;
   import(document);
   const Scene rest = document.scene();
@@ -116,7 +116,7 @@ TEST_F(Revise, TitlesCountThePointsThatMoved) {
   EXPECT_EQ(title_of({more}, before, document.scene(), &first), "Moved 2 cage points of ball");
 }
 
-TEST_F(Revise, CountsInTitlesAreThoseOfTheNodesThatChanged) {
+TEST_F(Revise, TitlesCountTrianglesOfChangedNodes) {
   Document document;
   import(document);
   act(document, R"({"op": "duplicate", "node": "ball", "as": "other"})");

@@ -32,7 +32,7 @@ std::map<std::string, std::string> result_of(const fs::path& folder, const std::
   return folder_bytes(folder / name);
 }
 
-TEST(SameBits, WhateverTheProcessorAndTheCLibrary) {
+TEST(SameBits, OnEveryProcessorAndCLibraryPath) {
   const TemporaryFolder folder;
   write_file_atomically(folder.path() / "script.jsonl", deforming_script, {});
   const auto expected = result_of(folder.path(), "plain", "");

@@ -39,7 +39,7 @@ TEST(SelectEdit, NearestTriangleIsNotTheOneWithTheNearestCentre) {
 }
 
 // Texture sets and triangles that are too far away are skipped; the result equals a search through all of them.
-TEST(SelectEdit, NearestTriangleIsThatOfASearchThroughAll) {
+TEST(SelectEdit, NearestTriangleMatchesLinearSearch) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 12, .rows = 6}));
   for (unsigned seed = 2; seed < 5; ++seed) {
     object->sets.push_back(made_object({.columns = 12, .rows = 6, .seed = seed, .radius = 0.4 * seed})->sets[0]);
@@ -77,7 +77,7 @@ TEST(SelectEdit, NearestTriangleIsThatOfASearchThroughAll) {
   }
 }
 
-TEST(SelectEdit, InvertJoinsThePresentSelectionAsItsModeSays) {
+TEST(SelectEdit, InvertObeysItsMode) {
   const Scene scene = scene_of(made_object(), "ball");
   for (const auto& [mode, wanted] :
        {std::pair("set", 1.0), std::pair("add", 1.0), std::pair("remove", 0.0), std::pair("intersect", 0.0)}) {
@@ -88,7 +88,7 @@ TEST(SelectEdit, InvertJoinsThePresentSelectionAsItsModeSays) {
   }
 }
 
-TEST(SelectEdit, ATextureSetThatOnlySomeObjectsHave) {
+TEST(SelectEdit, SelectsTextureSetOfSomeObjects) {
   auto two = std::make_shared<BakedObject>(*made_object());
   two->sets.push_back(made_object({.seed = 2, .radius = 0.5})->sets[0]);
   Scene scene = scene_of(made_object(), "one");
@@ -105,7 +105,7 @@ TEST(SelectEdit, ATextureSetThatOnlySomeObjectsHave) {
 }
 
 // On a group, commands that start from the present selection use all nodes in it.
-TEST(SelectEdit, AGroupIsAllThatIsInIt) {
+TEST(SelectEdit, GroupMeansAllNodesInIt) {
   Scene scene = scene_of(made_object(), "ball");
   const auto act = [&](const char* line) {
     scene = apply(scene, read_edit(nlohmann::json::parse(line), scene)).scene;
@@ -121,12 +121,12 @@ TEST(SelectEdit, AGroupIsAllThatIsInIt) {
   EXPECT_LT(act(R"({"op": "shrink", "node": "g"})"), grown);
   EXPECT_EQ(act(R"({"op": "select_connected", "node": "g"})"), 256U);
   act(R"({"op": "select_triangles", "node": "ball", "triangles": [[0, 9]]})");
-  EXPECT_THROW(act(R"({"op": "separate", "node": "g"})"), EditError) << "which node it is must be said";
+  EXPECT_THROW(act(R"({"op": "separate", "node": "g"})"), EditError) << "separate needs a node, not a group";
   EXPECT_EQ(act(R"({"op": "delete", "node": "g"})"), 0U);
   EXPECT_EQ(placed_nodes(scene).back().node->object->triangle_count(), 246U);
 }
 
-TEST(SelectEdit, PlanesAreNinetyDegreesApartAtMost) {
+TEST(SelectEdit, OrientationsDifferByAtMost90Degrees) {
   auto object = std::make_shared<BakedObject>(*made_object());
   // Triangles in the planes xy, yz and xz, and a degenerate one.
   const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -143,7 +143,7 @@ TEST(SelectEdit, PlanesAreNinetyDegreesApartAtMost) {
   };
   EXPECT_EQ(like(0, 90), 3U);
   EXPECT_EQ(like(0, 89), 1U);
-  EXPECT_THROW(like(3, 10), FieldError) << "it has no plane";
+  EXPECT_THROW(like(3, 10), FieldError) << "a degenerate triangle has no plane";
 }
 
 }  // namespace

@@ -61,19 +61,19 @@ class Signals : public ::testing::Test {
 };
 
 // Seconds until the end: one, plus the scheduling delays of a busy machine.
-constexpr double soon = 1.8;
+constexpr double longest_wait = 1.8;
 
 TEST_F(Signals, EndWorkThatCannotBeCancelled) {
   // CGAL's alpha wrap does not check for cancellation.
   const std::string wrap =
       R"({"op": "cage", "node": "ball", "wrap": 0.008, "moves": [{"points": [0], "translate": [1, 0, 0]}]})";
   for (const int signal : {SIGTERM, SIGHUP}) {
-    EXPECT_LE(lives_after(signal, import() + wrap, [] { return false; }).count(), soon);
+    EXPECT_LE(lives_after(signal, import() + wrap, [] { return false; }).count(), longest_wait);
     EXPECT_TRUE(ended_by_signal_);
   }
 }
 
-TEST_F(Signals, LeaveExportsWholeAndNoTemporaryFiles) {
+TEST_F(Signals, KeepExportsCompleteAndRemoveTemporaryFiles) {
   const auto temporaries = [&] {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path()))
       if (entry.path().filename().string().starts_with(".out")) return true;
@@ -91,7 +91,7 @@ TEST_F(Signals, LeaveExportsWholeAndNoTemporaryFiles) {
       std::this_thread::sleep_for(std::chrono::milliseconds(3 * k));
       return true;
     };
-    EXPECT_LE(lives_after(SIGTERM, import() + line, ready).count(), soon);
+    EXPECT_LE(lives_after(SIGTERM, import() + line, ready).count(), longest_wait);
     EXPECT_TRUE(folder_bytes(path("out")) == (ended_by_signal_ ? before_ : exported)) << k;
     EXPECT_FALSE(temporaries()) << k;
   }

@@ -60,13 +60,13 @@ std::string joined(const Report& report) {
   return all;
 }
 
-TEST(Slim, TakesWhatASphereHidesAndLeavesEveryPicture) {
+TEST(Slim, RemovesHiddenTrianglesAndKeepsPictures) {
   const Scene scene = scene_of(nested());
   const Outcome slim = apply(scene, Edit(Slim{}));
   const BakedObject& before = *scene.roots[0]->object;
   const BakedObject& after = *slim.scene.roots[0]->object;
   EXPECT_EQ(after.triangle_count(), before.sets[0].soup.triangle_count()) << joined(slim.report);
-  EXPECT_TRUE(after.bodies.empty()) << "light stays as it was baked";
+  EXPECT_TRUE(after.bodies.empty()) << "light must stay as baked";
   std::uint64_t texels_before = 0, texels_after = 0;
   for (const TextureSet& set : before.sets)
     texels_before += static_cast<std::uint64_t>(set.texels->width()) * static_cast<std::uint64_t>(set.texels->height());
@@ -80,13 +80,13 @@ TEST(Slim, TakesWhatASphereHidesAndLeavesEveryPicture) {
     EXPECT_EQ(renderer.render(scene, view).rgb, renderer.render(slim.scene, view).rgb) << k;
   }
   EXPECT_NE(joined(slim.report).find("256 unseen"), std::string::npos) << joined(slim.report);
-  EXPECT_NE(joined(slim.report).find("2048 from each triangle"), std::string::npos) << joined(slim.report);
+  EXPECT_NE(joined(slim.report).find("2048 from each removed triangle"), std::string::npos) << joined(slim.report);
   EXPECT_NE(joined(slim.report).find("at most 0.42 %"), std::string::npos) << "1 - (0.05 / 256)^(1 / 2048)";
 }
 
-TEST(Slim, KeepsWhatASmallOpeningShows) {
+TEST(Slim, KeepsTrianglesVisibleThroughASmallOpening) {
   const auto object = nested(2);
-  const Sightings seen = look_from(*object, {}, 4096);
+  const VisibilityReport seen = traced_visibility(*object, {}, 4096);
   std::size_t inner_seen = 0;
   const std::size_t outer = object->sets[0].soup.triangle_count();
   for (std::size_t f = outer; f < seen.unseen.size(); ++f) inner_seen += seen.unseen[f] == 0 ? 1 : 0;
@@ -106,7 +106,7 @@ TEST(Slim, KeepsWhatASmallOpeningShows) {
   EXPECT_LE(differing(renderer.render(scene, through), renderer.render(slim, through)), most_differing);
 }
 
-TEST(Slim, FromABoxOfEyesOrViewsTheFarSideGoes) {
+TEST(Slim, RemovesTheFarSideForLimitedEyes) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16, .holes = false}));
   Slim in_box;
   in_box.eyes = BoxRegion{{-0.5, -0.5, 2.5}, {0.5, 0.5, 3.5}};
@@ -119,7 +119,7 @@ TEST(Slim, FromABoxOfEyesOrViewsTheFarSideGoes) {
     EXPECT_LE(differing(renderer.render(scene, view_from(eye)), renderer.render(boxed.scene, view_from(eye))),
               most_differing);
   EXPECT_NE(renderer.render(scene, view_from({0, 0, -3})).rgb, renderer.render(boxed.scene, view_from({0, 0, -3})).rgb)
-      << "nobody looks from behind";
+      << "the far side must be removed";
 
   StoreView store;
   store.name = "front";
@@ -134,14 +134,14 @@ TEST(Slim, FromABoxOfEyesOrViewsTheFarSideGoes) {
   EXPECT_LE(differing(renderer.render(scene, front), renderer.render(with_view, front)), most_differing);
 }
 
-TEST(Slim, LosesAsMuchAsItMay) {
+TEST(Slim, UsesTheAllowedPsnr) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16, .holes = false}));
   Renderer renderer;
   int sum_before = 64;
   for (const double psnr : {50.0, 40.0, 30.0}) {
     const BitsFound found = fewest_bits(*scene.roots[0]->object, psnr);
     EXPECT_GE(found.psnr_db, psnr);
-    EXPECT_LT(found.psnr_db, psnr + 6) << "one bit of one feature more loses at most so much";
+    EXPECT_LT(found.psnr_db, psnr + 6) << "removing one more bit costs at most 6 dB";
     int sum = 0;
     for (const int bits : found.bits) sum += bits;
     EXPECT_LT(sum, sum_before);
@@ -151,13 +151,13 @@ TEST(Slim, LosesAsMuchAsItMay) {
     const Scene slim = apply(scene, Edit(edit)).scene;
     const Difference d =
         compare(renderer.render(scene, view_from({1, 1, 3})), renderer.render(slim, view_from({1, 1, 3})), 2);
-    EXPECT_GE(d.psnr_db, psnr - 1) << "pictures as texels";
+    EXPECT_GE(d.psnr_db, psnr - 1) << "pictures must have about the PSNR of texels";
     EXPECT_EQ(slim.roots[0]->object->opaque_texel_count(), scene.roots[0]->object->opaque_texel_count());
   }
 }
 
 // A sphere on which each patch has the texels of the first one, with one byte per texel changed by ±1.
-std::shared_ptr<const BakedObject> alike_sphere() {
+std::shared_ptr<const BakedObject> sphere_of_similar_patches() {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 32, .rows = 16, .holes = false}));
   TextureSet& set = object->sets[0];
   const TexelPatches patches = texel_patches(set);
@@ -178,15 +178,15 @@ std::shared_ptr<const BakedObject> alike_sphere() {
   return object;
 }
 
-TEST(Slim, PatchesThatLookAlikeShareTexels) {
-  const Scene scene = scene_of(alike_sphere());
+TEST(Slim, SimilarPatchesShareTexels) {
+  const Scene scene = scene_of(sphere_of_similar_patches());
   Slim edit;
   edit.psnr = 40;
   const Outcome slim = apply(scene, Edit(edit));
   const BakedObject &before = *scene.roots[0]->object, &after = *slim.scene.roots[0]->object;
   EXPECT_EQ(after.triangle_count(), before.triangle_count());
   EXPECT_LT(after.opaque_texel_count() * 100, before.opaque_texel_count()) << joined(slim.report);
-  EXPECT_NE(joined(slim.report).find("511 of 512 patches"), std::string::npos) << joined(slim.report);
+  EXPECT_NE(joined(slim.report).find("511 of 512 texel patches"), std::string::npos) << joined(slim.report);
   Renderer renderer;
   for (const Vec3& eye : {Vec3(1, 1, 3), Vec3(-2, 1, -2)}) {
     const Difference d =
@@ -196,14 +196,14 @@ TEST(Slim, PatchesThatLookAlikeShareTexels) {
   // Patches that differ do not share texels.
   const Scene other = scene_of(made_object({.columns = 16, .rows = 8, .holes = false}));
   edit.psnr = 60;
-  EXPECT_EQ(joined(apply(other, Edit(edit)).report).find("look alike"), std::string::npos);
+  EXPECT_EQ(joined(apply(other, Edit(edit)).report).find("texel patches use those of near-duplicates"), std::string::npos);
 }
 
 // Surfaces that share texels get light nodes of their own.
-TEST(Slim, SurfacesThatShareTexelsLieInTheirOwnLight) {
+TEST(Slim, SurfacesWithSharedTexelsHaveOwnLightNodes) {
   Slim edit;
   edit.psnr = 40;
-  const Scene slim = apply(scene_of(alike_sphere()), Edit(edit)).scene;
+  const Scene slim = apply(scene_of(sphere_of_similar_patches()), Edit(edit)).scene;
   const TextureSet& set = slim.roots[0]->object->sets[0];
   ASSERT_EQ(texel_patches(set).rects.size(), 1U);
   const LightChart chart = light_chart(set, 4);
@@ -214,14 +214,14 @@ TEST(Slim, SurfacesThatShareTexelsLieInTheirOwnLight) {
 
 TEST(Slim, IsTheSameAtAnyNumberOfThreads) {
   const auto object = nested(2);
-  const Sightings many = look_from(*object, {}, 64);
+  const VisibilityReport many = traced_visibility(*object, {}, 64);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Sightings alone = look_from(*object, {}, 64);
+  const VisibilityReport alone = traced_visibility(*object, {}, 64);
   EXPECT_EQ(many.unseen, alone.unseen);
   EXPECT_EQ(many.rays, alone.rays);
 }
 
-TEST(Slim, NodesThatShareAnObjectGoOnSharingIt) {
+TEST(Slim, KeepsObjectsShared) {
   Scene scene = scene_of(nested());
   Node copy;
   copy.object = scene.roots[0]->object;
@@ -240,7 +240,7 @@ TEST(Slim, NodesThatShareAnObjectGoOnSharingIt) {
 }
 
 // One of two equal triangles stays, whichever of them rays hit.
-TEST(Slim, OfTwinsOneStays) {
+TEST(Slim, KeepsOneOfEqualTriangles) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 32, .rows = 16, .holes = false}));
   const std::size_t single = object->triangle_count();
   std::vector<Face> twice = object->sets[0].soup.faces();
@@ -249,22 +249,22 @@ TEST(Slim, OfTwinsOneStays) {
   EXPECT_EQ(apply(scene_of(object), Edit(Slim{})).scene.roots[0]->object->triangle_count(), single);
 }
 
-TEST(Slim, SaysThatNothingIsSelectedAnyMore) {
+TEST(Slim, ReportsAnEmptySelection) {
   Select all;
   all.all = true;
   const Scene scene = apply(scene_of(nested()), Edit(all)).scene;
   const Outcome slim = apply(scene, Edit(Slim{}));
   EXPECT_EQ(slim.scene.roots[0]->selection, nullptr);
-  EXPECT_NE(joined(slim.report).find("nothing is selected any more"), std::string::npos) << joined(slim.report);
+  EXPECT_NE(joined(slim.report).find("the selection was cleared"), std::string::npos) << joined(slim.report);
 }
 
-TEST(Slim, WhatNeedsNoSlimmingStaysShared) {
+TEST(Slim, SlimmingTwiceChangesNothing) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16, .holes = false}));
   const Scene once = apply(scene, Edit(Slim{})).scene;
   EXPECT_EQ(apply(once, Edit(Slim{})).scene.roots[0]->object, once.roots[0]->object);
 }
 
-TEST(Slim, SaysWhatIsWrong) {
+TEST(Slim, ErrorsNameTheField) {
   const Scene scene = scene_of(nested());
   const auto error_of = [&](const Slim& edit) -> std::string {
     try {

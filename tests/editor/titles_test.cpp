@@ -20,7 +20,7 @@ class Titles : public DocumentTest {
   Document document_;
 };
 
-TEST_F(Titles, NameTheNodesThatHoldSelectedTriangles) {
+TEST_F(Titles, NameNodesWithSelectedTriangles) {
   EXPECT_EQ(title_after(R"({"op": "select", "all": true})"), "Selected 512 triangles in a and b");
   EXPECT_EQ(title_after(R"({"op": "select", "node": "b", "mode": "remove", "all": true})"),
             "Deselected 256 triangles in b");

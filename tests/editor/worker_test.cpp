@@ -26,7 +26,7 @@ class WorkerTest : public ::testing::Test {
   Worker worker{[] {}};
 };
 
-TEST_F(WorkerTest, DoesJobsInOrderAndCopiesTheSceneOut) {
+TEST_F(WorkerTest, RunsJobsInOrderAndPublishesSnapshots) {
   const TemporaryFolder folder;
   export_scene(scene_of(made_object({.columns = 8, .rows = 4})), folder.path() / "ball", {});
   Import import;
@@ -47,12 +47,12 @@ TEST_F(WorkerTest, DoesJobsInOrderAndCopiesTheSceneOut) {
   for (const Worker::Message& message : worker.take_messages())
     failed += message.kind == Worker::Message::Kind::failed ? 1 : 0;
   EXPECT_EQ(failed, 1U);
-  EXPECT_FALSE(told) << "only when the window asks";
+  EXPECT_FALSE(told) << "callbacks run only in take_finished()";
   for (const auto& then : worker.take_finished()) then();
   EXPECT_TRUE(told);
 }
 
-TEST_F(WorkerTest, CancelStopsWhatRunsAndForgetsWhatWaits) {
+TEST_F(WorkerTest, CancelStopsTheJobAndDropsTheQueue) {
   std::atomic<bool> begun = false;
   bool second = false;
   worker.start("long", [&](Session& session) {
@@ -66,12 +66,12 @@ TEST_F(WorkerTest, CancelStopsWhatRunsAndForgetsWhatWaits) {
   EXPECT_FALSE(second);
   const auto messages = worker.take_messages();
   ASSERT_EQ(messages.size(), 1U);
-  EXPECT_EQ(messages[0].kind, Worker::Message::Kind::said) << "people stopped it: nothing failed";
-  EXPECT_NE(messages[0].text.find("stopped"), std::string::npos);
+  EXPECT_EQ(messages[0].kind, Worker::Message::Kind::said) << "a cancelled job has not failed";
+  EXPECT_NE(messages[0].text.find("cancelled"), std::string::npos);
 }
 
 // A preview is shown until its job has ended, so its owner must hear of every end.
-TEST_F(WorkerTest, WhoeverAskedHearsOfJobsThatFailedOrWereForgotten) {
+TEST_F(WorkerTest, CallbacksReportFailedAndDroppedJobs) {
   int done = 0, otherwise = 0;
   const auto start = [&](const char* title, Worker::Job job) {
     worker.start(
@@ -94,7 +94,7 @@ TEST_F(WorkerTest, WhoeverAskedHearsOfJobsThatFailedOrWereForgotten) {
   EXPECT_EQ(otherwise, 3);
 }
 
-TEST(Previews, OfManyTheLatestIsMade) {
+TEST(Previews, MakesOnlyTheLatest) {
   Previews previews([] {});
   std::atomic<int> made = 0;
   for (int k = 0; k < 100; ++k)
@@ -109,14 +109,14 @@ TEST(Previews, OfManyTheLatestIsMade) {
   const std::optional<Preview> last = previews.take();
   ASSERT_TRUE(last);
   EXPECT_EQ(last->scene.next_id, 100U);
-  EXPECT_LT(made, 100) << "what was asked for meanwhile is not made";
+  EXPECT_LT(made, 100) << "older requests must be skipped";
   EXPECT_FALSE(previews.take()) << "once";
   previews.request({}, [](const Progress&) -> Scene { throw EditError("no"); });
   while (previews.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_FALSE(previews.take()) << "what cannot be done is no preview";
+  EXPECT_FALSE(previews.take()) << "a failed edit gives no preview";
 }
 
-TEST(Previews, ABetterOneFollowsWhileNothingElseIsAskedFor) {
+TEST(Previews, RefinesWhileIdle) {
   const auto numbered = [](std::uint64_t number) {
     Scene scene;
     scene.next_id = number;
@@ -132,7 +132,7 @@ TEST(Previews, ABetterOneFollowsWhileNothingElseIsAskedFor) {
         return numbered(2);
       });
   while (!refining) std::this_thread::yield();
-  EXPECT_EQ(previews.take()->scene.next_id, 1U) << "it is shown while the better one is made";
+  EXPECT_EQ(previews.take()->scene.next_id, 1U) << "the first preview is available during refinement";
   refining = false;
   while (previews.busy()) std::this_thread::yield();
   EXPECT_EQ(previews.take()->scene.next_id, 2U);

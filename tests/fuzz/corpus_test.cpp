@@ -9,7 +9,7 @@
 namespace rebake::test {
 namespace {
 
-TEST(FuzzCorpus, EveryInputIsReadOrRefused) {
+TEST(FuzzCorpus, EveryInputIsReadOrRejected) {
   std::size_t inputs = 0;
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(std::filesystem::path(REBAKE_SOURCE) / "tests/fuzz/corpus")) {

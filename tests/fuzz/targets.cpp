@@ -6,12 +6,12 @@
 #include "editor/script/script.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
-#include "mesh_ops/formats/baked_places_file.h"
+#include "mesh_ops/formats/baked_positions_file.h"
 #include "mesh_ops/formats/camera_json.h"
 #include "mesh_ops/formats/mlp_json.h"
 #include "mesh_ops/formats/obj.h"
-#include "mesh_ops/formats/turns_file.h"
-#include "mesh_ops/formats/turns_json.h"
+#include "mesh_ops/formats/rotations_file.h"
+#include "mesh_ops/formats/rotations_json.h"
 
 namespace rebake::fuzz {
 
@@ -58,17 +58,17 @@ void read_json_bytes(std::string_view bytes) {
   }
   try {
     std::vector<TextureSet> sets = small_scene().roots[0]->object->sets;
-    read_turns_json(bytes, "turns.json", sets);
+    read_rotations_json(bytes, "turns.json", sets);
   } catch (const Error&) {
   }
   try {
     std::vector<TextureSet> sets = small_scene().roots[0]->object->sets;
-    read_turns(side_file("rebaketn", bytes), "turns.bin", sets);
+    read_rotations(side_file("rebaketn", bytes), "turns.bin", sets);
   } catch (const Error&) {
   }
   try {
     std::vector<TextureSet> sets = small_scene().roots[0]->object->sets;
-    read_baked_places(side_file("rebakebp", bytes), "baked.bin", 2, sets);
+    read_baked_positions(side_file("rebakebp", bytes), "baked.bin", 2, sets);
   } catch (const Error&) {
   }
   try {

@@ -7,7 +7,7 @@ class BendTest(WindowCase):
     def test_a_cage_keeps_every_release(self):
         editor = self.open_ficus()
         editor.key("c")
-        editor.click("options/Make cage")
+        editor.click("options/make-cage")
         points = editor.items("cage")
         self.assertGreaterEqual(len(points), 8)
 
@@ -41,7 +41,7 @@ class BendTest(WindowCase):
         self.assertEqual(editor.state()["steps"], 3)
         self.assertEqual(editor.items("cage"), second)
         # The soft border can still be adjusted, and the cage stays.
-        editor.click("adjust/Soft border/value")
+        editor.click("adjust/falloff/value")
         editor.type("0.1")
         editor.key("Return")
         self.assertEqual(editor.last_edit()["falloff"], 0.1)
@@ -59,7 +59,7 @@ class BendTest(WindowCase):
     def test_cage_points_turn_together_and_on_both_sides(self):
         editor = self.open_ficus()
         editor.key("KP_1", "c")
-        editor.click("options/Make cage")
+        editor.click("options/make-cage")
         rest = editor.items("cage")
 
         def moves():
@@ -79,7 +79,7 @@ class BendTest(WindowCase):
         low, high = max(box[1] for box in row) + 25, top - 25
         corners = [(round(x), round(y)) for x, y in ((left, high), (right, high), (right, low), (left, low))]
         editor.drag(corners, held="ctrl")
-        editor.click("options/Turn")
+        editor.click("options/rotate")
         x, y = max((round(box[0]), round(box[1])) for box in row)
         editor.drag([(x, y), (x, y + 60)])
         turned = moves()
@@ -88,7 +88,7 @@ class BendTest(WindowCase):
         self.assertLess(max(map(abs, middle)), 1e-9, "they turn about their own middle")
         editor.key("ctrl+z")
         # One point with symmetry in X moves both sides.
-        editor.click("options/Move")
+        editor.click("options/move")
         editor.click("options/X")
         editor.click(*corners[2])
         editor.drag([(x, y), (x + 40, y - 30)])
@@ -102,7 +102,7 @@ class BendTest(WindowCase):
         editor = self.open_ficus()
         editor.key("k")
         editor.click(*editor.in_viewport(0.45, 0.72))  # the pot
-        editor.click("options/Pull")
+        editor.click("options/drag")
         editor.click(*editor.in_viewport(0.70, 0.33))  # the tip of the branch
         self.assertEqual(len(editor.items("handle")), 2)
         before = self.leaves()
@@ -122,7 +122,7 @@ class BendTest(WindowCase):
         editor.drag([(x, y), (x + 50, y)], meanwhile=lambda: editor.key("Escape"))
         self.assertEqual(editor.where("handle/1"), (x, y))
         # A point added to the deformed surface holds it where it is.
-        editor.click("options/Hold")
+        editor.click("options/fix")
         editor.click(*editor.in_viewport(0.37, 0.28))
         self.assertEqual(len(editor.items("handle")), 3)
         x, y = editor.where("handle/1")
@@ -155,7 +155,7 @@ class BendTest(WindowCase):
         steps, ops = editor.state()["steps"], editor.ops()
         editor.key("End")
         self.assertEqual((editor.state()["steps"], editor.ops()), (steps, ops))
-        self.assertIn("stands on a surface or on the ground already", editor.state()["status"])
+        self.assertIn("already stands on a surface or on the ground;", editor.state()["status"])
 
     def test_the_ground_is_where_the_grid_is(self):
         """The first object stands on the ground; an object dropped beside it stands at the same height."""
@@ -180,7 +180,7 @@ class BendTest(WindowCase):
         self.assertAlmostEqual(editor.state()["picked_foot"], foot, places=5)
         # The ground can be set: by a height, and by three points.
         editor.click("tool/Ground")
-        editor.click("options/Height")
+        editor.click("options/height")
         editor.type("0-2.5")
         editor.key("Return")
         self.assertAlmostEqual(editor.state()["ground"], -2.5, places=6)
@@ -190,7 +190,7 @@ class BendTest(WindowCase):
         for share in ((0.43, 0.70), (0.47, 0.70), (0.45, 0.74)):
             editor.click(*editor.in_viewport(*share))
         self.assertEqual(len(editor.last_edit().get("points", [])), 3)
-        editor.click("options/Scene's foot")
+        editor.click("options/lowest-point")
         self.assertTrue(editor.last_edit()["foot"])
 
     def test_bend_a_branch_from_its_stem(self):
@@ -217,7 +217,7 @@ class BendTest(WindowCase):
         self.assertGreater(abs(edit["axis"][1]) + abs(edit["axis"][2]), 0.1, "along the branch, not along a world axis")
         self.assertGreater(edit["falloff"], 0, "no rip at the border")
         # The last step can be adjusted without adding a step.
-        editor.click("adjust/Angle/value")
+        editor.click("adjust/degrees/value")
         editor.type("30")
         editor.key("Return")
         editor.until_ops("import", "select_picture", "bend", "adjust", "bend")
@@ -236,7 +236,7 @@ class BendTest(WindowCase):
         editor.key("l", "t")
         self.select_branch()
         editor.key("n")
-        editor.click("options/Curved")
+        editor.click("options/curved")
         x, y = editor.where("bend/tip")
         editor.drag([(x, y), (x - 20, y - 60)], meanwhile=lambda: editor.key("5", "0"))
         edit = editor.last_edit()
@@ -254,9 +254,9 @@ class BendTest(WindowCase):
         editor = self.open_ficus()
         seen = self.select_branch()
         editor.key("n")
-        editor.click("options/Take the back sides too")
+        editor.click("options/select-occluded")
         self.assertGreater(editor.state()["selected"], 1.3 * seen)
-        self.assertNotIn("options/Take the back sides too", editor.state()["items"])
+        self.assertNotIn("options/select-occluded", editor.state()["items"])
         # The handles follow the bent branch.
         x, y = editor.where("bend/tip")
         editor.drag([(x, y), (x - 10, y - 70)])
@@ -289,6 +289,6 @@ class BendTest(WindowCase):
         editor.command("bend by")
         editor.click("form/degrees")
         editor.type("60")
-        editor.click("form/Apply")
+        editor.click("form/apply")
         editor.until_ops("import", "bend")
         self.assertEqual(editor.last_edit()["degrees"], 60)

@@ -50,16 +50,16 @@ class BadFolder : public ::testing::Test {
   TemporaryFolder temporary_;
 };
 
-TEST_F(BadFolder, MissingFiles) {
+TEST_F(BadFolder, RejectsMissingFiles) {
   fs::remove(folder() / "shape0.pngfeat1.png");
   expect_refused("shape0.pngfeat1.png: does not exist");
   fs::remove(folder() / "mlp.json");
-  expect_refused("holds neither mlp.json");
+  expect_refused("contains neither mlp.json (a MobileNeRF folder)");
   fs::remove_all(folder());
   expect_refused("does not exist");
 }
 // If obj_num contradicts the files on disk, all consecutive shapes are read and the assumption is reported.
-TEST_F(BadFolder, ObjNumAndFilesDisagree) {
+TEST_F(BadFolder, ReportsObjNumThatContradictsFiles) {
   for (const char* count : {"3", "7"}) {
     replace_mlp("\"obj_num\":1", std::string("\"obj_num\":") + count);
     const Scene scene = read_any(folder(), Axes::y_up);
@@ -71,7 +71,7 @@ TEST_F(BadFolder, ObjNumAndFilesDisagree) {
   for (const char* name : {".obj", ".pngfeat0.png", ".pngfeat1.png"})
     fs::copy(folder() / (std::string("shape0") + name), folder() / (std::string("shape1") + name));
   const Scene two = read_any(folder(), Axes::y_up);
-  EXPECT_EQ(two.roots[0]->object->sets.size(), 2U) << "the second was once lost on export";
+  EXPECT_EQ(two.roots[0]->object->sets.size(), 2U) << "the second shape must be read";
   EXPECT_EQ(assumptions_of(two).size(), 1U);
   const TemporaryFolder out;
   export_scene(two, out.path() / "out", {});
@@ -89,7 +89,7 @@ TEST_F(BadFolder, WholeMeshBesideChunks) {
   const Scene same = read_any(folder(), Axes::y_up);
   EXPECT_EQ(same.roots[0]->object->triangle_count(), triangles);
   ASSERT_EQ(assumptions_of(same).size(), 1U);
-  EXPECT_NE(assumptions_of(same)[0].find("taken for the same"), std::string::npos);
+  EXPECT_NE(assumptions_of(same)[0].find("triangles each: they are assumed to be the same"), std::string::npos);
   write_text(folder() / "shape0_1.obj", whole);
   const Scene more = read_any(folder(), Axes::y_up);
   EXPECT_EQ(more.roots[0]->object->triangle_count(), 3 * triangles);
@@ -98,23 +98,23 @@ TEST_F(BadFolder, WholeMeshBesideChunks) {
   export_scene(more, out.path() / "out", {});
   EXPECT_EQ(read_any(out.path() / "out", Axes::y_up).roots[0]->object->triangle_count(), 3 * triangles);
 }
-TEST_F(BadFolder, ObjNumOfTheWrongKind) {
+TEST_F(BadFolder, RejectsNegativeObjNum) {
   replace_mlp("\"obj_num\":1", "\"obj_num\":-1");
   expect_refused("\"obj_num\" must be a whole number");
 }
-TEST_F(BadFolder, MissingKey) {
+TEST_F(BadFolder, RejectsMissingKey) {
   replace_mlp("1_bias", "1_bais");
   expect_refused("mlp.json: \"1_bias\" is missing");
 }
-TEST_F(BadFolder, NanInTheDecoder) {
+TEST_F(BadFolder, RejectsNanInDecoder) {
   replace_mlp("\"2_bias\":[", "\"2_bias\":[NaN,");
   expect_refused("mlp.json: \"2_bias\"[0] is NaN, which is not a number");
 }
-TEST_F(BadFolder, WrongSizeOfALayer) {
+TEST_F(BadFolder, RejectsWrongLayerSize) {
   replace_mlp("\"1_weights\":[[", "\"1_weights\":[[0.5,");
   expect_refused("\"1_weights\" is 16 rows of unequal lengths (row 1 differs from row 0), expected 16×16");
 }
-TEST_F(BadFolder, TransposedAndFurtherLayers) {
+TEST_F(BadFolder, RejectsTransposedAndAdditionalLayers) {
   const std::string good = read_file(folder() / "mlp.json");
   const MlpFile file = read_mlp_json(good, "mlp.json");
   nlohmann::json mlp = nlohmann::json::parse(good);
@@ -128,9 +128,9 @@ TEST_F(BadFolder, TransposedAndFurtherLayers) {
   expect_refused("\"0_weights\" is 16×11, expected 11×16 (inputs × outputs). Transpose it");
   write_text(folder() / "mlp.json", good);
   replace_mlp("\"2_weights\":[[", "\"3_bias\":[0],\"2_weights\":[[");
-  expect_refused("\"3_bias\" belongs to a further layer");
+  expect_refused("\"3_bias\" belongs to an additional layer");
 }
-TEST_F(BadFolder, NumbersThatJsonDoesNotHave) {
+TEST_F(BadFolder, RejectsNanAndInfinity) {
   for (const char* word : {"NaN", "Infinity", "-Infinity"}) {
     const std::string text = read_file(folder() / "mlp.json");
     replace_mlp("\"1_weights\":[[", std::string("\"1_weights\":[[") + word + ",");
@@ -140,14 +140,14 @@ TEST_F(BadFolder, NumbersThatJsonDoesNotHave) {
   replace_mlp("\"1_weights\":[[", "\"1_weights\":[[1e999,");
   expect_refused("mlp.json: cannot be read");
 }
-TEST_F(BadFolder, ObjNumMayBeSpeltOtherwise) {
+TEST_F(BadFolder, AcceptsObjNumAsFloatOrString) {
   for (const char* count : {"1.0", "\"1\""}) {
     replace_mlp("\"obj_num\":1", std::string("\"obj_num\":") + count);
     EXPECT_NO_THROW(read_any(folder(), Axes::y_up)) << count;
     replace_mlp(std::string("\"obj_num\":") + count, "\"obj_num\":1");
   }
 }
-TEST_F(BadFolder, UnknownMembersOfMlpJsonKeepTheirSpelling) {
+TEST_F(BadFolder, PreservesUnknownMembersOfMlpJson) {
   const std::string members = R"("trained": {"psnr": 31.50, "by": "a \"b\""},"scale": 1e-03,"obj_num")";
   replace_mlp("\"obj_num\"", members);
   Scene scene = read_any(folder(), Axes::y_up);
@@ -165,17 +165,17 @@ TEST_F(BadFolder, UnknownMembersOfMlpJsonKeepTheirSpelling) {
   EXPECT_NE(written.find("\"scale\":1e-03"), std::string::npos);
   EXPECT_NO_THROW(read_any(out.path() / "out", Axes::y_up));
 }
-TEST_F(BadFolder, NoTriangles) {
+TEST_F(BadFolder, RejectsEmptyMesh) {
   write_text(folder() / "shape0.obj", "v 0 0 0\nvt 0 0\n");
   expect_refused("has no triangles");
 }
-TEST_F(BadFolder, GapInTheChunks) {
+TEST_F(BadFolder, RejectsMissingChunk) {
   const std::string text = read_file(folder() / "shape0.obj");
   fs::remove(folder() / "shape0.obj");
   for (const char* name : {"shape0_0.obj", "shape0_2.obj"}) write_text(folder() / name, text);
   expect_refused("shape0_1.obj: does not exist, but shape0_2.obj does");
 }
-TEST_F(BadFolder, Images) {
+TEST_F(BadFolder, RejectsInvalidImages) {
   const fs::path png = folder() / "shape0.pngfeat1.png";
   const std::string good = read_file(png);
   write_text(png, "");
@@ -185,18 +185,18 @@ TEST_F(BadFolder, Images) {
   write_text(png, good.substr(0, good.size() / 2));
   expect_refused("shape0.pngfeat1.png: is truncated");
   write_text(png, png_of(16, 16, 4, "uint8"));
-  expect_refused("both images of a set must be of one size");
+  expect_refused("both images of a set must have the same size");
   write_text(png, png_of(16, 16, 3, "uint8"));
   expect_refused("has 3 channels");
   write_text(png, png_of(16, 16, 4, "uint16"));
-  expect_refused("is not 8 bits");
+  expect_refused("must have 8 bits per channel, not");
   std::string huge = good;
   huge[16] = huge[17] = 0x7f;  // image width in the PNG header
   write_text(png, huge);
   expect_refused("shape0.pngfeat1.png: ");
 }
 
-TEST_F(BadFolder, ReplacedWhileItIsRead) {
+TEST_F(BadFolder, RejectsFolderReplacedDuringReading) {
   // Replaces the folder between the first and the second stat() of it: same path, other inode.
   class Swap final : public FileCalls {
    public:

@@ -28,7 +28,7 @@ class BakedLightTest : public ::testing::Test {
   LightingOptions options_;
 };
 
-TEST_F(BakedLightTest, IsSharedByWhatWasReadFromTheSameFiles) {
+TEST_F(BakedLightTest, SharedByObjectsFromTheSameFiles) {
   BakedLights known(settings_, options_);
   const auto first = known.of(read(), {});
   EXPECT_EQ(known.of(read(), {}), first);
@@ -36,19 +36,19 @@ TEST_F(BakedLightTest, IsSharedByWhatWasReadFromTheSameFiles) {
 
   const auto whole = read();
   auto cut = std::make_shared<BakedObject>(*whole);
-  keep_bodies(*cut, *whole);
+  record_bodies(*cut, *whole);
   TriangleSet half(cut->triangle_count(), 1);
   std::fill(half.begin() + half.size() / 2, half.end(), std::uint8_t{0});
   cut->sets[0].soup = subset(cut->sets[0].soup, half, 0, true);
-  EXPECT_NE(known.of(cut, {}), first) << "an edited one is another";
+  EXPECT_NE(known.of(cut, {}), first) << "an edited object has its own light data";
 
   export_scene(scene_of(made_object({.columns = 8, .rows = 4, .seed = 7})), folder_.path() / "other", {});
   std::filesystem::remove_all(folder_.path() / "ball");
   std::filesystem::rename(folder_.path() / "other", folder_.path() / "ball");
-  EXPECT_NE(known.of(read(), {}), first) << "the folder holds something else";
+  EXPECT_NE(known.of(read(), {}), first) << "the folder's contents have changed";
 }
 
-TEST_F(BakedLightTest, LightsEachOfThoseThatShareIt) {
+TEST_F(BakedLightTest, LightsEveryNodeThatSharesIt) {
   Scene scene;
   for (const double x : {0.0, 2.5, 5.0}) {
     Node node;
@@ -64,7 +64,7 @@ TEST_F(BakedLightTest, LightsEachOfThoseThatShareIt) {
 }
 
 // BakedLight::among() adds occluders to the cached self-shadowing: same light as tracing all occluders together.
-TEST_F(BakedLightTest, AmongOthersIsWhatIsTracedAmongAll) {
+TEST_F(BakedLightTest, AmongMatchesTracingAllOccluders) {
   BakedLights known(settings_, options_);
   const auto own = read();
   const auto light = known.of(own, {});
@@ -74,8 +74,8 @@ TEST_F(BakedLightTest, AmongOthersIsWhatIsTracedAmongAll) {
   const Occluder other{own, beside};
   constexpr int rays = 40;
   const auto lit = light->among({other}, rays, {});
-  const auto expected = kept_light(light->sites.now, light->sides, {{own, Affine::Identity()}, other}, *light->light,
-                                   Mat3::Identity(), rays, nullptr, {});
+  const auto expected = cached_light(light->sites.now, light->sides, {{own, Affine::Identity()}, other}, *light->light,
+                                     Mat3::Identity(), rays, nullptr, {});
   const auto alone = light->as_baked(light->sides, rays, {});
   int darker = 0;
   for (std::size_t i = 0; i < lit.size(); ++i)
@@ -83,7 +83,7 @@ TEST_F(BakedLightTest, AmongOthersIsWhatIsTracedAmongAll) {
       ASSERT_EQ(lit[i].irradiance[side], expected[i].irradiance[side]) << i;
       darker += lit[i].open[side] < alone[i].open[side] ? 1 : 0;
     }
-  EXPECT_GT(darker, 10) << "the other one must hide something";
+  EXPECT_GT(darker, 10) << "the other object must occlude some sites";
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
-#include "mesh_ops/formats/baked_places_file.h"
+#include "mesh_ops/formats/baked_positions_file.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -35,12 +35,12 @@ std::vector<TextureSet> bare(std::vector<TextureSet> sets) {
 
 constexpr std::size_t number_of_bodies = 301;
 
-TEST(BakedPlaces, AreKeptBitForBit) {
+TEST(BakedPlaces, RoundTripIsBitExact) {
   const std::vector<TextureSet> sets = moved_sets();
-  ASSERT_TRUE(any_baked_places(sets));
-  EXPECT_FALSE(any_baked_places(bare(sets)));
+  ASSERT_TRUE(any_baked_positions(sets));
+  EXPECT_FALSE(any_baked_positions(bare(sets)));
   std::vector<TextureSet> back = bare(sets);
-  read_baked_places(write_baked_places(sets), "baked.bin", number_of_bodies, back);
+  read_baked_positions(write_baked_positions(sets), "baked.bin", number_of_bodies, back);
   const auto displaced = [](const TextureSet& set) {
     return *set.soup.vertex_attributes().find<Eigen::Vector3f>(Soup::displacement);
   };
@@ -53,13 +53,13 @@ TEST(BakedPlaces, AreKeptBitForBit) {
     EXPECT_EQ(back[s].soup.vertex_attributes().begin(), back[s].soup.vertex_attributes().end());
 }
 
-TEST(BakedPlaces, CutChangedOrForeignOnesAreRefusedByName) {
+TEST(BakedPlaces, RejectsTruncatedChangedOrForeignFiles) {
   const std::vector<TextureSet> sets = moved_sets();
-  const std::string bytes = write_baked_places(sets);
+  const std::string bytes = write_baked_positions(sets);
   const auto refused = [&](const std::string& changed, std::size_t body_count = number_of_bodies) {
     std::vector<TextureSet> back = bare(sets);
     try {
-      read_baked_places(changed, "some/baked.bin", body_count, back);
+      read_baked_positions(changed, "some/baked.bin", body_count, back);
     } catch (const FileError& error) {
       EXPECT_NE(std::string(error.what()).find("some/baked.bin"), std::string::npos);
       return true;
@@ -67,7 +67,7 @@ TEST(BakedPlaces, CutChangedOrForeignOnesAreRefusedByName) {
     return false;
   };
   EXPECT_FALSE(refused(bytes));
-  EXPECT_TRUE(refused(bytes, number_of_bodies - 1)) << "names a body that is not there";
+  EXPECT_TRUE(refused(bytes, number_of_bodies - 1)) << "refers to a body that does not exist";
   for (std::size_t length = 0; length < bytes.size(); length += 29) EXPECT_TRUE(refused(bytes.substr(0, length)));
   for (std::size_t at = 0; at < bytes.size(); at += 31) {
     std::string changed = bytes;

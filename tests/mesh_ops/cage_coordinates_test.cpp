@@ -32,7 +32,7 @@ TEST(MeanValue, SumsAndLinearFunctionsAreExactEverywhere) {
   }
 }
 
-TEST(MeanValue, TheSameAtAnyScaleAndFarFromTheOrigin) {
+TEST(MeanValue, AccurateAtAnyScaleAndFarFromTheOrigin) {
   for (const double scale : {1e-30, 1e-12, 1e12, 1e30}) {
     const Cage cage = scaled(dented(), scale);
     std::vector<Vec3> points = hard_points(dented());
@@ -47,14 +47,14 @@ TEST(MeanValue, TheSameAtAnyScaleAndFarFromTheOrigin) {
   EXPECT_LE(errors.linear, 2e-14);
 }
 
-TEST(MeanValue, InsideACageOfNoThicknessToSpeakOf) {
+TEST(MeanValue, InsideAnExtremelyFlatCage) {
   const Cage cage = flat(1e-8);
   const CoordinateErrors errors = errors_of(*mean_value_coordinates(cage), cage, points_inside_flat());
   EXPECT_LE(errors.sum, 1e-14);
   EXPECT_LE(errors.linear, 2e-14);
 }
 
-TEST(MeanValue, TenDiagonalsAwayWeightsAreLargeAndErrorsGrowWithThem) {
+TEST(MeanValue, LinearPrecisionAtTenDiagonals) {
   for (const auto& [name, cage] : hard_cages()) {
     const CoordinateErrors errors = errors_of(*mean_value_coordinates(cage), cage, {Vec3(7, 5, 6)});
     EXPECT_LE(errors.linear, 2e-12) << name;
@@ -64,9 +64,9 @@ TEST(MeanValue, TenDiagonalsAwayWeightsAreLargeAndErrorsGrowWithThem) {
 // Largest error of the weights at every `step`-th point, less the effect of moving that point by 1e-15 of the cage's
 // diagonal. A point in doubles is no more accurate than that, and on a needle of height 1e-12 weights change by 1e12
 // per unit of length.
-double beyond_rounding(const Cage& cage, const Coordinates& coordinates,
-                       std::vector<Gold> (*exact)(const Cage&, const Gold3&), const std::vector<Vec3>& points,
-                       std::size_t step) {
+double error_beyond_rounding(const Cage& cage, const Coordinates& coordinates,
+                             std::vector<Gold> (*exact)(const Cage&, const Gold3&), const std::vector<Vec3>& points,
+                             std::size_t step) {
   Box box;
   for (const Vec3& v : cage.vertices) box.extend(v);
   const double size = box.diagonal().stableNorm(), unit = frame_of(cage).scale;
@@ -106,8 +106,8 @@ TEST(MeanValue, WeightsAgreeWith120DigitsOnEveryHardCage) {
     for (const Vec3& point : hard_points(cage)) (box.exteriorDistance(point) <= 0.1 ? near : beyond).push_back(point);
     const auto coordinates = mean_value_coordinates(cage);
     const std::size_t step = cage.faces.size() > 20 ? 61 : 3;
-    EXPECT_LE(beyond_rounding(cage, *coordinates, gold_mean_value, near, step), 1e-14) << name;
-    EXPECT_LE(beyond_rounding(cage, *coordinates, gold_mean_value, beyond, step), 1e-13) << name;
+    EXPECT_LE(error_beyond_rounding(cage, *coordinates, gold_mean_value, near, step), 1e-14) << name;
+    EXPECT_LE(error_beyond_rounding(cage, *coordinates, gold_mean_value, beyond, step), 1e-13) << name;
   }
 }
 
@@ -116,12 +116,13 @@ TEST(MeanValue, WeightsAgreeWith120DigitsAtAnyScaleFarFromTheOriginAndInFlatCage
     const Cage cage = scaled(cube(), scale);
     std::vector<Vec3> points = hard_points(cube());
     for (Vec3& point : points) point *= scale;
-    EXPECT_LE(beyond_rounding(cage, *mean_value_coordinates(cage), gold_mean_value, points, 7), 1e-14) << scale;
+    EXPECT_LE(error_beyond_rounding(cage, *mean_value_coordinates(cage), gold_mean_value, points, 7), 1e-14) << scale;
   }
   const Cage far = scaled(cube(), 1, Vec3(1e6, -1e6, 1e6));
-  EXPECT_LE(beyond_rounding(far, *mean_value_coordinates(far), gold_mean_value, hard_points(far), 7), 1e-14);
+  EXPECT_LE(error_beyond_rounding(far, *mean_value_coordinates(far), gold_mean_value, hard_points(far), 7), 1e-14);
   const Cage thin = flat(1e-8);
-  EXPECT_LE(beyond_rounding(thin, *mean_value_coordinates(thin), gold_mean_value, points_inside_flat(), 7), 1e-14);
+  EXPECT_LE(error_beyond_rounding(thin, *mean_value_coordinates(thin), gold_mean_value, points_inside_flat(), 7),
+            1e-14);
 }
 
 // All weights and gradients of the points, for bitwise comparison of implementations.
@@ -133,7 +134,7 @@ std::vector<double> all_bits(const Coordinates& coordinates, const std::vector<V
       block[lane] = points[std::min(first + lane, points.size() - 1)];
     std::array<std::uint8_t, batch_lanes> outside;
     for (const bool gradients : {false, true}) {
-      coordinates.weigh(block, weights.data(), gradients ? slopes.data() : nullptr, outside.data());
+      coordinates.compute_weights(block, weights.data(), gradients ? slopes.data() : nullptr, outside.data());
       all.insert(all.end(), weights.begin(), weights.end());
     }
     all.insert(all.end(), slopes.begin(), slopes.end());
@@ -160,7 +161,7 @@ TEST(MeanValue, EveryVectorWidthGivesTheSameBits) {
   }
 }
 
-TEST(MeanValue, BlocksAndSinglePointsAgree) {
+TEST(MeanValue, BatchesMatchSinglePoints) {
   const Cage cage = dented();
   const CageFrame frame = frame_of(cage);
   const auto coordinates = mean_value_coordinates(cage);
@@ -184,7 +185,7 @@ TEST(MeanValue, BlocksAndSinglePointsAgree) {
 }
 
 // A NaN, infinite or huge point does not affect the other points of its SIMD batch.
-TEST(MeanValue, PointsThatAreNoNumbersLeaveTheirNeighboursAlone) {
+TEST(MeanValue, NonFinitePointsDoNotAffectTheirBatch) {
   const Cage cage = dented();
   std::vector<Vec3> points;
   for (const Vec3& point : hard_points(cage))
@@ -209,7 +210,7 @@ TEST(MeanValue, PointsThatAreNoNumbersLeaveTheirNeighboursAlone) {
 
 // Single precision, which the accuracy study compares with: the cage frame removes scales of 1e±12, so only float
 // rounding remains.
-TEST(MeanValue, InFloatTheScaleDoesNotMatter) {
+TEST(MeanValue, FloatWeightsAreScaleInvariant) {
   std::vector<std::vector<float>> all;
   for (const double scale : {std::ldexp(1.0, -40), 1.0, std::ldexp(1.0, 40)}) {  // 1e±12
     const Cage cage = scaled(dented(), scale);
@@ -242,34 +243,35 @@ TEST(Green, SumsAndLinearFunctionsAreExactInside) {
 TEST(Green, WeightsAgreeWith120DigitsOnEveryHardCage) {
   for (const auto& [name, cage] : hard_cages()) {
     const std::size_t step = cage.faces.size() > 20 ? 29 : 3;
-    EXPECT_LE(beyond_rounding(cage, *green_coordinates(cage), gold_green, inside_points(cage), step), 1e-14) << name;
+    EXPECT_LE(error_beyond_rounding(cage, *green_coordinates(cage), gold_green, inside_points(cage), step), 1e-14)
+        << name;
   }
 }
 
-TEST(Green, TheSameAtAnyScaleFarFromTheOriginAndInFlatCages) {
+TEST(Green, AccurateAtAnyScaleFarFromTheOriginAndInFlatCages) {
   for (const double scale : {1e-30, 1e-12, 1e12, 1e30}) {
     const Cage cage = scaled(cube(), scale);
     std::vector<Vec3> points = inside_points(cube());
     for (Vec3& point : points) point *= scale;
     const auto coordinates = green_coordinates(cage);
-    EXPECT_LE(beyond_rounding(cage, *coordinates, gold_green, points, 7), 1e-14) << scale;
+    EXPECT_LE(error_beyond_rounding(cage, *coordinates, gold_green, points, 7), 1e-14) << scale;
     const CoordinateErrors errors = errors_of(*coordinates, cage, points);
     EXPECT_LE(errors.sum, 1e-14) << scale;
     EXPECT_LE(errors.linear, 1e-14) << scale;
   }
   const Cage far = scaled(cube(), 1, Vec3(1e6, -1e6, 1e6));
-  EXPECT_LE(beyond_rounding(far, *green_coordinates(far), gold_green, inside_points(far), 7), 1e-14);
+  EXPECT_LE(error_beyond_rounding(far, *green_coordinates(far), gold_green, inside_points(far), 7), 1e-14);
   const Cage thin = flat(1e-8);
   std::vector<Vec3> within;
   for (const Vec3& point : points_inside_flat())
     if (std::abs(point.z()) < 4.95e-9) within.push_back(point);
-  EXPECT_LE(beyond_rounding(thin, *green_coordinates(thin), gold_green, within, 7), 1e-14);
+  EXPECT_LE(error_beyond_rounding(thin, *green_coordinates(thin), gold_green, within, 7), 1e-14);
   const CoordinateErrors errors = errors_of(*green_coordinates(thin), thin, within);
   EXPECT_LE(errors.sum, 1e-14);
   EXPECT_LE(errors.linear, 1e-14);
 }
 
-TEST(Green, WeightsAreNumbersOnTheSurface) {
+TEST(Green, FiniteWeightsOnTheSurface) {
   const Cage cage = dented();
   const auto coordinates = green_coordinates(cage);
   for (const Vec3& point : hard_points(cage))
@@ -277,7 +279,7 @@ TEST(Green, WeightsAreNumbersOnTheSurface) {
 }
 
 // Face stretches of needles: rounding must not be amplified by 1 / height.
-TEST(Green, RigidMotionsOfNeedlesStretchNothing) {
+TEST(Green, RigidMotionsDoNotStretchNeedles) {
   for (const double thin : {1e-3, 1e-6, 1e-9}) {
     const Cage cage = needles(thin);
     // A rotation by 90° moves the corners without rounding, so only the formula can err.
@@ -303,7 +305,7 @@ TEST(Green, RigidMotionsOfNeedlesStretchNothing) {
   }
 }
 
-TEST(MeanValue, AMillionAdversarialPointsGiveNumbers) {
+TEST(MeanValue, FiniteAtAdversarialPoints) {
   const Cage cage = needles(1e-6);
   const auto coordinates = mean_value_coordinates(cage);
   std::mt19937 random(1);
@@ -330,7 +332,7 @@ TEST(MeanValue, AMillionAdversarialPointsGiveNumbers) {
   EXPECT_EQ(bad, 0U);
 }
 
-TEST(MeanValue, FlippedFacesAreTurnedAndOpenCagesRefused) {
+TEST(MeanValue, OrientsFlippedCagesAndRejectsOpenOnes) {
   Cage cage = cube();
   for (Face& face : cage.faces) std::swap(face[0], face[1]);
   EXPECT_EQ(volume(checked_cage(cage)), volume(cube()));

@@ -11,7 +11,7 @@ namespace rebake::test {
 namespace {
 
 // Weights sum to 1 up to rounding; a translation must not multiply that error by its length in diagonals.
-TEST(CageDeformation, AFarTranslationTakesPointsAlong) {
+TEST(CageDeformation, FarTranslationIsExact) {
   const Cage cage = dented();
   const Vec3 far(1e6, -3e6, 2e6);
   std::vector<Vec3> moved = cage.vertices;
@@ -21,10 +21,10 @@ TEST(CageDeformation, AFarTranslationTakesPointsAlong) {
   double worst = 0;
   for (std::size_t k = 0; k < points.size(); ++k)
     worst = std::max(worst, (result.points[k] - (points[k] + far)).norm());
-  EXPECT_LE(worst, 1.5e-9) << "what rounding at 3e6 leaves: half a step a number";
+  EXPECT_LE(worst, 1.5e-9) << "rounding at 3e6: half a unit in the last place per coordinate";
 }
 
-TEST(CageDeformation, TheIdentityChangesNoBitAndEqualPointsMoveAlike) {
+TEST(CageDeformation, IdentityIsBitExactAndDuplicatesMoveTogether) {
   const Cage cage = dented();
   std::vector<Vec3> points = hard_points(cage);
   points.insert(points.end(), points.begin(), points.end());  // duplicates, as unwelded corners have
@@ -39,7 +39,7 @@ TEST(CageDeformation, TheIdentityChangesNoBitAndEqualPointsMoveAlike) {
   }
 }
 
-TEST(CageDeformation, RigidMotionsOfTheCageAreRigidMotions) {
+TEST(CageDeformation, RigidCageMotionsMovePointsRigidly) {
   const Cage cage = dented();
   const Affine motion =
       Eigen::Translation3d(0.2, -3, 1) * Eigen::AngleAxisd(3.141592653589793, Vec3(1, 2, 3).normalized());
@@ -59,7 +59,7 @@ TEST(CageDeformation, RigidMotionsOfTheCageAreRigidMotions) {
 }
 
 // The window's preview of a cage and the edit that commits it share one set of coordinates.
-TEST(CageDeformation, CoordinatesThatSomeoneHoldsAreTakenAgain) {
+TEST(CageDeformation, SharesCoordinatesThatAreInUse) {
   const Cage cage = dented();
   Cage other = cage;
   other.vertices[0] *= 1 + 1e-15;
@@ -70,10 +70,10 @@ TEST(CageDeformation, CoordinatesThatSomeoneHoldsAreTakenAgain) {
   EXPECT_NE(shared_coordinates(other, CageCoordinates::harmonic, 16), held);
   const std::weak_ptr<const Coordinates> gone = held;
   held.reset();
-  EXPECT_TRUE(gone.expired()) << "nothing else keeps them";
+  EXPECT_TRUE(gone.expired()) << "the cache must not own the coordinates";
 }
 
-TEST(CageDeformation, PointsThatTheCoordinatesDoNotReachStayWhateverMoves) {
+TEST(CageDeformation, PointsOutsideTheDomainStay) {
   const Cage cage = cube();
   std::vector<Vec3> moved = cage.vertices;
   for (Vec3& v : moved) v.x() += 1;
@@ -91,7 +91,7 @@ TEST(CageDeformation, PointsThatTheCoordinatesDoNotReachStayWhateverMoves) {
   }
 }
 
-TEST(CageDeformation, BoundPointsFollowToAMillionth) {
+TEST(CageDeformation, BindingIsAccurateToOneMillionth) {
   const Cage cage = dented();
   const auto coordinates = mean_value_coordinates(cage);
   const std::vector<Vec3> points = hard_points(cage);

@@ -142,12 +142,12 @@ void expect_one_sided_limits(const Cage& cage, const Coordinates& coordinates,
 }
 
 // Points of a bounding-box cage lie on its faces, edges and corners. A gradient of 0 there would rotate them by 180°.
-TEST(MeanValue, JacobiansOnFacesEdgesAndVerticesAreTheLimitsFromInside) {
+TEST(MeanValue, JacobiansOnTheSurfaceAreLimitsFromInside) {
   for (const Cage& cage : {cube(), dented(), needles(1e-3)})
     expect_one_sided_limits(cage, *mean_value_coordinates(cage), gold_mean_value, false);
 }
 
-TEST(Green, JacobiansOnFacesAreTheLimitsFromInside) {
+TEST(Green, JacobiansOnFacesAreLimitsFromInside) {
   for (const Cage& cage : {cube(), dented()}) expect_one_sided_limits(cage, *green_coordinates(cage), gold_green, true);
 }
 

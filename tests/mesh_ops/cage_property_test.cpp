@@ -32,12 +32,12 @@ std::vector<Weighed> weighed(const Coordinates& coordinates, const std::vector<V
     for (std::size_t lane = 0; lane < batch_lanes; ++lane)
       block[lane] = points[std::min(first + lane, points.size() - 1)];
     std::array<std::uint8_t, batch_lanes> outside, outside_too;
-    coordinates.weigh(block, weights.data(), nullptr, outside.data());
-    coordinates.weigh(block, with_gradients.data(), slopes.data(), outside_too.data());
+    coordinates.compute_weights(block, weights.data(), nullptr, outside.data());
+    coordinates.compute_weights(block, with_gradients.data(), slopes.data(), outside_too.data());
     for (std::size_t lane = 0; lane < batch_lanes && first + lane < points.size(); ++lane) {
       Weighed& one = result[first + lane];
       one.outside = outside[lane] != 0;
-      EXPECT_EQ(outside[lane], outside_too[lane]) << "inside or outside depends on whether gradients are asked for";
+      EXPECT_EQ(outside[lane], outside_too[lane]) << "inside or outside must not depend on the request for gradients";
       for (std::size_t row = 0; row < rows; ++row) {
         one.weights.push_back(weights[row * batch_lanes + lane]);
         const double* slope = slopes.data() + row * 3 * batch_lanes + lane;
@@ -183,7 +183,7 @@ double far_error(const Cage& cage, std::mt19937_64& random, int count) {
   return largest_share(cage, points);
 }
 
-TEST(CageProperty, MeanValueHoldsThirteenDigitsToTenDiagonals) {
+TEST(CageProperty, MeanValueHasThirteenDigitsUpToTenDiagonals) {
   std::mt19937_64 random(7);
   for (int k = 0; k < cases(10, 400); ++k) {
     const RandomCage of = k % 2 == 0 ? random_lattice(random) : random_star(random);
@@ -208,7 +208,7 @@ double outside_error(const Cage& cage, std::mt19937_64& random, int count) {
 }
 
 // If terms cancel, faces are evaluated with 50 digits, except within 1e-6 of two faces if terms of other faces cancel.
-TEST(CageProperty, MeanValueHoldsNineDigitsOutsideThinCages) {
+TEST(CageProperty, MeanValueHasNineDigitsOutsideThinCages) {
   std::mt19937_64 random(8);
   const auto box = [](double x, double y, double z) {
     return lattice_cage(Box(Vec3(0, 0, 0), Vec3(x, y, z)), 1, 1, 1);
@@ -247,7 +247,7 @@ TEST(CageProperty, PointBesideASharpEdgeFollowsTheCage) {
 }
 
 // Overlapping components have winding number 2: weights must be divided by it, or rotations are wrong.
-TEST(CageProperty, GreenFollowsTurnsWherePartsOverlap) {
+TEST(CageProperty, GreenFollowsRotationsOfOverlappingComponents) {
   Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 1, 1, 1);
   const Cage other = lattice_cage(Box(Vec3(0.5, 0.5, 0.5), Vec3(1.5, 1.5, 1.5)), 1, 1, 1);
   const auto base = static_cast<std::uint32_t>(cage.vertices.size());
@@ -261,7 +261,7 @@ TEST(CageProperty, GreenFollowsTurnsWherePartsOverlap) {
 }
 
 // Each component is oriented on its own, also if others are wound differently.
-TEST(CageProperty, EveryComponentIsTurnedOutwards) {
+TEST(CageProperty, OrientsEveryComponentOutwards) {
   const Cage box = lattice_cage(Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)), 1, 1, 1);
   const auto joined = [&](const Vec3& offset, double scale, bool first_inwards, bool second_inwards) {
     Cage cage;

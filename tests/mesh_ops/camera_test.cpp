@@ -15,13 +15,13 @@ TEST(Camera, JsonKeepsBothProjections) {
   Camera camera;
   camera.eye = {0.1, -2, 1.0 / 3};
   EXPECT_EQ(read_camera_json(camera_json(camera)), camera);
-  EXPECT_FALSE(camera_json(camera).contains("ortho_height")) << "of a pinhole it says nothing";
+  EXPECT_FALSE(camera_json(camera).contains("ortho_height")) << "a perspective camera has no ortho_height";
   camera.ortho_height = 0.7;
   EXPECT_EQ(read_camera_json(camera_json(camera)), camera);
   EXPECT_TRUE(read_camera_json(camera_json(camera)).orthographic());
 }
 
-TEST(Camera, PlanesThatAreLeftOutFitTheScene) {
+TEST(Camera, FitsMissingPlanesToTheScene) {
   const Camera open = read_camera_json({{"eye", {0, 0, 3000}}});
   EXPECT_FALSE(camera_json(open).contains("near"));
   EXPECT_EQ(read_camera_json(camera_json(open)), open);
@@ -71,7 +71,7 @@ TEST(Camera, PlanesThatAreLeftOutFitTheScene) {
   }
 }
 
-TEST(Camera, AHeightThatShowsNothingIsRefused) {
+TEST(Camera, RejectsInvalidOrthoHeight) {
   for (const double height :
        {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     Camera camera;
@@ -82,7 +82,7 @@ TEST(Camera, AHeightThatShowsNothingIsRefused) {
 }
 
 // With one plane given, at any power of ten, the other is fitted or the error names the given one.
-TEST(Camera, ErrorsNameThePlaneThatWasGiven) {
+TEST(Camera, ErrorsNameTheGivenPlane) {
   const Box scene(Vec3(-1, -1, -1), Vec3(1, 1, 1));
   int errors = 0;
   for (int power = -323; power <= 308; ++power)

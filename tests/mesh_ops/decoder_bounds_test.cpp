@@ -24,7 +24,7 @@ TEST_F(DecoderBounds, NoDirectionChangesMoreThanTheBound) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     Decoder decoder = made_decoder(seed, 4 + static_cast<int>(seed) % 13);
     decoder.weights0.bottomRows(3) *= std::pow(10.0, -any(0, 6));
-    const DirectionUse use = direction_use(decoder);
+    const DirectionInfluence use = direction_influence(decoder);
     double largest = 0;
     for (int k = 0; k < 200; ++k) {
       std::array<double, 8> features;
@@ -34,14 +34,14 @@ TEST_F(DecoderBounds, NoDirectionChangesMoreThanTheBound) {
       largest = std::max(largest, (with - without).cwiseAbs().maxCoeff());
     }
     EXPECT_LE(largest, use.change) << seed;
-    EXPECT_GT(largest, use.change / 1000) << seed << ": the bound says nothing";
+    EXPECT_GT(largest, use.change / 1000) << seed << ": the bound is too wide";
   }
   Decoder blind = made_decoder(1);
   blind.weights0.bottomRows(3).setZero();
-  EXPECT_EQ(direction_use(blind).change, 0);
+  EXPECT_EQ(direction_influence(blind).change, 0);
 }
 
-TEST_F(DecoderBounds, ColorsLieInTheirRange) {
+TEST_F(DecoderBounds, ColorsLieInRange) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const Decoder decoder = made_decoder(seed, 4 + static_cast<int>(seed) % 13);
     FeatureRange range{true, {}, {}};
@@ -63,7 +63,7 @@ TEST_F(DecoderBounds, ColorsLieInTheirRange) {
   }
 }
 
-TEST_F(DecoderBounds, FeaturesOfOneColourAreNarrowAndOthersAreNot) {
+TEST_F(DecoderBounds, NarrowRangeOnlyForOneColour) {
   EXPECT_FALSE(narrow_feature_range(*made_object()->sets[0].texels));
   const auto texture = [](Texel opaque) {
     return FeatureTexture::from_rows(300, 40, AlphaCode::halved, [opaque](int y, Texel* row) {

@@ -70,16 +70,16 @@ std::map<std::array<double, 3>, std::vector<Vec3>> places(const BakedObject& bef
   return result;
 }
 
-TEST(Deform, UnweldedCornersMoveAlikeBitForBit) {
+TEST(Deform, DuplicateVerticesMoveBitIdentically) {
   const auto object = made_object();
   const DeformedObject result = deformed(*object, Affine::Identity(), all(*object), 0, bend(1));
   for (const auto& [place, now] : places(*object, *result.object)) EXPECT_EQ(now.size(), 1U);
   EXPECT_NE(result.object->sets[0].soup.shared_positions(), object->sets[0].soup.shared_positions());
-  EXPECT_EQ(result.object->sets[0].soup.shared_uvs(), object->sets[0].soup.shared_uvs()) << "features stay attached";
+  EXPECT_EQ(result.object->sets[0].soup.shared_uvs(), object->sets[0].soup.shared_uvs()) << "UVs must stay shared";
   EXPECT_EQ(result.object->sets[0].texels, object->sets[0].texels);
 }
 
-TEST(Deform, TheIdentityChangesNothing) {
+TEST(Deform, IdentityChangesNothing) {
   const auto object = made_object();
   // A transform whose inverse is inexact.
   const Affine placed =
@@ -89,7 +89,7 @@ TEST(Deform, TheIdentityChangesNothing) {
   EXPECT_EQ(result.object->sets[0].soup.rotations(), nullptr);
 }
 
-TEST(Deform, ASoftBorderLeavesNoCrackAndAHardOneSplits) {
+TEST(Deform, SoftBorderHasNoCracksHardBorderSplits) {
   const auto object = made_object({.columns = 32, .rows = 16});
   const TriangleSet flags = upper_half(*object);
   const DeformedObject soft =
@@ -106,7 +106,7 @@ TEST(Deform, ASoftBorderLeavesNoCrackAndAHardOneSplits) {
 
 // The falloff is a function of the distance to the border's edges. The distance to its corners would cause waves along
 // the border, with slopes that differ by 1.5 over the falloff.
-TEST(Deform, ASoftBorderIsAsSoftBetweenItsCornersAsAtThem) {
+TEST(Deform, FalloffIsUniformAlongTheBorder) {
   // A sheet of 4 × 64 quads; the upper 48 rows rise, the border runs along x.
   std::vector<Vec3> positions;
   std::vector<Vec2> uvs;
@@ -143,7 +143,7 @@ TEST(Deform, ASoftBorderIsAsSoftBetweenItsCornersAsAtThem) {
   }
 }
 
-TEST(Deform, FoldsAreCountedAndNothingBecomesNaN) {
+TEST(Deform, CountsFoldsWithoutNaN) {
   const auto object = made_object();
   // A curvature κ = 2 folds space beyond x = 0.5.
   ClosedForm form;
@@ -162,7 +162,7 @@ TEST(Deform, FoldsAreCountedAndNothingBecomesNaN) {
     for (const TextureSet& set : flat.object->sets) {
       for (const Vec3& p : set.soup.positions()) EXPECT_TRUE(p.allFinite());
       if (set.soup.rotations() == nullptr) continue;
-      for (const Turn& turn : *set.soup.rotations()) {
+      for (const PackedRotation& turn : *set.soup.rotations()) {
         EXPECT_TRUE(turn.matrix().isUnitary(1e-12));
         // Mirroring also mirrors view directions (determinant −1); collapsed vertices get a proper rotation.
         EXPECT_EQ(turn.matrix().determinant() > 0, scale.x() >= 0) << scale.transpose();
@@ -171,22 +171,22 @@ TEST(Deform, FoldsAreCountedAndNothingBecomesNaN) {
   }
 }
 
-TEST(Deform, MirroringTwiceIsNothing) {
+TEST(Deform, MirroringTwiceIsTheIdentity) {
   const auto object = made_object();
   for (const Vec3& scale : {Vec3(-1, 1, 1), Vec3(1, -1, 1), Vec3(-1, -1, -1)}) {
     const DeformedObject once = deformed(*object, Affine::Identity(), all(*object), 0, affine(scale.asDiagonal()));
-    for (const Turn& turn : *once.object->sets[0].soup.rotations())
+    for (const PackedRotation& turn : *once.object->sets[0].soup.rotations())
       EXPECT_LE((turn.matrix() - Mat3(scale.asDiagonal())).norm(), 1e-14) << scale.transpose();
     EXPECT_EQ(once.report.undefined, 0U);
     const DeformedObject twice =
         deformed(*once.object, Affine::Identity(), all(*object), 0, affine(scale.asDiagonal()));
     if (twice.object->sets[0].soup.rotations() == nullptr) continue;
-    for (const Turn& turn : *twice.object->sets[0].soup.rotations())
+    for (const PackedRotation& turn : *twice.object->sets[0].soup.rotations())
       EXPECT_LE((turn.matrix() - Mat3::Identity()).norm(), 1e-14) << scale.transpose();
   }
 }
 
-TEST(Deform, PointsThatAreNoNumbersStay) {
+TEST(Deform, NonFinitePointsStay) {
   auto object = std::make_shared<BakedObject>(*made_object());
   auto positions = object->sets[0].soup.positions();
   positions[0].x() = std::nan("");
@@ -205,13 +205,13 @@ TEST(Deform, RotationsAccumulateOverSeveralBends) {
   const Mat3 quarter = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
   const DeformedObject once = deformed(*object, Affine::Identity(), all(*object), 0, affine(quarter));
   const DeformedObject twice = deformed(*once.object, Affine::Identity(), all(*object), 0, affine(quarter));
-  for (const Turn& turn : *twice.object->sets[0].soup.rotations())
+  for (const PackedRotation& turn : *twice.object->sets[0].soup.rotations())
     EXPECT_LE((turn.matrix() - quarter * quarter).norm(), 1e-14);
   // In a node with a rotation and a non-uniform scale, rotations are stored in object space.
   const Affine placed = Eigen::AngleAxisd(1.1, Vec3(1, 1, 0).normalized()) * Eigen::Scaling(1.0, 3.0, 0.5);
   const DeformedObject turned = deformed(*object, placed, all(*object), 0, affine(quarter));
   const Mat3 frame = orthogonal_factor(placed.linear());
-  for (const Turn& turn : *turned.object->sets[0].soup.rotations())
+  for (const PackedRotation& turn : *turned.object->sets[0].soup.rotations())
     EXPECT_LE((turn.matrix() - frame.transpose() * quarter * frame).norm(), 1e-12);
 }
 
@@ -224,21 +224,21 @@ TEST(Wrap, EnclosesEveryTriangleAndIsClosed) {
     EXPECT_EQ(self_intersections(cage), 0U);
     EXPECT_EQ(deform_points(*green_coordinates(cage), cage, cage.vertices, soup.positions(), false).outside,
               std::vector<std::uint8_t>(soup.positions().size(), 0))
-        << "Green's coordinates know the inside";
+        << "all points must be inside by Green's coordinates";
   }
   EXPECT_THROW(wrap({soup.positions(), soup.faces()}, 0.9), FieldError);
   EXPECT_THROW(wrap({}, 0.1), Error);
 }
 
-TEST(Handles, HeldPointsAreHeldAndTheRestIsRigid) {
+TEST(Handles, HeldVerticesAreExactAndTheRestIsRigid) {
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
-  std::vector<HandledVertex> held;
+  std::vector<ConstrainedVertex> held;
   const Affine lifted = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.7, Vec3::UnitZ());
   for (std::uint32_t v = 0; v < cage.vertices.size(); ++v)
     if (cage.vertices[v].y() < 0.1) held.push_back({v, lifted * cage.vertices[v]});
-  const HandledCage moved = as_rigid_as_possible(cage, held, 500);
+  const ConstrainedCage moved = as_rigid_as_possible(cage, held, 500);
   EXPECT_EQ(moved.free_components, 0U);
-  for (const HandledVertex& h : held) EXPECT_EQ(moved.vertices[h.vertex], h.place);
+  for (const ConstrainedVertex& h : held) EXPECT_EQ(moved.vertices[h.vertex], h.place);
   // With one end moved rigidly and the other free, the minimum is that rigid motion.
   for (std::size_t v = 0; v < cage.vertices.size(); ++v)
     EXPECT_LE((moved.vertices[v] - lifted * cage.vertices[v]).norm(), 1e-13);
@@ -247,14 +247,14 @@ TEST(Handles, HeldPointsAreHeldAndTheRestIsRigid) {
 
 // Iterations start at the best rigid fit to the handles. From the cage at rest, ten of them would leave a rotation by 3
 // rad short by 2 to 44 % of the diagonal.
-TEST(Handles, RigidMotionsAreExactWhateverTheAngle) {
+TEST(Handles, RigidMotionsAreExactAtAnyAngle) {
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
   for (const double angle : {1e-9, 0.5, 1.5, 3.0, 3.14159265358979})
     for (const std::size_t count : {std::size_t{3}, std::size_t{9}, cage.vertices.size()}) {
       const Affine motion = Eigen::Translation3d(5, -2, 3) * Eigen::AngleAxisd(angle, Vec3(1, 2, -1).normalized());
-      std::vector<HandledVertex> held;
+      std::vector<ConstrainedVertex> held;
       for (std::uint32_t v = 0; v < count; ++v) held.push_back({v * 29 % 74, motion * cage.vertices[v * 29 % 74]});
-      const HandledCage moved = as_rigid_as_possible(cage, held, 10);
+      const ConstrainedCage moved = as_rigid_as_possible(cage, held, 10);
       for (std::size_t v = 0; v < cage.vertices.size(); ++v)
         ASSERT_LE((moved.vertices[v] - motion * cage.vertices[v]).norm(), 1e-12) << angle << " with " << count;
       EXPECT_LE(moved.energy, 1e-20);
@@ -263,7 +263,7 @@ TEST(Handles, RigidMotionsAreExactWhateverTheAngle) {
 
 // Two handles define one direction at rest and one moved. Near 180° the axis of the rotation between them is
 // ill-conditioned: its error is rounding divided by the remaining angle.
-TEST(Handles, TwoHandlesRotateTheCageRigidlyUpToAHalfTurn) {
+TEST(Handles, TwoHandlesRotateTheCageRigidlyUpTo180Degrees) {
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
@@ -273,9 +273,9 @@ TEST(Handles, TwoHandlesRotateTheCageRigidlyUpToAHalfTurn) {
     const Vec3 along = cage.vertices[second] - cage.vertices[first];
     const Vec3 axis = along.cross(Vec3(normal(random), normal(random), normal(random))).normalized();
     const Affine motion = Eigen::Translation3d(5, -2, 3) * Eigen::AngleAxisd(angle, axis);
-    std::vector<HandledVertex> held;
+    std::vector<ConstrainedVertex> held;
     for (const std::uint32_t v : {first, second}) held.push_back({v, motion * cage.vertices[v]});
-    const HandledCage moved = as_rigid_as_possible(cage, held, 10);
+    const ConstrainedCage moved = as_rigid_as_possible(cage, held, 10);
     double worst = 0;
     for (std::size_t v = 0; v < cage.vertices.size(); ++v)
       worst = std::max(worst, (moved.vertices[v] - motion * cage.vertices[v]).norm());
@@ -284,23 +284,23 @@ TEST(Handles, TwoHandlesRotateTheCageRigidlyUpToAHalfTurn) {
   }
 }
 
-TEST(Handles, WhatIsHeldWhereItWasChangesNoBit) {
+TEST(Handles, UnmovedHandlesChangeNoBit) {
   const Cage cage = lattice_cage(Box(Vec3(0.1, 0.2, 0.3), Vec3(1, 4, 1)), 2, 8, 2);
-  std::vector<HandledVertex> held;
+  std::vector<ConstrainedVertex> held;
   for (std::uint32_t v = 0; v < cage.vertices.size(); v += 5) held.push_back({v, cage.vertices[v]});
   EXPECT_EQ(as_rigid_as_possible(cage, held, 10).vertices, cage.vertices);
 }
 
-TEST(Handles, StepsEndAtTheirResidualAndMoreOfThemLoseEnergy) {
+TEST(Handles, IterationsStopAtTheResidualAndReduceEnergy) {
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
-  std::vector<HandledVertex> held;
+  std::vector<ConstrainedVertex> held;
   const Affine turned =
       Eigen::Translation3d(0.5, 4, 0.5) * Eigen::AngleAxisd(1.2, Vec3::UnitZ()) * Eigen::Translation3d(-0.5, -4, -0.5);
   for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
     if (cage.vertices[v].y() < 0.1) held.push_back({v, cage.vertices[v]});
     if (cage.vertices[v].y() > 3.9) held.push_back({v, turned * cage.vertices[v]});
   }
-  const HandledCage few = as_rigid_as_possible(cage, held, 5), many = as_rigid_as_possible(cage, held, 1000);
+  const ConstrainedCage few = as_rigid_as_possible(cage, held, 5), many = as_rigid_as_possible(cage, held, 1000);
   EXPECT_EQ(few.iterations, 5);
   EXPECT_GT(few.residual, handles_residual);
   EXPECT_LT(many.iterations, 1000);
@@ -309,26 +309,26 @@ TEST(Handles, StepsEndAtTheirResidualAndMoreOfThemLoseEnergy) {
   EXPECT_LT(many.energy, few.energy);
 }
 
-TEST(Handles, APointOfNoTriangleMovesNothing) {
+TEST(Handles, IsolatedVertexMovesNothing) {
   Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 1, 1, 1);
   cage.vertices.emplace_back(5, 5, 5);
   EXPECT_THROW(as_rigid_as_possible(cage, {{8, Vec3(6, 6, 6)}}, 5), Error);
-  const HandledCage moved = as_rigid_as_possible(cage, {{0, cage.vertices[0]}, {8, Vec3(6, 6, 6)}}, 5);
+  const ConstrainedCage moved = as_rigid_as_possible(cage, {{0, cage.vertices[0]}, {8, Vec3(6, 6, 6)}}, 5);
   EXPECT_EQ(moved.vertices[8], Vec3(6, 6, 6));
   EXPECT_LE((moved.vertices[7] - cage.vertices[7]).norm(), 1e-6);
 }
 
-TEST(Handles, AComponentThatNothingHoldsStays) {
+TEST(Handles, UnheldComponentStays) {
   Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 1, 1, 1);
   const Cage other = lattice_cage(Box(Vec3(3, 0, 0), Vec3(4, 1, 1)), 1, 1, 1);
   for (const Face& face : other.faces) cage.faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8});
   cage.vertices.insert(cage.vertices.end(), other.vertices.begin(), other.vertices.end());
-  const HandledCage moved = as_rigid_as_possible(cage, {{0, Vec3(-1, 0, 0)}, {7, Vec3(1, 1, 1)}}, 5);
+  const ConstrainedCage moved = as_rigid_as_possible(cage, {{0, Vec3(-1, 0, 0)}, {7, Vec3(1, 1, 1)}}, 5);
   EXPECT_EQ(moved.free_components, 1U);
   for (std::size_t v = 8; v < 16; ++v) EXPECT_EQ(moved.vertices[v], cage.vertices[v]);
 }
 
-TEST(CageFile, IsReadAsItWasWrittenAndBadOnesAreRefused) {
+TEST(CageFile, RoundTripsAndRejectsInvalidMeshes) {
   TemporaryFolder folder;
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 0.3, 2)), 2, 1, 2);
   for (const char* name : {"cage.obj", "cage.off", "cage.ply"}) {
@@ -346,10 +346,10 @@ TEST(CageFile, IsReadAsItWasWrittenAndBadOnesAreRefused) {
   };
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\n";
   refused("open.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 5 4 2\n", "open");
-  refused("quads.obj", corners + "f 1 2 3 4\n", "three corners");
+  refused("quads.obj", corners + "f 1 2 3 4\n", "not triangles");
   refused("fan.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 1 2 5\n", "manifold");
-  refused("cage.stl", "solid\n", "must end in");
-  refused("none.ply", "ply\n", "no mesh");
+  refused("cage.stl", "solid\n", "ends in .obj");
+  refused("none.ply", "ply\n", "contains no readable mesh");
 }
 
 }  // namespace

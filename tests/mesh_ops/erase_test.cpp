@@ -8,7 +8,7 @@
 namespace rebake::test {
 namespace {
 
-TEST(Erase, OnlyOpacityOfTexelsInsideChanges) {
+TEST(Erase, ChangesOnlyOpacityInside) {
   const auto object = made_object({.columns = 64, .rows = 32});
   const auto inside = [](const Vec3& p) { return (p - Vec3(0, 0, 1)).norm() < 0.3; };
   const Erased result = erase_texels(*object, inside, [](const auto&) { return true; });
@@ -44,7 +44,7 @@ TEST(Erase, OnlyOpacityOfTexelsInsideChanges) {
   EXPECT_EQ(after.opaque_count() + cleared, before.opaque_count());
 }
 
-TEST(Erase, TexelsAtThePicturesBorderAreNotTakenForOthers) {
+TEST(Erase, KeepsTexelsOutsideTheTriangle) {
   // A triangle over one half of the texture: its bounding box also contains texels of the other half.
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 2}));
   TextureSet& set = object->sets[0];

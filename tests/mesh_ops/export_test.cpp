@@ -12,14 +12,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Export, RefusesFoldersWithOtherFilesAndLeavesThemAlone) {
+TEST(Export, RejectsFolderWithOtherFiles) {
   const TemporaryFolder temporary;
   write_text(temporary.path() / "thesis.tex", "precious");
   EXPECT_THROW(export_scene(scene_of(made_object()), temporary.path(), {}), FileError);
   EXPECT_EQ(folder_bytes(temporary.path()), (std::map<std::string, std::string>{{"thesis.tex", "precious"}}));
 }
 
-TEST(Export, RefusesAFolderOfOtherScenes) {
+TEST(Export, RejectsFolderOfOtherScenes) {
   const TemporaryFolder temporary;
   for (const char* name : {"a", "b"}) export_scene(scene_of(made_object()), temporary.path() / "library" / name, {});
   const auto before = folder_bytes(temporary.path());
@@ -28,7 +28,7 @@ TEST(Export, RefusesAFolderOfOtherScenes) {
 }
 
 // Files with the names of scene files but other contents do not make a folder a scene.
-TEST(Export, RefusesFilesThatAreNoScene) {
+TEST(Export, RejectsFilesWithoutSceneContents) {
   for (const auto& [name, text] : {std::pair("scene.json", R"({"mine": 1})"), std::pair("mlp.json", "{}"),
                                    std::pair("shape12.obj", "v 0 0 0"), std::pair("turns.bin", "")}) {
     const TemporaryFolder temporary;
@@ -53,7 +53,7 @@ TEST(Export, FollowsLinksAndReplacesItsOwnScene) {
   EXPECT_FALSE(fs::exists(temporary.path() / "real/scene.json"));
 }
 
-TEST(Export, HiddenNodesAreLeftOutAndEqualTurnsShareAFolder) {
+TEST(Export, OmitsHiddenNodesAndJoinsEqualRotations) {
   const TemporaryFolder temporary;
   Scene scene = scene_of(made_object());
   Node other;
@@ -70,7 +70,7 @@ TEST(Export, HiddenNodesAreLeftOutAndEqualTurnsShareAFolder) {
   EXPECT_EQ(read_any(temporary.path() / "one", Axes::y_up).roots[0]->object->triangle_count(), 256U);
 }
 
-TEST(Export, ChangedDrawingOrderIsSaid) {
+TEST(Export, ReportsChangedDrawingOrder) {
   const auto notes_of = [](std::initializer_list<unsigned> seeds) {
     Scene scene;
     for (const unsigned seed : seeds) {
@@ -95,7 +95,7 @@ TEST(Export, OntoItsOwnSourceIsSafe) {
   EXPECT_EQ(folder_bytes(temporary.path() / "a"), before);
 }
 
-TEST(Export, FailingLeavesWhatWasThere) {
+TEST(Export, FailureKeepsPreviousFolder) {
   const TemporaryFolder temporary;
   export_scene(scene_of(made_object()), temporary.path() / "a", {});
   const auto before = folder_bytes(temporary.path() / "a");

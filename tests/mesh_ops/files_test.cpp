@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 void write_text(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
-TEST(Files, WhatIsRenamedIsSyncedFirstAndItsFolderAfterwards) {
+TEST(Files, SyncsFilesBeforeRenameAndFoldersAfter) {
   const TemporaryFolder folder;
   PowerLoss calls;
   const ReplacedFileCalls in_use(calls);
@@ -36,11 +36,11 @@ TEST(Files, WhatIsRenamedIsSyncedFirstAndItsFolderAfterwards) {
   export_scene(scene_of(made_object()), folder.path() / "new" / "deeper", {});
   save_scene_folder(scene_of(made_object()), folder.path() / "scene", {});
   EXPECT_EQ(calls.renames(), 5U);
-  EXPECT_EQ(calls.trouble(), "") << "a power loss would leave less than was promised";
+  EXPECT_EQ(calls.violations(), "") << "a power loss would lose data";
   EXPECT_EQ(read_file(folder.path() / "a.txt"), "two");
 }
 
-TEST(Files, AFullDiskAtAnyCallLeavesWhatWasThere) {
+TEST(Files, FullDiskAtAnyCallKeepsPreviousFiles) {
   const TemporaryFolder folder;
   const auto object = made_object({.columns = 6, .rows = 4});
   export_scene(scene_of(object), folder.path() / "out", {});
@@ -86,7 +86,7 @@ TEST(Files, AFullDiskAtAnyCallLeavesWhatWasThere) {
   EXPECT_GT(failures, 10U);
 }
 
-TEST(Files, ShortWritesAreGoneOnWith) {
+TEST(Files, ContinuesShortWrites) {
   const TemporaryFolder folder;
   PowerLoss calls;
   calls.write_at_most(3);
@@ -95,7 +95,7 @@ TEST(Files, ShortWritesAreGoneOnWith) {
   EXPECT_EQ(read_file(folder.path() / "a"), "a longer text than three bytes");
 }
 
-TEST(Files, WriteProtectedFilesAndFoldersAreNotReplaced) {
+TEST(Files, DoesNotReplaceWriteProtected) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "kept", scene = folder.path() / "scene";
   write_file_atomically(file, "what was there", {});
@@ -109,7 +109,7 @@ TEST(Files, WriteProtectedFilesAndFoldersAreNotReplaced) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2) << "nothing half-written";
 }
 
-TEST(Files, LeftoversOfKilledWritesAreRemovedByTheNextButNothingElse) {
+TEST(Files, RemovesOnlyLeftoversOfKilledWrites) {
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / ".out.01234567.partial");
   write_text(folder.path() / ".out.01234567.partial" / "mlp.json", "half");
@@ -125,7 +125,7 @@ TEST(Files, LeftoversOfKilledWritesAreRemovedByTheNextButNothingElse) {
 }
 
 // A user may open a leftover as a source to recover it: an export must not remove it then.
-TEST(Files, LeftoversThatThisRunReadsAreKept) {
+TEST(Files, KeepsLeftoversThatAreSources) {
   const TemporaryFolder folder;
   const fs::path leftover = folder.path() / ".out.01234567.partial", file = folder.path() / "note.89abcdef.partial";
   fs::create_directory(leftover);
@@ -143,7 +143,7 @@ TEST(Files, LeftoversThatThisRunReadsAreKept) {
 }
 
 // The target is checked again before it is replaced: a parent folder may have become a link to a source meanwhile.
-TEST(Files, TheTargetIsLookedAtAgainBeforeItIsReplaced) {
+TEST(Files, ChecksTargetAgainBeforeReplacing) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "sources/ficus");
   write_text(folder.path() / "sources/ficus/mlp.json", "precious");
@@ -161,7 +161,7 @@ TEST(Files, TheTargetIsLookedAtAgainBeforeItIsReplaced) {
   EXPECT_EQ(read_file(folder.path() / "sources/ficus/mlp.json"), "precious");
 }
 
-TEST(Files, PipesAndDevicesAreNoFiles) {
+TEST(Files, RejectsPipesAndDevices) {
   const TemporaryFolder folder;
   ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
   EXPECT_THROW(read_file(folder.path() / "pipe"), FileError);
@@ -176,7 +176,7 @@ TEST(Files, PipesAndDevicesAreNoFiles) {
   EXPECT_THROW(read_any(folder.path() / "scene", Axes::y_up), FileError);
 }
 
-TEST(Files, DotsBehindALinkLeadUpFromWhatItPointsTo) {
+TEST(Files, ResolvesDotDotBehindLinks) {
   const TemporaryFolder folder;
   const fs::path root = fs::canonical(folder.path());
   fs::create_directories(root / "deep/er");
@@ -187,7 +187,7 @@ TEST(Files, DotsBehindALinkLeadUpFromWhatItPointsTo) {
   EXPECT_EQ(absolute_path("/"), "/");
 }
 
-TEST(SourceGuard, RefusesWhatIsEqualAboveBelowAndBehindLinks) {
+TEST(SourceGuard, RejectsSourceParentsChildrenAndLinks) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "x/ficus/below");
   fs::create_directory_symlink(folder.path() / "x/ficus", folder.path() / "link");
@@ -230,7 +230,7 @@ const std::vector<Alias> aliases{
 };
 
 // All combinations of an alias for reading and an alias for writing.
-TEST(SourceGuard, SeesThroughEveryAliasOfAFolder) {
+TEST(SourceGuard, RecognisesEveryAliasOfAFolder) {
   for (const Alias& read : aliases)
     for (const Alias& written : aliases) {
       const TemporaryFolder folder;
@@ -257,7 +257,7 @@ TEST(SourceGuard, ProtectsFilesThatASourceLinksTo) {
   }
   SourceGuard guard;
   guard.add(folder.path() / "linked");
-  EXPECT_THROW(guard.check_folder(folder.path() / "real"), FileError) << "a folder of links rests on it";
+  EXPECT_THROW(guard.check_folder(folder.path() / "real"), FileError) << "the source links to files in this folder";
   EXPECT_THROW(guard.check_file(folder.path() / "real/mlp.json"), FileError);
   EXPECT_NO_THROW(guard.check_file(folder.path() / "real/other.json"));
   fs::create_hard_link(folder.path() / "real/mlp.json", folder.path() / "hard.json");
@@ -289,7 +289,7 @@ TEST(SourceGuard, ComparesDevicesAndInodes) {
   guard.add(folder.path() / "mount/Scene");
   EXPECT_THROW(guard.check_folder(folder.path() / "data/Scene"), FileError);
   EXPECT_THROW(guard.check_file(folder.path() / "data/Scene/shape0.obj"), FileError);
-  EXPECT_THROW(guard.check_folder(folder.path() / "data"), FileError) << "holds it under its other name";
+  EXPECT_THROW(guard.check_folder(folder.path() / "data"), FileError) << "contains the source under its other path";
   EXPECT_NO_THROW(guard.check_folder(folder.path() / "elsewhere"));
 }
 
@@ -306,7 +306,7 @@ TEST(SourceGuard, FollowsLinksToFoldersOfLinks) {
   EXPECT_THROW(guard.check_folder(folder.path() / "a"), FileError);
 }
 
-TEST(SourceGuard, KnowsASourceThatWasMovedAway) {
+TEST(SourceGuard, RecognisesMovedSources) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "scene");
   SourceGuard guard;
@@ -335,7 +335,7 @@ TEST(SourceGuard, FollowsLinksToFilesThatDoNotExistYet) {
   EXPECT_THROW(guard.check_file(folder.path() / "another"), FileError);
 }
 
-TEST(SourceGuard, ContentsMayGoAsAWholeOnly) {
+TEST(SourceGuard, AllowsReplacingContentsAsAWholeOnly) {
   const TemporaryFolder folder;
   const fs::path scene = folder.path() / "scene";
   fs::create_directories(scene);
@@ -355,12 +355,12 @@ TEST(SourceGuard, ContentsMayGoAsAWholeOnly) {
   EXPECT_THROW(guard.check_folder(scene), FileError) << "imported";
 }
 
-TEST(SourceGuard, SeesThroughARealMount) {
+TEST(SourceGuard, RecognisesBindMounts) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "data/scene");
   fs::create_directories(folder.path() / "mount");
   if (::mount((folder.path() / "data").c_str(), (folder.path() / "mount").c_str(), nullptr, MS_BIND, nullptr) != 0)
-    GTEST_SKIP() << "this test may not mount";
+    GTEST_SKIP() << "mounting is not permitted";
   SourceGuard guard;
   guard.add(folder.path() / "mount/scene");
   EXPECT_THROW(guard.check_folder(folder.path() / "data/scene"), FileError);
@@ -369,7 +369,7 @@ TEST(SourceGuard, SeesThroughARealMount) {
   ::umount((folder.path() / "mount").c_str());
 }
 
-TEST(Files, APipeThatNobodyReadsIsRefused) {
+TEST(Files, RejectsPipeWithoutReader) {
   const TemporaryFolder folder;
   const fs::path pipe = folder.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);

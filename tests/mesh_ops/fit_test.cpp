@@ -11,7 +11,7 @@ namespace {
 FitProblem problem(bool view_dependent) {
   FitProblem p{512, 16, {}, {}, {}};
   for (std::size_t t = 0; t < p.texel_count; ++t)
-    for (std::size_t k = 0; k < p.observations_a_texel; ++k) {
+    for (std::size_t k = 0; k < p.observations_per_texel; ++k) {
       const auto angle = static_cast<float>(k) * 0.39F;
       p.fed_directions.push_back({std::cos(angle), std::sin(angle), 0});
       const float tone = static_cast<float>(t % 32) / 32,
@@ -39,7 +39,7 @@ TEST(Fit, IsDeterministic) {
   EXPECT_TRUE(a.decoder == b.decoder);
 }
 
-TEST(Fit, RefusesSizesThatDoNotMatch) {
+TEST(Fit, RejectsMismatchedSizes) {
   FitProblem p = problem(false);
   p.colors.pop_back();
   EXPECT_THROW(fit(p, {}), std::invalid_argument);

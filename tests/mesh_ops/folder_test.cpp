@@ -95,7 +95,7 @@ TEST_P(ByLayout, DeletionKeepsTexelsAndDropsUnusedSpace) {
   }
 }
 
-TEST(Folder, ChunkedExportHasEightChunksThatAreNotEmpty) {
+TEST(Folder, ChunkedExportHasEightNonEmptyChunks) {
   const TemporaryFolder temporary;
   export_scene(scene_of(made_object({.columns = 3, .rows = 1, .layout = Layout::chunked})), temporary.path() / "a", {});
   for (std::size_t j = 0; j < 8; ++j)
@@ -131,7 +131,7 @@ TEST(Folder, LayoutsConvert) {
             folder_bytes(temporary.path() / "split")["shape0.pngfeat0.png"]);
 }
 
-TEST(Folder, ObjectsOfOneDecoderShareAFolderOthersDoNot) {
+TEST(Folder, ObjectsWithEqualDecodersShareAFolder) {
   const TemporaryFolder temporary;
   Scene scene = scene_of(made_object({.seed = 1}), "a");
   Node node;
@@ -194,7 +194,7 @@ TEST(Folder, SavedSceneKeepsEveryNode) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ((*a.rotations())[a.faces()[f][k]], (*b.rotations())[b.faces()[f][k]]);
 }
 
-TEST(Folder, FeaturePngsCarryBytesAndNoColourChunks) {
+TEST(Folder, FeaturePngsPreserveBytesWithoutColourChunks) {
   const auto texture = made_object()->sets[0].texels;
   const std::string png = write_feature_png(*texture, 0);
   for (const char* chunk : {"gAMA", "cHRM", "iCCP", "sRGB"}) EXPECT_EQ(png.find(chunk), std::string::npos) << chunk;
@@ -205,7 +205,7 @@ TEST(Folder, FeaturePngsCarryBytesAndNoColourChunks) {
 }
 
 // Reading a folder cancels its task group if one file is bad. A texture under construction must still get all tiles.
-TEST(Folder, TexturesAreWholeWhereWorkAroundThemIsStopped) {
+TEST(Folder, TexturesAreCompleteIfTheirTaskGroupIsCancelled) {
   const auto texture = made_object()->sets[0].texels;
   const std::string feat0 = write_feature_png(*texture, 0), feat1 = write_feature_png(*texture, 1);
   const TexelReader texels(*texture);
@@ -252,7 +252,7 @@ std::shared_ptr<const BakedObject> wide_object(int side) {
 }
 
 // Sizes around 4096, the usual maximum; powers of two and others.
-TEST(Folder, UneditedTexturesOfAnySizeAreWrittenByteForByteAndEditedOnesKeepTheirTexels) {
+TEST(Folder, UneditedTexturesOfAnySizeAreCopiedAndEditedOnesKeepTexels) {
   for (const int side :
        is_deep ? std::vector{64, 1000, 4095, 4096, 4097, 4200, 5000, 8192} : std::vector{64, 999, 4200}) {
     const TemporaryFolder temporary;
@@ -284,7 +284,7 @@ TEST(Folder, UneditedTexturesOfAnySizeAreWrittenByteForByteAndEditedOnesKeepThei
   }
 }
 
-TEST(Folder, PageSizeLaysLargerTexturesOutAgain) {
+TEST(Folder, PageSizeRepacksLargerTextures) {
   const TemporaryFolder temporary;
   export_scene(scene_of(made_object()), temporary.path() / "made", {});
   const Scene read = read_any(temporary.path() / "made", Axes::y_up);
@@ -296,17 +296,17 @@ TEST(Folder, PageSizeLaysLargerTexturesOutAgain) {
     EXPECT_LE(set.texels->height(), 128);
   }
   ASSERT_FALSE(report.notes.empty());
-  EXPECT_NE(report.notes.front().find("laid out again"), std::string::npos) << report.notes.front();
+  EXPECT_NE(report.notes.front().find("edited texture sets were repacked without"), std::string::npos) << report.notes.front();
 }
 
-TEST(Folder, ChunksWithoutTrianglesHoldAPlaceholderThatReadingDrops) {
+TEST(Folder, EmptyChunksContainADroppedPlaceholder) {
   for (int columns = 1; columns <= 3; ++columns) {
     const TemporaryFolder temporary;
     const auto object = made_object({.columns = columns, .rows = 1, .layout = Layout::chunked});
     export_scene(scene_of(object), temporary.path() / "a", {});
     const auto back = read_any(temporary.path() / "a", Axes::y_up).roots[0]->object;
     EXPECT_EQ(back->triangle_count(), object->triangle_count());
-    for (std::size_t j = 0; j < chunks_a_set; ++j)
+    for (std::size_t j = 0; j < chunks_per_set; ++j)
       EXPECT_NE(read_file(temporary.path() / "a" / geometry_name(Layout::chunked, 0, j)).find("\nf "),
                 std::string::npos);
     export_scene(read_any(temporary.path() / "a", Axes::y_up), temporary.path() / "b", {});
@@ -314,7 +314,7 @@ TEST(Folder, ChunksWithoutTrianglesHoldAPlaceholderThatReadingDrops) {
   }
 }
 
-TEST(Folder, TurnsOfAFewChunkedTrianglesSurvive) {
+TEST(Folder, RotationsOfFewChunkedTrianglesRoundTrip) {
   const TemporaryFolder temporary;
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 3, .rows = 1, .layout = Layout::chunked}));
   object->sets[0].soup =
@@ -348,7 +348,7 @@ TEST(Pack, SmallTexturesSplitIntoSeveral) {
   EXPECT_EQ(triangles, object->triangle_count());
 }
 
-TEST(Formats, EachReadsWhatItWrites) {
+TEST(Formats, RoundTrip) {
   const Scene scene = scene_of(made_object(), "ball");
   const TemporaryFolder folder;
   for (const Format& format : formats()) {

@@ -17,7 +17,7 @@ namespace rebake::test {
 namespace {
 
 std::vector<Lanes> random_lanes(std::size_t count, std::uint64_t seed, double from = 0, double to = 1) {
-  Dice dice(seed);
+  SplitMix64 dice(seed);
   std::vector<Lanes> lanes(count);
   for (Lanes& lane : lanes)
     for (float& value : lane.at) value = static_cast<float>(from + (to - from) * dice.share());
@@ -25,8 +25,8 @@ std::vector<Lanes> random_lanes(std::size_t count, std::uint64_t seed, double fr
 }
 
 // Observations of 16 texels with the given features from 24 random directions, decoded by `teacher`: targets of a fit.
-std::vector<Sighting> sightings(const FeatureNetwork& teacher, const std::vector<Lanes>& features) {
-  Dice dice(7);
+std::vector<ViewSample> view_samples(const FeatureNetwork& teacher, const std::vector<Lanes>& features) {
+  SplitMix64 dice(7);
   TexelGroup group;
   group.count = network_lanes;
   std::copy_n(features.begin(), texel_features, group.features);
@@ -34,7 +34,7 @@ std::vector<Sighting> sightings(const FeatureNetwork& teacher, const std::vector
   for (int k = 0; k < 24; ++k)
     directions.push_back(Vec3(dice.share() - 0.5, dice.share() - 0.5, dice.share() - 0.5).normalized());
   std::vector<Lanes> work(network_kernels().workspace(teacher.view()));
-  return sightings_of(teacher, group, directions, 0, work.data());
+  return view_samples_of(teacher, group, directions, 0, work.data());
 }
 
 TEST(NetworkKernels, AgreeWithDoublePrecision) {
@@ -55,7 +55,7 @@ TEST(NetworkKernels, AgreeWithDoublePrecision) {
   }
 }
 
-TEST(NetworkKernels, SlopesAgreeWithDifferences) {
+TEST(NetworkKernels, GradientsMatchFiniteDifferences) {
   const Decoder decoder = made_decoder(5, 7, 6);
   FeatureNetwork network(decoder);
   const std::vector<Lanes> input = random_lanes(decoder_inputs, 2), slopes = random_lanes(3, 3, -1, 1);
@@ -91,7 +91,7 @@ TEST(NetworkKernels, SlopesAgreeWithDifferences) {
 
 TEST(NetworkKernels, GiveTheSameBitsOnEveryProcessor) {
   const FeatureNetwork network(made_decoder(2, 18, 13));
-  const auto seen = sightings(network, random_lanes(texel_features, 4));
+  const auto seen = view_samples(network, random_lanes(texel_features, 4));
   const auto levels = feature_levels(8, AlphaCode::halved);
   std::vector<std::vector<Lanes>> results;
   for (const NetworkKernels* kernels : all_network_kernels()) {
@@ -110,12 +110,12 @@ TEST(NetworkKernels, GiveTheSameBitsOnEveryProcessor) {
     EXPECT_EQ(std::memcmp(result.data(), results.front().data(), result.size() * sizeof(Lanes)), 0);
 }
 
-TEST(NetworkKernels, FindFeaturesThatShowTheColours) {
+TEST(NetworkKernels, FitFeaturesToColours) {
   const FeatureNetwork network(made_decoder(2));
   const std::vector<Lanes> truth = random_lanes(texel_features, 4, 0.1, 0.9);
-  auto seen = sightings(network, truth);
+  auto seen = view_samples(network, truth);
   // Keeps observations of single texels only: means of four texels depend on neighbouring lanes.
-  std::erase_if(seen, [](const Sighting& sighting) { return sighting.mix != 0; });
+  std::erase_if(seen, [](const ViewSample& view_sample) { return view_sample.mix != 0; });
   std::vector<Lanes> work(network_kernels().workspace(network.view())), features = random_lanes(texel_features, 5);
   Lanes before, fitted, rounded, searched;
   const auto fit = [&](const TexelFit& how, std::vector<Lanes> from, Lanes& error) {
@@ -153,7 +153,7 @@ Result fused(const Scene& scene, FuseOptions options = {}) {
   options.sample = 512;
   options.training.steps = 60;
   Result result{composed(scene, 4096), {}};
-  const Sightlines sightlines(scene);
+  const VisibleDirections sightlines(scene);
   result.fused = fuse(result.composition, sightlines, plan_fuse(result.composition, sightlines, options), options);
   return result;
 }
@@ -176,7 +176,7 @@ MadeObject small(unsigned seed) {
 
 Affine moved(double x) { return Affine(Eigen::Translation3d(x, 0, 0)); }
 
-void expect_sound(const Result& result) {
+void expect_valid(const Result& result) {
   const BakedObject& object = *result.fused.object;
   const Decoder& d = *object.decoder;
   EXPECT_TRUE(d.weights0.allFinite() && d.weights1.allFinite() && d.weights2.allFinite() && d.bias0.allFinite() &&
@@ -212,7 +212,7 @@ TEST(Fuse, GivesTheSameBytesAtAnyNumberOfThreads) {
   }
 }
 
-TEST(Fuse, LeavesOneDecoderInOneOrientationAlone) {
+TEST(Fuse, OneDecoderInOneOrientationIsExact) {
   const auto object = made_object(small(1));
   const Affine turn(Eigen::AngleAxisd(1, Vec3::UnitX()));
   EXPECT_TRUE(composed(with(with({}, object, turn), object, moved(3) * turn), 4096).exact());
@@ -224,10 +224,10 @@ TEST(Fuse, CopiesShareTheirTexels) {
   const Scene copies = with(with(with({}, object), object, moved(3)), made_object(small(2)), moved(6));
   const Scene once = with(with({}, object), made_object(small(2)), moved(6));
   EXPECT_EQ(composed(copies, 4096).opaque_texels, composed(once, 4096).opaque_texels);
-  expect_sound(fused(copies));
+  expect_valid(fused(copies));
 }
 
-TEST(Fuse, KeepsTheTexelsOfAKeptNodeBitForBit) {
+TEST(Fuse, PreservesTexelsOfTheKeptNode) {
   const auto object = made_object(small(1));
   const Scene scene = with(with({}, object), made_object(small(2)), moved(2.5));
   FuseOptions options;
@@ -254,7 +254,7 @@ TEST(Fuse, KeepsTheTexelsOfAKeptNodeBitForBit) {
   EXPECT_EQ(result.fused.report.parts[0].errors.psnr_db, 100);
 }
 
-TEST(Fuse, SaysThatHalvedAlphasAreNotKept) {
+TEST(Fuse, ReportsLossOfHalvedAlphas) {
   MadeObject plain = small(1);
   plain.code = AlphaCode::plain;
   const Scene scene = with(with({}, made_object(plain)), made_object(small(2)), moved(2.5));
@@ -269,11 +269,11 @@ TEST(Fuse, SaysThatHalvedAlphasAreNotKept) {
   EXPECT_TRUE(fused(scene, options).fused.report.parts[0].kept);
 }
 
-TEST(Fuse, TrainsADecoderOfAnyWidthFurther) {
+TEST(Fuse, TrainsDecodersOfAnyWidth) {
   auto wide = std::make_shared<BakedObject>(*made_object(small(2)));
   wide->decoder = std::make_shared<const Decoder>(made_decoder(4, 40, 30));
   FuseOptions options;
-  options.way = FuseWay::train;
+  options.way = FuseMethod::train;
   EXPECT_EQ(fused(with(with({}, wide), wide, moved(3) * Eigen::AngleAxisd(1, Vec3::UnitX())), options)
                 .fused.object->decoder->hidden0(),
             40);
@@ -294,7 +294,7 @@ TEST_P(FuseHardCases, Decoders) {
   for (const Decoder& decoder : {saturated, dead, constant, made_decoder(4, 5, 9), made_decoder(4, 40, 30)}) {
     auto object = std::make_shared<BakedObject>(*made_object(small(2)));
     object->decoder = std::make_shared<const Decoder>(decoder);
-    expect_sound(fused(with(with({}, made_object(small(1))), object, moved(2.5)), options));
+    expect_valid(fused(with(with({}, made_object(small(1))), object, moved(2.5)), options));
   }
 }
 
@@ -313,18 +313,18 @@ TEST_P(FuseHardCases, Geometry) {
     return std::shared_ptr<const BakedObject>(result);
   };
   const auto inside = changed(*made_object(small(2)), [](Vec3& p) { p *= 0.2; });
-  expect_sound(fused(with(with({}, sphere), inside), options));  // hidden from all directions
+  expect_valid(fused(with(with({}, sphere), inside), options));  // hidden from all directions
   const auto needle = changed(*made_object(small(2)), [](Vec3& p) { p = {p.y(), 0, 0}; });
-  expect_sound(fused(with(with({}, ordinary), needle, moved(3)), options));  // triangles without area
+  expect_valid(fused(with(with({}, ordinary), needle, moved(3)), options));  // triangles without area
   const auto point = changed(*made_object(small(2)), [](Vec3& p) { p.setZero(); });
-  expect_sound(fused(with(with({}, ordinary), point, moved(3)), options));
+  expect_valid(fused(with(with({}, ordinary), point, moved(3)), options));
   for (const double scale : {1e-6, 1e6})
-    expect_sound(fused(with(with({}, ordinary, Affine(Eigen::Scaling(scale))), made_object(small(2)),
+    expect_valid(fused(with(with({}, ordinary, Affine(Eigen::Scaling(scale))), made_object(small(2)),
                             moved(2.5 * scale) * Eigen::Scaling(scale)),
                        options));
 }
 
-TEST_P(FuseHardCases, OneTexelAndNone) {
+TEST_P(FuseHardCases, OneTexelAndNoTexel) {
   FuseOptions options;
   options.width = GetParam();
   auto one = std::make_shared<BakedObject>(*made_object(small(2)));
@@ -340,9 +340,9 @@ TEST_P(FuseHardCases, OneTexelAndNone) {
   one->sets[0].texels = only(*texels, 22, 6);
   ASSERT_TRUE(one->sets[0].texels->opaque(22, 6));
   const Result result = fused(with(with({}, made_object(small(1))), one, moved(2.5)), options);
-  expect_sound(result);
+  expect_valid(result);
   EXPECT_EQ(result.fused.report.parts.back().errors.texels, 1U);
-  expect_sound(fused(with(with({}, one), one, moved(3) * Eigen::AngleAxisd(1, Vec3::UnitX())), options));
+  expect_valid(fused(with(with({}, one), one, moved(3) * Eigen::AngleAxisd(1, Vec3::UnitX())), options));
   one->sets[0].texels = only(*texels, -1, -1);
   EXPECT_THROW(composed(with({}, one), 4096), EditError);
   // Next to another object, a fully transparent one is ignored.
@@ -363,14 +363,14 @@ std::shared_ptr<const BakedObject> bent_by(double radians) {
   return bent;
 }
 
-TEST(Fuse, BendsAreFittedTriangleByTriangle) {
+TEST(Fuse, FitsBentTriangles) {
   const auto bent = bent_by(0.8);
   FuseOptions options;
   options.width = 80;
   const Result result = fused(with({}, bent), options);
   ASSERT_TRUE(result.composition.parts[0].bent);
-  expect_sound(result);
-  options.way = FuseWay::keep;
+  expect_valid(result);
+  options.way = FuseMethod::keep;
   options.iterations = 0;
   options.width.reset();
   const double as_they_were = fused(with({}, bent), options).fused.report.whole.psnr_db;
@@ -385,10 +385,10 @@ TEST(Fuse, TexelsOfABlockStayInOneBranch) {
   const auto bent = bent_by(2);
   const Scene scene = with({}, bent);
   FuseOptions options;
-  options.way = FuseWay::side_by_side;
+  options.way = FuseMethod::side_by_side;
   options.sample = 512;
   const Composition composition = composed(scene, 4096);
-  const Sightlines sightlines(scene);
+  const VisibleDirections sightlines(scene);
   const FusePlan plan = plan_fuse(composition, sightlines, options);
   const Student& student = plan.candidates[plan.chosen].student;
   ASSERT_GT(student.branches.size(), 1U);
@@ -416,10 +416,10 @@ TEST(Fuse, TexelsOfABlockStayInOneBranch) {
       }
     }
   }
-  EXPECT_GT(used.size(), 1U) << "there is a border to keep to";
+  EXPECT_GT(used.size(), 1U) << "several branches must be used";
 }
 
-TEST(Fuse, RefusesWhatCannotBe) {
+TEST(Fuse, RejectsContradictoryOptions) {
   const Scene scene = with(with({}, made_object(small(1))), made_object(small(2)), moved(2.5));
   for (const int width : {3, 257, -1}) {
     FuseOptions options;
@@ -435,26 +435,26 @@ TEST(Fuse, RefusesWhatCannotBe) {
   options.width = 8;  // narrower than the decoder to keep
   EXPECT_THROW(fused(scene, options), FieldError);
   options.width.reset();
-  options.way = FuseWay::scratch;  // contradicts keep_node
+  options.way = FuseMethod::scratch;  // contradicts keep_node
   EXPECT_THROW(fused(scene, options), FieldError);
 }
 
-TEST(Fuse, StopsWhenAskedTo) {
+TEST(Fuse, CanBeCancelled) {
   const Scene scene = with(with({}, made_object(small(1))), made_object(small(2)), moved(2.5));
   std::atomic<bool> stop = false;
   const Progress progress([&](std::string_view what, double) { stop = what == "training"; }, &stop);
   const Composition composition = composed(scene, 4096);
-  EXPECT_THROW(plan_fuse(composition, Sightlines(scene), {}, progress), Cancelled);
+  EXPECT_THROW(plan_fuse(composition, VisibleDirections(scene), {}, progress), Cancelled);
 }
 
-TEST(Fuse, EndsInTheTimeGiven) {
+TEST(Fuse, ObeysTimeLimit) {
   const Scene scene = with(with({}, made_object({.seed = 1})), made_object({.seed = 2}), moved(2.5));
   FuseOptions options;
   options.width = 16;
   options.seconds = 1e-3;
   const Result result = fused(scene, options);
   EXPECT_FALSE(result.fused.report.in_time);
-  expect_sound(result);
+  expect_valid(result);
   // Methods without training are tried even so.
   options.width.reset();
   EXPECT_GT(fused(scene, options).fused.report.whole.psnr_db, 35);

@@ -15,7 +15,7 @@ Vec3 random_vector(std::mt19937& random) {
   return {any(random), any(random), any(random)};
 }
 
-TEST(Ground, FrameIsARotationThatTakesUpToTheNormal) {
+TEST(Ground, FrameRotatesUpToTheNormal) {
   std::mt19937 random(1);
   for (int k = 0; k < 200; ++k) {
     const Ground ground{random_vector(random).normalized(), 0};
@@ -40,7 +40,7 @@ TEST(Ground, ThroughThreePointsAtAnyScaleAndDistance) {
     }
 }
 
-TEST(Ground, RefusesPointsOnOneLine) {
+TEST(Ground, RejectsCollinearPoints) {
   EXPECT_THROW(ground_through({Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(3, 3, 3)}), std::invalid_argument);
   EXPECT_THROW(ground_through({Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(3, 3, 3)}), std::invalid_argument);
   EXPECT_THROW(ground_through({Vec3(0, 0, 0), Vec3(1e300, 0, std::nan("")), Vec3(3, 3, 3)}), std::invalid_argument);

@@ -25,7 +25,7 @@ struct GridErrors {
 // Errors of the grid's solution if its boundary values are those of `function`, which must be harmonic.
 GridErrors grid_errors(const Cage& cage, int resolution, double (*function)(const Vec3&)) {
   DirichletGrid grid(cage, resolution);
-  EXPECT_TRUE(grid.lonely().empty());
+  EXPECT_TRUE(grid.isolated_nodes().empty());
   std::vector<GridLanes> surface, values;
   for (const SurfacePoint& point : grid.surface()) {
     Vec3 place(0, 0, 0);
@@ -84,7 +84,7 @@ TEST(Harmonic, SecondOrderUpToTheSurface) {
 }
 
 // Multigrid: coarse grids must end where the finest one does, for any number of cells along each axis.
-TEST(Harmonic, BoxesOfEveryNumberOfCells) {
+TEST(Harmonic, BoxesWithAnyNumberOfCells) {
   constexpr int most = 24;
   const auto look = [](const Vec3& size) {
     const Cage box = lattice_cage(Box(Vec3(0, 0, 0), size), 1, 1, 1);
@@ -112,7 +112,7 @@ TEST(Harmonic, SumsAndLinearFunctionsAreExactOnHardCages) {
 }
 
 // Cells larger than twice a cage's thickness would give unbounded weights (±148 in a rotated box of thickness 1e-6).
-TEST(Harmonic, CagesThinnerThanHalfACellAreRefusedAndOthersHaveSensibleWeights) {
+TEST(Harmonic, RejectsThinCagesAndBoundsWeightsOfOthers) {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> share(-0.49, 0.49);
@@ -147,7 +147,7 @@ TEST(Harmonic, WeightsAreNotNegative) {
     for (const double weight : weights_at(*coordinates, p)) EXPECT_GE(weight, -1e-14);
 }
 
-TEST(Harmonic, ResolutionsThatMakeNoSenseAreRefused) {
+TEST(Harmonic, RejectsInvalidResolutions) {
   EXPECT_THROW(harmonic_coordinates(dented(), 4), FieldError);
   EXPECT_THROW(harmonic_coordinates(dented(), 257), FieldError);
   EXPECT_THROW(harmonic_coordinates(cube(12), 256), FieldError);

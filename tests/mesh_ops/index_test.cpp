@@ -11,7 +11,7 @@
 namespace rebake::test {
 namespace {
 
-TEST(Index, ManyThreadsAskAtOnceAndShareWhatOneMade) {
+TEST(Index, ThreadsShareOneComputation) {
   const auto object = made_object({.columns = 16, .rows = 8});
   struct Seen {
     const void *traits, *components, *rays;
@@ -28,12 +28,12 @@ TEST(Index, ManyThreadsAskAtOnceAndShareWhatOneMade) {
   for (const Seen& one : seen) EXPECT_EQ(one, seen[0]);
 }
 
-TEST(Index, IsSharedByWhatSharesTheArraysAndByNothingElse) {
+TEST(Index, SharedByEqualArraysOnly) {
   const BakedObject object = *made_object({.columns = 8, .rows = 4});
   const BakedObject copy = object;
   EXPECT_EQ(traits_of(object), traits_of(copy));
   EXPECT_EQ(rays_of(object).get(), rays_of(copy).get());
-  const Joining wide{.tolerance = 0.1, .gap = 0.2};
+  const Connectivity wide{.tolerance = 0.1, .gap = 0.2};
   EXPECT_EQ(components_of(object, wide), components_of(copy, wide));
   EXPECT_NE(components_of(object, wide), components_of(object));
   // Other texels invalidate traits and ray trees, but not welded corners.
@@ -45,7 +45,7 @@ TEST(Index, IsSharedByWhatSharesTheArraysAndByNothingElse) {
 }
 
 // Components found per texture set and then joined equal the components of the whole object.
-TEST(Index, PartsOfSetsAreThoseOfTheWhole) {
+TEST(Index, ComponentsOfSetsMatchTheWhole) {
   // One sphere in three texture sets that share corners: triangle t lies in set t mod 3.
   const BakedObject whole = *made_object({.columns = 24, .rows = 12});
   BakedObject parts = whole;
@@ -66,7 +66,7 @@ TEST(Index, PartsOfSetsAreThoseOfTheWhole) {
 }
 
 // Moving a part of a set keeps texel-based traits of its triangles, also if vertices are split.
-TEST(Index, WhatTexelsSaySurvivesMoves) {
+TEST(Index, TexelTraitsSurviveMoves) {
   const auto object = made_object({.columns = 8, .rows = 4});
   TriangleSet some(object->triangle_count(), 0);
   some[5] = some[6] = 1;
@@ -86,7 +86,7 @@ TEST(Index, WhatTexelsSaySurvivesMoves) {
   EXPECT_EQ((*traits_of(part))[0].features, (*before)[5].features);
 }
 
-TEST(Index, GoesWithTheArrays) {
+TEST(Index, EvictedWithItsArrays) {
   const auto stays = made_object({.columns = 4, .rows = 2});
   traits_of(*stays);  // evicts entries of arrays that earlier tests freed
   const std::size_t before = index_cache().size();
@@ -106,7 +106,7 @@ TEST(Index, GoesWithTheArrays) {
   }
   const auto other = made_object({.columns = 4, .rows = 4});
   traits_of(*other);
-  EXPECT_LE(index_cache().size(), before + 3) << "what was known of arrays that are gone is gone";
+  EXPECT_LE(index_cache().size(), before + 3) << "entries of deleted arrays must be evicted";
 }
 
 struct Block {
@@ -114,7 +114,7 @@ struct Block {
 };
 std::uint64_t memory_of(const Block& block) { return block.bytes; }
 
-TEST(ArrayCache, KeepsToItsBudgetAndDropsWhatWasUsedLeastRecently) {
+TEST(ArrayCache, EvictsLeastRecentlyUsedWithinBudget) {
   ArrayCache cache(100);
   const std::vector<std::shared_ptr<const int>> arrays{std::make_shared<int>(1), std::make_shared<int>(2),
                                                        std::make_shared<int>(3)};
@@ -130,8 +130,8 @@ TEST(ArrayCache, KeepsToItsBudgetAndDropsWhatWasUsedLeastRecently) {
   EXPECT_EQ(get(0), first);
   EXPECT_EQ(made, 3);
   get(1);
-  EXPECT_EQ(made, 4) << "it is made again";
-  EXPECT_EQ(cache.if_there<Block>({arrays[2]}, {}), nullptr);
+  EXPECT_EQ(made, 4) << "an evicted value must be made again";
+  EXPECT_EQ(cache.try_get<Block>({arrays[2]}, {}), nullptr);
   // A value larger than the budget evicts all others.
   const auto big = cache.get<Block>({arrays[0], arrays[1]}, {}, [] { return Block{1000}; });
   EXPECT_EQ(cache.size(), 1U);

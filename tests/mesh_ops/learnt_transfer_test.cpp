@@ -52,7 +52,7 @@ TransferTraining some_poses(int count, bool bent = false) {
   for (int k = 0; k < count; ++k) {
     const double a = number(random), b = number(random);
     const ProxyMesh posed = curved(a, b);
-    const auto turns = vertex_turns(rest, posed);
+    const auto turns = vertex_rotations(rest, posed);
     const auto sites = vertex_sites(rest, posed, turns);
     training.set(static_cast<std::size_t>(k), posed.vertices, turns, known(sites, bent ? a * a * 3 : a, b));
   }
@@ -61,14 +61,14 @@ TransferTraining some_poses(int count, bool bent = false) {
 
 double error_at(const LearntTransfer& model, double a, double b, bool bent = false) {
   const ProxyMesh rest = flat(), posed = curved(a, b);
-  const auto turns = vertex_turns(rest, posed);
+  const auto turns = vertex_rotations(rest, posed);
   const auto sites = vertex_sites(rest, posed, turns);
   const Eigen::VectorXf found = model.predict(model.space.place(model.probes_in(posed.vertices)));
   const auto truth = known(sites, bent ? a * a * 3 : a, b);
   double off = 0, all = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     sh::Coefficients one = found.segment<sh::count>(static_cast<Eigen::Index>(i * sh::count)).cast<double>();
-    if (model.way != TransferWay::linear) one = sh::Rotation(turns[i]) * one;
+    if (model.way != TransferMethod::linear) one = sh::Rotation(turns[i]) * one;
     off += (one - truth[i]).squaredNorm();
     all += truth[i].squaredNorm();
   }
@@ -82,35 +82,35 @@ TEST(LearntTransfer, ProbesLieFarApart) {
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < i; ++j)
       EXPECT_GE((mesh.vertices[probes[i]] - mesh.vertices[probes[j]]).norm(), 2 - 1e-12) << "the sheet's corners";
-  EXPECT_EQ(PoseSpace::probes_of({{1, 2, 3}, {1, 2, 3}}, 5).size(), 1U) << "one place has one probe";
+  EXPECT_EQ(PoseSpace::probes_of({{1, 2, 3}, {1, 2, 3}}, 5).size(), 1U) << "coincident points give one probe";
   EXPECT_TRUE(PoseSpace::probes_of({}, 5).empty());
 }
 
-TEST(LearntTransfer, KnowsHowFarAPoseIsFromWhatItSaw) {
+TEST(LearntTransfer, MeasuresDistanceFromTrainingPoses) {
   const LearntTransfer model = LearntTransfer::learnt(some_poses(40), {});
-  EXPECT_EQ(model.space.dimensions(), 2) << "two numbers make the poses";
+  EXPECT_EQ(model.space.dimensions(), 2) << "the poses have two parameters";
   const auto range = [&](const ProxyMesh& posed) { return model.space.place(model.probes_in(posed.vertices)).range; };
   EXPECT_LE(range(curved(0.2, -0.1)), 1);
   EXPECT_GT(range(curved(0.8, 0)), 1.5);
   EXPECT_GT(range(grid([](double x, double y) { return Vec3(x, y, 0.3 * std::sin(4 * y)); })), 1.5)
-      << "of another kind";
+      << "a pose of another kind";
 }
 
-TEST(LearntTransfer, FindsWhatIsLinearAndWithKernelsWhatIsNot) {
+TEST(LearntTransfer, FitsLinearAndNonlinearTransfer) {
   const TransferTraining linear = some_poses(60), bent = some_poses(200, true);
   const double unchanged = [&] {
-    LearntTransfer model = LearntTransfer::learnt(linear, {.way = TransferWay::linear});
+    LearntTransfer model = LearntTransfer::learnt(linear, {.way = TransferMethod::linear});
     model.linear.setZero();
     return error_at(model, 0.25, -0.2);
   }();
-  const LearntTransfer plain = LearntTransfer::learnt(linear, {.way = TransferWay::linear}),
-                       turned = LearntTransfer::learnt(linear, {.way = TransferWay::turned_linear});
+  const LearntTransfer plain = LearntTransfer::learnt(linear, {.way = TransferMethod::linear}),
+                       turned = LearntTransfer::learnt(linear, {.way = TransferMethod::rotated_linear});
   EXPECT_LT(error_at(plain, 0.25, -0.2), 0.3 * unchanged);
-  EXPECT_LT(error_at(turned, 0.25, -0.2), 0.1 * error_at(plain, 0.25, -0.2)) << "turning is not linear";
+  EXPECT_LT(error_at(turned, 0.25, -0.2), 0.1 * error_at(plain, 0.25, -0.2)) << "rotation is not linear";
   EXPECT_LT(error_at(turned, 0.25, -0.2), 2e-3);
   EXPECT_LT(turned.held_back_error, 2e-3);
-  const LearntTransfer line = LearntTransfer::learnt(bent, {.way = TransferWay::turned_linear}),
-                       kernel = LearntTransfer::learnt(bent, {.way = TransferWay::turned_kernel});
+  const LearntTransfer line = LearntTransfer::learnt(bent, {.way = TransferMethod::rotated_linear}),
+                       kernel = LearntTransfer::learnt(bent, {.way = TransferMethod::rotated_kernel});
   EXPECT_LT(error_at(kernel, 0.2, 0.1, true), 0.2 * error_at(line, 0.2, 0.1, true));
   EXPECT_THROW(LearntTransfer::learnt(some_poses(7), {}), Error);
 }
@@ -118,7 +118,7 @@ TEST(LearntTransfer, FindsWhatIsLinearAndWithKernelsWhatIsNot) {
 TEST(LearntTransfer, SurvivesDegenerateBodies) {
   // Poses without any motion, vertices without triangles, slivers.
   ProxyMesh rest{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 5, 5}}, {{0, 1, 2}}};
-  const auto turns = vertex_turns(rest, rest);
+  const auto turns = vertex_rotations(rest, rest);
   for (const Mat3& turn : turns) EXPECT_TRUE(turn.isIdentity(0));
   const auto sites = vertex_sites(rest, rest, turns);
   TransferTraining training(rest.vertices, 8, TransferTraining::Frames::turned);
@@ -129,17 +129,17 @@ TEST(LearntTransfer, SurvivesDegenerateBodies) {
   EXPECT_EQ(place.range, 0);
   EXPECT_TRUE(model.predict(place).isZero(0));
   rest.vertices[3].x() += 1;
-  EXPECT_GT(model.space.place(model.probes_in(rest.vertices)).range, 1) << "it saw no motion at all";
+  EXPECT_GT(model.space.place(model.probes_in(rest.vertices)).range, 1) << "the training poses have no motion";
 }
 
-TEST(ProxyMesh, TurnsAlongAtAllScales) {
+TEST(ProxyMesh, RotatesWithThePoseAtAnyScale) {
   const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   for (const double scale : {1e-6, 1.0, 1e6}) {
     ProxyMesh rest = curved(0.3, 0.2);
     for (Vec3& p : rest.vertices) p *= scale;
     ProxyMesh posed = rest;
     for (Vec3& p : posed.vertices) p = turn * p + Vec3(3, 1, 2) * scale;
-    const auto turns = vertex_turns(rest, posed);
+    const auto turns = vertex_rotations(rest, posed);
     const auto before = vertex_sites(rest, rest, std::vector<Mat3>(turns.size(), Mat3::Identity())),
                after = vertex_sites(rest, posed, turns);
     for (std::size_t v = 0; v < turns.size(); ++v) {
@@ -151,7 +151,7 @@ TEST(ProxyMesh, TurnsAlongAtAllScales) {
   }
 }
 
-TEST(GeometryImage, GivesBackWhatIsLinearOverTheSquare) {
+TEST(GeometryImage, ReproducesLinearFunctions) {
   const ProxyMesh mesh = flat();
   const GeometryImage image(grid_chart(sheet_side), 64);
   std::vector<float> plane;
@@ -188,7 +188,7 @@ void expect_disk(const DiskChart& chart, const ProxyMesh& mesh) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(chart.source[chart.faces[f][k]], mesh.faces[f][k]);
 }
 
-TEST(DiskChart, LaysOutWhatHasOneBorderNoneAndMany) {
+TEST(DiskChart, ParametrisesOpenClosedAndPuncturedSurfaces) {
   const ProxyMesh sheet = curved(0.4, 0.3);
   EXPECT_TRUE(seams_of(sheet, 6).empty()) << "a disk is not cut";
   expect_disk(disk_chart(sheet), sheet);
@@ -211,7 +211,7 @@ TEST(DiskChart, LaysOutWhatHasOneBorderNoneAndMany) {
   expect_disk(disk_chart(torus), torus);
 }
 
-TEST(DiskChart, SaysWhatIsWrongWithAMesh) {
+TEST(DiskChart, RejectsInvalidMeshes) {
   ProxyMesh two = tetrahedron();
   for (const Vec3& p : tetrahedron().vertices) two.vertices.push_back(p + Vec3(5, 0, 0));
   for (const Face& face : tetrahedron().faces) two.faces.push_back({face[0] + 4, face[1] + 4, face[2] + 4});
@@ -224,7 +224,7 @@ TEST(DiskChart, SaysWhatIsWrongWithAMesh) {
     EXPECT_THROW(disk_chart(bad), Error);
 }
 
-TEST(Unet, IsItsLayersInTurn) {
+TEST(Unet, MatchesPlainConvolutions) {
   // Compared with plain convolutions, with random weights.
   constexpr int channels = 8, width = 64;
   std::mt19937 random(2);
@@ -299,7 +299,7 @@ TEST(Unet, IsItsLayersInTurn) {
   EXPECT_THROW(Unet(width, 16, weights), std::invalid_argument);
 }
 
-TEST(Unet, LearnsWhereTorchIs) {
+TEST(Unet, TrainsWithLibTorch) {
   if (!can_train_unet()) GTEST_SKIP() << "built without LibTorch";
   // On its training poses the network, with batch normalisation folded into its weights, must be far better than the
   // mean transfer over the poses, rotated with the surface.
@@ -313,7 +313,7 @@ TEST(Unet, LearnsWhereTorchIs) {
   std::vector<Seen> poses;
   for (const double a : {-0.4, -0.2, 0.2, 0.4}) {
     const ProxyMesh mesh = curved(a, 0);
-    const auto turns = vertex_turns(rest, mesh);
+    const auto turns = vertex_rotations(rest, mesh);
     const auto sites = vertex_sites(rest, mesh, turns);
     poses.push_back({sites, turns, known(sites, 4 * a, 0)});
     training.add(sites, turns, poses.back().truth);

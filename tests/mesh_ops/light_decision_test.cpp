@@ -7,17 +7,17 @@
 namespace rebake::test {
 namespace {
 
-TEST(LightDecisions, AFewAreSaidOneByOneWithWhatRunsFirst) {
+TEST(LightDecisions, ListsFewDecisionsWithRunningOnesFirst) {
   const std::vector<LightDecision> few{
       {"cast shadow", "cast shadow a→b", false, 0.001, 0, "at most 0.3 of 255", ""},
       {"self-shadow", "self-shadow b", true, 0.1, 0.5, "about 25 of 255", "took 0.5 s"}};
-  const auto said = summed_up(few);
+  const auto said = summarised(few);
   ASSERT_EQ(said.size(), 2U);
   EXPECT_EQ(said[0].name, "self-shadow b");
   EXPECT_EQ(said[1].why, few[0].why);
 }
 
-TEST(LightDecisions, ManyOfOneKindThatWereDecidedAlikeAreOneLine) {
+TEST(LightDecisions, JoinsManyEqualDecisions) {
   std::vector<LightDecision> many;
   for (int k = 1; k <= 20; ++k) {
     many.push_back({"cast shadow", fmt::format("cast shadow {}→a", k), false, k / 255.0, 0, "a bound", ""});
@@ -28,8 +28,8 @@ TEST(LightDecisions, ManyOfOneKindThatWereDecidedAlikeAreOneLine) {
   // Decisions that differ only in their time become one line.
   for (int k = 1; k <= 9; ++k)
     many.push_back({"highlights", fmt::format("highlights {}", k), true, 0, 0.5, "together", fmt::format("{} s", k)});
-  many.push_back({"self-shadow", "self-shadow a", false, 0, 0, "not asked for", ""});
-  const auto said = summed_up(many);
+  many.push_back({"self-shadow", "self-shadow a", false, 0, 0, "disabled in the light settings", ""});
+  const auto said = summarised(many);
   ASSERT_EQ(said.size(), 6U);
   EXPECT_EQ(said[0].name, "20 cast shadows");
   EXPECT_TRUE(said[0].runs);

@@ -7,7 +7,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
-#include "mesh_ops/formats/light_picture.h"
+#include "mesh_ops/formats/environment_map.h"
 #include "mesh_ops/formats/png_writer.h"
 #include "tests/support/light_pictures.h"
 #include "tests/support/made_scenes.h"
@@ -23,11 +23,11 @@ using std::numbers::pi;
 class LightPictureTest : public ::testing::Test {
  protected:
   fs::path path(const std::string& name) const { return folder_.path() / name; }
-  LightPicture read(const std::string& name) const { return read_light_picture(path(name)); }
+  LightPicture read(const std::string& name) const { return read_environment_map(path(name)); }
   TemporaryFolder folder_;
 };
 
-TEST_F(LightPictureTest, MiddleLiesTowardsMinusZAndTheRightQuarterTowardsX) {
+TEST_F(LightPictureTest, Orientation) {
   // A different colour around each of the six axes.
   const auto color = [](const Vec3& d) -> Radiance {
     Eigen::Index axis = 0;
@@ -44,7 +44,7 @@ TEST_F(LightPictureTest, MiddleLiesTowardsMinusZAndTheRightQuarterTowardsX) {
     }
 }
 
-TEST_F(LightPictureTest, SkyIsThePicturesOnTheWholeAndDirectionByDirection) {
+TEST_F(LightPictureTest, SkyMatchesThePicture) {
   const auto blend = [](const Vec3& d) -> Radiance {
     return {0.5 + 0.4 * d.y(), 0.5 + 0.3 * d.x(), 0.5 - 0.2 * d.z()};
   };
@@ -61,7 +61,7 @@ TEST_F(LightPictureTest, SkyIsThePicturesOnTheWholeAndDirectionByDirection) {
 }
 
 // Random rays would miss a disk of half a degree; a sun gets rays of its own.
-TEST_F(LightPictureTest, BrightDiskBecomesASunThatSendsAsMuch) {
+TEST_F(LightPictureTest, BrightDiskBecomesASunOfEqualIrradiance) {
   // At the upper edge of the picture, in the middle, and across its seam.
   for (const auto& [towards, radius] : {std::pair(Vec3(0.02, 1, 0.01), 0.02), std::pair(Vec3(0.5, 0.8, 0.45), 0.01),
                                         std::pair(Vec3(0, 0.2, 1), 0.03)}) {
@@ -84,7 +84,7 @@ TEST_F(LightPictureTest, BrightDiskBecomesASunThatSendsAsMuch) {
 }
 
 // Small lamps stay in the sky, a large one becomes a sun; the total light is preserved.
-TEST_F(LightPictureTest, LampsKeepTheirLight) {
+TEST_F(LightPictureTest, PreservesLightOfLamps) {
   int number = 0;
   double sum = 0, angles = 0;
   const Vec3 large = Vec3(1, 1, 0).normalized();
@@ -103,7 +103,7 @@ TEST_F(LightPictureTest, LampsKeepTheirLight) {
 }
 
 // A night sky: stars do not become suns, and thousands of candidates do not take long.
-TEST_F(LightPictureTest, ManyBrightPointsAreNoSuns) {
+TEST_F(LightPictureTest, StarsDoNotBecomeSuns) {
   int number = 0;
   write_light_picture(path("stars.exr"), 512,
                       [&](const Vec3&) { return Radiance::Constant(++number % 97 == 0 ? 50 + number % 89 : 0.2); });
@@ -120,14 +120,14 @@ TEST_F(LightPictureTest, BytesAreDisplayColours) {
   EXPECT_LT((read("grey.png").light.sky.at({0, 1, 0}) - Radiance::Constant(0.2)).norm(), 0.005);
 }
 
-TEST_F(LightPictureTest, AlphaIsPassedOver) {
+TEST_F(LightPictureTest, IgnoresAlpha) {
   std::vector<std::uint8_t> bytes;
   for (int k = 0; k < 32; ++k) bytes.insert(bytes.end(), {127, 127, 127, 100});
   write_text(path("through.png"), encode_png(8, 4, 4, bytes, 6));
   EXPECT_NEAR(read("through.png").light.sky.mean()[0], to_linear(127 / 255.0), 1e-4);
 }
 
-TEST_F(LightPictureTest, WholeNumbersAreDisplayColoursOthersRadiances) {
+TEST_F(LightPictureTest, IntegersAreDisplayColoursFloatsAreRadiances) {
   for (const char* name : {"grey8.tif", "grey16.tif", "grey16.png"}) {
     const bool wide = std::string(name).find("16") != std::string::npos;
     write_picture(path(name), {8, 4, 1, wide ? "uint16" : "uint8"}, std::vector<float>(32, 0.5F));
@@ -137,7 +137,7 @@ TEST_F(LightPictureTest, WholeNumbersAreDisplayColoursOthersRadiances) {
   EXPECT_NEAR(read("half.exr").light.sky.mean()[0], 0.5, 1e-6);
 }
 
-TEST_F(LightPictureTest, TiledOnesAreReadAndPartsOfPicturesRefused) {
+TEST_F(LightPictureTest, ReadsTiledFilesRejectsPartialOnes) {
   const std::vector<float> pixels(std::size_t{256} * 128 * 3, 0.25F);
   write_picture(path("part.exr"), {256, 128, 3, "float", 0, 256}, pixels);
   EXPECT_THROW(read("part.exr"), FileError);
@@ -145,7 +145,7 @@ TEST_F(LightPictureTest, TiledOnesAreReadAndPartsOfPicturesRefused) {
   EXPECT_NEAR(read("tiled.exr").light.sky.mean()[0], 0.25, 1e-6);
 }
 
-TEST_F(LightPictureTest, BlackOnesAndThoseWithBadNumbersAreRead) {
+TEST_F(LightPictureTest, ReadsBlackAndNonFinitePixels) {
   write_light_picture(path("black.exr"), 64, [](const Vec3&) { return Radiance::Zero(); });
   EXPECT_TRUE(read("black.exr").light.sky.black());
   const double none = std::numeric_limits<double>::quiet_NaN();
@@ -157,7 +157,7 @@ TEST_F(LightPictureTest, BlackOnesAndThoseWithBadNumbersAreRead) {
   EXPECT_GE(picture.light.sky.mean().minCoeff(), 0);
 }
 
-TEST_F(LightPictureTest, FilesThatAreNoPicturesOfAllDirectionsAreRefusedByName) {
+TEST_F(LightPictureTest, RejectsOtherFilesByName) {
   write_text(path("text.exr"), "not a picture");
   write_light_picture(path("whole.exr"), 64, [](const Vec3& d) { return Radiance(d.cwiseAbs()); });
   const std::string bytes = read_file(path("whole.exr"));
@@ -172,7 +172,7 @@ TEST_F(LightPictureTest, FilesThatAreNoPicturesOfAllDirectionsAreRefusedByName) 
 }
 
 // JPEG decoders fill in missing data without an error.
-TEST_F(LightPictureTest, PicturesThatEndTooEarlyAreRefusedInOneLine) {
+TEST_F(LightPictureTest, RejectsTruncatedFilesInOneLine) {
   for (const char* name : {"a.jpg", "a.png", "a.exr", "a.tif"}) {
     const bool floating = std::string(name) == "a.exr";
     std::vector<float> pixels(std::size_t{64} * 32 * 3);
@@ -188,16 +188,16 @@ TEST_F(LightPictureTest, PicturesThatEndTooEarlyAreRefusedInOneLine) {
         ADD_FAILURE() << cut << " was read";
       } catch (const FileError& error) {
         const std::string text = error.what(), file = path(cut).string();
-        EXPECT_EQ(text.find(file), text.rfind(file)) << "the path once: " << text;
+        EXPECT_EQ(text.find(file), text.rfind(file)) << "the path must occur once: " << text;
         EXPECT_EQ(text.find('\n'), std::string::npos) << text;
         EXPECT_EQ(text.find_last_of(".)("), text.rfind('.', text.find(": ")))
-            << "no brackets or stops are left: " << text;
+            << "no brackets or full stops may be left: " << text;
       }
     }
   }
 }
 
-TEST_F(LightPictureTest, AThumbnailsEndIsNotThePictures) {
+TEST_F(LightPictureTest, EmbeddedThumbnailDoesNotEndTheJpeg) {
   std::vector<float> pixels(std::size_t{64} * 32 * 3, 0.5F);
   write_picture(path("a.jpg"), {64, 32, 3}, pixels);
   std::string bytes = read_file(path("a.jpg"));
@@ -209,7 +209,7 @@ TEST_F(LightPictureTest, AThumbnailsEndIsNotThePictures) {
   EXPECT_THROW(read("cut.jpg"), FileError);
 }
 
-TEST_F(LightPictureTest, TooSmallIsSaid) {
+TEST_F(LightPictureTest, RejectsTooSmallPictures) {
   write_picture(path("tiny.png"), {2, 1, 3}, std::vector<float>(6));
   try {
     read("tiny.png");

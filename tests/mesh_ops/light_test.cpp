@@ -84,7 +84,7 @@ const LightDecision* decision(const Lighting& lighting, const std::string& name)
   return nullptr;
 }
 
-TEST(SkyMap, GivesBackWhatItWasMadeOf) {
+TEST(SkyMap, ReproducesItsFunction) {
   const SkyMap map(32, [](const Vec3& d) -> Radiance { return {1 + d.x(), 2 + d.y(), 3 - d.z()}; });
   for (std::size_t k = 0; k < 32 * 32; ++k) {
     const Vec3 d = map.direction(k);
@@ -97,12 +97,12 @@ TEST(SkyMap, GivesBackWhatItWasMadeOf) {
     EXPECT_LT((map.at(d) - Radiance(1 + d.x(), 2 + d.y(), 3 - d.z())).norm(), 0.1) << d.transpose();
 }
 
-TEST(DisplayColours, AreLinearLightAndBack) {
+TEST(DisplayColours, RoundTripThroughLinear) {
   for (const double value : {0.0, 1e-6, 0.0031308, 0.04045, 0.2, 0.5, 1.0, 3.0})
     EXPECT_NEAR(to_linear(to_display(value)), value, 1e-7 * std::max(1.0, value));
 }
 
-TEST(TracedLight, IsTheClosedFormInTheOpenAndBesideAWall) {
+TEST(TracedLight, MatchesClosedFormsInTheOpenAndBesideAWall) {
   const auto away = lit_object({flat_quad({0, 50, 0}, {1, 0, 0}, {0, 0, 1})}, [](const Vec3&) { return grey(0.5); });
   const SiteLight open = traced(site({0, 0, 0}, {0, 1, 0}), rays_of_objects({away}), uniform_light(0.7));
   EXPECT_NEAR(open.irradiance[0][1], 0.7, 0.7 * 2e-4);
@@ -119,7 +119,7 @@ TEST(TracedLight, IsTheClosedFormInTheOpenAndBesideAWall) {
   EXPECT_NEAR(bounced.irradiance[0][0], beside.irradiance[0][0] + 0.25 * (1 - beside.irradiance[0][0]), 1e-6);
 }
 
-TEST(TracedLight, OfASunGoesWithTheCosine) {
+TEST(TracedLight, SunFollowsTheCosine) {
   Light light;
   for (const double degrees : {0.0, 30.0, 60.0, 85.0}) {
     const double a = degrees * pi / 180;
@@ -134,7 +134,7 @@ TEST(TracedLight, OfASunGoesWithTheCosine) {
 }
 
 // Expected errors relative to 16384 rays: 4.2 % at 64 rays, 1.3 % at 256.
-TEST(TracedLight, ComesNearerWithMoreRays) {
+TEST(TracedLight, ErrorFallsWithMoreRays) {
   const auto object = lit_object(box_quads({-1, 0, -1}, {1, 1, 1}, 3), [](const Vec3&) { return grey(0.5); });
   const SceneRays rays = rays_of_objects({object});
   std::vector<LightSite> sites;
@@ -156,9 +156,9 @@ TEST(TracedLight, ComesNearerWithMoreRays) {
   EXPECT_LT(error(256), 0.013);
 }
 
-// If visibility past the object itself is cached (OpenRays), only other occluders are traced. The light is the same to
-// the bit.
-TEST(TracedLight, IsTheSameWhereAnObjectsOwnShadowsAreKnown) {
+// If visibility past the object itself is cached (VisibilityFlags), only other occluders are traced. The light is the
+// same to the bit.
+TEST(TracedLight, CachedSelfShadowsGiveTheSameBits) {
   const auto own = lit_object(box_quads({-1, 0, -1}, {1, 1, 1}, 3), [](const Vec3&) { return grey(0.5); }),
              other = lit_object(box_quads({-3, 0, 2}, {3, 2, 2.5}, 2), [](const Vec3&) { return grey(0.5); });
   std::vector<LightSite> sites;
@@ -171,7 +171,7 @@ TEST(TracedLight, IsTheSameWhereAnObjectsOwnShadowsAreKnown) {
     return traced_light(sites, wanted, around, light, Mat3::Identity(), options);
   };
   const int rays = 50;
-  OpenRays open(sites.size(), rays, light.suns.size());
+  VisibilityFlags open(sites.size(), rays, light.suns.size());
   const auto alone = lit(rays_of_objects({own}), {.rays = rays, .found = &open}),
              alone_again = lit(rays_of_objects({}), {.rays = rays, .known = &open}),
              both = lit(rays_of_objects({own, other}), {.rays = rays}),
@@ -184,11 +184,11 @@ TEST(TracedLight, IsTheSameWhereAnObjectsOwnShadowsAreKnown) {
       EXPECT_EQ(both_again[i].open[side], both[i].open[side]) << i;
       darker += both[i].open[side] < alone[i].open[side] ? 1 : 0;
     }
-  EXPECT_GT(darker, 20) << "the other one must hide something";
+  EXPECT_GT(darker, 20) << "the other object must occlude some sites";
 }
 
 // Unoccluded transfer is the clamped cosine. Its product with a sky's coefficients is the light traced under that sky.
-TEST(TracedTransfer, IsTheCosineLobeInTheOpenAndLightWhereShaded) {
+TEST(TracedTransfer, MatchesCosineLobeAndTracedLight) {
   const LightSite tilted = site({0, 0, 0}, {0.3, 1, -0.2});
   const Transfer open = traced_transfer(std::vector<LightSite>{tilted}, rays_of_objects({}), 4096);
   EXPECT_LT((open.sites[0] - sh::clamped_cosine(tilted.normal)).norm(), 2e-3);
@@ -214,12 +214,12 @@ TEST(TracedTransfer, IsTheCosineLobeInTheOpenAndLightWhereShaded) {
   moved->sets.front().soup = Soup(std::make_shared<const std::vector<Vec3>>(std::move(positions)),
                                   box->sets.front().soup.shared_uvs(), box->sets.front().soup.shared_faces());
   const Transfer traced_again = traced_transfer(std::vector<LightSite>{turned}, rays_of_objects({moved}), 16384);
-  EXPECT_LT(relative_difference(turned_transfer(shaded, std::vector<Mat3>{turn}).sites, traced_again.sites), 3e-3);
+  EXPECT_LT(relative_difference(rotated_transfer(shaded, std::vector<Mat3>{turn}).sites, traced_again.sites), 3e-3);
 }
 
 // Expected errors with one rotation of the rays per site, relative to 16384 rays: 4.2 % at 64 rays, 1.3 % at 256, 0.43
 // % at 1024.
-TEST(TracedTransfer, SaysHowFarOffItIs) {
+TEST(TracedTransfer, StatesItsError) {
   const auto object = lit_object(box_quads({-1, 0, -1}, {1, 1, 1}, 3), [](const Vec3&) { return grey(0.5); });
   const SceneRays rays = rays_of_objects({object});
   // Sites all around the box: errors of sites with similar views are correlated.
@@ -241,7 +241,7 @@ TEST(TracedTransfer, SaysHowFarOffItIs) {
   }
 }
 
-TEST(LightChart, KeepsPatchesApart) {
+TEST(LightChart, NodesAreUniqueAndVerticesLieInside) {
   const auto object = made_object({});
   const TextureSet& set = object->sets.front();
   const LightChart chart = light_chart(set, 4);
@@ -263,7 +263,7 @@ TEST(LightChart, KeepsPatchesApart) {
   EXPECT_GT(light_chart(set, 2).nodes.size(), 2 * chart.nodes.size());
 }
 
-TEST(Lighting, OfAnUneditedSceneIsNothing) {
+TEST(Lighting, UneditedSceneHasNoCorrection) {
   const Lighting lighting = lighting_of(scene_with({{"ball", made_object({})}}, {}));
   EXPECT_TRUE(lighting.maps.empty());
   ASSERT_NE(decision(lighting, "self-shadow ball"), nullptr);
@@ -272,7 +272,7 @@ TEST(Lighting, OfAnUneditedSceneIsNothing) {
 }
 
 // Next to an infinite wall, both sides of a sheet keep half of their light on average.
-TEST(Lighting, TakesWhatAnotherObjectHides) {
+TEST(Lighting, DarkensOccludedSurfaces) {
   const auto ground =
       lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4, 4)}, [](const Vec3&) { return grey(0.4); });
   const auto wall =
@@ -285,7 +285,7 @@ TEST(Lighting, TakesWhatAnotherObjectHides) {
   EXPECT_NEAR(static_cast<double>(factor_at(*ground, *maps.front(), {0.9, 0, 0})[0]), 0.5, 0.02);
 }
 
-TEST(Lighting, GivesBackWhatARemovedPartHid) {
+TEST(Lighting, RestoresLightBehindARemovedPart) {
   std::vector<LitQuad> quads{flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4, 4),
                              flat_quad({1.01, -1, -400}, {0, 401, 0}, {0, 0, 800})};
   const auto whole = lit_object(quads, [](const Vec3& p) { return p.x() > 1 ? grey(0.4) : grey(0.2); });
@@ -294,7 +294,7 @@ TEST(Lighting, GivesBackWhatARemovedPartHid) {
   TriangleSet keep(whole->triangle_count(), 1);
   keep[keep.size() - 1] = keep[keep.size() - 2] = 0;
   part->sets.front().soup = subset(whole->sets.front().soup, keep, 0, true);
-  keep_bodies(*part, *whole);
+  record_bodies(*part, *whole);
   scene = with_changed(scene, scene.roots.front()->id, [&](Node& node) { node.object = part; });
   const Lighting lighting = lighting_of(scene, {.rays = 1024});
   ASSERT_TRUE(decision(lighting, "removed shadow yard")->runs);
@@ -310,7 +310,7 @@ TEST(Lighting, GivesBackWhatARemovedPartHid) {
   EXPECT_TRUE(lighting_of(scene).maps.empty());
 }
 
-TEST(Lighting, LeavesOutByBoundsThatAnAuditHolds) {
+TEST(Lighting, OmittedEffectsStayWithinBounds) {
   const auto ground =
       lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2, 2)}, [](const Vec3&) { return grey(0.4); });
   const auto box = lit_object(box_quads({-0.5, 0, -0.5}, {0.5, 1, 0.5}), [](const Vec3&) { return grey(0.4); });
@@ -365,7 +365,7 @@ TEST(Lighting, BoundsCountBounceAndTheSharedLight) {
 }
 
 // A bend by 0° leaves colours unchanged; mirrored and scaled objects get the same light.
-TEST(Lighting, HoldsInHardCases) {
+TEST(Lighting, FoldedScaledMirroredAndShearedObjects) {
   const auto hinge = lit_object(
       {flat_quad({0, 0, -1}, {0, 0, 2}, {1, 0, 0}, 4, 4), flat_quad({-1, 0, -1}, {0, 0, 2}, {1, 0, 0}, 4, 4)},
       [](const Vec3&) { return grey(0.4); });
@@ -417,7 +417,7 @@ TEST(Lighting, HoldsInHardCases) {
 
 // Colours do not tell a blue light from a blue object. So a matched object takes the directional distribution of the
 // reference object's light, and keeps its own brightness and tint.
-TEST(Lighting, WhatIsMatchedKeepsItsTintAndTakesTheSideOfTheLight) {
+TEST(Lighting, MatchingKeepsTintAndTakesDirection) {
   // Boxes in ambient light 0.4, with 0.6 more on the sides that face +x.
   const auto box_of = [](const Radiance& albedo) {
     return lit_object(box_quads({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, 2),
@@ -433,7 +433,7 @@ TEST(Lighting, WhatIsMatchedKeepsItsTintAndTakesTheSideOfTheLight) {
     node.to_parent.translation() = Vec3(3, 0, 0);
   });
   const Lighting lighting = lighting_of(scene);
-  EXPECT_FALSE(lighting.maps.contains(scene.roots[0]->id)) << "the others are matched to it";
+  EXPECT_FALSE(lighting.maps.contains(scene.roots[0]->id)) << "the first object is the reference";
   ASSERT_TRUE(lighting.maps.contains(scene.roots[1]->id));
   const LightMap& map = *lighting.maps.at(scene.roots[1]->id).front();
   for (int c = 0; c < 3; ++c) {
@@ -441,15 +441,15 @@ TEST(Lighting, WhatIsMatchedKeepsItsTintAndTakesTheSideOfTheLight) {
       return static_cast<double>(factor_at(*blue, map, at, static_cast<float>(shown))[c]);
     };
     const double albedo = std::array{0.05, 0.2, 0.7}[static_cast<std::size_t>(c)];
-    EXPECT_NEAR(gain({-0.5, 0.2, 0.2}, 0.4 * albedo), 2.5, 0.4) << "its back, which faces the light now";
-    EXPECT_NEAR(gain({0.5, 0.2, 0.2}, albedo), 0.4, 0.08) << "what was lit";
+    EXPECT_NEAR(gain({-0.5, 0.2, 0.2}, 0.4 * albedo), 2.5, 0.4) << "the side that faces the light now";
+    EXPECT_NEAR(gain({0.5, 0.2, 0.2}, albedo), 0.4, 0.08) << "the side that was lit as baked";
     EXPECT_NEAR(gain({0.2, 0.5, 0.2}, 0.4 * albedo), 1, 0.15) << "its top";
   }
-  EXPECT_NE(decision(lighting, "matched light blue")->why.find("spread as that of green"), std::string::npos);
+  EXPECT_NE(decision(lighting, "matched light blue")->why.find("distribution of light from green"), std::string::npos);
 }
 
 // If no light can be estimated from the first object, the others keep their own light.
-TEST(Lighting, NothingIsMatchedToALightThatCannotBeTold) {
+TEST(Lighting, DoesNotMatchAnUnknownLight) {
   const auto line = lit_object({flat_quad({-1, 0, 0}, {2, 0, 0}, {1, 0, 0})}, [](const Vec3&) { return grey(0.4); });
   const auto box = lit_object(box_quads({2, 0, 0}, {3, 1, 1}), [](const Vec3&) { return grey(0.4); });
   SceneLight light;
@@ -460,10 +460,10 @@ TEST(Lighting, NothingIsMatchedToALightThatCannotBeTold) {
   const LightDecision* left_out = decision(lighting, "matched light box");
   ASSERT_NE(left_out, nullptr);
   EXPECT_FALSE(left_out->runs);
-  EXPECT_EQ(left_out->why, "no light in all three channels could be told from colours of line");
+  EXPECT_EQ(left_out->why, "could not estimate light in all three channels from the colours of line");
 }
 
-TEST(Lighting, InTheDarkChangesNothing) {
+TEST(Lighting, DarknessChangesNothing) {
   const auto ground = lit_object({flat_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0})}, [](const Vec3&) { return grey(0.4); });
   const auto box = lit_object(box_quads({-0.5, 0.1, -0.5}, {0.5, 1, 0.5}), [](const Vec3&) { return grey(0.4); });
   const Lighting lighting =
@@ -473,7 +473,7 @@ TEST(Lighting, InTheDarkChangesNothing) {
 }
 
 // A box on a ground under a known sun and sky: the sun's direction and strength are estimated from colours alone.
-TEST(LightEstimate, FindsTheSunByWhatItShades) {
+TEST(LightEstimate, FindsTheSunFromShadows) {
   const Vec3 towards = Vec3(0.5, 0.8, 0.35).normalized();
   Light truth = uniform_light(0.4);
   truth.suns = {{towards, 0.06, grey(0.9)}};
@@ -488,8 +488,8 @@ TEST(LightEstimate, FindsTheSunByWhatItShades) {
   std::vector<Radiance> colors;
   // The ground is unoccluded on both sides and shows the mean of both.
   for (const SiteLight& one : lit) {
-    const double first = facing_by_openness(static_cast<double>(one.open[0]), static_cast<double>(one.open[1]));
-    colors.push_back(0.5 * shown_light(one, static_cast<float>(first)));
+    const double first = facing_by_visibility(static_cast<double>(one.open[0]), static_cast<double>(one.open[1]));
+    colors.push_back(0.5 * visible_irradiance(one, static_cast<float>(first)));
   }
   const LightEstimate found = estimated_light(sites, colors, rays, {.sites = 1500, .rays = 128});
   ASSERT_TRUE(found.sun);
@@ -500,7 +500,7 @@ TEST(LightEstimate, FindsTheSunByWhatItShades) {
   EXPECT_GT(found.confidence, 0.9);
 }
 
-TEST(LightEstimate, OfNothingIsDark) {
+TEST(LightEstimate, EmptyInputIsDark) {
   const LightEstimate none = estimated_light({}, {}, rays_of_objects({}));
   EXPECT_TRUE(none.light.sky.black());
   EXPECT_EQ(none.confidence, 0);

@@ -24,7 +24,7 @@ TEST(Obj, ExporterFilesRoundTripByteForByte) {
   EXPECT_EQ(write_obj(mesh.positions, mesh.uvs, mesh.faces, 0, 2), quad);
 }
 
-TEST(Obj, OtherValuesKeepEveryBit) {
+TEST(Obj, ValuesRoundTripBitExactly) {
   const std::vector<Vec3> positions{{1.0 / 3, 1e-30, 1e30}, {std::numbers::pi, -0.1, 123456789.125}, {5e-324, 0, 1}};
   const std::vector<Vec2> uvs{{1.0 / 7, 0.5}, {0, 1}, {0.25, 0.75}};
   const ObjMesh back = read_obj(write_obj(positions, uvs, {{0, 1, 2}}, 0, 1), "a.obj");
@@ -41,7 +41,7 @@ TEST(Obj, NegativeIndicesPolygonsNormalsAndBlanks) {
   EXPECT_EQ(mesh.faces[1], (Face{0, 2, 3}));
 }
 
-TEST(Obj, CornersThatPairOnePositionWithSeveralUvsAreSplit) {
+TEST(Obj, SplitsCornersWithSeveralUvs) {
   const ObjMesh mesh = read_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 2/2 3/1\n", "a.obj");
   EXPECT_EQ(mesh.positions.size(), 5U);
   EXPECT_EQ(mesh.uvs[mesh.faces[1][0]], Vec2(1, 1));
@@ -65,12 +65,12 @@ INSTANTIATE_TEST_SUITE_P(
                              "no texture coordinates"},
                       BadObj{"nan", "v 0 nan 0\n", "line 1: \"nan\" is not a finite number"},
                       BadObj{"inf", "v 0 1e999 0\n", "not a finite number"},
-                      BadObj{"short_v", "v 0 1\n", "line 1: is cut short"},
+                      BadObj{"short_v", "v 0 1\n", "line 1: is truncated"},
                       BadObj{"short_f", quad + "f 1/1 2/2\n", "three corners"},
                       BadObj{"text", "v a b c\n", "is not a number"}, BadObj{"line", quad + "l 1 2\n", "only faces"}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
-TEST_P(BadObjFile, IsRefusedWithFileAndLine) {
+TEST_P(BadObjFile, RejectsWithFileAndLine) {
   try {
     read_obj(GetParam().text, "scene/shape0.obj");
     FAIL() << "was accepted";

@@ -14,7 +14,7 @@
 namespace rebake::test {
 namespace {
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double quiet_nan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::uint8_t> hidden_from(const ParallelRays& rays, const Vec3& direction,
                                       const std::vector<std::int8_t>& ways) {
@@ -24,7 +24,7 @@ std::vector<std::uint8_t> hidden_from(const ParallelRays& rays, const Vec3& dire
 }
 
 // Results may differ only if a ray passes close to an edge: rays next to it then give both results.
-TEST(ParallelRays, SayWhatSingleRaysSay) {
+TEST(ParallelRays, MatchSingleRays) {
   const auto object = made_object({.columns = 24, .rows = 12});
   const auto tree = std::make_shared<const RayTree>(*object);
   std::mt19937 random(11);
@@ -48,7 +48,7 @@ TEST(ParallelRays, SayWhatSingleRaysSay) {
       origins.push_back(scale * (k % 10 == 0 ? 50 : 2.5) * some());
       ways.push_back(static_cast<std::int8_t>(k % 7 == 0 ? 0 : k % 2 == 0 ? 1 : -1));
     }
-    origins[5] = Vec3(0, no_number, 0);
+    origins[5] = Vec3(0, quiet_nan, 0);
     const ParallelRays rays(around, origins);
     int shaded = 0, at_borders = 0, asked = 0;
     for (int turn = 0; turn < 12; ++turn) {
@@ -61,7 +61,7 @@ TEST(ParallelRays, SayWhatSingleRaysSay) {
       for (std::size_t k = 0; k < origins.size(); ++k) {
         const Vec3 way = ways[k] * direction;
         if (ways[k] == 0 || !origins[k].allFinite()) {
-          EXPECT_EQ(hidden[k], 0) << "not asked for";
+          EXPECT_EQ(hidden[k], 0) << "disabled in the light settings";
           continue;
         }
         ++asked;
@@ -83,7 +83,7 @@ TEST(ParallelRays, SayWhatSingleRaysSay) {
   }
 }
 
-TEST(ParallelRays, FewAreSentOneByOne) {
+TEST(ParallelRays, FewRaysAreTracedSingly) {
   const auto object = made_object({.columns = 24, .rows = 12});
   const SceneRays around(
       {{std::make_shared<const RayTree>(*object), Affine::Identity(), object->bounds().diagonal().norm()}});
@@ -106,7 +106,7 @@ TEST(ParallelRays, FewAreSentOneByOne) {
 
 // A subset of the triangles of an object with two texture sets, called from many threads, with points clustered in a
 // small part of their bounding box.
-TEST(ParallelRays, PartsOfObjectsManyThreadsAndCrowds) {
+TEST(ParallelRays, SubsetsThreadsAndClusteredPoints) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 24, .rows = 12}));
   object->sets.push_back(made_object({.columns = 24, .rows = 12, .radius = 0.6})->sets[0]);
   std::vector<std::uint32_t> some;
@@ -170,7 +170,7 @@ TEST(ParallelRays, NothingLeaksThroughSharedEdges) {
 }
 
 // A flat, finely tessellated patch in any orientation does not occlude points just above it.
-TEST(ParallelRays, PointsJustAboveASurfaceAreNotHiddenByIt) {
+TEST(ParallelRays, NoSelfOcclusionJustAboveASurface) {
   constexpr std::uint32_t side = 64;
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -212,11 +212,11 @@ TEST(ParallelRays, PointsJustAboveASurfaceAreNotHiddenByIt) {
   }
 }
 
-TEST(ParallelRays, HardPointsAndTriangles) {
+TEST(ParallelRays, DegeneratePointsAndTriangles) {
   // A square of two triangles, a degenerate triangle, and one with a NaN corner.
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 2, .holes = false}));
   const Soup& soup = object->sets[0].soup;
-  std::vector<Vec3> positions{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}, {0, 2, 0}, {no_number, 2, 0}};
+  std::vector<Vec3> positions{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}, {0, 2, 0}, {quiet_nan, 2, 0}};
   std::vector<Face> faces{{0, 1, 2}, {0, 2, 3}, {4, 4, 0}, {1, 2, 5}};
   object->sets[0].soup = Soup(std::make_shared<const std::vector<Vec3>>(positions),
                               std::make_shared<const std::vector<Vec2>>(positions.size(), soup.uvs()[0]),
@@ -235,14 +235,14 @@ TEST(ParallelRays, HardPointsAndTriangles) {
   EXPECT_EQ(hidden(line, up), std::vector<std::uint8_t>(40, 1)) << "on one line";
   const auto half = hidden(tower, up);
   for (std::size_t k = 0; k < half.size(); ++k) EXPECT_EQ(half[k], k < 20 ? 1 : 0) << "along the line of sight, " << k;
-  EXPECT_EQ(hidden(line, Vec3::UnitX()), std::vector<std::uint8_t>(40, 0)) << "triangles seen from their edges";
+  EXPECT_EQ(hidden(line, Vec3::UnitX()), std::vector<std::uint8_t>(40, 0)) << "triangles seen edge-on";
   std::vector<Vec3> far(40, Vec3(0.1, -1e7, 0.2));
   EXPECT_EQ(hidden(far, up), std::vector<std::uint8_t>(40, 1)) << "from afar";
 }
 
 // Triangles seen edge-on and points on their extension. SIMD batches also contain points behind a cell's last, which
 // must not be marked.
-TEST(ParallelRays, KernelsFindTheSameOfWhatIsSeenFromItsEdge) {
+TEST(ParallelRays, KernelsAgreeOnEdgeOnTriangles) {
   std::mt19937 random(6);
   std::uniform_real_distribution<float> unit(-0.5F, 0.5F);
   constexpr std::size_t points = 4096, triangles = 60, cells = 64;
@@ -302,7 +302,7 @@ TEST(ParallelRays, KernelsFindTheSameOfWhatIsSeenFromItsEdge) {
 
 // All kernels give the same bits. They agree with double precision, unless a point lies within float rounding of an
 // edge or of the triangle's plane.
-TEST(ParallelRays, KernelsFindTheSameBitsAndWhatIsThere) {
+TEST(ParallelRays, KernelsAgreeBitwiseAndWithDouble) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-0.5F, 0.5F);
   constexpr std::size_t points = 700, triangles = 203;
@@ -328,9 +328,9 @@ TEST(ParallelRays, KernelsFindTheSameBitsAndWhatIsThere) {
   for (std::size_t k = 0; k < 9; ++k) corners[k] = columns[k].data();
   for (const float reach : {std::numeric_limits<float>::infinity(), 0.2F})
     for (const bool solid : {true, false}) {
-      const OpaqueAt opaque{nullptr, solid ? nullptr : +[](const void*, std::uint32_t t, float, float b2) {
-                              return t % 2 == 0 && b2 < 0.5F;
-                            }};
+      const OpacityQuery opaque{nullptr, solid ? nullptr : +[](const void*, std::uint32_t t, float, float b2) {
+                                  return t % 2 == 0 && b2 < 0.5F;
+                                }};
       std::vector<std::vector<std::int32_t>> found;
       for (const ParallelKernels* kernels : all_parallel_kernels()) {
         found.emplace_back(points + PointGrid::room, 0);

@@ -26,7 +26,7 @@ int in_own_process(Work work) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-TEST(PartialWrites, AbandonedFoldersLeaveTheirTargetsAlone) {
+TEST(PartialWrites, AbandonedFoldersKeepTheirTargets) {
   const TemporaryFolder temporary;
   const fs::path target = temporary.path() / "out";
   fs::create_directory(target);
@@ -49,7 +49,7 @@ TEST(PartialWrites, AbandonedFoldersLeaveTheirTargetsAlone) {
   EXPECT_EQ(std::distance(fs::directory_iterator(temporary.path()), {}), 1) << "no temporary folder is left";
 }
 
-TEST(PartialWrites, AMoveThatHasBegunIsWaitedForOrLeftAlone) {
+TEST(PartialWrites, AbandonWaitsForCommits) {
   const TemporaryFolder temporary;
   const fs::path file = temporary.path() / "partial";
   EXPECT_EQ(in_own_process([&] {

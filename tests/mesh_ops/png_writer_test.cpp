@@ -12,7 +12,7 @@
 namespace rebake::test {
 namespace {
 
-TEST(PngWriter, WritesWhatOpenImageIoWrites) {
+TEST(PngWriter, MatchesOpenImageIo) {
   const TemporaryFolder folder;
   for (const int channels : {3, 4}) {
     constexpr int width = 61, height = 37;
@@ -30,7 +30,7 @@ TEST(PngWriter, WritesWhatOpenImageIoWrites) {
   }
 }
 
-TEST(PngWriter, RefusesPixelsOfAnotherSize) {
+TEST(PngWriter, RejectsMismatchedPixels) {
   const std::vector<std::uint8_t> bytes(12);
   EXPECT_THROW(encode_png(2, 3, 3, bytes, 6), std::invalid_argument);
   EXPECT_THROW(encode_png(0, 0, 3, {}, 6), std::invalid_argument);

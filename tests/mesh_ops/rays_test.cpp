@@ -90,11 +90,11 @@ class Traced {
   RTCScene scene_;
 };
 
-TEST(Rays, InstructionsOfTheProcessorChangeNothing) {
+TEST(Rays, InstructionSetsGiveEqualBits) {
 #ifdef __x86_64__
   if (!__builtin_cpu_supports("sse4.2")) GTEST_SKIP() << "the processor has no SSE 4.2";
 #else
-  GTEST_SKIP() << "there is one set of instructions only";
+  GTEST_SKIP() << "the processor has a single SIMD instruction set";
 #endif
   const Sheet sheet = rough_sheet(80);
   const Traced old("isa=sse2", sheet), now("isa=sse4.2", sheet);

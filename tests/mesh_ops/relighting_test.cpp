@@ -38,7 +38,7 @@ struct Row {
   std::vector<Radiance> colors, before;
 };
 
-TEST(Relighting, SurfacesThatNothingWasFittedToDoNotGlow) {
+TEST(Relighting, OccludedSurfacesDoNotGlow) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(0, 1);
   for (int round = 0; round < 50; ++round) {
@@ -61,7 +61,7 @@ TEST(Relighting, SurfacesThatNothingWasFittedToDoNotGlow) {
   }
 }
 
-TEST(Relighting, LitSurfacesTakeTheRatioOfTheirLight) {
+TEST(Relighting, LitSurfacesScaleWithLight) {
   Row row(100);
   std::vector<Radiance> after(100, Radiance::Constant(1));
   for (std::size_t i = 0; i < 100; ++i) {

@@ -25,7 +25,7 @@ std::uint8_t paeth(int left, int above, int corner) {
 }
 
 // Reference implementation of PNG filters (section 9 of the specification): rows with filter bytes → pixels.
-Pixels unfiltered_plainly(const Pixels& rows, int width, int height) {
+Pixels reference_unfiltered(const Pixels& rows, int width, int height) {
   const std::size_t bytes = 4 * static_cast<std::size_t>(width);
   Pixels pixels(bytes * static_cast<std::size_t>(height));
   for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
@@ -110,7 +110,7 @@ std::string refusal_of(std::string_view file) {
   }
 }
 
-TEST(RgbaPng, FiltersAreUndoneAsSpecified) {
+TEST(RgbaPng, UndoesFiltersAsSpecified) {
   for (int width = 1; width <= 9; ++width)
     for (int height = 1; height <= 9; ++height)
       for (unsigned seed = 0; seed < 10; ++seed) {
@@ -125,20 +125,20 @@ TEST(RgbaPng, FiltersAreUndoneAsSpecified) {
           const auto row = done.begin() + y * static_cast<std::ptrdiff_t>(stride);
           pixels.insert(pixels.end(), row + 1, row + static_cast<std::ptrdiff_t>(stride));
         }
-        ASSERT_EQ(pixels, unfiltered_plainly(rows, width, height)) << width << "×" << height;
+        ASSERT_EQ(pixels, reference_unfiltered(rows, width, height)) << width << "×" << height;
       }
 }
 
 TEST(RgbaPng, ReadsRowsInPartsFromChunksOfAnySize) {
   const int width = 53, height = 31;
-  const Pixels rows = random_rows(width, height, 7), expected = unfiltered_plainly(rows, width, height);
+  const Pixels rows = random_rows(width, height, 7), expected = reference_unfiltered(rows, width, height);
   const std::string data = deflated(rows);
   for (const std::size_t size : {std::size_t{1}, std::size_t{2}, std::size_t{100}, data.size()})
     for (const int count : {1, 4, 7, 31, 100}) EXPECT_EQ(pixels_of(png_of(width, height, data, size), count), expected);
 }
 
 // Rows repeat earlier rows at almost the maximum distance of deflate, from parts whose filters are already undone.
-TEST(RgbaPng, LooksBackAcrossParts) {
+TEST(RgbaPng, ResolvesDistancesAcrossParts) {
   const int width = 481, height = 200;  // 17 rows are 32,725 bytes
   const std::size_t stride = 1 + 4 * width;
   Pixels rows = random_rows(width, height, 5);
@@ -146,11 +146,11 @@ TEST(RgbaPng, LooksBackAcrossParts) {
     if (k / stride % 5 != 0) rows[k] = rows[k - 17 * stride];
   const std::string data = deflated(rows);
   EXPECT_LT(data.size(), rows.size() * 2 / 3);
-  const Pixels expected = unfiltered_plainly(rows, width, height);
+  const Pixels expected = reference_unfiltered(rows, width, height);
   for (const int count : {1, 16, 17, 64, 200}) EXPECT_EQ(pixels_of(png_of(width, height, data, 4000), count), expected);
 }
 
-TEST(RgbaPng, OtherKindsAreReadByOpenImageIO) {
+TEST(RgbaPng, LeavesOtherKindsToOpenImageIO) {
   // One pixel, so that interlacing changes only the header.
   const Pixels pixel = {0, 1, 2, 3, 4};
   const std::string plain = png_of(1, 1, deflated(pixel), 100),
@@ -164,7 +164,7 @@ TEST(RgbaPng, OtherKindsAreReadByOpenImageIO) {
   EXPECT_EQ(texel.feat1, texel.feat0);
 }
 
-TEST(RgbaPng, SaysWhatIsDamaged) {
+TEST(RgbaPng, RejectsDamagedFilesWithReason) {
   const int width = 5, height = 7;
   const std::string data = deflated(random_rows(width, height, 1)), file = png_of(width, height, data, 50);
   EXPECT_EQ(refusal_of(file), "");
@@ -187,14 +187,14 @@ TEST(RgbaPng, SaysWhatIsDamaged) {
               std::string::npos);
   Pixels rows = random_rows(width, height, 1);
   rows[4 * (1 + 4 * width)] = 5;
-  EXPECT_NE(refusal_of(png_of(width, height, deflated(rows), 50)).find("row 4 is filtered in no way"),
+  EXPECT_NE(refusal_of(png_of(width, height, deflated(rows), 50)).find("row 4 has an invalid filter type"),
             std::string::npos);
 }
 
 // Corrupt deflate data with valid chunk checksums: no access out of bounds.
-TEST(RgbaPng, StandsWhatCannotBeInflated) {
+TEST(RgbaPng, SurvivesCorruptDeflateData) {
   const int width = 20, height = 9;
-  const Pixels rows = random_rows(width, height, 2), expected = unfiltered_plainly(rows, width, height);
+  const Pixels rows = random_rows(width, height, 2), expected = reference_unfiltered(rows, width, height);
   const std::string data = deflated(rows);
   for (std::size_t at = 0; at < data.size(); ++at)
     for (const int change : {1, 16, 255}) {

@@ -24,7 +24,7 @@ void expect_rotation(const Mat3& r) {
   EXPECT_GT(r.determinant(), 0);
 }
 
-TEST(LocalRotation, IsARotationForEveryMatrix) {
+TEST(LocalRotation, RotationForEveryMatrix) {
   std::mt19937 random(1);
   for (int k = 0; k < 2000; ++k) {
     Mat3 m = random_matrix(random);
@@ -52,7 +52,7 @@ TEST(LocalRotation, NewtonAndSingularValuesAgree) {
   EXPECT_LE(worst, 1e-13);
 }
 
-TEST(LocalRotation, IsTheOneThatWasPutIn) {
+TEST(LocalRotation, RecoversTheRotationOfAStretch) {
   std::mt19937 random(3);
   for (int k = 0; k < 500; ++k) {
     const Mat3 r = Eigen::AngleAxisd(k * 0.0126, random_matrix(random).col(0).normalized()).toRotationMatrix();
@@ -74,7 +74,7 @@ ClosedForm form_of(ClosedForm::Kind kind) {
   return form;
 }
 
-TEST(ClosedForms, JacobiansAreThoseOfTheMap) {
+TEST(ClosedForms, JacobiansMatchFiniteDifferences) {
   using Kind = ClosedForm::Kind;
   std::mt19937 random(4);
   std::uniform_real_distribution<double> any(-1, 1);
@@ -95,7 +95,7 @@ TEST(ClosedForms, JacobiansAreThoseOfTheMap) {
   }
 }
 
-TEST(ClosedForms, AlongAStraightLineOfPiecesIsTheFormItself) {
+TEST(ClosedForms, AlongAStraightLineMatchesTheClosedForm) {
   using Kind = ClosedForm::Kind;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-0.5, 1);
@@ -119,7 +119,7 @@ TEST(ClosedForms, AlongAStraightLineOfPiecesIsTheFormItself) {
     }
 }
 
-TEST(ClosedForms, AlongACurveTheLineKeepsItsLengthAndWhatIsBeyondFollowsRigidly) {
+TEST(ClosedForms, AlongACurvePreservesLengthAndMovesTheRestRigidly) {
   std::vector<Vec3> curve;
   for (int k = 0; k <= 12; ++k) curve.emplace_back(std::sin(0.1 * k), 0.12 * k, 0.3 * std::cos(0.15 * k));
   double length = 0;
@@ -132,7 +132,7 @@ TEST(ClosedForms, AlongACurveTheLineKeepsItsLengthAndWhatIsBeyondFollowsRigidly)
     const auto pieces = along_curve(form, curve);
     double after = 0;
     Vec3 last = deform(pieces, curve[0]).point;
-    EXPECT_EQ(last, curve[0]) << "its foot stays";
+    EXPECT_EQ(last, curve[0]) << "the first point must stay";
     constexpr int steps = 2000;
     for (std::size_t k = 0; k + 1 < curve.size(); ++k)
       for (int i = 1; i <= steps; ++i) {
@@ -167,7 +167,7 @@ TEST(ClosedForms, AlongACurveTheLineKeepsItsLengthAndWhatIsBeyondFollowsRigidly)
   EXPECT_THROW(along_curve(form, {curve[0], curve[0]}), FieldError);
 }
 
-TEST(ClosedForms, DeterminantsAreTheTextbooks) {
+TEST(ClosedForms, DeterminantsMatchBarr) {
   // Barr 1984: 1 for twists, r² for tapers, 1 − κ x for bends.
   const Vec3 point(0.3, 0.4, 0.2);
   ClosedForm form = form_of(ClosedForm::Kind::twist);
@@ -189,7 +189,7 @@ TEST(ClosedForms, DeterminantsAreTheTextbooks) {
   EXPECT_EQ(deform(form, Vec3(0.5, 1, 0)).jacobian.determinant(), 0);
 }
 
-TEST(ClosedForms, NothingMovesBelowTheLimitAndSmallAnglesLoseNothing) {
+TEST(ClosedForms, FixedBelowTheLimitAndAccurateForSmallAngles) {
   ClosedForm form = form_of(ClosedForm::Kind::bend);
   const Vec3 below = form.origin + form.axis.normalized() * -0.3 + Vec3(0.01, 0, 0.02);
   EXPECT_EQ(deform(form, below).point, below);

@@ -15,7 +15,7 @@
 namespace rebake::test {
 namespace {
 
-TEST(SceneRays, WhatIsPassedByIsNotAskedAndChangesNothing) {
+TEST(SceneRays, CullingMatchesTestingAllObjects) {
   const auto object = made_object({.columns = 16, .rows = 8});
   const auto tree = std::make_shared<const RayTree>(*object);
   std::mt19937 random(4);
@@ -70,7 +70,7 @@ TEST(SceneRays, WhatIsPassedByIsNotAskedAndChangesNothing) {
   }
 }
 
-TEST(RayTree, SomeTrianglesAreMetAsAmongAll) {
+TEST(RayTree, SubsetTreeMatchesFullTree) {
   auto object = std::make_shared<BakedObject>(*made_object({.holes = false}));
   object->sets.push_back(made_object({.radius = 0.6, .holes = false})->sets[0]);
   const std::size_t outer = object->sets[0].soup.triangle_count();

@@ -44,14 +44,14 @@ BakedObject strip(int squares, double apart, const std::function<bool(int, int, 
 
 bool everywhere(int, int, int) { return true; }
 
-TEST(Select, EqualCornersWeldAndNearOnesWithinTheTolerance) {
+TEST(Select, WeldsEqualAndNearCorners) {
   EXPECT_EQ(corners_of(strip(3, 0, everywhere), 0)->place_count, 8U);
   EXPECT_EQ(corners_of(strip(3, 1e-3, everywhere), 0)->place_count, 12U);
   EXPECT_EQ(corners_of(strip(3, 1e-3, everywhere), 2e-3)->place_count, 8U);
   EXPECT_EQ(corners_of(strip(3, 1e-3, everywhere), 5e-4)->place_count, 12U);
 }
 
-TEST(Select, WeldingFindsWhatComparingAllPairsFinds) {
+TEST(Select, WeldingMatchesAllPairs) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> coordinate(-1, 1);
   std::vector<Vec3> positions;
@@ -79,11 +79,11 @@ TEST(Select, WeldingFindsWhatComparingAllPairsFinds) {
   }
 }
 
-std::size_t parts_of(const BakedObject& object, const Joining& joining = {}) {
+std::size_t parts_of(const BakedObject& object, const Connectivity& joining = {}) {
   return components_of(object, joining)->triangles_in.size();
 }
 
-TEST(Select, PartsHangTogetherAcrossOpaqueTexelsOnly) {
+TEST(Select, ComponentsConnectAcrossOpaqueTexelsOnly) {
   EXPECT_EQ(parts_of(strip(3, 0, everywhere)), 1U);
   // A transparent column at the left of each square cuts the strip, though all corners are shared.
   EXPECT_EQ(parts_of(strip(3, 0, [](int, int x, int) { return x > 0; })), 3U);
@@ -93,7 +93,7 @@ TEST(Select, PartsHangTogetherAcrossOpaqueTexelsOnly) {
   EXPECT_EQ(parts_of(strip(2, 0, [](int s, int, int y) { return s == 0 || y == 5; })), 1U);
 }
 
-TEST(Select, ToleranceAndGapJoinWhatIsApart) {
+TEST(Select, ToleranceAndGapJoinSeparateParts) {
   EXPECT_EQ(parts_of(strip(3, 0.01, everywhere)), 3U);
   EXPECT_EQ(parts_of(strip(3, 0.01, everywhere), {.tolerance = 0.02, .gap = 0}), 1U);
   EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = 0.049}), 3U);
@@ -101,7 +101,7 @@ TEST(Select, ToleranceAndGapJoinWhatIsApart) {
 }
 
 // Two squares whose nearest corners are 0.1 apart, for several offsets of their UVs from texel centres.
-TEST(Select, AGapIsThatOfTrianglesNotOfTexelCentres) {
+TEST(Select, GapIsMeasuredBetweenTriangles) {
   for (const double inset : {0.0, 0.4, 0.5, 0.6, 1.0}) {
     BakedObject object = strip(1, 0, everywhere);
     const double side = object.sets[0].texels->width(), low = (3 + inset) / side, high = (12 - inset) / side;
@@ -125,7 +125,7 @@ TEST(Select, AGapIsThatOfTrianglesNotOfTexelCentres) {
   }
 }
 
-TEST(Select, AVanishingToleranceOrGapJoinsNothing) {
+TEST(Select, TinyToleranceOrGapJoinsNothing) {
   for (const double tiny : {1e-9, 1e-15, 1e-17, 1e-30, 1e-300}) {
     EXPECT_EQ(parts_of(strip(3, 0.01, everywhere), {.tolerance = tiny, .gap = 0}), 3U) << tiny;
     EXPECT_EQ(parts_of(strip(3, 0.05, everywhere), {.tolerance = 0, .gap = tiny}), 3U) << tiny;
@@ -145,20 +145,22 @@ TEST(Select, GrowShrinkAndFill) {
   EXPECT_EQ(shrunk(*corners, all), all);
   const TriangleSet gap{1, 1, 1, 1, 0, 0, 1, 1, 1, 1};
   EXPECT_EQ(filled(*edges_of(object), gap, 3), all);
-  EXPECT_EQ(filled(*edges_of(object), gap, 2), gap) << "the island is not smaller than asked";
+  EXPECT_EQ(filled(*edges_of(object), gap, 2), gap) << "the island is not smaller than the limit";
 }
 
-TEST(Select, AFloodStopsAtTrianglesThatAreNotAlike) {
+TEST(Select, FloodFillStaysInTheAllowedSet) {
   const auto corners = corners_of(strip(5, 0, everywhere));
   TriangleSet from(10, 0);
   from[0] = 1;
-  EXPECT_EQ(joined_within(*corners, {1, 1, 1, 1, 0, 0, 1, 1, 1, 1}, from), (TriangleSet{1, 1, 1, 1, 0, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(joined_within(*corners, TriangleSet(10, 1), from), TriangleSet(10, 1));
+  EXPECT_EQ(connected_within(*corners, {1, 1, 1, 1, 0, 0, 1, 1, 1, 1}, from),
+            (TriangleSet{1, 1, 1, 1, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(connected_within(*corners, TriangleSet(10, 1), from), TriangleSet(10, 1));
   // The start triangle itself may lie outside the allowed set.
-  EXPECT_EQ(joined_within(*corners, {0, 1, 0, 0, 1, 1, 1, 1, 1, 1}, from), (TriangleSet{0, 1, 0, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(connected_within(*corners, {0, 1, 0, 0, 1, 1, 1, 1, 1, 1}, from),
+            (TriangleSet{0, 1, 0, 0, 0, 0, 0, 0, 0, 0}));
 }
 
-TEST(Select, TraitsAreThoseOfTheOpaqueTexels) {
+TEST(Select, TraitsDescribeOpaqueTexels) {
   const auto object = made_object();
   const auto traits = traits_of(*object);
   const TextureSet& set = object->sets[0];
@@ -219,7 +221,7 @@ TEST(Select, PolygonAndBrushFlagThePixelsWhoseCentresAreInside) {
   EXPECT_FALSE(polygon.at(-1, 4));
 }
 
-TEST(Select, AStrokeOfManyPointsCoversWhatItsPiecesCover) {
+TEST(Select, StrokeIsTheUnionOfItsSegments) {
   std::vector<Vec2> points;
   for (int k = 0; k < 40; ++k) points.emplace_back(30 + 28 * std::cos(k * 0.7), 30 + 35 * std::sin(k * 1.1));
   points.push_back(points.back());
@@ -238,13 +240,13 @@ Picture front_picture() {
   return picture;
 }
 
-TEST(Select, WhatIsSeenIsTheNearSide) {
+TEST(Select, VisibleTrianglesAreOnTheNearSide) {
   const Scene scene = scene_of(made_object({.holes = false}));
   const Projector project(front_picture());
   const PixelMask whole = full_mask(800, 800);
   const auto objects = placed_nodes(scene);
-  const TriangleSet seen = triangles_seen(objects, project, whole, 0, 100)[0];
-  const TriangleSet under = triangles_under(*objects[0].node->object, objects[0].to_world, project, whole, 0, 100);
+  const TriangleSet seen = visible_triangles(objects, project, whole, 0, 100)[0];
+  const TriangleSet under = projected_triangles(*objects[0].node->object, objects[0].to_world, project, whole, 0, 100);
   EXPECT_EQ(count(under), under.size()) << "all of the sphere is in the picture";
   std::size_t f = 0;
   for (const Face& face : objects[0].node->object->sets[0].soup.faces()) {
@@ -259,7 +261,7 @@ TEST(Select, WhatIsSeenIsTheNearSide) {
     }
     ++f;
   }
-  const TriangleSet near = triangles_seen(objects, project, whole, 0, 3.2)[0];
+  const TriangleSet near = visible_triangles(objects, project, whole, 0, 3.2)[0];
   EXPECT_LT(count(near), count(seen));
   EXPECT_GT(count(near), 0U);
 }
@@ -270,7 +272,7 @@ TEST(Select, ParallelRaysSeeTheNearHalf) {
   picture.camera.ortho_height = 2.5;
   const Projector project(picture);
   const auto objects = placed_nodes(scene);
-  const TriangleSet seen = triangles_seen(objects, project, full_mask(800, 800), 0, 100)[0];
+  const TriangleSet seen = visible_triangles(objects, project, full_mask(800, 800), 0, 100)[0];
   const Soup& soup = objects[0].node->object->sets[0].soup;
   for (std::size_t f = 0; f < soup.triangle_count(); ++f) {
     Vec3 centre = Vec3::Zero();
@@ -288,20 +290,21 @@ TEST(Select, ParallelRaysSeeTheNearHalf) {
   }
 }
 
-TEST(Select, ObjectsHideEachOtherAndHolesLetThrough) {
+TEST(Select, ObjectsOccludeExceptThroughHoles) {
   Node node;
   node.object = made_object({.holes = false});
   Scene scene = scene_of(made_object());
   node.to_parent.translation() = Vec3(0, 0, -3);
   scene = with_added(scene, node, NodeId::none, 9);
-  const auto seen = triangles_seen(placed_nodes(scene), Projector(front_picture()), full_mask(800, 800), 0, 100);
+  const auto seen = visible_triangles(placed_nodes(scene), Projector(front_picture()), full_mask(800, 800), 0, 100);
   EXPECT_GT(count(seen[1]), 0U) << "through the holes of the sphere in front";
-  const auto alone = triangles_seen({placed_nodes(scene)[1]}, Projector(front_picture()), full_mask(800, 800), 0, 100);
+  const auto alone =
+      visible_triangles({placed_nodes(scene)[1]}, Projector(front_picture()), full_mask(800, 800), 0, 100);
   EXPECT_LT(count(seen[1]), count(alone[0]));
 }
 
 // A brush needs no ray tree of all triangles, and gives the same result with and without one.
-TEST(Select, ABrushFindsWhatRaysThroughAllTrianglesDo) {
+TEST(Select, BrushMatchesRaysThroughAllTriangles) {
   struct Case {
     const char* what;
     double scale;
@@ -332,10 +335,10 @@ TEST(Select, ABrushFindsWhatRaysThroughAllTrianglesDo) {
     const Projector project(picture);
     const PixelMask mask = brush_mask(one.stroke, one.radius, 800, 800);
     const auto seen = [&] {
-      return triangles_seen(placed_nodes(scene), project, mask, 0, picture.camera.far_plane)[0];
+      return visible_triangles(placed_nodes(scene), project, mask, 0, picture.camera.far_plane)[0];
     };
     const TriangleSet before = seen();
-    EXPECT_EQ(rays_if_there(*node.object), nullptr) << "nothing waited for one";
+    EXPECT_EQ(try_rays_of(*node.object), nullptr) << "no ray tree may be built";
     EXPECT_GT(count(before), 0U);
     TriangleSet expected(before.size(), 0);
     const SceneRays all = rays_through(placed_nodes(scene));
@@ -347,7 +350,7 @@ TEST(Select, ABrushFindsWhatRaysThroughAllTrianglesDo) {
           if (hit) expected[hit->triangle] = 1;
         }
     EXPECT_EQ(before, expected);
-    EXPECT_EQ(seen(), expected) << "with all of them indexed";
+    EXPECT_EQ(seen(), expected) << "with a ray tree of all triangles";
   }
 }
 
@@ -358,16 +361,16 @@ bool has_area(const Soup& soup, std::size_t f) {
   return !(soup.positions()[face[1]] - first).cross(soup.positions()[face[2]] - first).isZero(0);
 }
 
-TEST(Select, WhatIsInsideIsUnseenFromOutside) {
+TEST(Select, InnerTrianglesAreInvisibleFromOutside) {
   auto object = std::make_shared<BakedObject>(*made_object({.holes = false}));
   object->sets.push_back(made_object({.radius = 0.5, .holes = false})->sets[0]);
-  const TriangleSet unseen = triangles_unseen(*object, eyes_around(object->bounds(), 64, 3));
+  const TriangleSet unseen = triangles_unseen(*object, viewpoints_around(object->bounds(), 64, 3));
   const std::size_t outer = object->sets[0].soup.triangle_count();
   for (std::size_t f = 0; f < unseen.size(); ++f)
     EXPECT_EQ(unseen[f] != 0, f >= outer || !has_area(object->sets[0].soup, f)) << f;
 }
 
-TEST(Select, TrianglesWithoutAreaAreUnseenAndThoseBetweenTexelCentresSeen) {
+TEST(Select, DegenerateTrianglesAreInvisibleTinyOnesAreVisible) {
   auto object = std::make_shared<BakedObject>(*made_object({.holes = false}));
   const Soup& soup = object->sets[0].soup;
   std::vector<Vec3> positions = soup.positions();
@@ -391,24 +394,24 @@ TEST(Select, TrianglesWithoutAreaAreUnseenAndThoseBetweenTexelCentresSeen) {
   faces.push_back({n, n + 1, n + 2});
   faces.push_back({n + 3, n + 4, n + 5});
   object->sets[0].soup = Soup(positions, uvs, faces);
-  const TriangleSet unseen = triangles_unseen(*object, eyes_around(object->bounds(), 64, 3));
+  const TriangleSet unseen = triangles_unseen(*object, viewpoints_around(object->bounds(), 64, 3));
   EXPECT_NE(unseen[faces.size() - 2], 0);
   EXPECT_EQ(unseen[faces.size() - 1], 0);
 }
 
-TEST(Select, ParallelRaysPassNoThinGap) {
+TEST(Select, ParallelRaysDoNotPassThinShells) {
   // Two concentric shells, 0.02 apart.
   auto object = std::make_shared<BakedObject>(*made_object({.holes = false}));
   object->sets.push_back(made_object({.radius = 0.98, .holes = false})->sets[0]);
   const std::size_t outer = object->sets[0].soup.triangle_count();
-  std::vector<Standpoint> all_round;
-  for (const Standpoint& from : eyes_around(object->bounds(), 64, 3))
+  std::vector<Viewpoint> all_round;
+  for (const Viewpoint& from : viewpoints_around(object->bounds(), 64, 3))
     all_round.push_back({Vec3::Zero(), from.eye.normalized()});
   const TriangleSet unseen = triangles_unseen(*object, all_round);
   for (std::size_t f = 0; f < unseen.size(); ++f)
     EXPECT_EQ(unseen[f] != 0, f >= outer || !has_area(object->sets[0].soup, f)) << f;
   // From one side, the near half is visible.
-  const TriangleSet behind = triangles_unseen(*object, std::vector<Standpoint>{{Vec3::Zero(), Vec3::UnitZ()}});
+  const TriangleSet behind = triangles_unseen(*object, std::vector<Viewpoint>{{Vec3::Zero(), Vec3::UnitZ()}});
   const Soup& soup = object->sets[0].soup;
   for (std::size_t f = 0; f < outer; ++f) {
     Vec3 centre = Vec3::Zero();
@@ -429,7 +432,7 @@ TEST(Select, OnlyTheEarlierOfEqualTrianglesIsADuplicate) {
   EXPECT_EQ(duplicate_triangles(object), (TriangleSet{0, 1, 0, 0, 0}));
 }
 
-TEST(Select, NineMicsAreAtLeastNineParts) {
+TEST(Select, NineMicsHaveAtLeastNineComponents) {
   const auto mic = mic_object();
   if (!mic) GTEST_SKIP() << "REBAKE_TEST_DATA has no mic";
   const auto one = tiled(*mic);
@@ -437,7 +440,7 @@ TEST(Select, NineMicsAreAtLeastNineParts) {
   const auto parts = components_of(*one);
   std::size_t largest = 0;
   for (const std::uint32_t size : parts->triangles_in) largest = std::max<std::size_t>(largest, size);
-  EXPECT_LE(largest, mic->triangle_count()) << "nothing joins two of them";
+  EXPECT_LE(largest, mic->triangle_count()) << "no component may contain triangles of two mics";
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ double sum_of(const Costs& costs, const std::vector<LabelBorder>& borders, const
   return sum;
 }
 
-TEST(SmoothLabels, AreNearTheBestOfAll) {
-  Dice dice(3);
+TEST(SmoothLabels, NearMinimumOfExhaustiveSearch) {
+  SplitMix64 dice(3);
   constexpr std::size_t things = 7, labels = 3;
   for (int round = 0; round < 40; ++round) {
     Costs costs(things, std::vector<double>(labels));
@@ -46,14 +46,14 @@ TEST(SmoothLabels, AreNearTheBestOfAll) {
   }
 }
 
-TEST(SmoothLabels, TakeEachThingsOwnBestWithoutBordersAndOneLabelAcrossDearOnes) {
+TEST(SmoothLabels, BorderCostsDecideBetweenOwnAndCommonLabels) {
   const Costs costs{{0.2, 0.1}, {0.1, 0.5}, {0.3, 0.4}};
   EXPECT_EQ(smooth_labels(costs, {}), (std::vector<std::uint32_t>{1, 0, 0}));
   EXPECT_EQ(smooth_labels(costs, {{0, 1, 9}, {1, 2, 9}}), (std::vector<std::uint32_t>{0, 0, 0}));
   EXPECT_EQ(smooth_labels(costs, {{0, 1, 0.05}, {1, 2, 0.05}}), (std::vector<std::uint32_t>{1, 0, 0}));
 }
 
-TEST(SmoothLabels, OfNothingAndOfOneLabel) {
+TEST(SmoothLabels, EmptyInputAndSingleLabel) {
   EXPECT_TRUE(smooth_labels({}, {}).empty());
   EXPECT_EQ(smooth_labels({{4}, {2}}, {{0, 1, 3}}), (std::vector<std::uint32_t>{0, 0}));
 }

@@ -29,7 +29,7 @@ TEST(Soup, MovedFacesSplitSharedVertices) {
   EXPECT_EQ(moved.rotations(), nullptr);  // a translation records no rotation
 }
 
-TEST(Soup, TurnsAccumulateAndScaleDoesNotCount) {
+TEST(Soup, AccumulatesRotationsWithoutScale) {
   const Affine quarter(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()) * Eigen::Scaling(3.0));
   Soup soup = moved_faces(square(), {1, 0}, 0, quarter);
   ASSERT_NE(soup.rotations(), nullptr);
@@ -77,7 +77,7 @@ TEST(Soup, AttributesFollowTheirVerticesAndFaces) {
                std::invalid_argument);
 }
 
-TEST(Soup, FacesOutOfRangeAreRefused) { EXPECT_THROW(Soup({{0, 0, 0}}, {{0, 0}}, {{0, 0, 1}}), std::invalid_argument); }
+TEST(Soup, RejectsFaceOutOfRange) { EXPECT_THROW(Soup({{0, 0, 0}}, {{0, 0}}, {{0, 0, 1}}), std::invalid_argument); }
 
 TEST(OrthogonalFactor, KnownCases) {
   EXPECT_TRUE(orthogonal_factor(Mat3::Identity() * 1e-30).isIdentity(0));

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "mesh_ops/light/rotated_product.h"
 #include "mesh_ops/light/spherical_harmonics.h"
-#include "mesh_ops/light/turned_product.h"
 
 namespace rebake::test {
 namespace {
@@ -53,7 +53,7 @@ TEST(SphericalHarmonics, AreOrthonormal) {
   EXPECT_LT((products - decltype(products)::Identity()).cwiseAbs().maxCoeff(), 1e-13);
 }
 
-TEST(SphericalHarmonics, AtPolesAndAxesAreTheirClosedForms) {
+TEST(SphericalHarmonics, MatchClosedFormsAtThePole) {
   const sh::Coefficients up = sh::basis({0, 0, 1});
   for (int l = 0; l < sh::degrees; ++l)
     for (int m = -l; m <= l; ++m)
@@ -65,7 +65,7 @@ TEST(SphericalHarmonics, AtPolesAndAxesAreTheirClosedForms) {
       EXPECT_DOUBLE_EQ(sh::basis(-d)[k], (l % 2 == 0 ? 1 : -1) * sh::basis(d)[k]);
 }
 
-TEST(SphericalHarmonics, TheClampedCosineIsItsClosedForm) {
+TEST(SphericalHarmonics, ClampedCosineMatchesTheClosedForm) {
   // Zonal coefficients are integrals over the hemisphere: with z = cos θ, ∫₀¹ z P_l(z) dz = 1/2, 1/3, 1/8, 0.
   const sh::Coefficients lobe = sh::clamped_cosine({0, 0, 1});
   const double integral[] = {1.0 / 2, 1.0 / 3, 1.0 / 8, 0};
@@ -77,7 +77,7 @@ TEST(SphericalHarmonics, TheClampedCosineIsItsClosedForm) {
   EXPECT_NEAR(sh::value(sh::convolved_with_cosine(uniform), Vec3(1, 2, 3).normalized()), 0.7, 1e-15);
 }
 
-TEST(SphericalHarmonics, RotationsTurnFunctions) {
+TEST(SphericalHarmonics, RotationsRotateFunctions) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   for (int round = 0; round < 50; ++round) {
@@ -93,7 +93,7 @@ TEST(SphericalHarmonics, RotationsTurnFunctions) {
   }
 }
 
-TEST(SphericalHarmonics, RotationsFollowEachOther) {
+TEST(SphericalHarmonics, RotationsCompose) {
   std::mt19937 random(4);
   for (int round = 0; round < 20; ++round) {
     const Mat3 a = some_rotation(random), b = some_rotation(random);
@@ -123,7 +123,7 @@ TEST(SphericalHarmonics, TinyRotationsKeepTheirDigits) {
   EXPECT_TRUE((sh::Rotation(Mat3::Identity()).block(3) - Eigen::MatrixXd::Identity(7, 7)).isZero(1e-15));
 }
 
-TEST(SphericalHarmonics, ShearedMatricesTurnByTheirPolarFactor) {
+TEST(SphericalHarmonics, ShearedMatricesRotateByTheirPolarFactor) {
   Mat3 sheared = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   sheared(0, 1) += 0.05;
   const sh::Rotation rotation(sheared);
@@ -142,7 +142,7 @@ TEST(SphericalHarmonics, ShearedMatricesTurnByTheirPolarFactor) {
 }
 
 // Windows lower the peak of a cosine lobe by 2 to 3 % and flatten the negative ringing behind it.
-TEST(SphericalHarmonics, WindowsTakeRinging) {
+TEST(SphericalHarmonics, WindowsReduceRinging) {
   const auto deepest = [](const sh::Coefficients& c) {
     double least = 1e9;
     for (int k = 0; k <= 180; ++k)
@@ -159,7 +159,7 @@ TEST(SphericalHarmonics, WindowsTakeRinging) {
   EXPECT_EQ(sh::windowed(spike, sh::Window::none), spike);
 }
 
-TEST(SphericalHarmonics, ProductsWithTurnedTransferNeedNoMatrix) {
+TEST(SphericalHarmonics, ProductsWithRotatedTransferMatchTheMatrix) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal;
   const auto some = [&] {
@@ -168,7 +168,7 @@ TEST(SphericalHarmonics, ProductsWithTurnedTransferNeedNoMatrix) {
     return c;
   };
   const std::array<sh::Coefficients, 3> radiance{some(), some(), some()};
-  const TurnedProduct product(radiance);
+  const RotatedProduct product(radiance);
   std::vector<Mat3> turns{Mat3::Identity(), Vec3(-1, 1, -1).asDiagonal().toDenseMatrix()};
   for (const double tiny : {1e-12, 1e-6})
     turns.push_back(Eigen::AngleAxisd(tiny, Vec3(1, 2, 3).normalized()).toRotationMatrix());
@@ -180,7 +180,7 @@ TEST(SphericalHarmonics, ProductsWithTurnedTransferNeedNoMatrix) {
   }
 }
 
-TEST(SphericalHarmonics, AProjectedSkyGivesItsIrradiance) {
+TEST(SphericalHarmonics, ProjectedSkyGivesItsIrradiance) {
   Light light = sky_and_sun({0.2, 0.3, 0.4}, {1, 0.9, 0.8}, {}, {0.1, 0.1, 0.1});
   const Mat3 to_light = Eigen::AngleAxisd(0.4, Vec3(1, 0, 1).normalized()).toRotationMatrix();
   const auto coefficients = projected_sky(light, to_light);

@@ -21,7 +21,7 @@ std::vector<WeightedPoint> branch(const Vec3& from, const Vec3& to, double radiu
   return points;
 }
 
-TEST(Spine, ItsCurveRunsThroughTheMiddleOfWhatIsBent) {
+TEST(Spine, CurveFollowsTheCentreOfThePart) {
   // A quarter of a torus with radii 2 and 0.1.
   std::vector<WeightedPoint> part;
   for (int i = 0; i <= 90; ++i)
@@ -54,10 +54,10 @@ TEST(Spine, FollowsABranchFromItsStem) {
     const auto spine = spine_of(part, rest);
     ASSERT_TRUE(spine);
     EXPECT_LT((spine->along - (tip - stem).normalized()).norm(), 1e-3);
-    EXPECT_LT((spine->foot / scale - stem).norm(), 0.02) << "held at the stem";
+    EXPECT_LT((spine->foot / scale - stem).norm(), 0.02) << "the foot must be at the stem";
     EXPECT_NEAR(spine->length / scale, (tip - stem).norm(), 0.1);
     EXPECT_NEAR(spine->width / scale, 0.1, 0.01) << "its diameter";
-    EXPECT_LT(spine->touched, 0.2) << "at the stem only";
+    EXPECT_LT(spine->touched, 0.2) << "contact at the stem only";
   }
   // The same branch, attached at its other end.
   const auto other = spine_of(branch(stem, tip, 0.05), branch(tip, tip + Vec3(0, 1, 0), 0.1));
@@ -65,14 +65,14 @@ TEST(Spine, FollowsABranchFromItsStem) {
   EXPECT_LT((other->foot - tip).norm(), 0.05);
 }
 
-TEST(Spine, WithoutARestStandsOnItsLowerEnd) {
+TEST(Spine, WithoutARestStartsAtTheLowerEnd) {
   const auto spine = spine_of(branch({0, 5, 0}, {0.2, 1, 0}, 0.1), {});
   ASSERT_TRUE(spine);
   EXPECT_LT((spine->foot - Vec3(0.2, 1, 0)).norm(), 0.05);
   EXPECT_GT(spine->along.y(), 0.99);
 }
 
-TEST(Spine, OfARoundPartLeadsFromTheRestThroughItsMiddle) {
+TEST(Spine, RoundPartLeadsFromTheRestToItsCentre) {
   std::vector<WeightedPoint> ball;
   // Equal area per point: uniform in z and in angle.
   constexpr int rings = 40, around = 40;
@@ -87,7 +87,7 @@ TEST(Spine, OfARoundPartLeadsFromTheRestThroughItsMiddle) {
   EXPECT_GT(spine->along.x(), 0.95);
 }
 
-TEST(Spine, TellsWherePartsOfItWereNotTaken) {
+TEST(Spine, ReportsContactAlongTheWholeLength) {
   const auto all = branch({0, 0, 0}, {2, 0, 0}, 0.1);
   std::vector<WeightedPoint> front, back;
   for (const WeightedPoint& point : all) (point.at.z() > 0 ? front : back).push_back(point);
@@ -96,7 +96,7 @@ TEST(Spine, TellsWherePartsOfItWereNotTaken) {
   EXPECT_GT(spine->touched, 0.8);
 }
 
-TEST(Spine, OfAPointIsNone) {
+TEST(Spine, EmptyForAPoint) {
   EXPECT_FALSE(spine_of({}, {}));
   EXPECT_FALSE(spine_of({{Vec3(1, 2, 3), 1}, {Vec3(1, 2, 3), 1}}, {}));
 }

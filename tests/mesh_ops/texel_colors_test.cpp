@@ -14,8 +14,8 @@ Decoder random_decoder(std::size_t hidden, std::uint64_t seed) {
   return network.to_decoder();
 }
 
-TEST(TexelColors, AreThoseOfOneAfterTheOther) {
-  Dice dice(3);
+TEST(TexelColors, BatchMatchesSingleTexels) {
+  SplitMix64 dice(3);
   const std::vector<Vec3> some = even_directions(7);
   for (const std::size_t hidden : {4, 16, 300})
     for (const std::size_t count : {0, 1, 15, 16, 17, 72}) {

@@ -55,16 +55,16 @@ TEST(Texels, ArePackedWithoutLoss) {
       EXPECT_EQ(texture.opaque_at(u, v), shared.sample(u, v).opaque()) << u << " " << v;
 }
 
-TEST(Texels, WhatCannotBePackedIsHeldAsItIs) {
+TEST(Texels, IncompressibleTilesStayUnpacked) {
   const FeatureTexture texture = read_texture(picture());
   constexpr std::uint64_t tile = TexelTile::size * TexelTile::size * sizeof(Texel), flags = tile / 64;
-  EXPECT_EQ(texture.tile(0, 0), texture.tile(0, 1)) << "empty tiles are one";
+  EXPECT_EQ(texture.tile(0, 0), texture.tile(0, 1)) << "empty tiles must be shared";
   EXPECT_LT(texture.tile(1, 0)->memory(), tile / 4);
   EXPECT_EQ(texture.tile(2, 0)->memory(), tile + flags);
 }
 
 // Edits copy the tiles that they touch, and no others.
-TEST(Texels, ChangesReachTheirTilesOnly) {
+TEST(Texels, ChangesCopyOnlyTheirTiles) {
   const std::vector<Texel> expected = picture();
   const FeatureTexture texture = read_texture(expected);
   FeatureTexture::Change change(texture);

@@ -1,4 +1,5 @@
-// Turn: a rotation or reflection per vertex in 20 bytes. turns.bin: the file of a scene folder that stores them.
+// PackedRotation: a rotation or reflection per vertex in 20 bytes. turns.bin: the file of a scene folder that stores
+// them.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -10,11 +11,11 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
-#include "mesh_ops/base/turn.h"
+#include "mesh_ops/base/packed_rotation.h"
 #include "mesh_ops/formats/baked_folder.h"
+#include "mesh_ops/formats/rotations_file.h"
+#include "mesh_ops/formats/rotations_json.h"
 #include "mesh_ops/formats/scene_folder.h"
-#include "mesh_ops/formats/turns_file.h"
-#include "mesh_ops/formats/turns_json.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -22,13 +23,13 @@ namespace {
 
 Mat3 about(const Vec3& axis, double angle) { return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(); }
 
-TEST(Turn, KeepsRotationsAndMirrorsToTheLastBits) {
+TEST(PackedRotation, PreservesRotationsAndReflections) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   const auto check = [](const Mat3& m) {
-    const Turn turn(m);
+    const PackedRotation turn(m);
     EXPECT_LE((turn.matrix() - m).cwiseAbs().maxCoeff(), 2e-15) << m;
-    EXPECT_EQ(Turn(turn.bytes()), turn);
+    EXPECT_EQ(PackedRotation(turn.bytes()), turn);
   };
   for (int k = 0; k < 2000; ++k) {
     const Vec3 axis(normal(random), normal(random), normal(random));
@@ -41,28 +42,28 @@ TEST(Turn, KeepsRotationsAndMirrorsToTheLastBits) {
   }
 }
 
-TEST(Turn, WhatMapsAxesOntoAxesIsExact) {
-  EXPECT_TRUE(Turn().is_identity());
-  EXPECT_TRUE(Turn(Mat3::Identity()).is_identity());
-  EXPECT_EQ(Turn().matrix(), Mat3::Identity());
+TEST(PackedRotation, AxisPermutationsAreExact) {
+  EXPECT_TRUE(PackedRotation().is_identity());
+  EXPECT_TRUE(PackedRotation(Mat3::Identity()).is_identity());
+  EXPECT_EQ(PackedRotation().matrix(), Mat3::Identity());
   int number = 0;
   const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   for (const auto& order : orders)
     for (int signs = 0; signs < 8; ++signs) {
       Mat3 m = Mat3::Zero();
       for (int row = 0; row < 3; ++row) m(row, order[row]) = (signs >> row & 1) != 0 ? -1 : 1;
-      EXPECT_EQ(Turn(m).matrix(), m);
+      EXPECT_EQ(PackedRotation(m).matrix(), m);
       ++number;
     }
   EXPECT_EQ(number, 48);
 }
 
-TEST(Turn, AnyBytesAreATurn) {
+TEST(PackedRotation, AnyBytesAreOrthogonal) {
   std::mt19937 random(5);
   for (int k = 0; k < 2000; ++k) {
-    std::array<std::uint8_t, Turn::size> bytes{};
+    std::array<std::uint8_t, PackedRotation::size> bytes{};
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(k == 0 ? 0xFF : random());
-    EXPECT_TRUE(Turn(bytes).matrix().isUnitary(1e-12));
+    EXPECT_TRUE(PackedRotation(bytes).matrix().isUnitary(1e-12));
   }
 }
 
@@ -95,16 +96,16 @@ void expect_same_turns(const std::vector<TextureSet>& a, const std::vector<Textu
   }
 }
 
-TEST(TurnsFile, HoldsTurnsBitForBit) {
+TEST(TurnsFile, RoundTripIsBitExact) {
   const std::vector<TextureSet> sets = bent_sets();
-  const std::string bytes = write_turns(sets);
+  const std::string bytes = write_rotations(sets);
   std::vector<TextureSet> back = unturned(sets);
-  read_turns(bytes, "turns.bin", back);
+  read_rotations(bytes, "turns.bin", back);
   expect_same_turns(sets, back);
 }
 
 // Unwelded quads, as MobileNeRF bakes them, with a different rotation at each position.
-TEST(TurnsFile, TakesAtMostTenBytesABentVertex) {
+TEST(TurnsFile, TakesAtMostTenBytesPerBentVertex) {
   std::vector<Vec3> positions;
   std::vector<Face> faces;
   constexpr int side = 40;
@@ -123,14 +124,14 @@ TEST(TurnsFile, TakesAtMostTenBytesABentVertex) {
                                    turn = about({1, position.x(), 2}, 0.1 + 0.01 * position.y());
                                    position.z() += 1;
                                  });
-  const std::string bytes = write_turns(sets);
+  const std::string bytes = write_rotations(sets);
   EXPECT_LE(bytes.size(), 20 * positions.size() / 2);
   std::vector<TextureSet> back = unturned(sets);
-  read_turns(bytes, "turns.bin", back);
+  read_rotations(bytes, "turns.bin", back);
   expect_same_turns(sets, back);
 }
 
-TEST(TurnsFile, FoldersWithTheTextThatCameBeforeAreStillRead) {
+TEST(TurnsFile, ReadsTheOlderTextFormat) {
   const std::vector<TextureSet> sets = bent_sets();
   nlohmann::json runs = nlohmann::json::array();
   const Soup& soup = sets[0].soup;
@@ -144,7 +145,7 @@ TEST(TurnsFile, FoldersWithTheTextThatCameBeforeAreStillRead) {
   }
   const nlohmann::json text = {{"rebake_turns", 1}, {"sets", {{{"set", 0}, {"runs", runs}}}}};
   std::vector<TextureSet> back = unturned(sets);
-  read_turns_json(text.dump(), "turns.json", back);
+  read_rotations_json(text.dump(), "turns.json", back);
   for (std::size_t v = 0; v < soup.positions().size(); ++v)
     EXPECT_LE(((*back[0].soup.rotations())[v].matrix() - (*soup.rotations())[v].matrix()).norm(), 4e-15);
   // Also in a scene folder, until it is saved again.
@@ -164,7 +165,7 @@ TEST(TurnsFile, FoldersWithTheTextThatCameBeforeAreStillRead) {
 }
 
 // Inconsistent contents with a correct checksum.
-TEST(TurnsFile, WhatContradictsItselfIsRefused) {
+TEST(TurnsFile, RejectsInconsistentContents) {
   std::vector<TextureSet> sets = made_object({.columns = 4, .rows = 2})->sets;
   sets.resize(1);
   const auto faces = static_cast<std::uint32_t>(sets[0].soup.triangle_count());
@@ -174,7 +175,7 @@ TEST(TurnsFile, WhatContradictsItselfIsRefused) {
     for (int k = 0; k < bytes; ++k) out += static_cast<char>(value >> (8 * k) & 0xFF);
     return out;
   };
-  const auto quarter = Turn(about({0, 0, 1}, 1)).bytes();
+  const auto quarter = PackedRotation(about({0, 0, 1}, 1)).bytes();
   const std::string turn(quarter.begin(), quarter.end());
   const auto set = [&](std::uint32_t which, std::uint32_t of, std::uint32_t turns, const std::string& table,
                        const std::string& runs) {
@@ -183,13 +184,13 @@ TEST(TurnsFile, WhatContradictsItselfIsRefused) {
   const auto read = [&](std::uint32_t count, const std::string& body, std::uint32_t version = 1) {
     const std::string counted = number(count, 4) + body;
     std::vector<TextureSet> back = sets;
-    read_turns("rebaketn" + number(version, 4) + number(content_hash(counted), 8) + counted, "turns.bin", back);
+    read_rotations("rebaketn" + number(version, 4) + number(content_hash(counted), 8) + counted, "turns.bin", back);
   };
   // One rotated face, the rest unrotated.
   const std::string one = std::string("\3\0\1\1", 4) + static_cast<char>(2 * (faces - 1));
   EXPECT_NO_THROW(read(1, set(0, faces, 1, turn, one)));
   const std::pair<const char*, std::function<void()>> wrong[] = {
-      {"version 0", [&] { read(1, set(0, faces, 1, turn, one), 0); }},
+      {"is damaged: its version is 0", [&] { read(1, set(0, faces, 1, turn, one), 0); }},
       {"version 2", [&] { read(1, set(0, faces, 1, turn, one), 2); }},
       {"a set that is not there", [&] { read(1, set(7, faces, 1, turn, one)); }},
       {"a set twice", [&] { read(2, set(0, faces, 1, turn, one) + set(0, faces, 1, turn, one)); }},
@@ -210,13 +211,13 @@ TEST(TurnsFile, WhatContradictsItselfIsRefused) {
   for (const auto& [name, attempt] : wrong) EXPECT_THROW(attempt(), FileError) << name;
 }
 
-TEST(TurnsFile, CutChangedOrForeignOnesAreRefusedByName) {
+TEST(TurnsFile, RejectsTruncatedChangedOrForeignFiles) {
   const std::vector<TextureSet> sets = bent_sets();
-  const std::string bytes = write_turns(sets);
+  const std::string bytes = write_rotations(sets);
   const auto refused = [&](const std::string& changed) {
     std::vector<TextureSet> back = unturned(sets);
     try {
-      read_turns(changed, "some/turns.bin", back);
+      read_rotations(changed, "some/turns.bin", back);
     } catch (const FileError& error) {
       EXPECT_NE(std::string(error.what()).find("some/turns.bin"), std::string::npos);
       return true;
@@ -231,9 +232,9 @@ TEST(TurnsFile, CutChangedOrForeignOnesAreRefusedByName) {
   }
   EXPECT_TRUE(refused(bytes + "x"));
   std::vector<TextureSet> other = made_object({.columns = 4, .rows = 2})->sets;
-  EXPECT_THROW(read_turns(bytes, "turns.bin", other), FileError);
+  EXPECT_THROW(read_rotations(bytes, "turns.bin", other), FileError);
   std::vector<TextureSet> none;
-  EXPECT_THROW(read_turns(bytes, "turns.bin", none), FileError);
+  EXPECT_THROW(read_rotations(bytes, "turns.bin", none), FileError);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ struct Kind {
 class CodedTexelKinds : public ::testing::TestWithParam<Kind> {};
 
 // Covers all bit widths: from 0 for equal values, over 7, which is stored as 8, to 8.
-TEST_P(CodedTexelKinds, AreWhatWasCoded) {
+TEST_P(CodedTexelKinds, RoundTrip) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(0, 1);
   std::vector<Texel> texels(static_cast<std::size_t>(texture_size) * texture_size);
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, CodedTexelKinds,
                                            Kind{"SevenBits", 100, 227, 0.8}, Kind{"Nothing", 1, 255, 0}),
                          [](const auto& kind) { return kind.param.name; });
 
-TEST(CodedTexels, TakeAboutHalfWhereFeaturesAreReal) {
+TEST(CodedTexels, HalvesMemoryOfRealFeatures) {
   for (const char* name : {"lego_ball", "lego_tractor"}) {
     const auto object = morpheus_object(name);
     if (!object) GTEST_SKIP() << "REBAKE_TEST_DATA has no such scene";
@@ -90,7 +90,7 @@ TEST(CodedTexels, TakeAboutHalfWhereFeaturesAreReal) {
 }
 
 // All draw modes read coded texels: shading, inspection, selection and outlines.
-TEST(CodedTexels, MakeTheSamePicture) {
+TEST(CodedTexels, PictureIsUnchanged) {
   const auto object = made_object({.columns = 32, .rows = 16});
   Node other;
   other.object = made_object({.seed = 2});

@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Texels, GpuSceneTest, ::testing::Bool(),
                          [](const auto& coded) { return coded.param ? "Coded" : "Plain"; });
 
 // As in the window, another thread prepares the uploads of the next picture meanwhile.
-TEST_P(GpuSceneTest, WhatWasPreparedIsDrawnAlike) {
+TEST_P(GpuSceneTest, PreparedScenesMatchAFreshRenderer) {
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
   const View view = small_view();
   Renderer kept;
@@ -76,7 +76,7 @@ TEST_P(GpuSceneTest, WhatWasPreparedIsDrawnAlike) {
 }
 
 // New texels at the address of prepared ones that no longer exist must not be mistaken for them.
-TEST_P(GpuSceneTest, WhatWasPreparedForTexelsThatAreGoneIsNotUsed) {
+TEST_P(GpuSceneTest, PreparedDataOfDeletedTexelsIsNotReused) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
   const auto with_texels = [&](bool empty) {
     return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
@@ -101,7 +101,7 @@ TEST_P(GpuSceneTest, WhatWasPreparedForTexelsThatAreGoneIsNotUsed) {
   }
 }
 
-TEST_P(GpuSceneTest, WhatOnlyMovedIsDrawnAsIfItWereNew) {
+TEST_P(GpuSceneTest, MovedVerticesMatchAFreshRenderer) {
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
   const View view = small_view();
   Renderer kept;
@@ -119,7 +119,7 @@ TEST_P(GpuSceneTest, WhatOnlyMovedIsDrawnAsIfItWereNew) {
     Renderer fresh;
     const Image drawn = kept.render(turned, view, options());
     EXPECT_EQ(drawn.rgb, fresh.render(turned, view).rgb);
-    EXPECT_NE(drawn.rgb, kept.render(bent(scene, 0.3), view, options()).rgb) << "turns are seen";
+    EXPECT_NE(drawn.rgb, kept.render(bent(scene, 0.3), view, options()).rgb) << "rotations must change the picture";
     turned = with_changed(turned, turned.roots[0]->id, [&](Node& node) {
       auto object = std::make_shared<BakedObject>(*node.object);
       object->sets[0].texels = made_object({.columns = 64, .rows = 40, .seed = 9})->sets[0].texels;
@@ -165,7 +165,7 @@ Scene recoloured(const Scene& scene) {
   });
 }
 
-TEST_P(GpuSceneTest, WhatWasErasedIsDrawnAsIfItWereNew) {
+TEST_P(GpuSceneTest, ErasedTexelsMatchAFreshRenderer) {
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
   const View view = small_view();
   Renderer kept;
@@ -174,7 +174,7 @@ TEST_P(GpuSceneTest, WhatWasErasedIsDrawnAsIfItWereNew) {
     EXPECT_EQ(kept.render(next, view, options()).rgb, Renderer().render(next, view).rgb) << what;
   };
   const Scene stroke = erased(scene, 0, 300);
-  ASSERT_NE(Renderer().render(stroke, view).rgb, first.rgb) << "the stroke is seen";
+  ASSERT_NE(Renderer().render(stroke, view).rgb, first.rgb) << "the stroke must change the picture";
   kept.prepare(stroke);
   expect_new(stroke, "a stroke");
   expect_new(erased(stroke, 280, 500), "another one");
@@ -188,9 +188,9 @@ TEST_P(GpuSceneTest, WhatWasErasedIsDrawnAsIfItWereNew) {
 }
 
 // A stroke uploads the texels around it, not the whole texture.
-TEST_P(GpuSceneTest, UploadsWhatAStrokeTouched) {
+TEST_P(GpuSceneTest, UploadsOnlyTexelsOfAStroke) {
   const auto context = gl::make_headless_context();
-  const gl::Current current(*context);
+  const gl::CurrentContextScope current(*context);
   const Scene scene = scene_of(made_object({.columns = 64, .rows = 40}));
   GpuScene gpu;
   gpu.update(scene, GetParam());
@@ -211,7 +211,7 @@ TEST_P(GpuSceneTest, UploadsWhatAStrokeTouched) {
 Scene large_scene(unsigned seed) { return scene_of(made_object({.columns = 128, .rows = 80, .seed = seed})); }
 
 // As in the window when a scene is opened: it is uploaded in slices while another scene is still drawn.
-TEST_P(GpuSceneTest, WhatArrivesIsDrawnAsIfItWereNewAndNotBefore) {
+TEST_P(GpuSceneTest, UploadInSlicesMatchesAFreshRenderer) {
   const Scene first = large_scene(1);
   Node beside;
   beside.object = large_scene(3).roots[0]->object;
@@ -222,7 +222,7 @@ TEST_P(GpuSceneTest, WhatArrivesIsDrawnAsIfItWereNewAndNotBefore) {
   double share = 0;
   int slices = 0;
   for (; share < 1 && slices < 10000; ++slices) {
-    const double now = kept.arrive(second, 0);
+    const double now = kept.upload_slice(second, 0);
     EXPECT_GE(now, share);
     share = now;
     EXPECT_EQ(kept.render(first, view, options()).rgb, before.rgb);
@@ -234,45 +234,45 @@ TEST_P(GpuSceneTest, WhatArrivesIsDrawnAsIfItWereNewAndNotBefore) {
   EXPECT_EQ(kept.render(second, view, options()).rgb, Renderer().render(second, view).rgb);
   // A partly uploaded scene can be drawn; uploads of a scene that is no longer wanted are released.
   const Scene third = large_scene(5), fourth = large_scene(6);
-  EXPECT_LT(kept.arrive(third, 0), 1);
-  EXPECT_LT(kept.arrive(fourth, 0), 1);
+  EXPECT_LT(kept.upload_slice(third, 0), 1);
+  EXPECT_LT(kept.upload_slice(fourth, 0), 1);
   EXPECT_EQ(kept.render(third, view, options()).rgb, Renderer().render(third, view).rgb);
   EXPECT_EQ(kept.render(fourth, view, options()).rgb, Renderer().render(fourth, view).rgb);
-  EXPECT_EQ(kept.arrive(third, 1e6), 1);
+  EXPECT_EQ(kept.upload_slice(third, 1e6), 1);
   EXPECT_EQ(kept.render(third, view, options()).rgb, Renderer().render(third, view).rgb);
 }
 
 // Uploaded data is not uploaded again, and released if no longer wanted. A stroke is left to update().
-TEST_P(GpuSceneTest, ArrivesOnceAndLeavesStrokesToTheUpdate) {
+TEST_P(GpuSceneTest, UploadsOnceAndLeavesStrokesToUpdate) {
   const auto context = gl::make_headless_context();
-  const gl::Current current(*context);
+  const gl::CurrentContextScope current(*context);
   const Scene scene = large_scene(1), other = large_scene(4);
   GpuScene gpu;
   const std::uint64_t nothing = gl::memory_use().now;
-  EXPECT_EQ(gpu.arrive(scene, GetParam(), 1e6), 1);
+  EXPECT_EQ(gpu.upload_slice(scene, GetParam(), 1e6), 1);
   const std::uint64_t there = gl::memory_use().now;
   EXPECT_GT(there, nothing);
   gpu.update(scene, GetParam());
   EXPECT_EQ(gl::memory_use().now, there);
   const Scene stroke = erased(scene, 0, 20);
-  EXPECT_EQ(gpu.arrive(stroke, GetParam(), 0), 1);
+  EXPECT_EQ(gpu.upload_slice(stroke, GetParam(), 0), 1);
   EXPECT_EQ(gl::memory_use().now, there);
-  EXPECT_LT(gpu.arrive(other, GetParam(), 0), 1);
+  EXPECT_LT(gpu.upload_slice(other, GetParam(), 0), 1);
   EXPECT_GT(gl::memory_use().now, there);
-  EXPECT_EQ(gpu.arrive(scene, GetParam(), 0), 1);
-  EXPECT_EQ(gl::memory_use().now, there) << "another scene is wanted";
-  gpu.arrive(other, GetParam(), 0);
-  gpu.forget_arrival();
-  EXPECT_EQ(gl::memory_use().now, there) << "that was undone";
-  gpu.arrive(other, GetParam(), 0);
+  EXPECT_EQ(gpu.upload_slice(scene, GetParam(), 0), 1);
+  EXPECT_EQ(gl::memory_use().now, there) << "partial uploads of an unwanted scene must be released";
+  gpu.upload_slice(other, GetParam(), 0);
+  gpu.evict_staged();
+  EXPECT_EQ(gl::memory_use().now, there) << "a cancelled upload must be released";
+  gpu.upload_slice(other, GetParam(), 0);
   gpu.update(other, GetParam());
-  EXPECT_LT(gl::memory_use().now, there + there / 2) << "drawn before all had arrived";
+  EXPECT_LT(gl::memory_use().now, there + there / 2) << "drawn before the upload was complete";
 }
 
 // Each call uploads some data, even if the search for missing data takes longer than its time limit.
-TEST_P(GpuSceneTest, ManyNodesArriveToo) {
+TEST_P(GpuSceneTest, UploadsManyNodes) {
   const auto context = gl::make_headless_context();
-  const gl::Current current(*context);
+  const gl::CurrentContextScope current(*context);
   const auto shared = made_object({.columns = 8, .rows = 4});
   Scene scene;
   const auto add = [&](std::shared_ptr<const BakedObject> object) {
@@ -282,14 +282,14 @@ TEST_P(GpuSceneTest, ManyNodesArriveToo) {
   };
   for (int k = 0; k < 20000; ++k) add(shared);
   GpuScene gpu;
-  EXPECT_EQ(gpu.arrive(scene, GetParam(), 0), 1) << "little: it is uploaded at once";
+  EXPECT_EQ(gpu.upload_slice(scene, GetParam(), 0), 1) << "small data is uploaded in one call";
   for (unsigned k = 0; k < 300; ++k) add(made_object({.columns = 8, .rows = 4, .seed = k}));
   double share = 0;
-  for (int call = 0; call < 1000 && share < 1; ++call) share = gpu.arrive(scene, GetParam(), 0);
+  for (int call = 0; call < 1000 && share < 1; ++call) share = gpu.upload_slice(scene, GetParam(), 0);
   EXPECT_EQ(share, 1);
 }
 
-TEST_P(GpuSceneTest, WhatWasPreparedForFewerFacesIsNotUsedForMore) {
+TEST_P(GpuSceneTest, PreparedClustersOfFewerFacesAreNotReused) {
   const Scene full = scene_of(made_object({.columns = 64, .rows = 40}));
   const Scene holes = erased(full, 0, 600);
   const View view = small_view();
@@ -304,7 +304,7 @@ TEST_P(GpuSceneTest, WhatWasPreparedForFewerFacesIsNotUsedForMore) {
 }
 
 // Each texel that a triangle may show is packed where the shader reads it; unused texels are not uploaded.
-TEST(PackedTexels, HoldWhatTrianglesShow) {
+TEST(PackedTexels, ContainVisibleTexelsOnly) {
   const auto object = made_object({.columns = 64, .rows = 40});
   TextureSet set = object->sets[0];
   for (const bool half : {false, true}) {

@@ -54,7 +54,7 @@ class GuidesTest : public ::testing::TestWithParam<int> {
   Renderer renderer;
 };
 
-TEST_P(GuidesTest, NothingToShowIsThePictureItself) {
+TEST_P(GuidesTest, WithoutOverlaysThePictureIsUnchanged) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
   EXPECT_EQ(shown(scene, {}).rgb, renderer.render(scene, view_of(GetParam())).rgb);
   const auto planned = renderer.show(scene, view_of(GetParam()), {}, {}, false).passes;
@@ -62,7 +62,7 @@ TEST_P(GuidesTest, NothingToShowIsThePictureItself) {
     EXPECT_FALSE(pass.runs && (pass.name == "selection" || pass.name == "guides")) << pass.why;
 }
 
-TEST_P(GuidesTest, TrianglesShowOnTheirSurfaceOnly) {
+TEST_P(GuidesTest, TrianglesAreVisibleOnTheirSurfaceOnly) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16, .holes = false}));
   const auto triangles = [&](double side, double scale) {
     auto list = std::make_shared<std::vector<Guides::Triangle>>();
@@ -84,11 +84,11 @@ TEST_P(GuidesTest, TrianglesShowOnTheirSurfaceOnly) {
     const Image plain = seen({});
     Guides guides;
     guides.triangles = triangles(1, 1);
-    EXPECT_GT(changed(plain, seen(guides), 40), 1000U) << "they lie on what is seen";
+    EXPECT_GT(changed(plain, seen(guides), 40), 1000U) << "they lie on the visible surface";
     guides.triangles = triangles(-1, 1);
-    EXPECT_EQ(seen(guides), plain) << "they lie behind it";
+    EXPECT_EQ(seen(guides), plain) << "they lie behind the surface";
     guides.triangles = triangles(1, 1.1);
-    EXPECT_EQ(seen(guides), plain) << "there is nothing where they are";
+    EXPECT_EQ(seen(guides), plain) << "they lie on no surface";
   }
 }
 
@@ -96,14 +96,14 @@ TEST_P(GuidesTest, SelectedTrianglesInFrontAreTintedMoreThanThoseBehind) {
   const Image plain = renderer.render(selected_scene(true), view_of(GetParam()));
   const Image front = shown(selected_scene(true), {}), back = shown(selected_scene(false), {});
   EXPECT_GT(changed(plain, front, 25), 800U);
-  EXPECT_GT(changed(plain, back, 8), 800U) << "what is hidden shows through, faintly";
+  EXPECT_GT(changed(plain, back, 8), 800U) << "hidden triangles must be tinted faintly";
   EXPECT_LT(changed(plain, back, 60), changed(plain, front, 60) / 2);
   Guides off;
   off.selection = false;
   EXPECT_EQ(shown(selected_scene(true), off).rgb, plain.rgb);
 }
 
-TEST_P(GuidesTest, PickedNodesHaveALineAroundThemFaintWhereHidden) {
+TEST_P(GuidesTest, OutlinesPickedNodesFaintlyIfOccluded) {
   Scene scene = scene_of(made_object({.columns = 32, .rows = 16}), "front");
   Node behind = *scene.roots[0];
   behind.id = NodeId::none;
@@ -116,15 +116,15 @@ TEST_P(GuidesTest, PickedNodesHaveALineAroundThemFaintWhereHidden) {
   guides.outlined = {scene.roots[0]->id};
   const std::size_t front = changed(plain, shown(scene, guides), 60);
   EXPECT_GT(front, 100U);
-  EXPECT_LT(front, 1500U) << "a line, not the whole";
+  EXPECT_LT(front, 1500U) << "an outline, not the whole node";
   guides.outlined = {back};
   const Image line = shown(scene, guides);
-  EXPECT_GT(changed(plain, line, 15), 50U) << "what is hidden shows through";
+  EXPECT_GT(changed(plain, line, 15), 50U) << "hidden outlines must be visible";
   for (const PlannedPass& pass : renderer.show(scene, view_of(GetParam()), {}, {}, false).passes)
-    EXPECT_FALSE(pass.runs && pass.name == "outline") << "with no node picked it costs nothing";
+    EXPECT_FALSE(pass.runs && pass.name == "outline") << "without picked nodes the pass must not run";
 }
 
-TEST_P(GuidesTest, LinesAreHiddenByWhatLiesInFront) {
+TEST_P(GuidesTest, SurfacesOccludeLines) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
   const Image plain = renderer.render(scene, view_of(GetParam()));
   const auto line_at = [&](double z, double hidden) {
@@ -142,7 +142,7 @@ TEST_P(GuidesTest, LinesAreHiddenByWhatLiesInFront) {
 }
 
 // Depths of the previous picture must not hide lines if nothing is drawn now.
-TEST_P(GuidesTest, WhatWasThereBeforeHidesNoLine) {
+TEST_P(GuidesTest, PreviousDepthDoesNotOccludeLines) {
   const Scene scene = scene_of(made_object({.columns = 32, .rows = 16}));
   Guides guides;
   guides.lines.push_back({{-0.3, 0.01, -2}, {0.3, 0.01, -2}, Color(1, 0, 1), 1, 0});
@@ -156,7 +156,7 @@ TEST_P(GuidesTest, WhatWasThereBeforeHidesNoLine) {
   EXPECT_EQ(renderer.shown_image().rgb, fresh.shown_image().rgb);
 }
 
-TEST_P(GuidesTest, EveryLookDiffersFromColoursAndTheyComeBack) {
+TEST_P(GuidesTest, InspectModesDifferAndCanBeLeft) {
   const Scene scene = selected_scene(true);
   Guides guides;
   guides.lines.push_back({{-1, 0, 0}, {1, 0, 0}, Color(0, 0, 0), 1, 0.3});

@@ -10,7 +10,7 @@
 namespace rebake::test {
 namespace {
 
-TEST(Image, IsReadAsItWasWritten) {
+TEST(Image, RoundTrip) {
   const TemporaryFolder folder;
   Image image{3, 2, {}};
   for (int k = 0; k < 18; ++k) image.rgb.push_back(static_cast<std::uint8_t>(k * 14));

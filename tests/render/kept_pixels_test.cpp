@@ -13,7 +13,7 @@
 namespace rebake::test {
 namespace {
 
-struct Beside {
+struct RedrawPair {
   Renderer whole, kept;
 
   static PlannedPass said(const Renderer& renderer) {
@@ -85,8 +85,8 @@ Scene three(const std::shared_ptr<const BakedObject>& object, const std::shared_
   return scene;
 }
 
-TEST(KeptPixels, NoByteTellsThatOthersWereNotDrawn) {
-  Beside pair;
+TEST(KeptPixels, PartialRedrawMatchesFullRedraw) {
+  RedrawPair pair;
   const auto behind = made_object({.seed = 3});
   for (const int samples : {1, 4}) {
     for (const bool orthographic : {false, true}) {
@@ -115,8 +115,8 @@ TEST(KeptPixels, NoByteTellsThatOthersWereNotDrawn) {
   }
 }
 
-TEST(KeptPixels, MarksAndLinesStayRight) {
-  Beside pair;
+TEST(KeptPixels, SelectionAndLinesStayCorrect) {
+  RedrawPair pair;
   const auto behind = made_object({.seed = 3});
   auto object = made_object({.columns = 40, .rows = 20});
   Guides guides;
@@ -145,8 +145,8 @@ TEST(KeptPixels, MarksAndLinesStayRight) {
   EXPECT_FALSE(pair.expect_same(scene(), from_front(), "without lines"));
 }
 
-TEST(KeptPixels, AnythingElseIsDrawnWhole) {
-  Beside pair;
+TEST(KeptPixels, OtherChangesRedrawEverything) {
+  RedrawPair pair;
   const auto behind = made_object({.seed = 3}), object = made_object({.columns = 40, .rows = 20});
   const auto stroke = with_texels(*object, stroked(*object->sets[0].texels, 40, 40, 20));
   const Scene before = three(object, behind), after = three(stroke, behind);
@@ -169,8 +169,8 @@ TEST(KeptPixels, AnythingElseIsDrawnWhole) {
   EXPECT_FALSE(then(before, from_front(4), after, from_front(1), "a stroke and other samples"));
 }
 
-TEST(KeptPixels, WhatIsOutOfSightCostsNoPixel) {
-  Beside pair;
+TEST(KeptPixels, ChangesOutsideTheViewRedrawNothing) {
+  RedrawPair pair;
   const auto behind = made_object({.seed = 3}), object = made_object({.columns = 40, .rows = 20});
   View view = from_front();
   // A view past the object whose texels change.
@@ -189,7 +189,7 @@ TEST(KeptPixels, WhatIsOutOfSightCostsNoPixel) {
     const Scene next =
         with_changed(scene, scene.roots[0]->id, [&](Node& node) { node.object = with_texels(*object, texels); });
     EXPECT_TRUE(pair.expect_same(next, view, fmt::format("stroke {}", k)));
-    none = none || Beside::said(pair.kept).why.find("in 0×0") != std::string::npos;
+    none = none || RedrawPair::said(pair.kept).why.find("in 0×0") != std::string::npos;
   }
   EXPECT_TRUE(none);
 }

@@ -88,7 +88,7 @@ Scene crowd() {
 class OcclusionBySamples : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Occlusion, OcclusionBySamples, ::testing::Values(1, 4, 16));
 
-TEST_P(OcclusionBySamples, ChangesNoByteWhileTheCameraTurnsJumpsAndComesNear) {
+TEST_P(OcclusionBySamples, ChangesNoByteForMovingCameras) {
   const Scene scene = crowd();
   for (int k = 0; k < 8; ++k) {
     const double turn = 0.05 * k;
@@ -110,7 +110,7 @@ TEST_P(OcclusionBySamples, ChangesNoByteWhileTheCameraTurnsJumpsAndComesNear) {
                                     fmt::format("eye at {}", distance));
 }
 
-TEST_P(OcclusionBySamples, ChangesNoByteOfParallelRays) {
+TEST_P(OcclusionBySamples, ChangesNoByteInOrthographicViews) {
   View view = view_of({2, 1, 3}, {0, 0, 0}, GetParam());
   for (const double height : {4.0, 0.3, 100.0}) {
     view.camera.ortho_height = height;
@@ -137,7 +137,7 @@ TEST(Occlusion, ChangesNoByteFarFromTheOriginTinyAndHuge) {
 }
 
 // Vertices far from their object's centre are rounded coarsely to float on the GPU; bounds must allow for it.
-TEST(Occlusion, ChangesNoByteWhereFloatsAreCoarse) {
+TEST(Occlusion, ChangesNoByteForCoarseFloats) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 64, .rows = 32, .cell = 9}));
   TriangleSet half(object->triangle_count(), 0);
   std::fill(half.begin(), half.begin() + static_cast<std::ptrdiff_t>(half.size() / 2), 1);
@@ -191,7 +191,7 @@ TEST(Occlusion, ChangesNoByteOfTheRealMic) {
 }
 
 // As for two windows with one scene.
-TEST(Occlusion, RemembersViewsThatAlternate) {
+TEST(Occlusion, RemembersAlternatingViews) {
   const Scene scene = crowd();
   const View views[] = {view_of({3, 1, 0}, {0, 0, 0}), view_of({-1, 2, -3}, {0, 0, 0})};
   std::size_t last[2] = {};
@@ -203,12 +203,12 @@ TEST(Occlusion, RemembersViewsThatAlternate) {
     ASSERT_EQ(std::sscanf(said.c_str() + said.find("; of "), "; of %*u triangles %zu were drawn", &drawn), 1) << said;
     if (k < 2) last[k] = drawn;
     if (k < 4) continue;
-    EXPECT_LT(drawn, last[k % 2] * 7 / 10) << "the first time all of it was drawn: " << said;
+    EXPECT_LT(drawn, last[k % 2] * 7 / 10) << "the first frame draws everything: " << said;
   }
 }
 
 // Needles behind a wall: drivers extrapolate their depth so far that they appear in front of it.
-TEST(Occlusion, ChangesNoByteWhereNeedlesComeThroughAWall) {
+TEST(Occlusion, ChangesNoByteForNeedlesBehindAWall) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 4, .holes = false}));
   const Vec2 uv = object->sets[0].soup.uvs()[0], other = object->sets[0].soup.uvs()[20];
   std::vector<Vec3> positions;
@@ -242,7 +242,7 @@ TEST(Occlusion, ChangesNoByteWhereNeedlesComeThroughAWall) {
   }
 }
 
-TEST(Occlusion, OneTriangleAndNone) {
+TEST(Occlusion, OneTriangleAndNoTriangle) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 4, .rows = 4}));
   TriangleSet one(object->triangle_count(), 0);
   renderers().expect_same(scene_of(object), view_of({0, 0, 3}, {0, 0, 0}), "few");
@@ -254,7 +254,7 @@ TEST(Occlusion, OneTriangleAndNone) {
   renderers().expect_same(scene_of(object), view_of({0, 0, 3}, {0, 0, 0}), "none");
 }
 
-TEST(Occlusion, LeavesOutWhatASphereHides) {
+TEST(Occlusion, CullsTrianglesBehindASphere) {
   // One sphere inside another: all of the inner one and the far half of the outer one are hidden.
   Scene scene = scene_of(made_object({.columns = 128, .rows = 64, .cell = 5, .holes = false}));
   Node inner;
@@ -276,7 +276,7 @@ TEST(Occlusion, LeavesOutWhatASphereHides) {
     return 1.0;
   };
   drawn();  // learns which triangles are visible
-  EXPECT_LT(drawn(), 0.35) << "a quarter shows";
+  EXPECT_LT(drawn(), 0.35) << "a quarter of the triangles is visible";
 }
 
 TEST(Occlusion, RunsWhereItPays) {
@@ -285,10 +285,12 @@ TEST(Occlusion, RunsWhereItPays) {
   EXPECT_FALSE(plan(few, view).runs(effects::occlusion));
   EXPECT_TRUE(plan(many, view).runs(effects::occlusion));
   DeviceFacts device;
-  device.shown_share = 0.9;
-  EXPECT_FALSE(plan(many, view, {}, nullptr, nullptr, device).runs(effects::occlusion)) << "nearly all shows";
-  device = {.occlusion_from = 1'000'000};
-  EXPECT_FALSE(plan(many, view, {}, nullptr, nullptr, device).runs(effects::occlusion)) << "a GPU draws them sooner";
+  device.visible_share = 0.9;
+  EXPECT_FALSE(plan(many, view, {}, nullptr, nullptr, device).runs(effects::occlusion))
+      << "nearly all triangles are visible";
+  device = {.min_culling_triangles = 1'000'000};
+  EXPECT_FALSE(plan(many, view, {}, nullptr, nullptr, device).runs(effects::occlusion))
+      << "a GPU draws them faster than they are culled";
   Scene crumbs;
   const auto crumb = made_object({.columns = 5, .rows = 2, .cell = 5});
   for (int k = 0; k < 2000; ++k) {
@@ -303,7 +305,7 @@ TEST(Occlusion, RunsWhereItPays) {
 }
 
 // If all triangles are visible, culling must not be tried in every frame.
-TEST(Occlusion, GivesUpForAWhileWhereNothingIsHidden) {
+TEST(Occlusion, PausesIfNothingIsHidden) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 200, .rows = 100, .cell = 3, .holes = false}));
   std::vector<Vec3> flat;
   for (const Vec2& uv : object->sets[0].soup.uvs()) flat.emplace_back(uv.x() * 2 - 1, uv.y() * 2 - 1, 0);
@@ -312,18 +314,18 @@ TEST(Occlusion, GivesUpForAWhileWhereNothingIsHidden) {
   View view = view_of({0, 0, 2.5}, {0, 0, 0});
   view.width = view.height = 800;
   Renderer renderer;
-  if (renderer.device().find("llvmpipe") == std::string::npos) GTEST_SKIP() << "a GPU is not asked to look";
+  if (renderer.device().find("llvmpipe") == std::string::npos) GTEST_SKIP() << "needs llvmpipe";
   int looked = 0;
   for (int k = 0; k < 20; ++k) {
     renderer.render(scene, view);
     for (const PlannedPass& pass : renderer.passes()) looked += pass.effect == &effects::occlusion && pass.runs ? 1 : 0;
   }
-  EXPECT_GE(looked, 2) << "it may change";
+  EXPECT_GE(looked, 2) << "culling must be tried again";
   EXPECT_LE(looked, 3);
 }
 
 // Changes between frames at rest are noticed: newly uncovered and newly occluding objects.
-TEST(Occlusion, AtRestSeesWhatChanges) {
+TEST(Occlusion, NoticesChangesAtRest) {
   const Scene scene = crowd();
   const View view = view_of({3, 1, 0}, {0, 0, 0});
   renderers().expect_same_at_rest(scene, view, "before");

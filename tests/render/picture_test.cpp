@@ -104,7 +104,7 @@ TEST_P(PictureBySamples, TwoDecodersMixedAtPixels) {
                  view_from({0.5, 1.5, 4}, GetParam()));
 }
 
-TEST_P(PictureBySamples, TurnedTriangles) {
+TEST_P(PictureBySamples, RotatedTriangles) {
   const auto object = made_object();
   TriangleSet flags(object->triangle_count());
   for (std::size_t f = 0; f < flags.size(); ++f) flags[f] = f % 32 < 16 ? 1 : 0;
@@ -237,7 +237,7 @@ TEST(Picture, FoldedRotationIsTheSamePicture) {
   std::vector<Vec3> positions = object->sets[0].soup.positions();
   for (Vec3& p : positions) p = turn * p;
   folded->sets[0].soup = Soup(positions, object->sets[0].soup.uvs(), object->sets[0].soup.faces());
-  folded->decoder = std::make_shared<const Decoder>(fold_turn(*object->decoder, turn, Axes::y_up, Axes::y_up));
+  folded->decoder = std::make_shared<const Decoder>(fold_rotation(*object->decoder, turn, Axes::y_up, Axes::y_up));
   const View view = view_from({0.3, 1, 3});
   const Difference d =
       compare(renderer().render(placed(object, rotation), view), renderer().render(scene_of(folded), view), 1);
@@ -265,7 +265,7 @@ TEST(Thumbnail, AveragesTheMiddleAndNeverEnlarges) {
 }
 
 // Consecutive nodes of one object share bound buffers; copies with their own arrays do not. The picture is the same.
-TEST(Picture, OfCopiesIsThatOfObjectsOfTheirOwn) {
+TEST(Picture, SharedObjectsMatchCopies) {
   const auto object = made_object({.columns = 24, .rows = 12, .cell = 9, .radius = 0.3});
   Scene copies, apart;
   for (int k = 0; k < 4; ++k) {

@@ -46,7 +46,7 @@ TEST(Plan, CulledAndHiddenObjectsCostNoDraw) {
   }
 }
 
-TEST(Plan, EveryPassSaysWhy) {
+TEST(Plan, EveryPassHasAReason) {
   for (const PlannedPass& pass : plan(scene_of(made_object()), {}).passes) EXPECT_FALSE(pass.why.empty()) << pass.name;
 }
 
@@ -69,7 +69,7 @@ TEST(Plan, WidePixelsGetARayPerSample) {
   EXPECT_TRUE(plan(scene_of(made_object()), view).runs(effects::ray_per_sample));
 }
 
-TEST(Plan, ForwardShadingIsRefusedAtSeveralSamples) {
+TEST(Plan, RejectsForwardShadingWithSupersampling) {
   EXPECT_THROW(plan(scene_of(made_object()), {}, {{}, RenderOptions::Shading::forward, {}}), FieldError);
 }
 
@@ -81,7 +81,7 @@ Scene with_node(const Scene& scene, const std::shared_ptr<const BakedObject>& ob
 }
 
 // Texels are coded only if they take much memory. Hidden nodes are on the GPU too, and a shared texture counts once.
-TEST(Plan, TexelsAreCodedWhereTheyTakeMuchMemory) {
+TEST(Plan, CodesTexelsOfLargeScenes) {
   using Texels = RenderOptions::Texels;
   constexpr int side = 4096;  // 128 MiB
   const auto large = [] {
@@ -97,16 +97,16 @@ TEST(Plan, TexelsAreCodedWhereTheyTakeMuchMemory) {
   EXPECT_FALSE(plan(scene, {}).runs(effects::coded_texels)) << "256 MiB";
   scene = with_node(scene, made_object(), true);
   EXPECT_TRUE(plan(scene, {}).runs(effects::coded_texels));
-  EXPECT_TRUE(codes_texels(scene, Texels::automatic));
+  EXPECT_TRUE(uses_coded_texels(scene, Texels::automatic));
   RenderOptions options;
   options.texels = Texels::plain;
   EXPECT_FALSE(plan(scene, {}, options).runs(effects::coded_texels));
   DeviceFacts device;
   device.reads_coded_texels = false;
-  EXPECT_FALSE(codes_texels(scene, Texels::coded, device)) << "the driver cannot";
+  EXPECT_FALSE(uses_coded_texels(scene, Texels::coded, device)) << "the driver does not support it";
 }
 
-TEST(Plan, FlattenedNodeIsRefusedByName) {
+TEST(Plan, RejectsFlattenedNodeByName) {
   Scene scene = scene_of(made_object(), "leaf");
   scene = with_changed(scene, scene.roots[0]->id, [](Node& n) { n.to_parent.linear()(1, 1) = 0; });
   try {
@@ -132,7 +132,7 @@ TEST(Resources, UnchangedPartsAreNotUploadedTwice) {
 }
 
 // An effect reads only targets that it or an earlier effect writes; names are unique.
-TEST(Effects, ReadWhatEarlierOnesWrite) {
+TEST(Effects, ReadOnlyWrittenTargets) {
   std::set<Target> written;
   std::set<std::string> names;
   for (const Effect* effect : effect_table()) {

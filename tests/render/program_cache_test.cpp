@@ -8,9 +8,9 @@
 namespace rebake::test {
 namespace {
 
-TEST(ProgramCache, KeepsWhatIsUsedAndForgetsWhatIsNot) {
+TEST(ProgramCache, EvictsUnusedPrograms) {
   const auto context = gl::make_headless_context();
-  const gl::Current current(*context);
+  const gl::CurrentContextScope current(*context);
   ProgramCache cache;
   const auto number = [&](int k) {
     return cache.get("fullscreen.vert", "outline.frag", fmt::format("#define NUMBER {}\n", k)).name();
@@ -19,12 +19,12 @@ TEST(ProgramCache, KeepsWhatIsUsedAndForgetsWhatIsNot) {
   EXPECT_NE(first, second);
   for (int k = 2; k < 100; ++k) {
     number(k);
-    EXPECT_EQ(number(0), first) << "used all the time, compiled once";
+    EXPECT_EQ(number(0), first) << "a program in use must be compiled once";
   }
   const std::size_t kept = cache.size();
   EXPECT_LE(kept, 64U);
   number(1);
-  EXPECT_EQ(cache.size(), kept) << "it was forgotten, and is there again in place of another";
+  EXPECT_EQ(cache.size(), kept) << "an evicted program replaces another one";
 }
 
 }  // namespace

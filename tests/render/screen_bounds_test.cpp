@@ -15,7 +15,7 @@
 namespace rebake::test {
 namespace {
 
-TEST(DepthPyramid, HidesATriangleWhereAllThatItCoversIsNearerOnly) {
+TEST(DepthPyramid, HidesOnlyTrianglesBehindAllCoveredSamples) {
   std::mt19937 random(9);
   std::uniform_real_distribution<float> depth(0.45F, 0.8F);
   std::uniform_real_distribution<double> place(0, 40), near(0, 1);
@@ -71,7 +71,7 @@ TEST(DepthPyramid, HidesATriangleWhereAllThatItCoversIsNearerOnly) {
   EXPECT_GT(shown, 2000);
 }
 
-TEST(DepthPyramid, HidesWhatLiesBehindAllItsSamplesOnly) {
+TEST(DepthPyramid, HidesOnlyRectanglesBehindAllSamples) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> depth(0.2F, 0.8F);
   const SampleRect rect{3, 5, 3 + 37, 5 + 23};
@@ -86,7 +86,7 @@ TEST(DepthPyramid, HidesWhatLiesBehindAllItsSamplesOnly) {
     const SampleRect samples{std::min(a, b), std::min(c, d), std::max(a, b), std::max(c, d)};
     const float at = 0.5F * depth(random);
     if (!pyramid.hides(samples, at)) continue;
-    EXPECT_TRUE(pyramid.hides({400, 5, 900, 9}, at)) << "beside all of it";
+    EXPECT_TRUE(pyramid.hides({400, 5, 900, 9}, at)) << "outside of the pyramid";
     ++hidden;
     for (int v = std::max(samples.bottom, 5); v <= std::min(samples.top, 5 + 22); ++v)
       for (int u = std::max(samples.left, 3); u <= std::min(samples.right, 3 + 36); ++u)
@@ -96,7 +96,7 @@ TEST(DepthPyramid, HidesWhatLiesBehindAllItsSamplesOnly) {
 }
 
 // Bounds compared with the projection in long double: all corners must lie inside.
-TEST(ScreenBounds, HoldTheirTriangles) {
+TEST(ScreenBounds, ContainTheirTriangles) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> u(-1, 1);
   const SampleRect rect{0, 0, 640, 480};
@@ -118,7 +118,7 @@ TEST(ScreenBounds, HoldTheirTriangles) {
         for (float& at : axis) at = static_cast<float>(scale * u(random));
     ClusterBounds bounds;
     bounder.triangles(corners, bounds);
-    for (std::size_t k = 0; k < faces_a_face_cluster; ++k) {
+    for (std::size_t k = 0; k < max_faces_per_cluster; ++k) {
       using Where = ScreenBounds::Where;
       const auto where = static_cast<Where>(bounds.where[k]);
       anywhere += where == Where::anywhere ? 1 : 0;
@@ -147,14 +147,14 @@ TEST(ScreenBounds, HoldTheirTriangles) {
     }
   }
   EXPECT_GT(inside, 5000U);
-  EXPECT_GT(anywhere, 1000U) << "triangles through the eye's plane are among them";
+  EXPECT_GT(anywhere, 1000U) << "triangles that cross the plane of the eye must be included";
 }
 
-TEST(ScreenBounds, TriangleThatIsNoNumberMayBeAnywhere) {
+TEST(ScreenBounds, NonFiniteTriangleMayBeAnywhere) {
   const ScreenBounder bounder(Eigen::Matrix4d::Identity(), Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)), {1, 0}, 64, 64,
                               {0, 0, 64, 64});
   ClusterCorners corners{};
-  for (std::size_t k = 0; k < faces_a_face_cluster; ++k) {
+  for (std::size_t k = 0; k < max_faces_per_cluster; ++k) {
     corners.at[1][0][k] = corners.at[2][1][k] = 0.5F;  // a triangle with one coordinate that is not finite
     corners.at[k % 3][k / 3 % 3][k] = k % 5 == 0 ? NAN : INFINITY;
   }

@@ -19,7 +19,7 @@ CoordinateErrors errors_of(const Coordinates& coordinates, const Cage& cage, con
     for (std::size_t lane = 0; lane < batch_lanes; ++lane)
       block[lane] = points[std::min(first + lane, points.size() - 1)];
     std::array<std::uint8_t, batch_lanes> outside;
-    coordinates.weigh(block, weights.data(), nullptr, outside.data());
+    coordinates.compute_weights(block, weights.data(), nullptr, outside.data());
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
       EXPECT_EQ(outside[lane], 0) << block[lane].transpose();
       double sum = 0;
@@ -51,7 +51,7 @@ std::vector<double> weights_at(const Coordinates& coordinates, const Vec3& point
   block.fill(point);
   std::vector<double> weights(coordinates.rows() * batch_lanes), slopes(coordinates.rows() * 3 * batch_lanes);
   std::array<std::uint8_t, batch_lanes> outside;
-  coordinates.weigh(block, weights.data(), gradients != nullptr ? slopes.data() : nullptr, outside.data());
+  coordinates.compute_weights(block, weights.data(), gradients != nullptr ? slopes.data() : nullptr, outside.data());
   std::vector<double> result;
   for (std::size_t row = 0; row < coordinates.rows(); ++row) {
     result.push_back(weights[row * batch_lanes]);

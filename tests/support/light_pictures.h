@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "mesh_ops/scene/light.h"
+#include "mesh_ops/scene/scene_light.h"
 
 namespace rebake::test {
 

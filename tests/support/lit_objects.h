@@ -3,8 +3,8 @@
 #include <functional>
 #include <memory>
 
-#include "mesh_ops/scene/light.h"
 #include "mesh_ops/scene/scene.h"
+#include "mesh_ops/scene/scene_light.h"
 
 namespace rebake::test {
 

@@ -40,7 +40,7 @@ bool runs(const Lighting& lighting, const std::string& name) {
                      [&](const LightDecision& one) { return one.name == name && one.runs; });
 }
 
-const LightDecision* decided(const Lighting& lighting, const std::string& name) {
+const LightDecision* decision_named(const Lighting& lighting, const std::string& name) {
   for (const LightDecision& one : lighting.decisions)
     if (one.name == name) return &one;
   return nullptr;

@@ -11,7 +11,7 @@
 namespace rebake::test {
 
 /// A cache of results in memory that counts how many were found.
-struct Remembered final : Results {
+struct CountingResults final : ResultCache {
   std::map<std::string, std::string> held;
   int found = 0;
   std::optional<std::string> find(const std::string& key) override {
@@ -29,7 +29,7 @@ Scene table();
 Scene with_light(const Scene& scene);
 
 /// The decision with this name; null if there is none.
-const LightDecision* decided(const Lighting& lighting, const std::string& name);
+const LightDecision* decision_named(const Lighting& lighting, const std::string& name);
 bool runs(const Lighting& lighting, const std::string& name);
 
 }  // namespace rebake::test

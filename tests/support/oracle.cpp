@@ -94,7 +94,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
                  true};
 }
 
-Mat3 turn_back(const Mat3& linear) {
+Mat3 inverse_rotation(const Mat3& linear) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(linear / linear.norm(), Eigen::ComputeFullU | Eigen::ComputeFullV);
   return (svd.matrixU() * svd.matrixV().transpose()).transpose();
 }
@@ -133,7 +133,7 @@ Image cast_picture(const Scene& scene, const View& view) {
       ++decoder;
     if (decoder == static_cast<int>(decoders.size())) decoders.push_back(placed.node->object->decoder.get());
     for (const TextureSet& set : placed.node->object->sets) {
-      Surface surface{&set, placed.node->object.get(), turn_back(placed.to_world.linear()), {}, decoder, {}};
+      Surface surface{&set, placed.node->object.get(), inverse_rotation(placed.to_world.linear()), {}, decoder, {}};
       for (const Vec3& p : set.soup.positions())
         surface.corners.push_back(placed.to_world.linear() * p + (placed.to_world.translation() - view.camera.eye));
       surface.texels = std::make_unique<const TexelReader>(*set.texels);

@@ -11,7 +11,7 @@ void write_picture(const std::filesystem::path& path, const PictureFile& file, c
   if (module.symbol == nullptr) throw std::runtime_error("librebake_test_pictures.so: " + module.problem);
   if (pixels.size() != static_cast<std::size_t>(file.width) * static_cast<std::size_t>(file.height) *
                            static_cast<std::size_t>(file.channels))
-    throw std::runtime_error("pixels of another size");
+    throw std::runtime_error("the number of pixels does not match the size of the PNG");
   std::string error;
   if (!reinterpret_cast<WritePicture>(module.symbol)(path.string(), file, pixels.data(), error))
     throw std::runtime_error("cannot write " + path.string() + ": " + error);

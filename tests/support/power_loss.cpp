@@ -22,9 +22,9 @@ bool PowerLoss::fails() {
   return true;
 }
 
-std::string PowerLoss::trouble() const {
+std::string PowerLoss::violations() const {
   std::string text;
-  for (const std::string& one : trouble_) text += one + "; ";
+  for (const std::string& one : violations_) text += one + "; ";
   for (const std::string& path : dirty_) text += path + " was never synced; ";
   return text;
 }
@@ -79,7 +79,7 @@ int PowerLoss::rename(const char* from, const char* to, unsigned flags) {
   log_.push_back(std::string("rename ") + from + " " + to);
   for (const std::string& path : dirty_)
     if (path == from || path.starts_with(std::string(from) + "/"))
-      trouble_.push_back(path + " was renamed before it was synced");
+      violations_.push_back(path + " was renamed before it was synced");
   const int result = FileCalls::rename(from, to, flags);
   if (result != 0) return result;
   ++renames_;

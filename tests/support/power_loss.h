@@ -19,7 +19,7 @@ class PowerLoss final : public FileCalls {
   void write_at_most(std::size_t bytes) { most_ = bytes; }
 
   /// Violations so far, and files and folders that are not synced yet; empty if there are none.
-  std::string trouble() const;
+  std::string violations() const;
   std::size_t renames() const { return renames_; }
   /// Syncs, renames and removals so far, e.g. "rename a b".
   const std::vector<std::string>& log() const { return log_; }
@@ -38,7 +38,7 @@ class PowerLoss final : public FileCalls {
 
   std::map<int, std::string> open_;  ///< paths of open files
   std::set<std::string> dirty_;      ///< files and folders that were changed since they were synced
-  std::vector<std::string> log_, trouble_;
+  std::vector<std::string> log_, violations_;
   std::size_t renames_ = 0, most_ = ~std::size_t{0};
   int calls_ = 0, fail_at_ = -1, error_ = 0;
 };

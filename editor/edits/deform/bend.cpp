@@ -15,12 +15,13 @@ Outcome apply(const Scene& scene, const Bend& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Bend, "Bends triangles along an axis into an arc: the axis keeps its length, what lies beyond the limits follows.",
+    Bend, "Bends triangles so that the axis becomes an arc of the same length; parts beyond the limits move rigidly.",
     (auto& edit, auto& visit) {
       DeformTarget::fields(edit.target, visit);
-      visit("degrees", edit.degrees, Need::required, "in all, from one limit to the other", Unit::degrees);
+      visit("degrees", edit.degrees, Need::required, "angle between both limits", Unit::degrees);
       DeformAxis::fields(edit.axis, visit);
-      visit("direction", edit.direction, Need::optional, "where the far end goes; its part across the axis counts");
+      visit("direction", edit.direction, Need::optional,
+            "direction of the bend; only its part orthogonal to the axis counts");
     })
 
 }  // namespace rebake

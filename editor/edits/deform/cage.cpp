@@ -22,7 +22,7 @@ nlohmann::json Codec<CageCoordinates>::write(const CageCoordinates& value) {
 }
 
 Outcome apply(const Scene& scene, const CageDeform& edit, const Progress& progress) {
-  if (edit.moves.empty()) throw FieldError("moves", "must hold at least one move");
+  if (edit.moves.empty()) throw FieldError("moves", "must contain at least one move");
   const DeformSet set = deform_set(scene, edit.target);
   const Cage cage = cage_of(edit.cage, set, progress);
   const std::vector<Vec3> moved = moved_points(edit.moves, cage, edit.target.frame == CoordinateFrame::bounds);
@@ -30,23 +30,23 @@ Outcome apply(const Scene& scene, const CageDeform& edit, const Progress& progre
   return with_deformed(
       scene, set, edit.target.falloff,
       [&](const std::vector<Vec3>& points) { return deform_points(*coordinates, cage, moved, points, true, progress); },
-      notes_on(cage, moved));
+      cage_warnings(cage, moved));
 }
 
 REBAKE_DESCRIBE_EDIT(
-    CageDeform, "Deforms triangles by a cage around them: its points move, what is inside follows, colours turn along.",
+    CageDeform,
+    "Deforms triangles by a cage: moving its vertices deforms the inside; view-dependent colours rotate along.",
     (auto& edit, auto& visit) {
       DeformTarget::fields(edit.target, visit);
       CageSource::fields(edit.cage, visit);
       visit("moves", edit.moves, Need::required,
-            "what moves, one after the other; boxes and spheres in world units, or in shares of the cage's box where "
+            "moves of cage vertices, applied in order; regions are in world units, or relative to the cage's box if "
             "the edit's field frame is bounds");
-      visit(
-          "coordinates", edit.coordinates, Need::optional,
-          "mean_value: anywhere; green: keeps shapes, inside only; harmonic: around corners, not across, inside only, "
-          "on a grid");
+      visit("coordinates", edit.coordinates, Need::optional,
+            "mean_value: everywhere; green: conformal, inside only; harmonic: follows the cage's shape, inside only, "
+            "solved on a grid");
       visit("resolution", edit.resolution, Need::optional,
-            "harmonic: cells of the grid along the cage's longest side, 8 to 256; finer is nearer and slower");
+            "harmonic: grid cells along the cage's longest side, 8 to 256; finer is more accurate and slower");
     })
 
 }  // namespace rebake

@@ -71,35 +71,34 @@ DeformSet deform_set(const Scene& scene, const DeformTarget& target) {
   if (!(target.falloff >= 0)) throw FieldError("falloff", "must not be negative");
   DeformSet set;
   const bool selected = target.selection || !target.node;
-  for (PlacedNode& placed : selected ? with_selection(scene, target.node) : selectable(scene, target.node)) {
+  for (PlacedNode& placed : selected ? objects_with_selection(scene, target.node) : selectable(scene, target.node)) {
     TriangleSet flags =
         selected ? *placed.node->selection : TriangleSet(placed.node->object->triangle_count(), std::uint8_t{1});
     if (target.box) {
-      const TriangleSet inside =
-          triangles_by_centre(*placed.node->object, region_of(FramePoints(target.frame, placed), *target.box).inside);
+      const TriangleSet inside = triangles_by_centre(
+          *placed.node->object, region_of(FrameTransform(target.frame, placed), *target.box).inside);
       for (std::size_t f = 0; f < flags.size(); ++f) flags[f] &= inside[f];
     }
     if (count(flags) == 0) continue;
     set.nodes.push_back(std::move(placed));
     set.flags.push_back(std::move(flags));
   }
-  if (set.nodes.empty()) throw EditError("no triangle lies inside the box: there is nothing to deform");
+  if (set.nodes.empty()) throw EditError("no triangle has its centre inside the box, so there is nothing to deform");
   return set;
 }
 
 namespace {
 
 std::string in_words(const std::string& name, const DeformationReport& report) {
-  std::string line =
-      fmt::format("{} points of \"{}\" deformed, least det J {:.3g}", report.points, name, report.least_determinant);
+  std::string line = fmt::format("{} vertices of \"{}\" deformed, minimum det J {:.3g}", report.points, name,
+                                 report.least_determinant);
   if (report.folded > 0)
-    line += fmt::format("; {} lie where it folds or collapses (det J ≤ 0): select_folded selects their triangles",
-                        report.folded);
+    line +=
+        fmt::format("; {} are folded or collapsed (det J ≤ 0): select_folded selects their triangles", report.folded);
   if (report.undefined > 0)
-    line += fmt::format("; {} have no rotation of their own and got a neighbour's", report.undefined);
-  if (report.outside > 0) line += fmt::format("; {} that show nothing lie outside the cage and stay", report.outside);
-  if (report.not_finite > 0)
-    line += fmt::format("; {} are no numbers, or would become none, and stay", report.not_finite);
+    line += fmt::format("; {} have no unique rotation and take that of a neighbour", report.undefined);
+  if (report.outside > 0) line += fmt::format("; {} transparent ones are outside the cage and stay", report.outside);
+  if (report.not_finite > 0) line += fmt::format("; {} are not finite, or would not be, and stay", report.not_finite);
   return line;
 }
 
@@ -115,16 +114,16 @@ Outcome with_deformed(const Scene& scene, const DeformSet& set, double falloff, 
     report.lines.push_back(in_words(set.nodes[k].node->name, made.report));
     for (const std::string& note : notes) report.lines.back() += "; " + note;
     if (made.report.opaque_outside > 0)
-      throw EditError(
-          fmt::format("{} of the {} points of \"{}\" lie outside the cage, where these coordinates hold nothing; use "
-                      "mean_value, or "
-                      "a coarser wrap or a larger cage",
-                      made.report.opaque_outside, made.report.points, set.nodes[k].node->name));
+      throw EditError(fmt::format(
+          "{} of the {} vertices of \"{}\" are outside the cage, where these coordinates are undefined; use "
+          "mean_value, or "
+          "a coarser wrap or a larger cage",
+          made.report.opaque_outside, made.report.points, set.nodes[k].node->name));
     // Renderer and files store positions as float.
     constexpr double farthest = 1e30;
     if (const Box box = transformed(made.object->bounds(), set.nodes[k].to_world);
         !box.isEmpty() && !(box.min().cwiseAbs().maxCoeff() < farthest && box.max().cwiseAbs().maxCoeff() < farthest))
-      throw EditError(fmt::format("\"{}\" would lie beyond what numbers can hold", set.nodes[k].node->name));
+      throw EditError(fmt::format("the coordinates of \"{}\" would be too large", set.nodes[k].node->name));
     result = with_changed(result, set.nodes[k].node->id, [&](Node& node) { node.object = std::move(made.object); });
     check_subtree(result, set.nodes[k].node->id);
   }
@@ -141,7 +140,7 @@ CageMoves Codec<CageMoves>::read(const nlohmann::json& value, const Scene& scene
   if (!value.is_array()) throw Error("must be a list of moves");
   CageMoves moves;
   for (const nlohmann::json& entry : value) {
-    if (!entry.is_object()) throw Error("must be a list of objects, each one move");
+    if (!entry.is_object()) throw Error("must be a list of objects, one per move");
     CageMove move;
     FieldReader reader(entry, scene);
     CageMove::fields(move, reader);
@@ -175,7 +174,7 @@ Cage Codec<Cage>::read(const nlohmann::json& value, const Scene& scene) {
   if (value.is_string()) return read_cage(value.get<std::string>());
   if (!value.is_object() || !value.contains("vertices") || !value.contains("faces") ||
       !value.at("vertices").is_array() || !value.at("faces").is_array())
-    throw Error("must be the name of a file, or an object with vertices and faces");
+    throw Error("must be a file name, or an object with vertices and faces");
   Cage cage;
   for (const nlohmann::json& vertex : value.at("vertices")) cage.vertices.push_back(Codec<Vec3>::read(vertex, scene));
   for (const nlohmann::json& corners : value.at("faces")) {
@@ -203,7 +202,8 @@ std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, boo
   std::vector<std::uint8_t> taken(cage.vertices.size(), 0);
   for (const auto& [first, last] : move.points.ranges) {
     if (last >= cage.vertices.size())
-      throw FieldError("points", fmt::format("{} is not there: the cage has {} points", last, cage.vertices.size()));
+      throw FieldError("points", fmt::format("{} is out of range: the cage has {} vertices, numbered from 0", last,
+                                             cage.vertices.size()));
     std::fill(taken.begin() + static_cast<std::ptrdiff_t>(first), taken.begin() + static_cast<std::ptrdiff_t>(last) + 1,
               std::uint8_t{1});
   }
@@ -234,7 +234,7 @@ std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, boo
       }
     }
     if (result.empty() && move.nearest && nearest) result.push_back(*nearest);
-    if (result.empty()) throw FieldError(move.box ? "box" : "sphere", "no cage point lies inside");
+    if (result.empty()) throw FieldError(move.box ? "box" : "sphere", "contains no cage vertex");
   }
   return result;
 }
@@ -251,26 +251,26 @@ std::vector<Vec3> moved_points(const CageMoves& moves, const Cage& cage, bool sh
       // A pure translation is exact.
       points[v] = linear.isIdentity(0) ? Vec3(points[v] + move.translate)
                                        : Vec3(pivot + linear * (points[v] - pivot) + move.translate);
-      if (!points[v].allFinite()) throw FieldError("moves", "a cage point would lie beyond what numbers can hold");
+      if (!points[v].allFinite()) throw FieldError("moves", "the coordinates of a cage vertex would be too large");
     }
   }
   return points;
 }
 
-std::vector<std::string> notes_on(const Cage& cage, const std::vector<Vec3>& moved) {
+std::vector<std::string> cage_warnings(const Cage& cage, const std::vector<Vec3>& moved) {
   std::vector<std::string> notes;
   if (const std::size_t pairs = self_intersections(cage); pairs > 0)
-    notes.push_back(fmt::format("the cage cuts through itself ({} pairs of triangles)", pairs));
+    notes.push_back(fmt::format("the cage intersects itself ({} pairs of triangles)", pairs));
   else if (const std::size_t after = self_intersections({moved, cage.faces}); after > 0)
-    notes.push_back(fmt::format("the moved cage cuts through itself ({} pairs of triangles)", after));
+    notes.push_back(fmt::format("the moved cage intersects itself ({} pairs of triangles)", after));
   return notes;
 }
 
 namespace {
 
 // wrap() with the result cache, because wraps are slow.
-Cage kept_wrap(const TriangleList& triangles, double coarseness, const Progress& progress) {
-  const std::shared_ptr<Results> results = kept_results();
+Cage cached_wrap(const TriangleList& triangles, double coarseness, const Progress& progress) {
+  const std::shared_ptr<ResultCache> results = result_cache();
   if (!results) return wrap(triangles, coarseness, progress);
   const auto bytes_of = [](const auto& values) {
     return std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
@@ -300,8 +300,9 @@ Cage cage_of(const CageSource& source, const DeformSet& set, const Progress& pro
   if (!source.mesh.faces.empty()) return source.mesh;
   if (source.lattice.empty()) {
     const TriangleList opaque = set.opaque_triangles();
-    if (opaque.faces.empty()) throw EditError("no triangle shows anything, so there is nothing to wrap; use a lattice");
-    return kept_wrap(opaque, source.wrap.value_or(0.1), progress);
+    if (opaque.faces.empty())
+      throw EditError("all triangles are transparent, so there is nothing to wrap; use a lattice");
+    return cached_wrap(opaque, source.wrap.value_or(0.1), progress);
   }
   if (source.lattice.size() != 3) throw FieldError("lattice", "must be three whole numbers: cells along x, y and z");
   // Enlarges the box by 1 % of its diagonal, so that no point lies on the cage.

@@ -18,13 +18,13 @@ struct DeformTarget {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("node", self.node, Need::optional, "with those inside it; left out: all that have selected triangles");
-    visit("selection", self.selection, Need::optional, "only its selected triangles");
-    visit("box", self.box, Need::optional, "only triangles whose centre lies inside");
+    visit("node", self.node, Need::optional, "node to deform, with its children; default: all with selected triangles");
+    visit("selection", self.selection, Need::optional, "only selected triangles");
+    visit("box", self.box, Need::optional, "only triangles whose centre is inside");
     visit("frame", self.frame, Need::optional,
-          "of the box: world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1");
-    visit("falloff", self.falloff, Need::optional,
-          "width of the soft border towards triangles that are not deformed; 0: a hard border", Unit::length);
+          "coordinates of the box: world; node: object space; bounds: relative to the object's box, 0 to 1");
+    visit("falloff", self.falloff, Need::optional, "width of the soft border towards undeformed triangles; 0: hard",
+          Unit::length);
   }
 };
 
@@ -63,15 +63,15 @@ struct CageMove {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("points", self.points, Need::optional, "numbers of cage points");
-    visit("box", self.box, Need::optional, "cage points inside a box");
-    visit("sphere", self.sphere, Need::optional, "cage points inside a sphere");
+    visit("points", self.points, Need::optional, "numbers of cage vertices");
+    visit("box", self.box, Need::optional, "cage vertices inside a box");
+    visit("sphere", self.sphere, Need::optional, "cage vertices inside a sphere");
     visit("nearest", self.nearest, Need::optional,
-          "where no point lies inside the sphere: the one nearest to its centre");
-    visit("translate", self.translate, Need::optional, "how far the points move", Unit::length);
+          "if the sphere contains no vertex: use the one nearest to its centre");
+    visit("translate", self.translate, Need::optional, "translation of the vertices", Unit::length);
     visit("rotate", self.rotate, Need::optional, "rotation");
     visit("scale", self.scale, Need::optional, "factor");
-    visit("pivot", self.pivot, Need::optional, "what scale and rotation keep; left out: the points' centre");
+    visit("pivot", self.pivot, Need::optional, "fixed point of rotation and scale; default: the vertices' centre");
   }
 };
 using CageMoves = std::vector<CageMove>;
@@ -99,11 +99,11 @@ struct CageSource {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("lattice", self.lattice, Need::optional, "a box around the triangles, of so many cells along x, y and z");
+    visit("lattice", self.lattice, Need::optional, "a box around the triangles; number of cells along x, y and z");
     visit("wrap", self.wrap, Need::optional,
-          "a wrap of the triangles that show something; its coarseness of their size, 0.005 to 0.5", Unit::share);
+          "a wrap of the opaque triangles; coarseness relative to their size, 0.005 to 0.5", Unit::share);
     visit("mesh", self.mesh, Need::optional,
-          "a closed triangle mesh in world space: a file (.obj, .off, .ply), or its vertices and faces");
+          "a closed triangle mesh in world space: a file (.obj, .off, .ply), or vertices and faces");
   }
 };
 
@@ -114,7 +114,7 @@ struct Codec<Cage> {
   static nlohmann::json write(const Cage& value);
 };
 /// Warnings for people if a cage intersects itself, before or after its vertices move to `moved`.
-std::vector<std::string> notes_on(const Cage& cage, const std::vector<Vec3>& moved);
+std::vector<std::string> cage_warnings(const Cage& cage, const std::vector<Vec3>& moved);
 
 /// The cage around the triangles, in world space. Throws FieldError for contradictory fields, EditError if there is no
 /// opaque triangle to wrap.

@@ -25,12 +25,12 @@ Outcome with_forms(const Scene& scene, const DeformSet& set, const DeformTarget&
 
 Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const DeformAxis& axis, ClosedForm form) {
   const DeformSet set = deform_set(scene, target);
-  if (!axis.axis.allFinite() || !(axis.axis.stableNorm() > 0)) throw FieldError("axis", "must have a length");
+  if (!axis.axis.allFinite() || !(axis.axis.stableNorm() > 0)) throw FieldError("axis", "must be finite and not zero");
   form.axis = axis.axis.stableNormalized();
   const auto [low, high] = set.extent_along(form.axis);
   if (!axis.spine.points.empty()) {
-    if (axis.origin) throw FieldError("origin", "contradicts the spine, which begins at its first point");
-    if (axis.spine.points.size() < 2) throw FieldError("spine", "must have two points or more");
+    if (axis.origin) throw FieldError("origin", "cannot be combined with spine, which begins at its first point");
+    if (axis.spine.points.size() < 2) throw FieldError("spine", "must have at least two points");
     double length = 0;
     for (std::size_t k = 0; k + 1 < axis.spine.points.size(); ++k)
       length += (axis.spine.points[k + 1] - axis.spine.points[k]).stableNorm();

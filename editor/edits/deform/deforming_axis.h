@@ -14,15 +14,16 @@ struct DeformAxis {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("axis", self.axis, Need::optional, "direction of the axis, in world axes");
-    visit("origin", self.origin, Need::optional,
-          "world point on the axis; left out: where it enters the box of what is deformed, in the middle");
+    visit("axis", self.axis, Need::optional, "direction of the axis in world space");
+    visit(
+        "origin", self.origin, Need::optional,
+        "world point on the axis; default: the axis runs through the middle of the triangles' box, from its lower end");
     visit("spine", self.spine, Need::optional,
-          "world points of a curved line in place of the axis, which then only says across what it bends; from and to "
-          "are lengths along it; not for tapers");
+          "world points of a curved axis; the straight axis then only defines the plane of the bend; from and to "
+          "are arc lengths along the curve; not for tapers");
     visit("from", self.from, Need::optional,
-          "where it begins along the axis, from the origin; left out: where the triangles begin", Unit::length);
-    visit("to", self.to, Need::optional, "where it ends; left out: where the triangles end", Unit::length);
+          "lower limit along the axis, from the origin; default: lower end of the triangles", Unit::length);
+    visit("to", self.to, Need::optional, "upper limit; default: upper end of the triangles", Unit::length);
   }
 };
 

@@ -12,7 +12,7 @@ namespace rebake {
 
 Outcome apply(const Scene& scene, const HandlesDeform& edit, const Progress& progress) {
   if (edit.iterations < 1 || edit.iterations > 1000) throw FieldError("iterations", "must lie between 1 and 1000");
-  if (edit.moves.empty()) throw FieldError("moves", "must hold at least one move");
+  if (edit.moves.empty()) throw FieldError("moves", "must contain at least one move");
   const DeformSet set = deform_set(scene, edit.target);
   const Cage cage = cage_of(edit.cage, set, progress);
   const bool shares = edit.target.frame == CoordinateFrame::bounds;
@@ -22,16 +22,16 @@ Outcome apply(const Scene& scene, const HandlesDeform& edit, const Progress& pro
     for (const std::uint32_t v : points_of(move, cage, shares)) held.insert_or_assign(v, cage.vertices[v]);
   for (const CageMove& move : edit.moves)
     for (const std::uint32_t v : points_of(move, cage, shares)) held.insert_or_assign(v, asked[v]);
-  std::vector<HandledVertex> places;
+  std::vector<ConstrainedVertex> places;
   for (const auto& [vertex, place] : held) places.push_back({vertex, place});
-  const HandledCage moved = as_rigid_as_possible(cage, places, edit.iterations, progress);
-  std::vector<std::string> notes = notes_on(cage, moved.vertices);
+  const ConstrainedCage moved = as_rigid_as_possible(cage, places, edit.iterations, progress);
+  std::vector<std::string> notes = cage_warnings(cage, moved.vertices);
   if (moved.free_components > 0)
-    notes.push_back(fmt::format("{} parts of the cage hold no point and stay", moved.free_components));
+    notes.push_back(fmt::format("{} parts of the cage have no handle and stay", moved.free_components));
   if (moved.iterations > 0)
     notes.push_back(fmt::format("rigid to a residual of {:.1g} diagonals after {} iterations{}, energy {:.3g}",
                                 moved.residual, moved.iterations,
-                                moved.residual > handles_residual ? "; more come nearer" : "", moved.energy));
+                                moved.residual > handles_residual ? "; more iterations reduce it" : "", moved.energy));
   const auto coordinates = mean_value_coordinates(cage);
   return with_deformed(
       scene, set, edit.target.falloff,
@@ -43,17 +43,17 @@ Outcome apply(const Scene& scene, const HandlesDeform& edit, const Progress& pro
 
 REBAKE_DESCRIBE_EDIT(
     HandlesDeform,
-    "Deforms triangles as rigidly as possible: some points of a wrap around them are held or moved, the rest "
-    "follows.",
+    "Deforms triangles as rigidly as possible: some vertices of a cage are fixed or moved, the others "
+    "follow.",
     (auto& edit, auto& visit) {
       DeformTarget::fields(edit.target, visit);
       CageSource::fields(edit.cage, visit);
       visit("moves", edit.moves, Need::required,
-            "points of the cage that are moved; boxes and spheres in world units, or in shares of the cage's box where "
+            "moves of cage vertices; regions are in world units, or relative to the cage's box if "
             "the edit's field frame is bounds");
-      visit("fixed", edit.fixed, Need::optional, "points of the cage that are held where they are");
+      visit("fixed", edit.fixed, Need::optional, "cage vertices that stay fixed");
       visit("iterations", edit.iterations, Need::optional,
-            "1 to 1000, at most; it ends sooner where nothing moves by more than a millionth of the cage's size");
+            "maximum number, 1 to 1000; stops earlier if no vertex moves by more than a millionth of the cage's size");
     })
 
 }  // namespace rebake

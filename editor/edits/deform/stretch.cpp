@@ -12,9 +12,10 @@ Outcome apply(const Scene& scene, const Stretch& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Stretch, "Makes triangles longer or shorter along an axis, between the limits.", (auto& edit, auto& visit) {
+    Stretch, "Stretches triangles along an axis between the limits.", (auto& edit, auto& visit) {
       DeformTarget::fields(edit.target, visit);
-      visit("factor", edit.factor, Need::required, "length between the limits, of what it is now", Unit::factor);
+      visit("factor", edit.factor, Need::required, "new length between the limits, relative to the present one",
+            Unit::factor);
       DeformAxis::fields(edit.axis, visit);
     })
 

@@ -12,10 +12,11 @@ Outcome apply(const Scene& scene, const Taper& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Taper, "Makes triangles thinner or thicker across an axis, more and more between the limits.",
+    Taper, "Tapers triangles: scales them orthogonally to an axis, increasingly between the limits.",
     (auto& edit, auto& visit) {
       DeformTarget::fields(edit.target, visit);
-      visit("factor", edit.factor, Need::required, "size at the upper limit, of what it is now", Unit::factor);
+      visit("factor", edit.factor, Need::required, "size at the upper limit, relative to the present one",
+            Unit::factor);
       DeformAxis::fields(edit.axis, visit);
     })
 

@@ -14,9 +14,9 @@ Outcome apply(const Scene& scene, const Twist& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Twist, "Twists triangles about an axis, more and more between the limits.", (auto& edit, auto& visit) {
+    Twist, "Twists triangles about an axis, with an angle that grows between the limits.", (auto& edit, auto& visit) {
       DeformTarget::fields(edit.target, visit);
-      visit("degrees", edit.degrees, Need::required, "in all, from one limit to the other", Unit::degrees);
+      visit("degrees", edit.degrees, Need::required, "angle between both limits", Unit::degrees);
       DeformAxis::fields(edit.axis, visit);
     })
 

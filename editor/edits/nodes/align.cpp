@@ -50,9 +50,9 @@ Scene apply(const Scene& scene, const Align& edit) {
   for (const NodeRef& node : edit.nodes) {
     for (NodeId above = parent_of(scene, node.id); above != NodeId::none; above = parent_of(scene, above))
       if (std::any_of(edit.nodes.begin(), edit.nodes.end(), [&](const NodeRef& other) { return other.id == above; }))
-        throw FieldError("nodes", "must not name a node and a group that it lies in");
+        throw FieldError("nodes", "must not contain a node and a group above it");
     const Box box = subtree_bounds(scene, editable_with_children(scene, node.id).node->id);
-    if (box.isEmpty()) throw FieldError("nodes", "must name nodes that hold triangles");
+    if (box.isEmpty()) throw FieldError("nodes", "must name nodes with triangles");
     list.push_back({node, box.min()[axis], box.max()[axis]});
   }
   std::vector<double> ways(list.size(), 0);
@@ -92,12 +92,12 @@ Scene apply(const Scene& scene, const Align& edit) {
 
 REBAKE_DESCRIBE_EDIT(
     Align,
-    "Moves nodes along an axis so that their boxes' ends or middles are at the first one's, or with the same gap "
+    "Aligns the boxes of nodes along an axis with that of the first node, or distributes them with equal gaps "
     "between neighbours.",
     (auto& edit, auto& visit) {
-      visit("nodes", edit.nodes, Need::required, "two or more; the first stays, or in a spread the outermost");
-      visit("axis", edit.axis, Need::optional, "of the world");
-      visit("to", edit.to, Need::optional, "the boxes' least ends, middles or greatest ends; spread: equal gaps");
+      visit("nodes", edit.nodes, Need::required, "two or more; the first one stays, or with spread the outermost ones");
+      visit("axis", edit.axis, Need::optional, "axis of the world");
+      visit("to", edit.to, Need::optional, "lower ends, centres or upper ends of the boxes; spread: equal gaps");
     })
 
 }  // namespace rebake

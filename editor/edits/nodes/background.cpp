@@ -13,8 +13,8 @@ Scene apply(const Scene& scene, const Background& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Background, "Sets the colour behind everything.", (auto& edit, auto& visit) {
-      visit("color", edit.color, Need::required, "display red, green and blue", Unit::share);
+    Background, "Sets the background colour.", (auto& edit, auto& visit) {
+      visit("color", edit.color, Need::required, "red, green and blue as displayed", Unit::share);
     })
 
 }  // namespace rebake

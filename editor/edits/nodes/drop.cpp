@@ -229,13 +229,14 @@ Outcome apply(const Scene& scene, const Drop& edit, const Progress& progress) {
     if (placed.visible && placed.node->object) (own.contains(placed.node->id) ? falling : others).push_back(placed);
   const Mat3 to_ground = ground_frame(ground).transpose();
   Body body(falling, to_ground);
-  if (body.triangles.empty()) throw EditError("the node holds nothing that is visible, so nothing can fall");
+  if (body.triangles.empty())
+    throw EditError("the node contains no visible triangle, so it cannot fall; show it first");
   const double size = body.box.diagonal().norm();
   const double rise = Fall(std::move(body), Body(others, to_ground), ground, progress).run();
   const std::string name = find(scene, edit.node.id)->name;
   // Smaller motions are below the float precision of the rays.
   if (std::abs(rise) <= 1e-6 * size)
-    return {scene, {{fmt::format("\"{}\" stands on a surface or on the ground already; nothing moved", name)}}};
+    return {scene, {{fmt::format("\"{}\" already stands on a surface or on the ground; it was not moved", name)}}};
   Transform move;
   move.node = edit.node;
   move.translate = rise * ground.normal;
@@ -245,12 +246,12 @@ Outcome apply(const Scene& scene, const Drop& edit, const Progress& progress) {
 
 REBAKE_DESCRIBE_EDIT(
     Drop,
-    "Lets a node fall onto what is visible below it, or onto the scene's ground plane. A node that intersects "
+    "Lets a node fall onto the visible surface below it, or onto the scene's ground plane. A node that intersects "
     "something "
     "is lifted out of it first.",
     (auto& edit, auto& visit) {
-      visit("node", edit.node, Need::required, "node that falls, with those inside it");
-      visit("ground", edit.ground, Need::optional, "height of a level ground to use in place of the scene's",
+      visit("node", edit.node, Need::required, "node that falls, with its children");
+      visit("ground", edit.ground, Need::optional, "height of a level ground plane to use instead of the scene's",
             Unit::length);
     })
 

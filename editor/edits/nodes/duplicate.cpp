@@ -10,7 +10,7 @@ Scene apply(const Scene& scene, const Duplicate& edit) {
   Node copy = without_ids(*placed.node);
   if (!edit.as.empty()) {
     if (find(scene, edit.as) != nullptr)
-      throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+      throw FieldError("as", "\"" + edit.as + "\" is already the name of another node; choose another name");
     copy.name = edit.as;
   }
   const auto [parent, index] = place_of(scene, edit.node.id);
@@ -24,11 +24,11 @@ Scene apply(const Scene& scene, const Duplicate& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Duplicate, "Adds a copy of a node and its children after it; triangles and texels stay shared.",
+    Duplicate, "Adds a copy of a node and its children after it; triangles and texels are shared.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::required, "node to copy");
-      visit("as", edit.as, Need::optional, "name of the copy; empty: the node's with a number");
-      visit("translate", edit.translate, Need::optional, "how far from the node the copy stands", Unit::length);
+      visit("as", edit.as, Need::optional, "name of the copy; empty: the node's name with a number");
+      visit("translate", edit.translate, Need::optional, "offset of the copy from the node", Unit::length);
     })
 
 }  // namespace rebake

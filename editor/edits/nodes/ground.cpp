@@ -55,12 +55,12 @@ Ground wanted_ground(const Scene& scene, const GroundEdit& edit) {
   }
   if (edit.foot) {
     const Box box = world_bounds(scene);
-    if (box.isEmpty()) throw EditError("nothing is visible, so the scene has no foot");
+    if (box.isEmpty()) throw EditError("nothing is visible, so there is no lowest point");
     return {Vec3::UnitY(), box.min().y()};
   }
-  if (edit.selection) return fitted(with_selection(scene, std::nullopt));
+  if (edit.selection) return fitted(objects_with_selection(scene, std::nullopt));
   if (edit.points.points.size() != 3)
-    throw FieldError("points", fmt::format("must be three points, but there are {}", edit.points.points.size()));
+    throw FieldError("points", fmt::format("must be three points, but has {}", edit.points.points.size()));
   try {
     return ground_through({edit.points.points[0], edit.points.points[1], edit.points.points[2]});
   } catch (const std::invalid_argument& error) {
@@ -84,14 +84,14 @@ Outcome apply(const Scene& scene, const GroundEdit& edit) {
 
 REBAKE_DESCRIBE_EDIT(
     GroundEdit,
-    "Sets the scene's ground plane, which drop, snapping and the grid use; its normal is up for sky light. Without it "
+    "Sets the ground plane for drop, snapping and the grid; its normal is the up direction of sky light. By default, "
     "the "
     "ground is y = 0.",
     (auto& edit, auto& visit) {
-      visit("height", edit.height, Need::optional, "level ground at this y", Unit::length);
-      visit("foot", edit.foot, Need::optional, "level ground at the lowest point of everything visible");
-      visit("selection", edit.selection, Need::optional, "the plane that fits the selected triangles best");
-      visit("points", edit.points, Need::optional, "ground through three points");
+      visit("height", edit.height, Need::optional, "level plane at this y", Unit::length);
+      visit("foot", edit.foot, Need::optional, "level plane at the lowest point of all visible objects");
+      visit("selection", edit.selection, Need::optional, "least-squares plane of the selected triangles");
+      visit("points", edit.points, Need::optional, "plane through three points");
     })
 
 }  // namespace rebake

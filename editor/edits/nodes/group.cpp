@@ -6,12 +6,13 @@ namespace rebake {
 
 Scene apply(const Scene& scene, const Group& edit) {
   if (!edit.as.empty() && find(scene, edit.as) != nullptr)
-    throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+    throw FieldError("as", "\"" + edit.as + "\" is already the name of another node; choose another name");
   Node group;
   group.name = edit.as.empty() ? "group" : edit.as;
   Scene result = scene;
   for (const NodeRef& ref : edit.nodes) {
-    if (!find_placed(result, ref.id)) throw FieldError("nodes", "names a node twice, or one inside another");
+    if (!find_placed(result, ref.id))
+      throw FieldError("nodes", "must not contain a node twice, or a node inside another one");
     const PlacedNode placed = editable(result, ref.id);
     Node moved = *placed.node;
     moved.to_parent = placed.to_world;
@@ -27,8 +28,8 @@ Scene apply(const Scene& scene, const Group& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Group, "Puts nodes into a new group; they stay where they are in the world.", (auto& edit, auto& visit) {
-      visit("nodes", edit.nodes, Need::required, "nodes to put together");
+    Group, "Moves nodes into a new group; their positions in the world stay.", (auto& edit, auto& visit) {
+      visit("nodes", edit.nodes, Need::required, "nodes to group");
       visit("as", edit.as, Need::optional, "name of the group; empty: group");
     })
 

@@ -10,7 +10,7 @@ Scene apply(const Scene& scene, const Hide& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Hide, "Hides a node and its children; they are neither drawn nor exported; save keeps them.",
+    Hide, "Hides a node and its children: they are neither drawn nor exported, but saved.",
     (auto& edit, auto& visit) { visit("node", edit.node, Need::required, "node"); })
 
 }  // namespace rebake

@@ -14,9 +14,9 @@ namespace rebake {
 Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) {
   if (edit.path.empty()) throw FieldError("path", "is empty");
   if (!edit.content.empty() && hash_text(folder_hash(edit.path)) != edit.content)
-    throw EditError(edit.path + ": has changed since it was imported; put the files back as they were");
+    throw EditError(edit.path + ": has changed since it was imported; restore the original files");
   const Scene read = read_any(edit.path, edit.axes, progress);
-  if (read.roots.empty()) throw EditError(edit.path + ": holds no objects");
+  if (read.roots.empty()) throw EditError(edit.path + ": contains no objects");
   Node node;
   if (read.roots.size() == 1) {
     node = without_ids(*read.roots.front());
@@ -26,7 +26,7 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
   }
   if (!edit.as.empty()) {
     if (find(scene, edit.as) != nullptr)
-      throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+      throw FieldError("as", "\"" + edit.as + "\" is already the name of another node; choose another name");
     node.name = edit.as;
   }
   Scene result = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
@@ -50,10 +50,10 @@ REBAKE_DESCRIBE_EDIT(
     Import, "Reads a MobileNeRF folder or a Rebake scene into the scene.", (auto& edit, auto& visit) {
       visit("path", edit.path, Need::required, "folder to read");
       visit("as", edit.as, Need::optional, "name of the new node; empty: the folder's name");
-      visit("axes", edit.axes, Need::optional, "which way a MobileNeRF folder is oriented; scenes say so themselves");
-      visit("ground", edit.ground, Need::optional, "whether the scene's ground moves to its lowest point");
+      visit("axes", edit.axes, Need::optional, "orientation of a MobileNeRF folder; Rebake scenes contain theirs");
+      visit("ground", edit.ground, Need::optional, "move the scene's ground to the lowest point of the scene");
       visit("content", edit.content, Need::optional,
-            "hash of the folder's files as projects and journals record it: anything else there is refused");
+            "expected hash of the folder's files, from projects and journals; other contents are refused");
     })
 
 }  // namespace rebake

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "editor/edits/describe.h"
-#include "mesh_ops/formats/light_picture.h"
+#include "mesh_ops/formats/environment_map.h"
 
 namespace rebake {
 
@@ -39,28 +39,29 @@ bool choose_effects(const std::vector<std::string>& words, SceneLight& light) {
     else
       throw FieldError(
           "effects",
-          "\"" + word + "\" does not go here: use auto, self, cast, removed, highlights and match, or none alone");
+          "\"" + word + "\" is not an effect: use auto, self, cast, removed, highlights and match, or only none");
   }
-  if (light.highlights && !light.self) throw FieldError("effects", "highlights goes with self: name both");
+  if (light.highlights && !light.self) throw FieldError("effects", "highlights needs self: give both");
   if (words.empty())
-    throw FieldError("effects", "must name at least one: auto, self, cast, removed, highlights, match, or none");
+    throw FieldError("effects",
+                     "must contain at least one of auto, self, cast, removed, highlights and match, or none");
   return true;
 }
 
 // The environment map; shared with the scene's present light if that has the same path and content.
 std::shared_ptr<const LightPicture> picture_of(const LightEdit& edit, const Scene& scene) {
   if (edit.picture.empty()) {
-    if (edit.source == "picture") throw FieldError("picture", "is missing: name an equirectangular picture");
-    if (!edit.content.empty()) throw FieldError("content", "is of a picture, but none is named");
+    if (edit.source == "picture") throw FieldError("picture", "is missing: give an equirectangular picture");
+    if (!edit.content.empty()) throw FieldError("content", "is the hash of a picture, but picture is missing");
     return nullptr;
   }
   if (!std::isfinite(edit.picture_degrees)) throw FieldError("picture_degrees", "must be a number");
   if (scene.light && scene.light->picture && scene.light->picture->path == edit.picture &&
       scene.light->picture->content == edit.content)
     return scene.light->picture;
-  LightPicture read = read_light_picture(edit.picture);
+  LightPicture read = read_environment_map(edit.picture);
   if (!edit.content.empty() && read.content != edit.content)
-    throw EditError(edit.picture + ": has changed since it was taken as light; put it back as it was");
+    throw EditError(edit.picture + ": has changed since it was used as light; restore the original file");
   return std::make_shared<const LightPicture>(std::move(read));
 }
 
@@ -69,7 +70,7 @@ std::shared_ptr<const LightPicture> picture_of(const LightEdit& edit, const Scen
 Scene apply(const Scene& scene, const LightEdit& edit) {
   Scene result = scene;
   if (edit.effects == std::vector<std::string>{"none"} && !edit.picture.empty())
-    throw FieldError("picture", "is of a light that is off (effects none)");
+    throw FieldError("picture", "cannot be combined with effects none");
   auto light = std::make_shared<SceneLight>(edit.light);
   if (!choose_effects(edit.effects, *light)) {
     result.light = nullptr;
@@ -83,7 +84,7 @@ Scene apply(const Scene& scene, const LightEdit& edit) {
   check_light(light->sun.irradiance, "sun_color");
   check_light(light->bounce, "bounce");
   if (!light->sun.direction.allFinite() || !(light->sun.direction.stableNorm() > 0))
-    throw FieldError("sun", "must be a direction");
+    throw FieldError("sun", "must be a finite direction that is not zero");
   if (!(edit.sun_degrees > 0 && edit.sun_degrees <= 45))
     throw FieldError("sun_degrees", "must be above 0 and at most 45");
   light->sun.radius = edit.sun_degrees * std::numbers::pi / 180;
@@ -93,7 +94,7 @@ Scene apply(const Scene& scene, const LightEdit& edit) {
     throw FieldError("source", "\"" + edit.source + "\" is not known: use estimated, uniform, sky or picture");
   light->source = static_cast<SceneLight::Source>(word - source_words.begin());
   light->picture = picture_of(edit, scene);
-  light->picture_turn = edit.picture_degrees * std::numbers::pi / 180;
+  light->picture_rotation = edit.picture_degrees * std::numbers::pi / 180;
   light->up = scene.ground.normal;
   result.light = std::move(light);
   return result;
@@ -106,7 +107,7 @@ LightEdit light_edit(const SceneLight& light) {
   edit.budget = light.budget * 255;
   edit.sun_degrees = light.sun.radius * 180 / std::numbers::pi;
   if (light.picture) edit.picture = light.picture->path, edit.content = light.picture->content;
-  edit.picture_degrees = light.picture_turn * 180 / std::numbers::pi;
+  edit.picture_degrees = light.picture_rotation * 180 / std::numbers::pi;
   edit.effects.clear();
   if (light.self && light.cast && light.removed && light.highlights) {
     edit.effects.emplace_back("auto");
@@ -122,41 +123,39 @@ LightEdit light_edit(const SceneLight& light) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    LightEdit,
-    "Makes light follow the scene's edits: shadows on what is bent, between objects, and of what is gone; highlights.",
+    LightEdit, "Makes light follow edits: shadows on bent parts, between objects and of removed objects; highlights.",
     (auto& edit, auto& visit) {
       visit(
           "effects", edit.effects, Need::optional,
-          "auto: self, cast, removed and highlights, each where it would be seen; or some of them: self (shadows of "
-          "what moved in itself), highlights (that it mirrors; self must be named too), cast (between objects), "
-          "removed (of what is gone); and match: all objects in one light, the given one, or as the first object's is "
-          "spread; none: colours stay as baked");
-      visit(
-          "source", edit.source, Need::optional,
-          "of the light: estimated from each object's colours; uniform: the zenith's everywhere; sky: zenith, ground "
-          "and a sun, about the objects' own upright axis; picture: of all directions; left out: the picture where one "
-          "is named, else estimated");
+          "auto: self, cast, removed and highlights, each only if visible; or a list of: self (shadows of an object "
+          "on itself), highlights (specular reflection; needs self), cast (shadows between objects), "
+          "removed (shadows of removed objects), match (all objects in one light: the given one, or the first object's "
+          "estimated one); none: colours stay as baked");
+      visit("source", edit.source, Need::optional,
+            "light source: estimated from each object's colours; uniform: zenith everywhere; sky: zenith, ground "
+            "and a sun, about the objects' up axis; picture: environment map; default: picture if one "
+            "is given, else estimated");
       visit("zenith", edit.light.zenith, Need::optional,
             "uniform and sky: linear radiance from above, red, green and blue");
-      visit("ground", edit.light.ground, Need::optional, "sky: the same from below");
+      visit("ground", edit.light.ground, Need::optional, "sky: linear radiance from below, red, green and blue");
       visit("sun", edit.light.sun.direction, Need::optional,
-            "sky: direction towards the sun, in the objects' own space as they were read; with match in the world");
+            "sky: direction towards the sun, in object space as read; with match in world space");
       visit("sun_color", edit.light.sun.irradiance, Need::optional,
-            "sky: linear, what the sun sends back from a white surface that faces it; 0, 0, 0: none");
+            "sky: irradiance / π of a surface facing the sun, linear red, green and blue; 0, 0, 0: no sun");
       visit("sun_degrees", edit.sun_degrees, Need::optional,
-            "sky: the sun's radius as seen, up to 45, which softens shadows", Unit::degrees);
-      visit(
-          "picture", edit.picture, Need::optional,
-          "file with an equirectangular picture, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF, WebP; "
-          "its middle towards -z; bright spots in it become suns");
-      visit("picture_degrees", edit.picture_degrees, Need::optional, "by which it is turned about the upright axis",
-            Unit::degrees);
+            "sky: angular radius of the sun, up to 45; softens shadows", Unit::degrees);
+      visit("picture", edit.picture, Need::optional,
+            "equirectangular environment map, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF, WebP; "
+            "its centre faces -z; bright spots become suns");
+      visit("picture_degrees", edit.picture_degrees, Need::optional,
+            "rotation of the environment map about the up axis", Unit::degrees);
       visit("content", edit.content, Need::optional,
-            "hash of the picture as projects and journals record it: anything else there is refused");
-      visit("bounce", edit.light.bounce, Need::optional, "given light: linear radiance of surfaces that hide it");
-      visit("budget", edit.budget, Need::optional,
-            "how far colours may be off for what is left out, of 255; at most 255");
-      visit("rays", edit.light.rays, Need::optional, "from each point, 16 to 16384: about 4 % off at 64, 1.1 % at 256");
+            "expected hash of the picture, from projects and journals; other contents are refused");
+      visit("bounce", edit.light.bounce, Need::optional,
+            "given light: linear radiance of occluders, for indirect light");
+      visit("budget", edit.budget, Need::optional, "largest colour error by omitted effects, in 1/255, 0 to 255");
+      visit("rays", edit.light.rays, Need::optional,
+            "rays per point, 16 to 16384; error about 4 % at 64, 1.1 % at 256");
     })
 
 }  // namespace rebake

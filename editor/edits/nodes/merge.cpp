@@ -23,7 +23,7 @@ std::vector<TextureSet> sets_in_frame(const PlacedNode& placed, const PlacedNode
   std::vector<TextureSet> sets = placed.node->object->sets;
   if (placed.to_world.matrix() == frame.to_world.matrix()) return sets;
   const Affine motion = frame.to_world.inverse() * placed.to_world;
-  checked_turn(motion);
+  check_invertible(motion);
   const Mat3 turn =
       orthogonal_factor(frame.to_world.linear()).transpose() * orthogonal_factor(placed.to_world.linear());
   const Eigen::Matrix3f linear = motion.linear().cast<float>();
@@ -54,7 +54,7 @@ void join_bodies(std::vector<BakedBody>& bodies, const PlacedNode& placed, const
     numbers.push_back(static_cast<std::uint16_t>(found - bodies.begin()));
   }
   if (bodies.size() > std::numeric_limits<std::uint16_t>::max())
-    throw EditError("more than 65535 objects would become one; group them instead");
+    throw EditError("more than 65535 objects cannot be merged; group them instead");
   for (TextureSet& set : sets) {
     const auto* own = set.soup.face_attributes().find<std::uint16_t>(BakedObject::body);
     std::vector<std::uint16_t> joined(set.soup.triangle_count());
@@ -150,11 +150,11 @@ Scene apply(const Scene& scene, const Merge& edit) {
     const PlacedNode& part = parts.back();
     if (!part.node->object) throw EditError(fmt::format("\"{}\" is a group; merge its objects", part.node->name));
     if (!part.node->children.empty())
-      throw EditError(fmt::format("\"{}\" groups other nodes; move them out first", part.node->name));
+      throw EditError(fmt::format("\"{}\" has children; move them out first", part.node->name));
     const BakedObject &first = *parts.front().node->object, &other = *part.node->object;
     if (!(*other.decoder == *first.decoder) || other.axes != first.axes)
       throw EditError(
-          fmt::format("\"{}\" and \"{}\" have different decoders or axes; one object can have only one: "
+          fmt::format("\"{}\" and \"{}\" have different decoders or axes, so they cannot become one object: "
                       "group them instead",
                       parts.front().node->name, part.node->name));
     for (std::size_t k = 0; k + 1 < parts.size(); ++k)
@@ -163,7 +163,7 @@ Scene apply(const Scene& scene, const Merge& edit) {
   }
   const PlacedNode& first = parts.front();
   if (!edit.as.empty() && edit.as != first.node->name && find(scene, edit.as) != nullptr)
-    throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+    throw FieldError("as", "\"" + edit.as + "\" is already the name of another node; choose another name");
   // An object has one alpha code for features 3 and 7. If parts differ, `plain` is used, which represents all values
   // exactly.
   const bool any_plain = std::any_of(parts.begin(), parts.end(), [](const PlacedNode& part) {
@@ -210,12 +210,12 @@ Scene apply(const Scene& scene, const Merge& edit) {
 
 REBAKE_DESCRIBE_EDIT(
     Merge,
-    "Makes objects of one decoder one node, in place of the first; parts that were separated before fit together "
+    "Merges objects with the same decoder into one node, in place of the first; separated parts fit together "
     "again "
     "as they were.",
     (auto& edit, auto& visit) {
       visit("nodes", edit.nodes, Need::required, "nodes to merge, in drawing order");
-      visit("as", edit.as, Need::optional, "name of the result; empty: the first one's");
+      visit("as", edit.as, Need::optional, "name of the result; empty: that of the first node");
     })
 
 }  // namespace rebake

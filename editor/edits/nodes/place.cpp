@@ -28,7 +28,7 @@ Scene apply(const Scene& scene, const Place& edit) {
   const PlacedNode placed = editable_with_children(scene, edit.node.id);
   Affine to_parent = placed.node->to_parent;
   if (edit.rotation || edit.scale) {
-    checked_turn(to_parent);
+    check_invertible(to_parent);
     const Placement now = placement_of(to_parent);
     const Mat3 rotation = edit.rotation ? edit.rotation->matrix() : now.rotation;
     const Vec3 scale = edit.scale ? edit.scale->value : now.scale;
@@ -37,19 +37,19 @@ Scene apply(const Scene& scene, const Place& edit) {
     to_parent.linear() = rotation * shear * scale.asDiagonal();
   }
   if (edit.position) to_parent.translation() = *edit.position;
-  if (!to_parent.matrix().allFinite()) throw EditError("the place is not finite");
+  if (!to_parent.matrix().allFinite()) throw EditError("the resulting transform is not finite");
   const Scene result = with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
   check_subtree(result, edit.node.id);
   return result;
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Place, "Says where a node stands, how it is turned and how large it is, in its parent.", (auto& edit, auto& visit) {
+    Place, "Sets a node's position, rotation and scale relative to its parent.", (auto& edit, auto& visit) {
       visit("node", edit.node, Need::required, "node to place");
-      visit("position", edit.position, Need::optional, "of its origin; left out: as it is", Unit::length);
-      visit("rotation", edit.rotation, Need::optional, "from its parent's axes; left out: as it is");
+      visit("position", edit.position, Need::optional, "position of its origin; default: unchanged", Unit::length);
+      visit("rotation", edit.rotation, Need::optional, "rotation relative to its parent; default: unchanged");
       visit("scale", edit.scale, Need::optional,
-            "factor along its own axes; negative mirrors, 0 is refused; left out: as it is");
+            "factors along its own axes; negative values mirror, 0 is refused; default: unchanged");
     })
 
 }  // namespace rebake

@@ -10,7 +10,7 @@ Scene apply(const Scene& scene, const Remove& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Remove, "Takes a node and its children out of the scene.",
+    Remove, "Removes a node and its children from the scene.",
     (auto& edit, auto& visit) { visit("node", edit.node, Need::required, "node to remove"); })
 
 }  // namespace rebake

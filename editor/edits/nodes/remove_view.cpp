@@ -13,7 +13,7 @@ Scene apply(const Scene& scene, const RemoveView& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    RemoveView, "Forgets a stored view.",
+    RemoveView, "Removes a stored view.",
     (auto& edit, auto& visit) { visit("name", edit.name, Need::required, "name of the view"); })
 
 }  // namespace rebake

@@ -9,14 +9,14 @@ Scene apply(const Scene& scene, const Rename& edit) {
   if (edit.name.empty()) throw FieldError("name", "is empty");
   const NodePtr other = find(scene, edit.name);
   if (other != nullptr && other->id != edit.node.id)
-    throw FieldError("name", "\"" + edit.name + "\" is the name of another node already");
+    throw FieldError("name", "\"" + edit.name + "\" is already the name of another node; choose another name");
   return with_changed(scene, edit.node.id, [&](Node& node) { node.name = edit.name; });
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Rename, "Gives a node another name.", (auto& edit, auto& visit) {
+    Rename, "Renames a node.", (auto& edit, auto& visit) {
       visit("node", edit.node, Need::required, "node to rename");
-      visit("name", edit.name, Need::required, "new name, not in use yet");
+      visit("name", edit.name, Need::required, "new, unique name");
     })
 
 }  // namespace rebake

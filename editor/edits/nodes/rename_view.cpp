@@ -9,7 +9,7 @@ Scene apply(const Scene& scene, const RenameView& edit) {
   const Camera camera = stored_view(scene, edit.name, "name");
   if (edit.to.empty()) throw FieldError("to", "is empty");
   if (edit.to != edit.name && scene.views.contains(edit.to))
-    throw FieldError("to", "\"" + edit.to + "\" is the name of another view already");
+    throw FieldError("to", "\"" + edit.to + "\" is already the name of another view; choose another name");
   Scene result = scene;
   result.views.erase(edit.name);
   result.views[edit.to] = camera;
@@ -17,9 +17,9 @@ Scene apply(const Scene& scene, const RenameView& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    RenameView, "Gives a stored view another name.", (auto& edit, auto& visit) {
+    RenameView, "Renames a stored view.", (auto& edit, auto& visit) {
       visit("name", edit.name, Need::required, "name of the view");
-      visit("to", edit.to, Need::required, "new name, not in use yet");
+      visit("to", edit.to, Need::required, "new, unique name");
     })
 
 }  // namespace rebake

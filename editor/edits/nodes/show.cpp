@@ -10,7 +10,6 @@ Scene apply(const Scene& scene, const Show& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Show, "Makes a node visible again.",
-    (auto& edit, auto& visit) { visit("node", edit.node, Need::required, "node"); })
+    Show, "Shows a hidden node.", (auto& edit, auto& visit) { visit("node", edit.node, Need::required, "node"); })
 
 }  // namespace rebake

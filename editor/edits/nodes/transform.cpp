@@ -46,7 +46,7 @@ Scene apply(const Scene& scene, const Transform& edit) {
     return result;
   }
   const Affine in_object = placed.to_world.inverse() * motion * placed.to_world;
-  checked_turn(in_object);
+  check_invertible(in_object);
   // The decoder's view directions are rotated back by the orthogonal factor of the whole transform, in object space.
   const Mat3 turn = orthogonal_factor(placed.to_world.linear()).transpose() *
                     orthogonal_factor(motion.linear() * placed.to_world.linear());
@@ -67,16 +67,16 @@ Scene apply(const Scene& scene, const Transform& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Transform, "Scales, then turns, then moves a node or its selected triangles about a pivot.",
+    Transform, "Scales, rotates and translates, in this order, a node or its selected triangles about a pivot.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::required, "node to transform");
       visit("selection", edit.selection, Need::optional, "only the selected triangles");
-      visit("translate", edit.translate, Need::optional, "how far it moves", Unit::length);
+      visit("translate", edit.translate, Need::optional, "translation", Unit::length);
       visit("rotate", edit.rotate, Need::optional, "rotation");
-      visit("scale", edit.scale, Need::optional, "factor; negative mirrors, 0 is refused");
-      visit("scale_axes", edit.scale_axes, Need::optional, "turn of the axes along which scale acts, from the world's");
+      visit("scale", edit.scale, Need::optional, "scale factors; negative values mirror, 0 is refused");
+      visit("scale_axes", edit.scale_axes, Need::optional, "rotation from the world axes to the axes of the scale");
       visit("pivot", edit.pivot, Need::optional,
-            "world point that scale and rotation keep; left out: the centre of the box of what is transformed");
+            "fixed world point of rotation and scale; default: centre of the bounding box");
     })
 
 }  // namespace rebake

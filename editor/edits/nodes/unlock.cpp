@@ -10,6 +10,7 @@ Scene apply(const Scene& scene, const Unlock& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Unlock, "Allows edits again.", (auto& edit, auto& visit) { visit("node", edit.node, Need::required, "node"); })
+    Unlock, "Unlocks a node, so that edits can change it again.",
+    (auto& edit, auto& visit) { visit("node", edit.node, Need::required, "node"); })
 
 }  // namespace rebake

@@ -12,10 +12,10 @@ Scene apply(const Scene& scene, const StoreView& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    StoreView, "Stores a camera under a name.", (auto& edit, auto& visit) {
+    StoreView, "Stores a camera as a named view.", (auto& edit, auto& visit) {
       visit("name", edit.name, Need::required, "name of the view");
       visit("camera", edit.camera, Need::required,
-            "the camera; what is left out has its usual value, and planes fit what is visible");
+            "the camera; absent fields have defaults, and near and far planes are fitted to the visible objects");
     })
 
 }  // namespace rebake

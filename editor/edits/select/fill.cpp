@@ -10,7 +10,7 @@ Scene apply(const Scene& scene, const Fill& edit) {
   if (edit.at_most < 1) throw FieldError("at_most", "must be at least 1");
   edit.welding.check();
   const std::vector<PlacedNode> targets = selectable(scene, edit.node);
-  with_selection(scene, edit.node);
+  objects_with_selection(scene, edit.node);
   return with_selected(scene, targets, SelectMode::set, [&](const PlacedNode& placed) {
     return filled(*edges_of(*placed.node->object, edit.welding.tolerance), selection_of(placed),
                   static_cast<std::size_t>(edit.at_most) + 1);
@@ -18,11 +18,11 @@ Scene apply(const Scene& scene, const Fill& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Fill, "Adds the islands inside the selection: unselected triangles, joined through edges, that border it.",
+    Fill, "Fills holes of the selection: adds edge-connected components of unselected triangles that border it.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible and not locked");
-      visit("at_most", edit.at_most, Need::optional, "triangles of an island that is filled");
+            "only this node and its children; default: all visible, unlocked objects");
+      visit("at_most", edit.at_most, Need::optional, "largest component to add, in triangles");
       WeldingField::fields(edit.welding, visit);
     })
 

@@ -6,14 +6,14 @@
 namespace rebake {
 
 Scene apply(const Scene& scene, const Grow& edit) {
-  return with_selection_stepped(scene, edit.node, edit.steps, edit.welding, grown);
+  return with_repeated_morphology(scene, edit.node, edit.steps, edit.welding, grown);
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Grow, "Adds the triangles that share a corner with the selection.", (auto& edit, auto& visit) {
+    Grow, "Grows the selection by the triangles that share a vertex with it.", (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible and not locked");
-      visit("steps", edit.steps, Need::optional, "how often");
+            "only this node and its children; default: all visible, unlocked objects");
+      visit("steps", edit.steps, Need::optional, "number of repetitions");
       WeldingField::fields(edit.welding, visit);
     })
 

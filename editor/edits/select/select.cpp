@@ -26,11 +26,12 @@ void check_texture_set(const std::vector<PlacedNode>& targets, int wanted) {
   std::size_t most = 0;
   for (const PlacedNode& placed : targets) most = std::max(most, placed.node->object->sets.size());
   if (wanted < 0 || static_cast<std::size_t>(wanted) >= most)
-    throw FieldError("texture_set", targets.size() == 1 ? fmt::format("\"{}\" has {} texture sets, counted from 0",
-                                                                      targets.front().node->name, most)
-                                                        : fmt::format("no object there has more than {} texture sets, "
-                                                                      "counted from 0",
-                                                                      most));
+    throw FieldError("texture_set", targets.size() == 1
+                                        ? fmt::format("is out of range: \"{}\" has {} texture sets, counted from 0",
+                                                      targets.front().node->name, most)
+                                        : fmt::format("is out of range: no object has more than {} texture sets, "
+                                                      "counted from 0",
+                                                      most));
 }
 
 }  // namespace
@@ -47,14 +48,14 @@ Scene apply(const Scene& scene, const Select& edit) {
   if (!edit.saved.empty() && std::none_of(targets.begin(), targets.end(), [&](const PlacedNode& placed) {
         return placed.node->saved_selections.contains(edit.saved);
       }))
-    throw FieldError("saved", fmt::format("no selection is stored under \"{}\"", edit.saved));
+    throw FieldError("saved", fmt::format("there is no stored selection \"{}\"", edit.saved));
   // `connected` starts at one triangle of one target.
   std::optional<NearestTriangle> start;
   if (edit.connected) {
     Vec3 point = *edit.connected;
     if (edit.frame != CoordinateFrame::world) {
-      if (targets.size() != 1) throw FieldError("frame", "must be world where several objects are selected from");
-      point = targets[0].to_world * FramePoints(edit.frame, targets[0]).to_object(point);
+      if (targets.size() != 1) throw FieldError("frame", "must be world if the selection covers several objects");
+      point = targets[0].to_world * FrameTransform(edit.frame, targets[0]).to_object(point);
     }
     start = nearest_triangle(targets, point, false);
   }
@@ -63,7 +64,7 @@ Scene apply(const Scene& scene, const Select& edit) {
   return with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
     const std::size_t k = index++;
     const BakedObject& object = *placed.node->object;
-    const FramePoints points(edit.frame, placed);
+    const FrameTransform points(edit.frame, placed);
     if (edit.invert) {
       TriangleSet flags = selection_of(placed);
       for (auto& flag : flags) flag = flag != 0 ? 0 : 1;
@@ -73,7 +74,7 @@ Scene apply(const Scene& scene, const Select& edit) {
     if (edit.sphere) return triangles_by_centre(object, region_of(points, *edit.sphere).inside);
     if (edit.half_space) return triangles_by_centre(object, region_of(points, *edit.half_space).inside);
     if (start && start->target == k && object.triangle_count() > 0)
-      return joined_to(*corners_of(object), start->triangle);
+      return connected_to(*corners_of(object), start->triangle);
     if (edit.texture_set) return triangles_of_set(object, static_cast<std::size_t>(*edit.texture_set));
     if (const auto saved = placed.node->saved_selections.find(edit.saved);
         !edit.saved.empty() && saved != placed.node->saved_selections.end())
@@ -83,23 +84,24 @@ Scene apply(const Scene& scene, const Select& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Select, "Selects triangles by their centres.", (auto& edit, auto& visit) {
+    Select, "Selects triangles by region (of their centres), connectivity, texture set or stored selection.",
+    (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that are visible and not locked");
+            "only this node and its children; default: all visible, unlocked objects");
       visit("all", edit.all, Need::optional, "every triangle");
       visit("none", edit.none, Need::optional, "no triangle");
-      visit("invert", edit.invert, Need::optional, "those not selected now");
+      visit("invert", edit.invert, Need::optional, "unselected triangles");
       visit("box", edit.box, Need::optional, "inside a box");
       visit("sphere", edit.sphere, Need::optional,
-            "inside a sphere; radius in units of the frame, in frame bounds as a share of the box diagonal");
-      visit("half_space", edit.half_space, Need::optional, "on the side that the normal points to");
+            "inside a sphere; radius in units of the frame (bounds: relative to the box diagonal)");
+      visit("half_space", edit.half_space, Need::optional, "in the half-space that the normal points into");
       visit("connected", edit.connected, Need::optional,
-            "joined through shared corners to the triangle nearest to this point");
-      visit("texture_set", edit.texture_set, Need::optional, "of this texture set, counted from 0");
-      visit("saved", edit.saved, Need::optional, "stored by store_selection under this name");
-      visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
+            "triangles connected, through shared vertices, to the triangle nearest to this point");
+      visit("texture_set", edit.texture_set, Need::optional, "triangles of this texture set, counted from 0");
+      visit("saved", edit.saved, Need::optional, "selection stored by store_selection under this name");
+      visit("mode", edit.mode, Need::optional, "how to combine the result with the present selection");
       visit("frame", edit.frame, Need::optional,
-            "world; node: the object's own coordinates; bounds: shares of the object's own box, 0 to 1");
+            "coordinates: world; node: object space; bounds: relative to the object's box, 0 to 1");
     })
 
 }  // namespace rebake

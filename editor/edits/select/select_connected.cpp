@@ -6,7 +6,7 @@
 namespace rebake {
 
 Scene apply(const Scene& scene, const SelectConnected& edit) {
-  const Joining joining = edit.joining.checked();
+  const Connectivity joining = edit.joining.checked();
   std::vector<PlacedNode> targets = selectable(scene, edit.node);
   std::vector<TriangleSet> from;
   if (edit.point) {
@@ -14,7 +14,7 @@ Scene apply(const Scene& scene, const SelectConnected& edit) {
     for (const PlacedNode& placed : targets) from.emplace_back(placed.node->object->triangle_count(), 0);
     if (!from[nearest.target].empty()) from[nearest.target][nearest.triangle] = 1;
   } else {
-    with_selection(scene, edit.node);
+    objects_with_selection(scene, edit.node);
     for (const PlacedNode& placed : targets) from.push_back(selection_of(placed));
   }
   std::size_t k = 0;
@@ -33,15 +33,15 @@ Scene apply(const Scene& scene, const SelectConnected& edit) {
 
 REBAKE_DESCRIBE_EDIT(
     SelectConnected,
-    "Selects the connected parts (triangles that share an edge, opaque along it) that hold the triangle nearest to a "
-    "point, or the present selection.",
+    "Selects the connected components (triangles that share an edge, opaque along it) with the triangle nearest to a "
+    "point, or with the present selection.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible and not locked");
+            "only this node and its children; default: all visible, unlocked objects");
       visit("point", edit.point, Need::optional,
-            "world point, near a triangle that shows something; left out: from the present selection");
-      JoiningFields::fields(edit.joining, visit);
-      visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
+            "world point near an opaque triangle; default: start from the present selection");
+      ConnectivityFields::fields(edit.joining, visit);
+      visit("mode", edit.mode, Need::optional, "how to combine the result with the present selection");
     })
 
 }  // namespace rebake

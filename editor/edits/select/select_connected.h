@@ -11,7 +11,7 @@ struct SelectConnected {
   static constexpr bool selects = true;
   std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   std::optional<Vec3> point;    ///< in world space; nothing: starts from the present selection
-  JoiningFields joining;
+  ConnectivityFields joining;
   SelectMode mode = SelectMode::set;
 };
 template <>

@@ -7,7 +7,7 @@ namespace rebake {
 
 Scene apply(const Scene& scene, const SelectFloaters& edit) {
   if (edit.at_most < 1) throw FieldError("at_most", "must be at least 1");
-  const Joining joining = edit.joining.checked();
+  const Connectivity joining = edit.joining.checked();
   return with_selected(scene, selectable(scene, edit.node), edit.mode, [&](const PlacedNode& placed) {
     const BakedObject& object = *placed.node->object;
     const auto parts = components_of(object, joining);
@@ -24,14 +24,13 @@ Scene apply(const Scene& scene, const SelectFloaters& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    SelectFloaters,
-    "Selects small parts that hang together with nothing else, across opaque texels; look at the count, then delete.",
+    SelectFloaters, "Selects floaters: small connected components of opaque triangles; check the count, then delete.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible and not locked");
-      visit("at_most", edit.at_most, Need::optional, "triangles of a part that counts as floating");
-      JoiningFields::fields(edit.joining, visit);
-      visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
+            "only this node and its children; default: all visible, unlocked objects");
+      visit("at_most", edit.at_most, Need::optional, "largest component that counts as a floater, in triangles");
+      ConnectivityFields::fields(edit.joining, visit);
+      visit("mode", edit.mode, Need::optional, "how to combine the result with the present selection");
     })
 
 }  // namespace rebake

@@ -10,7 +10,7 @@ struct SelectFloaters {
   static constexpr bool selects = true;
   std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   int at_most = 100;            ///< largest component to select, in triangles
-  JoiningFields joining;
+  ConnectivityFields joining;
   SelectMode mode = SelectMode::set;
 };
 template <>

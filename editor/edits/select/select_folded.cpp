@@ -12,11 +12,11 @@ Scene apply(const Scene& scene, const SelectFolded& edit) {
 
 REBAKE_DESCRIBE_EDIT(
     SelectFolded,
-    "Selects triangles that the last deformation of their object folded or collapsed (det J ≤ 0 at a corner).",
+    "Selects triangles that the last deformation of their object folded or collapsed (det J ≤ 0 at a vertex).",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible and not locked");
-      visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
+            "only this node and its children; default: all visible, unlocked objects");
+      visit("mode", edit.mode, Need::optional, "how to combine the result with the present selection");
     })
 
 }  // namespace rebake

@@ -9,29 +9,30 @@ Scene apply(const Scene& scene, const SelectPicture& edit) {
   const PictureRegion region(scene, edit.picture);
   if (edit.through)
     return with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
-      return triangles_under(*placed.node->object, placed.to_world, region.projector(), region.mask(), region.nearest(),
-                             region.farthest());
+      return projected_triangles(*placed.node->object, placed.to_world, region.projector(), region.mask(),
+                                 region.nearest(), region.farthest());
     });
   const std::vector<PlacedNode> objects = visible_objects(scene);
   const std::vector<TriangleSet> seen =
-      triangles_seen(objects, region.projector(), region.mask(), region.nearest(), region.farthest());
+      visible_triangles(objects, region.projector(), region.mask(), region.nearest(), region.farthest());
   return with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
     for (std::size_t k = 0; k < objects.size(); ++k)
       if (objects[k].node->id == placed.node->id) return seen[k];
-    throw EditError("node \"" + placed.node->name + "\" is hidden: nothing of it is seen; show it, or select through");
+    throw EditError("node \"" + placed.node->name +
+                    "\" is hidden, so none of its triangles is visible; show it, or set through");
   });
 }
 
 REBAKE_DESCRIBE_EDIT(
     SelectPicture,
-    "Selects triangles in a camera's picture: those seen through a pixel of the region, or with through all whose "
-    "centre falls into it.",
+    "Selects triangles in a camera's picture: those visible in a pixel of the region, or with through all whose "
+    "centre projects into it.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible and not locked");
+            "only this node and its children; default: all visible, unlocked objects");
       PictureFields::fields(edit.picture, visit);
-      visit("through", edit.through, Need::optional, "hidden triangles too");
-      visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
+      visit("through", edit.through, Need::optional, "also occluded triangles");
+      visit("mode", edit.mode, Need::optional, "how to combine the result with the present selection");
     })
 
 }  // namespace rebake

@@ -9,12 +9,12 @@ namespace rebake {
 Scene apply(const Scene& scene, const SelectTriangles& edit) {
   const PlacedNode placed = editable(scene, edit.node.id);
   if (!placed.node->object)
-    throw EditError(fmt::format("\"{}\" is a group: it has no triangles of its own", placed.node->name));
+    throw EditError(fmt::format("\"{}\" is a group without triangles; name an object inside it", placed.node->name));
   TriangleSet flags(placed.node->object->triangle_count(), 0);
   for (const auto& [first, last] : edit.triangles.ranges) {
     if (last >= flags.size())
-      throw FieldError("triangles",
-                       fmt::format("{} is too high: \"{}\" has {}", last, placed.node->name, flags.size()));
+      throw FieldError("triangles", fmt::format("{} is out of range: \"{}\" has {} triangles, counted from 0", last,
+                                                placed.node->name, flags.size()));
     std::fill(flags.begin() + static_cast<std::ptrdiff_t>(first), flags.begin() + static_cast<std::ptrdiff_t>(last) + 1,
               std::uint8_t{1});
   }
@@ -22,11 +22,11 @@ Scene apply(const Scene& scene, const SelectTriangles& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    SelectTriangles, "Selects triangles of an object by their numbers, set after set as in its files.",
+    SelectTriangles, "Selects triangles of an object by number, over its texture sets in order.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::required, "the object");
-      visit("triangles", edit.triangles, Need::required, "which ones, counted from 0");
-      visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
+      visit("triangles", edit.triangles, Need::required, "numbers or ranges, counted from 0");
+      visit("mode", edit.mode, Need::optional, "how to combine the result with the present selection");
     })
 
 }  // namespace rebake

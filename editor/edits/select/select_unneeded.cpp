@@ -29,7 +29,7 @@ Scene apply(const Scene& scene, const SelectUnneeded& edit) {
   if (!edit.transparent && !edit.duplicates && edit.unseen == 0 && edit.unseen_from.empty())
     throw FieldError("transparent", "at least one of transparent, duplicates, unseen and unseen_from must be given");
   if (edit.unseen < 0 || edit.unseen > 100000) throw FieldError("unseen", "must lie between 0 and 100000");
-  if (!(edit.distance > 1)) throw FieldError("distance", "must be above 1: the eyes are outside the box");
+  if (!(edit.distance > 1)) throw FieldError("distance", "must be above 1, so that the eyes are outside the box");
   std::vector<Camera> cameras;
   for (const std::string& name : edit.unseen_from) cameras.push_back(stored_view(scene, name, "unseen_from"));
   return with_selected(scene, selectable(scene, edit.node), edit.mode, [&](const PlacedNode& placed) {
@@ -37,27 +37,28 @@ Scene apply(const Scene& scene, const SelectUnneeded& edit) {
     TriangleSet flags(object.triangle_count(), 0);
     if (edit.transparent) add(flags, transparent_triangles(object));
     if (edit.duplicates) add(flags, duplicate_triangles(object));
-    std::vector<Standpoint> eyes;
-    if (edit.unseen > 0) eyes = eyes_around(object.bounds(), edit.unseen, edit.distance);
-    for (const Camera& camera : cameras) eyes.push_back(standpoint_of(camera, placed.to_world.inverse()));
+    std::vector<Viewpoint> eyes;
+    if (edit.unseen > 0) eyes = viewpoints_around(object.bounds(), edit.unseen, edit.distance);
+    for (const Camera& camera : cameras) eyes.push_back(viewpoint_of(camera, placed.to_world.inverse()));
     if (!eyes.empty()) add(flags, triangles_unseen(object, eyes));
     return flags;
   });
 }
 
 REBAKE_DESCRIBE_EDIT(
-    SelectUnneeded, "Selects triangles that no picture needs, for cleaning: look at the count, then delete.",
+    SelectUnneeded, "Selects triangles that contribute to no picture; check the count, then delete.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible and not locked");
+            "only this node and its children; default: all visible, unlocked objects");
       visit("transparent", edit.transparent, Need::optional,
-            "without an opaque texel in it or within one texel of its edges");
-      visit("duplicates", edit.duplicates, Need::optional, "same corners and same texels as a triangle drawn later");
+            "without an opaque texel inside or within one texel of the edges");
+      visit("duplicates", edit.duplicates, Need::optional, "same vertices and texels as a triangle drawn later");
       visit("unseen", edit.unseen, Need::optional,
-            "not seen from this many eyes on a sphere around the object; other objects hide nothing");
-      visit("distance", edit.distance, Need::optional, "of the eyes, in half diagonals of the object's box");
-      visit("unseen_from", edit.unseen_from, Need::optional, "names of stored views: not seen from any of their eyes");
-      visit("mode", edit.mode, Need::optional, "how the result joins the present selection");
+            "not visible from this many eyes on a sphere around the object; other objects do not occlude");
+      visit("distance", edit.distance, Need::optional, "distance of the eyes, in half diagonals of the object's box");
+      visit("unseen_from", edit.unseen_from, Need::optional,
+            "names of stored views: not visible from any of their eyes");
+      visit("mode", edit.mode, Need::optional, "how to combine the result with the present selection");
     })
 
 }  // namespace rebake

@@ -33,7 +33,7 @@ Picture picture_of(const Scene& scene, const PictureFields& fields) {
 }
 
 PixelMask mask_of(const PictureFields& fields) {
-  if (fields.polygon && fields.brush) throw FieldError("brush", "give a polygon or a brush, not both");
+  if (fields.polygon && fields.brush) throw FieldError("brush", "cannot be combined with polygon");
   if (!fields.polygon && !fields.brush && !fields.depth)
     throw FieldError("polygon", "at least one of polygon, brush and depth must be given");
   const auto [width, height] = fields.size;
@@ -59,8 +59,8 @@ std::vector<PlacedNode> selectable(const Scene& scene, const std::optional<NodeR
   }
   if (result.empty())
     throw EditError(
-        node ? fmt::format("\"{}\" holds no object that is visible and not locked", present(scene, node->id).node->name)
-             : "there is no object that is visible and not locked");
+        node ? fmt::format("\"{}\" contains no visible, unlocked object", present(scene, node->id).node->name)
+             : "there is no visible, unlocked object");
   return result;
 }
 
@@ -161,7 +161,7 @@ NearestTriangle nearest_triangle(const std::vector<PlacedNode>& targets, const V
     nearest = nearest_of_set(part, targets[part.target].to_world, world, opaque, nearest);
   }
   if (!std::isfinite(nearest.distance))
-    throw EditError("no object there shows anything: all its texels are transparent");
+    throw EditError("all objects are completely transparent, so there is no nearest triangle");
   return nearest.triangle;
 }
 
@@ -169,19 +169,19 @@ void WeldingField::check() const {
   if (tolerance < 0) throw FieldError("tolerance", "must not be negative");
 }
 
-Joining JoiningFields::checked() const {
+Connectivity ConnectivityFields::checked() const {
   welding.check();
   if (gap < 0) throw FieldError("gap", "must not be negative");
   return {welding.tolerance, gap};
 }
 
-Scene with_selection_stepped(const Scene& scene, const std::optional<NodeRef>& node, int steps,
-                             const WeldingField& welding,
-                             TriangleSet (*change)(const WeldedCorners&, const TriangleSet&)) {
+Scene with_repeated_morphology(const Scene& scene, const std::optional<NodeRef>& node, int steps,
+                               const WeldingField& welding,
+                               TriangleSet (*change)(const WeldedCorners&, const TriangleSet&)) {
   if (steps < 1) throw FieldError("steps", "must be at least 1");
   welding.check();
   const std::vector<PlacedNode> targets = selectable(scene, node);
-  with_selection(scene, node);
+  objects_with_selection(scene, node);
   return with_selected(scene, targets, SelectMode::set, [&](const PlacedNode& placed) {
     const auto corners = corners_of(*placed.node->object, welding.tolerance);
     TriangleSet flags = selection_of(placed);

@@ -37,36 +37,35 @@ struct WeldingField {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("tolerance", self.tolerance, Need::optional,
-          "corners at most this far apart count as one; 0: only equal ones", Unit::object_length);
+    visit("tolerance", self.tolerance, Need::optional, "vertices at most this far apart are welded; 0: only equal ones",
+          Unit::object_length);
   }
   /// Throws FieldError for a negative tolerance.
   void check() const;
 };
 
 /// Fields that define when triangles are connected, see Joining.
-struct JoiningFields {
+struct ConnectivityFields {
   WeldingField welding;
   double gap = 0;  ///< opaque texels at most this far apart are connected, in object units; 0: only across edges
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     WeldingField::fields(self.welding, visit);
-    visit(
-        "gap", self.gap, Need::optional,
-        "opaque texels at most this far apart are connected too; they are sampled up to a quarter of it apart, so only "
-        "connections of up to 0.6 of it are sure to be found",
-        Unit::object_length);
+    visit("gap", self.gap, Need::optional,
+          "opaque texels at most this far apart are connected too; samples are up to a quarter of it apart, so only "
+          "connections up to 0.6 of it are found with certainty",
+          Unit::object_length);
   }
   /// Throws FieldError for negative values.
-  Joining checked() const;
+  Connectivity checked() const;
 };
 
 /// The scene with `change` (grow or shrink by one ring) applied `steps` times to each object's selection. `change`
 /// receives the object's welded vertices and the selection. Throws FieldError for `steps` below 1.
-Scene with_selection_stepped(const Scene& scene, const std::optional<NodeRef>& node, int steps,
-                             const WeldingField& welding,
-                             TriangleSet (*change)(const WeldedCorners&, const TriangleSet&));
+Scene with_repeated_morphology(const Scene& scene, const std::optional<NodeRef>& node, int steps,
+                               const WeldingField& welding,
+                               TriangleSet (*change)(const WeldedCorners&, const TriangleSet&));
 
 /// Fields of edits that use a region of a camera's picture. Exactly one of `view` and `camera` must be given.
 struct PictureFields {
@@ -81,10 +80,10 @@ struct PictureFields {
   static void fields(Self& self, Visitor& visit) {
     visit("polygon", self.polygon, Need::optional, "inside a polygon in the picture");
     visit("brush", self.brush, Need::optional, "under a brush stroke in the picture");
-    visit("depth", self.depth, Need::optional, "only at these depths along the view axis", Unit::length);
-    visit("view", self.view, Need::optional, "name of the stored view whose picture it is");
-    visit("camera", self.camera, Need::optional, "the camera whose picture it is");
-    visit("size", self.size, Need::optional, "the picture's size, in whose pixels points are given");
+    visit("depth", self.depth, Need::optional, "range of depths along the view axis", Unit::length);
+    visit("view", self.view, Need::optional, "name of the stored view");
+    visit("camera", self.camera, Need::optional, "the camera");
+    visit("size", self.size, Need::optional, "size of the picture, for pixel coordinates");
   }
 };
 

@@ -6,14 +6,15 @@
 namespace rebake {
 
 Scene apply(const Scene& scene, const Shrink& edit) {
-  return with_selection_stepped(scene, edit.node, edit.steps, edit.welding, shrunk);
+  return with_repeated_morphology(scene, edit.node, edit.steps, edit.welding, shrunk);
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Shrink, "Takes away the selected triangles that share a corner with others.", (auto& edit, auto& visit) {
+    Shrink, "Shrinks the selection by the triangles that share a vertex with unselected ones.",
+    (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible and not locked");
-      visit("steps", edit.steps, Need::optional, "how often");
+            "only this node and its children; default: all visible, unlocked objects");
+      visit("steps", edit.steps, Need::optional, "number of repetitions");
       WeldingField::fields(edit.welding, visit);
     })
 

@@ -30,7 +30,7 @@ Scene apply(const Scene& scene, const StoreSelection& edit) {
 
 REBAKE_DESCRIBE_EDIT(
     StoreSelection,
-    "Stores the present selection of all nodes under a name, for select's field saved; replaces what had the name.",
+    "Stores the present selection of all nodes under a name, for the field saved of select; replaces an earlier one.",
     (auto& edit, auto& visit) { visit("name", edit.name, Need::required, "name of the selection"); })
 
 }  // namespace rebake

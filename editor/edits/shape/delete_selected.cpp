@@ -9,7 +9,7 @@ namespace rebake {
 Outcome apply(const Scene& scene, const DeleteSelected& edit) {
   Scene result = scene;
   std::size_t removed = 0;
-  for (const PlacedNode& placed : with_selection(scene, edit.node)) {
+  for (const PlacedNode& placed : objects_with_selection(scene, edit.node)) {
     const TriangleSet& selection = *placed.node->selection;
     removed += count(selection);
     const bool all = count(selection) == selection.size();
@@ -27,8 +27,9 @@ Outcome apply(const Scene& scene, const DeleteSelected& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    DeleteSelected, "Removes the selected triangles; a node that loses all goes too.", (auto& edit, auto& visit) {
-      visit("node", edit.node, Need::optional, "only of this node; left out: of all that are visible and not locked");
+    DeleteSelected, "Deletes the selected triangles, and nodes that lose all their triangles.",
+    (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::optional, "only this node; default: all visible, unlocked objects");
     })
 
 }  // namespace rebake

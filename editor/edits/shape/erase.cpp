@@ -24,7 +24,7 @@ Outcome erased(const Scene& scene, const std::vector<PlacedNode>& targets,
     result = with_changed(result, placed.node->id,
                           [&](Node& node) { node.object = with_sets(*node.object, std::move(change.sets)); });
   }
-  if (texels == 0) throw EditError("no opaque texel lies there: nothing was erased");
+  if (texels == 0) throw EditError("the region contains no opaque texel, so nothing was erased");
   std::uint64_t left = 0;
   for (const PlacedNode& placed : placed_nodes(result))
     if (placed.node->object) left += placed.node->object->opaque_texel_count();
@@ -38,7 +38,7 @@ Outcome apply(const Scene& scene, const Erase& edit) {
   const bool in_picture = edit.picture.polygon || edit.picture.brush || edit.picture.depth;
   const int ways =
       int{edit.box.has_value()} + int{edit.sphere.has_value()} + int{edit.half_space.has_value()} + int{in_picture};
-  if (ways != 1) throw FieldError("box", "exactly one of box, sphere, half_space and a picture's region must be given");
+  if (ways != 1) throw FieldError("box", "exactly one of box, sphere, half_space and a picture region must be given");
   if (in_picture) {
     const PictureRegion region(scene, edit.picture);
     const std::optional<SceneRays> rays =
@@ -55,7 +55,7 @@ Outcome apply(const Scene& scene, const Erase& edit) {
     });
   }
   return erased(scene, targets, [&](const PlacedNode& placed) {
-    const FramePoints points(edit.frame, placed);
+    const FrameTransform points(edit.frame, placed);
     if (edit.box) return region_of(points, *edit.box);
     if (edit.sphere) return region_of(points, *edit.sphere);
     return region_of(points, *edit.half_space);
@@ -64,18 +64,18 @@ Outcome apply(const Scene& scene, const Erase& edit) {
 
 REBAKE_DESCRIBE_EDIT(
     Erase,
-    "Clears the opacity of texels inside a region or in a picture, where an object's edge runs through triangles; "
+    "Makes texels inside a region transparent, to cut through triangles; "
     "all "
     "other texels stay bit for bit.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only of this node and those inside it; left out: of all that is visible and not locked");
+            "only this node and its children; default: all visible, unlocked objects");
       visit("box", edit.box, Need::optional, "inside a box");
       visit("sphere", edit.sphere, Need::optional, "inside a sphere; radius as for select");
-      visit("half_space", edit.half_space, Need::optional, "on the side that the normal points to");
-      visit("frame", edit.frame, Need::optional, "of box, sphere and half_space, as for select");
+      visit("half_space", edit.half_space, Need::optional, "in the half-space that the normal points into");
+      visit("frame", edit.frame, Need::optional, "coordinates of box, sphere and half_space, as for select");
       PictureFields::fields(edit.picture, visit);
-      visit("through", edit.through, Need::optional, "in a picture: hidden texels too");
+      visit("through", edit.through, Need::optional, "in a picture: also occluded texels");
     })
 
 }  // namespace rebake

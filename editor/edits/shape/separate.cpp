@@ -7,11 +7,11 @@ namespace rebake {
 Scene apply(const Scene& scene, const Separate& edit) {
   const PlacedNode placed = object_with_selection(scene, edit.node);
   if (!edit.as.empty() && find(scene, edit.as) != nullptr)
-    throw FieldError("as", "\"" + edit.as + "\" is the name of another node already");
+    throw FieldError("as", "\"" + edit.as + "\" is already the name of another node; choose another name");
   const TriangleSet& selection = *placed.node->selection;
   if (count(selection) == selection.size())
     throw EditError("all triangles of \"" + placed.node->name +
-                    "\" are selected; there would be nothing left to separate from");
+                    "\" are selected; deselect some, or rename the node instead");
   Node part = *placed.node;
   part.id = NodeId::none;
   part.name = edit.as.empty() ? placed.node->name : edit.as;
@@ -24,9 +24,9 @@ Scene apply(const Scene& scene, const Separate& edit) {
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Separate, "Makes the selected triangles of a node a node of its own, after it.", (auto& edit, auto& visit) {
+    Separate, "Moves the selected triangles of a node into a new node after it.", (auto& edit, auto& visit) {
       visit("node", edit.node, Need::required, "node to separate from");
-      visit("as", edit.as, Need::optional, "name of the new node; empty: the node's with a number");
+      visit("as", edit.as, Need::optional, "name of the new node; empty: the node's name with a number");
     })
 
 }  // namespace rebake

@@ -11,8 +11,8 @@
 #include "editor/edits/describe.h"
 #include "editor/edits/select/selecting.h"
 #include "editor/edits/stored_view.h"
-#include "mesh_ops/features/alike.h"
 #include "mesh_ops/features/atlas.h"
+#include "mesh_ops/features/near_duplicates.h"
 #include "mesh_ops/features/slim.h"
 #include "mesh_ops/select/duplicates.h"
 
@@ -26,7 +26,7 @@ EyeRegion eyes_for(const PlacedNode& placed, const std::vector<Camera>& cameras,
   EyeRegion eyes;
   eyes.world_to_object = placed.to_world.inverse();
   if (edit.eyes) eyes.box = Box(edit.eyes->min, edit.eyes->max);
-  for (const Camera& camera : cameras) eyes.standpoints.push_back(standpoint_of(camera, eyes.world_to_object));
+  for (const Camera& camera : cameras) eyes.standpoints.push_back(viewpoint_of(camera, eyes.world_to_object));
   return eyes;
 }
 
@@ -44,12 +44,13 @@ std::uint64_t opaque_texels(const BakedObject& object) {
 }
 
 // The repacked texture sets; nothing if texels cannot be moved or less than 5 % of the texel area would be saved.
-std::optional<std::vector<TextureSet>> packed(const BakedObject& object, const ShownBy& shown_by) {
+std::optional<std::vector<TextureSet>> packed(const BakedObject& object,
+                                              const PatchRepresentatives& representative_of) {
   if (!std::all_of(object.sets.begin(), object.sets.end(), can_pack)) return std::nullopt;
   int side = largest_side;
   for (const TextureSet& set : object.sets) side = std::max({side, set.texels->width(), set.texels->height()});
   BakedObject made;
-  made.sets = pack(object.sets, side, object.sets.front().texels->alpha_code(), shown_by).sets;
+  made.sets = pack(object.sets, side, object.sets.front().texels->alpha_code(), representative_of).sets;
   // Reordered patches compress slightly worse, so small savings are not worth it.
   constexpr double worth_it = 0.95;
   if (static_cast<double>(texel_area(made)) > worth_it * static_cast<double>(texel_area(object))) return std::nullopt;
@@ -62,7 +63,7 @@ double squared_loss_of(double db) { return std::pow(10.0, -db / 10); }
 
 // Lossy compression of texel colours: merged near-duplicate patches, and fewer bits per feature.
 struct Loss {
-  AlikePatches alike;
+  DuplicatePatches alike;
   BitsFound bits;
 };
 
@@ -76,7 +77,7 @@ Loss best_loss(const BakedObject& object, double psnr, const Progress& progress)
   Loss best{{}, fewest_bits(object, psnr, progress)};
   double least = opaque * sum_of(best.bits.bits);
   for (const double share : {0.5, 0.1}) {
-    Loss loss{alike_patches(object, share * may_lose, progress), {}};
+    Loss loss{near_duplicate_patches(object, share * may_lose, progress), {}};
     if (loss.alike.merged == 0) break;
     loss.bits = fewest_bits(object, db_of(may_lose - loss.alike.squared_loss), progress);
     const double left = (opaque - static_cast<double>(loss.alike.texels)) * sum_of(loss.bits.bits);
@@ -88,12 +89,11 @@ Loss best_loss(const BakedObject& object, double psnr, const Progress& progress)
 }
 
 std::string loss_words(const Loss& loss) {
-  const AlikePatches& alike = loss.alike;
+  const DuplicatePatches& alike = loss.alike;
   const BitsFound& found = loss.bits;
   std::string words;
   if (alike.merged > 0)
-    words =
-        fmt::format("{} of {} patches of texels show those of others that look alike, ", alike.merged, alike.patches);
+    words = fmt::format("{} of {} texel patches use those of near-duplicates, ", alike.merged, alike.patches);
   if (found.bits == FeatureBits{8, 8, 8, 8, 8, 8, 8, 8}) {
     words += "all features keep their 8 bits";
   } else {
@@ -101,13 +101,13 @@ std::string loss_words(const Loss& loss) {
         fmt::format("features keep {} bits ({:.1f} on average)", fmt::join(found.bits, ", "), sum_of(found.bits) / 8.0);
   }
   const double lost = alike.squared_loss + squared_loss_of(found.psnr_db);
-  return lost > 0 ? fmt::format("{}: texels' colours at {:.1f} dB", words, db_of(lost)) : words;
+  return lost > 0 ? fmt::format("{}: colours of texels at {:.1f} dB PSNR", words, db_of(lost)) : words;
 }
 
 struct Slimmed {
   std::shared_ptr<const BakedObject> object;  ///< null if no triangle is visible
   TriangleSet dropped;                        ///< flags of the removed triangles
-  bool shows_nothing = false, reordered = false;
+  bool fully_transparent = false, reordered = false;
   std::vector<std::string> lines;
 };
 
@@ -126,7 +126,7 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
   double opening = 1;
   std::size_t once = 0;
   for (const PlacedNode& placed : placements) {
-    const Sightings seen = look_from(*single, eyes_for(placed, cameras, edit), edit.rays, progress);
+    const VisibilityReport seen = traced_visibility(*single, eyes_for(placed, cameras, edit), edit.rays, progress);
     for (std::size_t f = 0; f < unseen.size(); ++f) unseen[f] &= seen.unseen[f];
     rays += seen.rays;
     rays_each = std::max(rays_each, seen.rays_each);
@@ -135,7 +135,7 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
     if (around) break;
   }
   if (count(unseen) == unseen.size()) {
-    result.shows_nothing = opaque_texels(before) == 0;
+    result.fully_transparent = opaque_texels(before) == 0;
     return result;
   }
   std::size_t number = 0;
@@ -146,7 +146,7 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
   made->bodies = before.bodies;
   Loss loss;
   if (edit.psnr > 0) loss = best_loss(*made, edit.psnr, progress);
-  if (auto smaller = packed(*made, loss.alike.shown_by)) {
+  if (auto smaller = packed(*made, loss.alike.representative_of)) {
     made->sets = std::move(*smaller);
     result.reordered = true;
   } else if (loss.alike.merged > 0) {
@@ -155,22 +155,22 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
   bool changed = result.reordered || count(result.dropped) > 0;
   for (TextureSet& set : made->sets) {
     const auto was = set.texels;
-    set.texels = with_empty_rest(set);
+    set.texels = without_unused_texels(set);
     if (edit.psnr > 0) set.texels = with_bits(set.texels, loss.bits.bits);
     changed = changed || set.texels != was;
   }
   const std::size_t removed = count(unseen);
   result.lines.push_back(
       fmt::format("{} of {} triangles removed ({} unseen, {} duplicates), opaque texels {} → {}, {:.2f} → "
-                  "{:.2f} million texels in all",
+                  "{:.2f} million texels in total",
                   removed + duplicates, all, removed, duplicates, opaque_texels(before), opaque_texels(*made),
                   static_cast<double>(texel_area(before)) / 1e6, static_cast<double>(texel_area(*made)) / 1e6));
   if (removed > 0)
     result.lines.push_back(fmt::format(
-        "{} rays, {} from each triangle before it was removed: at most {:.2g} % of the lines of sight to any of them "
-        "are open (95 % sure); the smallest opening found lets {:.2g} % through, {} triangles were seen by one ray "
+        "{} rays, {} from each removed triangle: at most {:.2g} % of the lines of sight to any of them "
+        "are unoccluded (95 % confidence); smallest visible share found {:.2g} %; {} triangles were reached by one ray "
         "only",
-        rays, rays_each, 100 * most_missed(removed, rays_each), 100 * opening, once));
+        rays, rays_each, 100 * missed_share_bound(removed, rays_each), 100 * opening, once));
   if (edit.psnr > 0) result.lines.push_back(loss_words(loss));
   // If nothing changed, the object stays shared.
   result.object = changed ? made : placements.front().node->object;
@@ -182,10 +182,10 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
 Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
   if (edit.rays < 16 || edit.rays > 1 << 20) throw FieldError("rays", "must lie between 16 and 1048576");
   if (edit.psnr != 0 && !(edit.psnr >= 20 && edit.psnr <= 80))
-    throw FieldError("psnr", "must lie between 20 and 80 dB, or be 0: nothing may be lost");
-  if (edit.eyes && !edit.views.empty()) throw FieldError("eyes", "either eyes or views, not both");
+    throw FieldError("psnr", "must lie between 20 and 80 dB, or be 0 (lossless)");
+  if (edit.eyes && !edit.views.empty()) throw FieldError("eyes", "cannot be combined with views");
   if (edit.eyes && !((edit.eyes->max - edit.eyes->min).minCoeff() >= 0))
-    throw FieldError("eyes", "its min must not lie above its max");
+    throw FieldError("eyes", "min must not be above max");
   std::vector<Camera> cameras;
   for (const std::string& name : edit.views) cameras.push_back(stored_view(scene, name, "views"));
   // Nodes that share an object continue to share it: a triangle that is visible in any of them stays.
@@ -205,12 +205,14 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
     const BakedObject& before = *group.front().node->object;
     const Slimmed slimmed = slimmed_object(before, group, cameras, edit, progress);
     const std::string& first = group.front().node->name;
-    const std::string name = group.size() == 1 ? fmt::format("\"{}\"", first)
-                                               : fmt::format("\"{}\" and {} that share it", first, group.size() - 1);
+    const std::string name = group.size() == 1
+                                 ? fmt::format("\"{}\"", first)
+                                 : fmt::format("\"{}\" and {} nodes that share its object", first, group.size() - 1);
     if (!slimmed.object) {
-      const std::string why = slimmed.shows_nothing ? "has no opaque texel: remove it" : "is not seen from there";
+      const std::string why =
+          slimmed.fully_transparent ? "has no opaque texel, so it can be removed" : "is not visible from there";
       if (groups.size() == 1) throw EditError(fmt::format("{} {}; nothing was changed", name, why));
-      lines.push_back(fmt::format("{} {}; it was left as it is", name, why));
+      lines.push_back(fmt::format("{} {}; it was not changed", name, why));
       continue;
     }
     for (const std::string& line : slimmed.lines) lines.push_back(fmt::format("{}: {}", name, line));
@@ -227,36 +229,38 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
         node.selection = nullptr;
       });
     if (lost)
-      lines.push_back(fmt::format("{}: its stored selections are gone, since triangles are in another order", name));
-    if (deselected) lines.push_back(fmt::format("{}: nothing is selected any more", name));
+      lines.push_back(fmt::format("{}: stored selections were removed, because the order of triangles changed", name));
+    if (deselected) lines.push_back(fmt::format("{}: the selection was cleared", name));
     if (count(slimmed.dropped) > 0 && (scene.light || !before.bodies.empty()))
       lines.push_back(fmt::format(
-          "{}: light that follows edits takes what was slimmed for removed; slim a scene without it", name));
+          "{}: light that follows edits treats slimmed triangles as removed; slim the scene before light is set",
+          name));
   }
   return {std::move(result), {std::move(lines)}};
 }
 
 REBAKE_DESCRIBE_EDIT(
     Slim,
-    "Removes triangles that nobody sees and duplicates, packs the texels that are left, and, where psnr is given, "
-    "lets patches that look alike share texels and keeps fewer bits of the features: smaller folders, faster pictures.",
+    "Removes unseen and duplicate triangles, repacks the remaining texels, and, if psnr is given, "
+    "merges near-duplicate patches and removes feature bits: smaller folders, faster rendering.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
-            "only this node and those inside it; left out: all that is visible. Objects hide themselves only");
+            "only this node and its children; default: all visible objects. Objects do not occlude each other");
       visit("views", edit.views, Need::optional,
-            "names of stored views: what none of their eyes sees goes, as far as rays find out: what was done says how "
-            "sure that is");
+            "names of stored views: triangles not visible from any of them are removed; the report states the "
+            "confidence");
       visit("eyes", edit.eyes, Need::optional,
-            "box in the world: what no eye in it sees goes; with neither, what no eye outside the object sees");
-      visit("rays", edit.rays, Need::optional,
-            "at most, from each triangle before it counts as unseen, 16 to 1048576: 1024, doubled until that finds "
-            "nothing "
-            "more");
+            "world box: triangles not visible from inside it are removed; default: those not visible from outside the "
+            "object");
       visit(
-          "psnr", edit.psnr, Need::optional,
-          "dB that texels' colours keep, 20 to 80, against those as they are now, while patches that look alike become "
-          "one (so that erasing in one erases in all of them) and features lose bits; 0: texels that are kept stay as "
-          "they are");
+          "rays", edit.rays, Need::optional,
+          "maximum number of rays per unseen triangle, 16 to 1048576: starts with 1024, doubled until a doubling finds "
+          "nothing "
+          "more");
+      visit("psnr", edit.psnr, Need::optional,
+            "PSNR of texel colours in dB, 20 to 80, relative to the present ones; near-duplicate patches become "
+            "one (so erasing in one erases in all) and features lose bits; 0: lossless, the remaining texels stay as "
+            "they are");
     })
 
 }  // namespace rebake

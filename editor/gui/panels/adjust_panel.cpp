@@ -31,7 +31,7 @@ using Kind = Adjustable::Kind;
 // Adjustable fields by the edit's op. Edits without an entry cannot be adjusted.
 const std::map<std::string, std::vector<Adjustable>>& adjustable_edits() {
   static const std::vector<Adjustable> limits = {
-      {"from", "Begins", Kind::length}, {"to", "Ends", Kind::length}, {"falloff", "Soft border", Kind::length}};
+      {"from", "Start", Kind::length}, {"to", "End", Kind::length}, {"falloff", "Falloff", Kind::length}};
   const auto with_limits = [](std::vector<Adjustable> list) {
     list.insert(list.end(), limits.begin(), limits.end());
     return list;
@@ -41,10 +41,10 @@ const std::map<std::string, std::vector<Adjustable>>& adjustable_edits() {
       {"twist", with_limits({{"degrees", "Angle", Kind::degrees}})},
       {"taper", with_limits({{"factor", "Factor", Kind::factor}})},
       {"stretch", with_limits({{"factor", "Factor", Kind::factor}})},
-      {"cage", {{"falloff", "Soft border", Kind::length}}},
+      {"cage", {{"falloff", "Falloff", Kind::length}}},
       {"transform",
-       {{"translate", "Move", Kind::point}, {"rotate", "Turn", Kind::turn}, {"scale", "Scale", Kind::factors}}},
-      {"select_like", {{"color", "Difference", Kind::factor}}},
+       {{"translate", "Move", Kind::point}, {"rotate", "Rotate", Kind::turn}, {"scale", "Scale", Kind::factors}}},
+      {"select_like", {{"color", "Tolerance", Kind::factor}}},
       {"grow", {{"steps", "Steps", Kind::number}}},
       {"shrink", {{"steps", "Steps", Kind::number}}},
   };
@@ -108,7 +108,7 @@ ui::Changed draw_values(const Adjustable& field, json& object, double unit) {
 // Draws a labelled field and writes changes to `object`.
 ui::Changed draw_field(const Adjustable& field, json& object, double unit) {
   ui::label(field.label);
-  const announce::Part part(field.label);
+  const announce::Part part(field.field);
   ImGui::PushID(field.label);
   const ui::Changed changed = draw_values(field, object, unit);
   ImGui::PopID();
@@ -117,8 +117,8 @@ ui::Changed draw_field(const Adjustable& field, json& object, double unit) {
 
 }  // namespace
 
-void AdjustPanel::draw(Desk& desk, const ImVec2& corner, const ImVec2& room) {
-  const Snapshot& now = *desk.now;
+void AdjustPanel::draw(EditorContext& editor, const ImVec2& corner, const ImVec2& room) {
+  const Snapshot& now = *editor.now;
   if (now.steps_done == 0 || !now.before_last) return;
   const std::size_t edits = now.steps[now.steps_done - 1].edits;
   const Edit& last = now.done.back();
@@ -141,14 +141,14 @@ void AdjustPanel::draw(Desk& desk, const ImVec2& corner, const ImVec2& room) {
   ImGui::PopStyleColor();
   const announce::Part part("adjust");
   const std::string& title = now.steps[now.steps_done - 1].title;
-  ui::section(ui::shortened(title, px(230)).c_str(), was_small_ ? opened_small_ : desk.settings.adjust_open);
-  ui::tip(title, "F9", "The fields of the last step: change them, and it is done again with these.");
+  ui::section(ui::shortened(title, px(230)).c_str(), was_small_ ? opened_small_ : editor.settings.adjust_open);
+  ui::tip(title, "F9", "Adjusts the last step. Changing a field applies the step again.");
   ui::Changed changed = ui::Changed::nothing;
   // In a small viewport only the title is shown, until a click opens the panel.
   const bool small = room.x < px(560) || room.y < px(330);
   if (small && !std::exchange(was_small_, small)) opened_small_ = false;
   was_small_ = small;
-  if (small ? opened_small_ : desk.settings.adjust_open) {
+  if (small ? opened_small_ : editor.settings.adjust_open) {
     const double size =
         std::max(1e-300, world_bounds(now.scene).isEmpty() ? 1 : world_bounds(now.scene).diagonal().norm());
     const double unit = std::pow(10, std::floor(std::log10(size)) - 2);
@@ -159,19 +159,19 @@ void AdjustPanel::draw(Desk& desk, const ImVec2& corner, const ImVec2& room) {
   if (changed == ui::Changed::cancelled) {
     of_.reset();
     changing_ = false;
-    desk.drop_preview();
+    editor.drop_preview();
   }
   if (changed != ui::Changed::dragged && changed != ui::Changed::finished) return;
   try {
     const std::vector<Edit> list = changed_edits(now, edits);
     changing_ = changed == ui::Changed::dragged;
     if (changing_) {
-      desk.show_preview(list, *now.before_last);
+      editor.show_preview(list, *now.before_last);
     } else {
-      desk.adjust(list, {}, [this] { of_.reset(); });
+      editor.adjust(list, {}, [this] { of_.reset(); });
     }
   } catch (const std::exception& error) {
-    desk.messages.fail(error.what());
+    editor.messages.fail(error.what());
     object_ = to_json(last);
     changing_ = false;
   }

@@ -130,10 +130,10 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, bool same, 
                  color32(now || hot ? theme().text : theme().muted), choice.name.c_str());
     if (!hot) continue;
     if (same) view.marked = choice.worst;
-    ImGui::SetTooltip("%s: %.1f ms (%.1f to %.1f), %.1f dB, largest error %.0f of 255%s\n%s", choice.name.c_str(),
-                      choice.ms, choice.fastest, choice.slowest, choice.decibels, choice.largest,
-                      same ? ", ringed in the picture" : "",
-                      choice.samples > 0 ? "Click to use it at rest." : "Click to use it while the view moves.");
+    ImGui::SetTooltip(
+        "%s: %.1f ms (%.1f to %.1f), %.1f dB, largest error %.0f of 255%s\n%s", choice.name.c_str(), choice.ms,
+        choice.fastest, choice.slowest, choice.decibels, choice.largest, same ? ", circled in the viewport" : "",
+        choice.samples > 0 ? "Click to use this when the view is still." : "Click to use this while the view moves.");
     if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left)) continue;
     if (choice.samples > 0)
       view.samples = choice.samples;
@@ -153,7 +153,7 @@ void draw_effects(const FrameReport& report) {
     if (const auto found = report.times.pass_ms.find(pass.name); found != report.times.pass_ms.end())
       ImGui::Text("%.1f ms", found->second);
     else
-      ImGui::TextUnformatted(pass.runs ? "runs" : "left out");
+      ImGui::TextUnformatted(pass.runs ? "runs" : "skipped");
     ImGui::PopStyleColor();
     ImGui::TableNextColumn();
     ImGui::TextDisabled("%s", pass.why.c_str());
@@ -166,30 +166,31 @@ void draw_effects(const FrameReport& report) {
 void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameReport& report, bool& each_pass) {
   const announce::Part part("cost");
   ImGui::BeginDisabled(jobs.worker.busy() || now.scene.roots.empty());
-  const bool measures = jobs.costs ? ui::button("Measure again") : ui::primary_button("Measure this view");
+  const bool measures =
+      jobs.costs ? ui::button("Measure again##measure") : ui::primary_button("Measure this view##measure");
   ImGui::EndDisabled();
   if (measures) jobs.measure_costs(view, now.scene);
-  ui::tip("Measure this view", "", "Times each choice five times, and compares it with 64 samples a pixel.");
+  ui::tip("Measure this view", "", "Renders each setting five times and compares it with 64 samples per pixel.");
   ImGui::SameLine(0, px(space::section));
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("Samples a pixel");
+  ImGui::TextDisabled("Samples per pixel");
   ImGui::SameLine();
   int index = view.samples == 1 ? 0 : view.samples == 4 ? 1 : view.samples == 16 ? 2 : -1;
   if (ui::choice("samples", index, {"1", "4", "16"})) view.samples = index == 0 ? 1 : index == 1 ? 4 : 16;
   ImGui::SameLine(0, px(space::section));
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("Pictures a second while moving");
+  ImGui::TextDisabled("Frames per second while moving");
   ImGui::SameLine();
   int rate = view.target_rate == 10 ? 0 : view.target_rate == 17 ? 1 : view.target_rate == 30 ? 2 : 3;
   if (ui::choice("rate", rate, {"10", "17", "30", "60"}))
     view.target_rate = rate == 0 ? 10 : rate == 1 ? 17 : rate == 2 ? 30 : 60;
   ui::flow(px(140));
-  ui::toggle("Time each effect", each_pass);
-  ui::tip("Time each effect", "", "Waits after each, so that a picture takes longer.");
+  ui::toggle("Time each pass", each_pass);
+  ui::tip("Time each pass", "", "Waits for the GPU after each pass. Frames take longer.");
   ImGui::TextDisabled(
-      "%s", fmt::format("{:.1f} ms a picture, {:.0f} % of the resolution, {:.0f} a second while moving; "
+      "%s", fmt::format("{:.1f} ms per frame, {:.0f} % of the resolution, {:.0f} frames per second while moving; "
                         "{:.1f} MB on the GPU, {:.1f} MB of history. {}",
-                        report.times.frame_ms, report.scale * 100, report.pictures_a_second,
+                        report.times.frame_ms, report.scale * 100, report.frames_per_second,
                         static_cast<double>(report.gpu_bytes) / 1e6, static_cast<double>(now.history_bytes) / 1e6,
                         report.device)
                 .c_str());
@@ -204,10 +205,10 @@ void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameRep
     draw_chart(choices_of(*jobs.costs), view, same,
                {chart, std::max(px(120), room.y - (same && !smaller ? 0 : ImGui::GetTextLineHeightWithSpacing()))});
     if (!same)
-      ImGui::TextDisabled("Of the view or scene as it was: measure again for this one.");
+      ImGui::TextDisabled("Measured for an earlier view or scene. Measure again for the current one.");
     else if (smaller)
-      ImGui::TextDisabled("At %d×%d pixels: the reference takes 64 samples of each.", jobs.costs->view.width,
-                          jobs.costs->view.height);
+      ImGui::TextDisabled("Measured at %d×%d pixels, since the reference has 64 samples per pixel.",
+                          jobs.costs->view.width, jobs.costs->view.height);
     ImGui::EndGroup();
     ImGui::SameLine(0, px(space::section));
   }

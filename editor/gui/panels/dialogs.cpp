@@ -73,11 +73,11 @@ void Dialogs::draw_lost(Project& project, Thumbnails& thumbnails, const LostWork
   announce::item("sources: " + work.sources);
   ImGui::TextDisabled("%s", work.words().c_str());
   announce::item("words: " + work.words());
-  if (first ? ui::primary_button("Recover") : ui::button("Recover")) chosen_ = work;
+  if (first ? ui::primary_button("Recover##recover") : ui::button("Recover##recover")) chosen_ = work;
   if (!work.discarded) {
     ImGui::SameLine();
-    if (ui::button("Discard...")) discarding_ = work;
-    ui::tip("Discard", "", "Moves it to the trash, after a question.");
+    if (ui::button("Discard...##ask-discard")) discarding_ = work;
+    ui::tip("Discard", "", "Moves it to the trash after confirmation.");
   }
   ImGui::EndGroup();
   ImGui::PopID();
@@ -91,17 +91,17 @@ void Dialogs::draw_lost(Project& project, Thumbnails& thumbnails, const LostWork
 
 void Dialogs::draw_recovery(Project& project, Thumbnails& thumbnails) {
   const bool discarded = project.recoverable.front().discarded;
-  if (!begin_question(discarded ? "Discarded work" : "Work was not saved")) return;
+  if (!begin_question(discarded ? "Discarded work" : "Recover unsaved work")) return;
   const announce::Part part("dialog");
-  say(discarded ? fmt::format("Discarded work stays here for {} days.", trash_days)
-                : std::string("An editor ended without saving. Choose what to recover:"));
+  say(discarded ? fmt::format("Discarded work is deleted after {} days.", trash_days)
+                : std::string("The editor closed without saving. Choose the work to recover:"));
   ImGui::BeginChild("list", {px(540), std::min(px(420), px(100) * static_cast<float>(project.recoverable.size()))});
   for (std::size_t k = 0; k < project.recoverable.size() && !chosen_; ++k)
     draw_lost(project, thumbnails, project.recoverable[k], k == 0);
   ImGui::EndChild();
   ImGui::Dummy({0, px(6)});
   const bool later = ui::button(discarded ? "Close" : "Later");
-  if (!discarded) ui::tip("Later", "", "The editor asks again when it starts.");
+  if (!discarded) ui::tip("Later", "", "Asks again at the next start.");
   if (std::exchange(chosen_, std::nullopt) || later) {
     project.recoverable.clear();
     ImGui::CloseCurrentPopup();
@@ -116,17 +116,17 @@ void Dialogs::draw_discarding(Project& project) {
                   discarding_->words(), trash_days));
   bool done = false;
   answers_right(2);
-  if (ui::button("Discard", answer_size())) {
+  if (ui::button("Discard##discard", answer_size())) {
     try {
       discard(*discarding_);
       std::erase_if(project.recoverable, [&](const LostWork& one) { return one.journal == discarding_->journal; });
     } catch (const fs::filesystem_error& error) {
-      project.say_failed("The work was not discarded. " + error.path1().string() + ": " + error.code().message());
+      project.say_failed("Could not discard the work. " + error.path1().string() + ": " + error.code().message());
     }
     done = true;
   }
   ImGui::SameLine();
-  if (ui::primary_button("Cancel", answer_size())) done = true;
+  if (ui::primary_button("Cancel##cancel", answer_size())) done = true;
   if (done) {
     discarding_.reset();
     ImGui::CloseCurrentPopup();
@@ -134,63 +134,63 @@ void Dialogs::draw_discarding(Project& project) {
   ImGui::EndPopup();
 }
 
-void Dialogs::draw_quitting(Desk& desk) {
-  if (!desk.project.unsaved() && !desk.jobs.worker.busy() && !desk.jobs.film) {
+void Dialogs::draw_quitting(EditorContext& editor) {
+  if (!editor.project.unsaved() && !editor.jobs.worker.busy() && !editor.jobs.film) {
     may_quit_ = true;
     return;
   }
   if (!begin_question("Save the changes before closing?")) return;
   const announce::Part part("dialog");
-  const bool busy = desk.jobs.worker.busy() || desk.jobs.film;
-  say(busy ? "Something is still being done."
-           : "Changes that are not saved are lost" + (desk.project.path.empty()
-                                                          ? std::string(".")
-                                                          : " from " + desk.project.path.filename().string() + "."));
+  const bool busy = editor.jobs.worker.busy() || editor.jobs.film;
+  say(busy ? "A job is still running."
+           : "Unsaved changes will be lost" + (editor.project.path.empty()
+                                                   ? std::string(".")
+                                                   : " from " + editor.project.path.filename().string() + "."));
   answers_right(3);
   ImGui::BeginDisabled(busy);
   const auto quit = [this] { may_quit_ = true; };
-  if (ui::primary_button(desk.project.path.empty() ? "Save..." : "Save", answer_size())) {
-    desk.asking.quitting = false;
-    desk.project.saved_then = quit;
-    if (desk.project.path.empty())
-      desk.asking.path = PathQuestion::save_project;
+  if (ui::primary_button(editor.project.path.empty() ? "Save...##save" : "Save##save", answer_size())) {
+    editor.dialogs.quitting = false;
+    editor.project.after_save = quit;
+    if (editor.project.path.empty())
+      editor.dialogs.path = FileDialogPurpose::save_project;
     else
-      desk.project.save(desk.project.path);
+      editor.project.save(editor.project.path);
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndDisabled();
   ImGui::SameLine();
-  if (ui::button("Don't save", answer_size())) may_quit_ = true;
+  if (ui::button("Don't save##do-not-save", answer_size())) may_quit_ = true;
   ImGui::SameLine();
-  if (ui::button("Cancel", answer_size())) {
-    desk.asking.quitting = false;
+  if (ui::button("Cancel##cancel", answer_size())) {
+    editor.dialogs.quitting = false;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
 }
 
-void Dialogs::draw_replacing(Desk& desk) {
+void Dialogs::draw_replacing(EditorContext& editor) {
   if (!begin_question("Save the changes before opening another project?")) return;
   const announce::Part part("dialog");
-  Project& project = desk.project;
-  say("Another project takes the place of this one. Changes that are not saved are lost.");
+  Project& project = editor.project;
+  say("Opening another project closes this one. Unsaved changes will be lost.");
   bool done = false;
   answers_right(3);
-  if (ui::primary_button(project.path.empty() ? "Save..." : "Save", answer_size())) {
-    project.saved_then = [&project, paths = project.to_open] { project.open(paths, true); };
+  if (ui::primary_button(project.path.empty() ? "Save...##save" : "Save##save", answer_size())) {
+    project.after_save = [&project, paths = project.to_open] { project.open(paths, true); };
     if (project.path.empty())
-      desk.asking.path = PathQuestion::save_project;
+      editor.dialogs.path = FileDialogPurpose::save_project;
     else
       project.save(project.path);
     done = true;
   }
   ImGui::SameLine();
-  if (ui::button("Don't save", answer_size())) {
+  if (ui::button("Don't save##do-not-save", answer_size())) {
     project.open(project.to_open, true);
     done = true;
   }
   ImGui::SameLine();
-  if (ui::button("Cancel", answer_size())) done = true;
+  if (ui::button("Cancel##cancel", answer_size())) done = true;
   if (done) {
     project.to_open.clear();
     ImGui::CloseCurrentPopup();
@@ -199,14 +199,14 @@ void Dialogs::draw_replacing(Desk& desk) {
 }
 
 void Dialogs::draw_relinking(Project& project) {
-  if (!begin_question("Where are the sources now?")) return;
+  if (!begin_question("Locate missing sources")) return;
   const announce::Part part("dialog");
-  say(project.relinking->wanted_by.filename().string() + " needs what is not as it was:");
+  say(project.relinking->needed_by.filename().string() + " needs sources that are missing or changed:");
   for (Project::Relinking::Source& source : project.relinking->sources) {
     ImGui::PushID(source.path.c_str());
     ImGui::TextUnformatted((source.path.string() + " " + source.trouble).c_str());
     ImGui::SetNextItemWidth(px(540));
-    ImGui::InputTextWithHint("##now", "The folder where it lies now", &source.now);
+    ImGui::InputTextWithHint("##now", "New location of the folder", &source.now);
     announce::item(source.path.string());
     ImGui::PopID();
   }
@@ -216,14 +216,14 @@ void Dialogs::draw_relinking(Project& project) {
     done = true;
   }
   ImGui::SameLine();
-  if (project.relinking && project.relinking->wanted_by.extension() == ".journal") {
-    if (ui::button("Go on without them")) {
+  if (project.relinking && project.relinking->needed_by.extension() == ".journal") {
+    if (ui::button("Continue without them")) {
       project.relink(true);
       done = true;
     }
     ImGui::SameLine();
   }
-  if (ui::button("Cancel")) {
+  if (ui::button("Cancel##cancel")) {
     project.relinking.reset();
     done = true;
   }
@@ -231,43 +231,43 @@ void Dialogs::draw_relinking(Project& project) {
   ImGui::EndPopup();
 }
 
-bool Dialogs::escape(Desk& desk) {
-  if (desk.asking.quitting)
-    desk.asking.quitting = false;
-  else if (!desk.project.to_open.empty())
-    desk.project.to_open.clear();
-  else if (desk.project.relinking)
-    desk.project.relinking.reset();
+bool Dialogs::escape(EditorContext& editor) {
+  if (editor.dialogs.quitting)
+    editor.dialogs.quitting = false;
+  else if (!editor.project.to_open.empty())
+    editor.project.to_open.clear();
+  else if (editor.project.relinking)
+    editor.project.relinking.reset();
   else if (discarding_)
     discarding_.reset();
-  else if (!desk.project.recoverable.empty())
-    desk.project.recoverable.clear();
-  else if (files_.leaves_comparing(desk))
+  else if (!editor.project.recoverable.empty())
+    editor.project.recoverable.clear();
+  else if (files_.close_comparison(editor))
     return true;
-  else if (desk.asking.path != PathQuestion::none)
-    desk.asking.path = PathQuestion::none;
+  else if (editor.dialogs.path != FileDialogPurpose::none)
+    editor.dialogs.path = FileDialogPurpose::none;
   else
     return false;
-  desk.project.saved_then = nullptr;
+  editor.project.after_save = nullptr;
   closes_ = true;
   return true;
 }
 
 // Draws only the most urgent dialog.
-void Dialogs::draw(Desk& desk, Thumbnails& thumbnails) {
+void Dialogs::draw(EditorContext& editor, Thumbnails& thumbnails) {
   if (std::exchange(closes_, false)) ImGui::ClosePopupsOverWindow(nullptr, false);
-  if (desk.asking.quitting)
-    draw_quitting(desk);
-  else if (!desk.project.to_open.empty())
-    draw_replacing(desk);
-  else if (desk.project.relinking)
-    draw_relinking(desk.project);
+  if (editor.dialogs.quitting)
+    draw_quitting(editor);
+  else if (!editor.project.to_open.empty())
+    draw_replacing(editor);
+  else if (editor.project.relinking)
+    draw_relinking(editor.project);
   else if (discarding_)
-    draw_discarding(desk.project);
-  else if (!desk.project.recoverable.empty())
-    draw_recovery(desk.project, thumbnails);
+    draw_discarding(editor.project);
+  else if (!editor.project.recoverable.empty())
+    draw_recovery(editor.project, thumbnails);
   else
-    files_.draw(desk, thumbnails);
+    files_.draw(editor, thumbnails);
 }
 
 }  // namespace rebake

@@ -8,9 +8,9 @@ namespace rebake {
 /// open.
 class Dialogs {
  public:
-  void draw(Desk& desk, Thumbnails& thumbnails);
+  void draw(EditorContext& editor, Thumbnails& thumbnails);
   /// Cancels the open dialog; returns false if none is open.
-  bool escape(Desk& desk);
+  bool escape(EditorContext& editor);
   /// Closes all Dear ImGui popups in the next frame.
   void close_popups() { closes_ = true; }
   /// Whether the desktop's own file dialog is open, which runs in another process.
@@ -22,8 +22,8 @@ class Dialogs {
   void draw_recovery(Project& project, Thumbnails& thumbnails);
   void draw_lost(Project& project, Thumbnails& thumbnails, const LostWork& work, bool first);
   void draw_discarding(Project& project);
-  void draw_quitting(Desk& desk);
-  void draw_replacing(Desk& desk);
+  void draw_quitting(EditorContext& editor);
+  void draw_replacing(EditorContext& editor);
   void draw_relinking(Project& project);
   FileDialog files_;
   std::optional<LostWork> chosen_;          ///< journal that the user chose to recover

@@ -10,7 +10,7 @@
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
-#include "editor/fields/field_line.h"
+#include "editor/fields/field_info.h"
 #include "editor/gui/panels/panels.h"
 #include "editor/gui/tools/expression.h"
 #include "editor/gui/ui/announce.h"
@@ -34,8 +34,8 @@ bool needs_selection(const std::string& op) {
   return false;
 }
 
-const FieldLine* field_named(const std::vector<FieldLine>& fields, const char* name) {
-  const auto found = std::find_if(fields.begin(), fields.end(), [&](const FieldLine& one) { return one.name == name; });
+const FieldInfo* field_named(const std::vector<FieldInfo>& fields, const char* name) {
+  const auto found = std::find_if(fields.begin(), fields.end(), [&](const FieldInfo& one) { return one.name == name; });
   return found == fields.end() ? nullptr : &*found;
 }
 
@@ -48,31 +48,31 @@ std::size_t selected_in(const Scene& scene) {
 
 }  // namespace
 
-void EditForm::begin(const Desk& desk) {
-  op_ = desk.asking.form;
+void EditForm::begin(const EditorContext& editor) {
+  op_ = editor.dialogs.form;
   problem_.clear();
   previewed_.clear();
   values_ = json::object();
   texts_.clear();
-  for (const FieldLine& field : type_named(op_)->fields()) {
+  for (const FieldInfo& field : type_named(op_)->fields()) {
     if (field.type.kind == FieldKind::nodes && field.required) {
       json list = json::array();
-      for (const NodeId id : desk.active_tops()) list.push_back(static_cast<std::uint64_t>(id));
+      for (const NodeId id : editor.active_tops()) list.push_back(static_cast<std::uint64_t>(id));
       values_[field.name] = list;
       texts_[field.name] = list.dump();
     }
-    if (field.name == "selection" && desk.selected_triangles() > 0) values_["selection"] = true;
+    if (field.name == "selection" && editor.selected_triangles() > 0) values_["selection"] = true;
     if (field.required && field.type.kind == FieldKind::number) values_[field.name] = 0;
   }
 }
 
 // One edit per node of the scope if the form has a node field without a choice, otherwise one edit. Throws EditError if
 // the scope has no node for the edit.
-std::vector<json> EditForm::lines(const Desk& desk) const {
+std::vector<json> EditForm::lines(const EditorContext& editor) const {
   json line = values_;
   line["op"] = op_;
-  const std::vector<FieldLine> fields = type_named(op_)->fields();
-  const FieldLine* const node = field_named(fields, "node");
+  const std::vector<FieldInfo> fields = type_named(op_)->fields();
+  const FieldInfo* const node = field_named(fields, "node");
   if (node == nullptr || node->type.kind != FieldKind::node || values_.contains("node")) return {line};
   const bool deforms = field_named(fields, "selection") != nullptr;
   const bool selection = needs_selection(op_) || (deforms && values_.value("selection", false));
@@ -81,39 +81,39 @@ std::vector<json> EditForm::lines(const Desk& desk) const {
     one["node"] = static_cast<std::uint64_t>(id);
     return one;
   };
-  if (desk.active.empty()) {
+  if (editor.active.empty()) {
     if (!node->required && (!deforms || selection)) return {line};
     // Nothing is picked, but the edit needs a node: use the first visible object.
-    for (const PlacedNode& placed : placed_nodes(desk.scene()))
+    for (const PlacedNode& placed : placed_nodes(editor.scene()))
       if (placed.visible && placed.node->object) return {with_node(placed.node->id)};
     throw EditError("the scene has no visible object");
   }
   std::vector<json> result;
   if (node->required && !selection)
-    for (const NodeId id : desk.active_tops()) result.push_back(with_node(id));
+    for (const NodeId id : editor.active_tops()) result.push_back(with_node(id));
   else
-    for (const std::optional<NodeRef>& one : desk.scope(selection)) result.push_back(with_node(one->id));
+    for (const std::optional<NodeRef>& one : editor.scope(selection)) result.push_back(with_node(one->id));
   if (result.empty())
-    throw EditError((selection ? "nothing is selected " : "nothing can be edited ") + desk.scope_words());
+    throw EditError((selection ? "nothing is selected " : "there is no node to edit ") + editor.scope_words());
   return result;
 }
 
 // Requests a preview of the edits. If a field is invalid, shows its error and waits.
-void EditForm::show(Desk& desk) {
-  if (desk.jobs.worker.busy()) return;
+void EditForm::show(EditorContext& editor) {
+  if (editor.jobs.worker.busy()) return;
   try {
-    const std::vector<json> wanted = lines(desk);
-    const Ground& ground = desk.scene().ground;
+    const std::vector<json> wanted = lines(editor);
+    const Ground& ground = editor.scene().ground;
     const std::string text =
         json(wanted).dump() + fmt::format(" {} {} {}", ground.normal.x(), ground.normal.z(), ground.height);
-    if (text == previewed_ && previewed_on_ == desk.scene().roots) return;
+    if (text == previewed_ && previewed_on_ == editor.scene().roots) return;
     previewed_ = text;
-    previewed_on_ = desk.scene().roots;
+    previewed_on_ = editor.scene().roots;
     std::vector<Edit> edits;
-    for (const json& line : wanted) edits.push_back(read_edit(line, desk.scene()));
+    for (const json& line : wanted) edits.push_back(read_edit(line, editor.scene()));
     // Imports have no preview: their files would be read twice.
     if (edits.front().is<Import>()) return;
-    desk.show_preview(std::move(edits));
+    editor.show_preview(std::move(edits));
     problem_.clear();
   } catch (const Error& error) {
     previewed_.clear();
@@ -122,24 +122,25 @@ void EditForm::show(Desk& desk) {
 }
 
 // For selecting edits: draws the number of triangles that would be selected, counted in the preview.
-void EditForm::draw_count(const Desk& desk) const {
+void EditForm::draw_count(const EditorContext& editor) const {
   if (!type_named(op_)->selects || !previews_ || !problem_.empty()) return;
-  const bool there = desk.preview && desk.preview->of == desk.scene().roots;
+  const bool there = editor.preview && editor.preview->of == editor.scene().roots;
   std::string text = "Counting...";
   if (there)
-    text = fmt::format("{} triangles selected (now {})", selected_in(desk.preview->scene), selected_in(desk.scene()));
+    text = fmt::format("Would select {} triangles (currently {})", selected_in(editor.preview->scene),
+                       selected_in(editor.scene()));
   ImGui::TextUnformatted(text.c_str());
   announce::item("count: " + text);
 }
 
-void EditForm::draw(Desk& desk, float right) {
-  if (desk.asking.form.empty()) {
+void EditForm::draw(EditorContext& editor, float right) {
+  if (editor.dialogs.form.empty()) {
     // Show the preview until the applied edit is done.
-    if (!op_.empty() && desk.at_rest()) desk.drop_preview();
+    if (!op_.empty() && editor.at_rest()) editor.drop_preview();
     op_.clear();
     return;
   }
-  if (op_ != desk.asking.form) begin(desk);
+  if (op_ != editor.dialogs.form) begin(editor);
   bool open = true;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   // At the viewport's top right corner, so that it does not cover the outliner, which sets the scope.
@@ -151,9 +152,9 @@ void EditForm::draw(Desk& desk, float right) {
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   ImGui::Begin((title + "###form").c_str(), &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
   const announce::Part part("form");
-  const std::vector<FieldLine> fields = type_named(op_)->fields();
+  const std::vector<FieldInfo> fields = type_named(op_)->fields();
   ui::muted(type_named(op_)->help);
-  for (const FieldLine& field : fields) {
+  for (const FieldInfo& field : fields) {
     ImGui::PushID(field.name.c_str());
     const char* name = field.name.c_str();
     std::string words = field.name;
@@ -165,12 +166,12 @@ void EditForm::draw(Desk& desk, float right) {
       if (ui::toggle("##value", value)) values_[name] = value;
     } else if (field.type.kind == FieldKind::node) {
       const std::uint64_t chosen = values_.value(name, std::uint64_t{0});
-      const NodePtr node = find(desk.scene(), static_cast<NodeId>(chosen));
-      const std::string scope = field.name == "node" ? "Scope: " + desk.scope_words() : "(none)";
+      const NodePtr node = find(editor.scene(), static_cast<NodeId>(chosen));
+      const std::string scope = field.name == "node" ? "Scope: " + editor.scope_words() : "(none)";
       if (ImGui::BeginCombo("##value", node ? node->name.c_str() : scope.c_str())) {
         if ((!field.required || field.name == "node") && ImGui::Selectable(scope.c_str(), chosen == 0))
           values_.erase(name);
-        for (const PlacedNode& placed : placed_nodes(desk.scene()))
+        for (const PlacedNode& placed : placed_nodes(editor.scene()))
           if (ImGui::Selectable(placed.node->name.c_str(), placed.node->id == static_cast<NodeId>(chosen)))
             values_[name] = static_cast<std::uint64_t>(placed.node->id);
         ImGui::EndCombo();
@@ -204,21 +205,21 @@ void EditForm::draw(Desk& desk, float right) {
       }
     }
     announce::item(field.name);
-    ui::tip(words, field.required ? "needed" : "", field.help + " (" + words_of(field) + ")");
+    ui::tip(words, field.required ? "needed" : "", field.help + " (" + notation_of(field) + ")");
     if (problem_.find("\"" + field.name + "\"") != std::string::npos) ui::wrapped(problem_, theme().danger);
     ImGui::PopID();
   }
-  const bool said = std::any_of(fields.begin(), fields.end(), [&](const FieldLine& field) {
+  const bool said = std::any_of(fields.begin(), fields.end(), [&](const FieldInfo& field) {
     return problem_.find("\"" + field.name + "\"") != std::string::npos;
   });
   if (!problem_.empty() && !said) ui::wrapped(problem_, theme().danger);
-  if (previews_) show(desk);
-  draw_count(desk);
-  if (ui::primary_button("Apply")) {
+  if (previews_) show(editor);
+  draw_count(editor);
+  if (ui::primary_button("Apply##apply")) {
     try {
       std::vector<Edit> edits;
-      for (const json& line : lines(desk)) edits.push_back(read_edit(line, desk.scene()));
-      desk.edits(edits);
+      for (const json& line : lines(editor)) edits.push_back(read_edit(line, editor.scene()));
+      editor.edits(edits);
       problem_.clear();
       open = false;
     } catch (const Error& error) {
@@ -228,9 +229,9 @@ void EditForm::draw(Desk& desk, float right) {
   ImGui::SameLine();
   if (ui::button("Close")) open = false;
   ImGui::SameLine();
-  if (ui::toggle("Preview", previews_) && !previews_) desk.drop_preview();
+  if (ui::toggle("Preview", previews_) && !previews_) editor.drop_preview();
   ImGui::End();
-  if (!open) desk.asking.form.clear();
+  if (!open) editor.dialogs.form.clear();
 }
 
 }  // namespace rebake

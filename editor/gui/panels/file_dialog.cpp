@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Question {
-  PathQuestion kind;
+  FileDialogPurpose kind;
   const char* title;
   const char* hint;
   const char* action;           ///< label of the primary button
@@ -37,45 +37,51 @@ struct Question {
   const char* listed = ending;  ///< extensions of the listed files, separated by spaces
 };
 constexpr Question questions[] = {
-    {PathQuestion::open, "Open", "A baked scene, a scene folder, or a project (.rebake).", "Open", "", ".rebake"},
-    {PathQuestion::save_project, "Save project", "A file that keeps all steps.", "Save", ".rebake"},
-    {PathQuestion::save_scene, "Save scene folder", "A folder that keeps every node, not the steps.", "Save", ""},
-    {PathQuestion::export_folder, "Export", "A folder that MobileNeRF viewers open.", "Export", ""},
-    {PathQuestion::screenshot, "Screenshot", "A PNG file of the scene, without grid and handles.", "Write", ".png"},
-    {PathQuestion::turntable, "Turntable", "A folder for pictures from all around: 000.png, 001.png, …", "Write", ""},
-    {PathQuestion::camera_path, "Camera path", "A folder for pictures on a way through the stored views.", "Write", ""},
-    {PathQuestion::save_script, "Save as script", "A file with a line an edit.", "Save", ".jsonl"},
-    {PathQuestion::run_script, "Run script", "A file with a line an edit.", "Run", ".jsonl"},
-    {PathQuestion::light_picture, "Picture of light", "All directions in one picture, twice as wide as high.", "Take",
-     "", ".exr .hdr .png .jpg .jpeg .tif .tiff"},
+    {FileDialogPurpose::open, "Open", "A baked scene, a scene folder, or a project (.rebake).", "Open", "", ".rebake"},
+    {FileDialogPurpose::save_project, "Save project", "A file with all steps of the history.", "Save", ".rebake"},
+    {FileDialogPurpose::save_scene, "Save scene folder", "A folder with all nodes, without the history.", "Save", ""},
+    {FileDialogPurpose::export_folder, "Export", "A folder that MobileNeRF viewers can open.", "Export", ""},
+    {FileDialogPurpose::screenshot, "Screenshot", "A PNG file of the scene, without grid and handles.", "Write",
+     ".png"},
+    {FileDialogPurpose::turntable, "Turntable", "A folder for images of a full orbit: 000.png, 001.png, …", "Write",
+     ""},
+    {FileDialogPurpose::camera_path, "Camera path", "A folder for images along a path through the stored views.",
+     "Write", ""},
+    {FileDialogPurpose::save_script, "Save as script", "A file with one edit per line.", "Save", ".jsonl"},
+    {FileDialogPurpose::run_script, "Run script", "A file with one edit per line.", "Run", ".jsonl"},
+    {FileDialogPurpose::light_picture, "Environment map", "An equirectangular image, twice as wide as high.", "Use", "",
+     ".exr .hdr .png .jpg .jpeg .tif .tiff"},
 };
 
-const Question& question_of(PathQuestion kind) {
+const Question& question_of(FileDialogPurpose kind) {
   for (const Question& question : questions)
     if (question.kind == kind) return question;
   return questions[0];
 }
 
-bool reads(PathQuestion asked) {
-  return asked == PathQuestion::open || asked == PathQuestion::run_script || asked == PathQuestion::light_picture;
+bool reads(FileDialogPurpose asked) {
+  return asked == FileDialogPurpose::open || asked == FileDialogPurpose::run_script ||
+         asked == FileDialogPurpose::light_picture;
 }
 
 // Checks a path before it is used. Returns an error message; empty if the path is usable.
-std::string problem_with(const fs::path& path, PathQuestion asked) {
+std::string problem_with(const fs::path& path, FileDialogPurpose asked) {
   const bool writes = !reads(asked);
   std::error_code error;
   if (path.empty()) return "Type or choose a path.";
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (writes && !fs::is_directory(parent, error)) return "There is no folder " + parent.string() + ".";
-  if (!writes && !fs::exists(path, error)) return "There is nothing at " + path.string() + ".";
-  if (asked == PathQuestion::light_picture)
-    return fs::is_regular_file(path, error) ? "" : path.filename().string() + " is not a file.";
+  if (writes && !fs::is_directory(parent, error)) return "Folder not found: " + parent.string() + ".";
+  if (!writes && !fs::exists(path, error)) return "File not found: " + path.string() + ".";
+  if (asked == FileDialogPurpose::light_picture)
+    return fs::is_regular_file(path, error) ? "" : path.filename().string() + " is not a file. Choose an image file.";
   if (!writes && fs::is_directory(path, error) && !holds_scene(path))
-    return path.filename().string() + " holds no scene that can be read.";
+    return path.filename().string() + " is not a scene in a known format.";
   return "";
 }
 
-bool makes_film(PathQuestion asked) { return asked == PathQuestion::turntable || asked == PathQuestion::camera_path; }
+bool makes_film(FileDialogPurpose asked) {
+  return asked == FileDialogPurpose::turntable || asked == FileDialogPurpose::camera_path;
+}
 
 struct Bookmark {
   const char* icon;
@@ -86,7 +92,7 @@ std::vector<Bookmark> bookmarks(const Settings& settings) {
   std::vector<Bookmark> list;
   std::error_code error;
   if (const char* home = std::getenv("HOME")) list.push_back({icons::home, "Home", home});
-  list.push_back({icons::folder_outline, "Where it was started", fs::current_path(error)});
+  list.push_back({icons::folder_outline, "Working directory", fs::current_path(error)});
   if (const fs::path samples = sample_folder(); !samples.empty())
     list.push_back({icons::cube_outline, "Samples", samples});
   std::set<fs::path> seen;
@@ -99,7 +105,7 @@ std::vector<Bookmark> bookmarks(const Settings& settings) {
 }
 
 // Lines of text about everything that an export of this scene loses.
-std::vector<std::string> losses(const Scene& scene, bool plain) {
+std::vector<std::string> export_losses(const Scene& scene, bool plain) {
   std::vector<std::string> lines;
   std::size_t objects = 0, hidden = 0, turned = 0;
   for (const PlacedNode& placed : placed_nodes(scene)) {
@@ -107,155 +113,158 @@ std::vector<std::string> losses(const Scene& scene, bool plain) {
     placed.visible ? ++objects : ++hidden;
     if (placed.visible && placed.node->object->any_rotations()) ++turned;
   }
-  if (plain) lines.emplace_back("one decoder is fitted to all of it; the messages say what that costs in dB");
+  if (plain) lines.emplace_back("one decoder is fitted to all objects; the message log reports its error in dB");
   if (objects > 1 && !plain)
     lines.push_back(
-        fmt::format("{} objects: one folder holds one decoder; those that do not fit together become a "
-                    "scene folder (scene.json), which only Rebake opens",
+        fmt::format("{} objects: one folder has one decoder; objects with different decoders are written as a "
+                    "scene folder (scene.json), which only Rebake can open",
                     objects));
   if (hidden > 0)
-    lines.push_back(hidden == 1 ? std::string("1 hidden object is left out")
-                                : fmt::format("{} hidden objects are left out", hidden));
+    lines.push_back(hidden == 1 ? std::string("1 hidden object is not exported")
+                                : fmt::format("{} hidden objects are not exported", hidden));
   if (turned > 0 && !plain)
     lines.push_back(
-        fmt::format("{} bent: the plain format keeps places, not turned view directions; the messages "
-                    "say what that costs in dB",
+        fmt::format("{} deformed: the plain format stores positions, but no rotated view directions; the message log "
+                    "reports the error in dB",
                     turned == 1 ? std::string("1 object is") : fmt::format("{} objects are", turned)));
-  lines.emplace_back("names, groups, stored views and history are not in the plain format");
+  lines.emplace_back("the plain format has no names, groups, stored views or history");
   return lines;
 }
 
 }  // namespace
 
-std::vector<NodeRef> FileDialog::wanted_nodes(const Desk& desk) const {
+std::vector<NodeRef> FileDialog::wanted_nodes(const EditorContext& editor) const {
   std::vector<NodeRef> nodes;
   if (only_picked_)
-    for (const NodeId id : desk.active_tops()) nodes.push_back(NodeRef{id});
+    for (const NodeId id : editor.active_tops()) nodes.push_back(NodeRef{id});
   return nodes;
 }
 
-void FileDialog::begin(const Desk& desk) {
-  asked_ = desk.asking.path;
+void FileDialog::begin(const EditorContext& editor) {
+  asked_ = editor.dialogs.path;
   only_picked_ = false;
   replacing_.clear();
   list_.look_at({}, "", true);
   video_ = false;
   preview_.forget();
-  width_ = desk.view.width;
-  height_ = desk.view.height;
+  width_ = editor.view.width;
+  height_ = editor.view.height;
   std::error_code gone;
-  const bool kept = desk.asking.path == PathQuestion::save_project && !desk.project.path.empty();
-  const fs::path last = reads(asked_) ? desk.settings.opened_from : desk.settings.written_to;
+  const bool kept = editor.dialogs.path == FileDialogPurpose::save_project && !editor.project.path.empty();
+  const fs::path last = reads(asked_) ? editor.settings.opened_from : editor.settings.written_to;
   const fs::path start = fs::is_directory(last, gone) ? last : fs::current_path(gone);
-  path_ = kept ? desk.project.path.string() : (start / "").string();
+  path_ = kept ? editor.project.path.string() : (start / "").string();
   problem_.clear();
-  if (kept || reads(asked_) || desk.scene().roots.empty()) return;
+  if (kept || reads(asked_) || editor.scene().roots.empty()) return;
   // Suggest a name.
-  const std::string title = desk.scene().roots.front()->name;
+  const std::string title = editor.scene().roots.front()->name;
   const std::string ending = question_of(asked_).ending;
-  if (asked_ == PathQuestion::export_folder) path_ += title + "-edited";
-  if (makes_film(asked_)) path_ += title + (asked_ == PathQuestion::turntable ? "-turntable" : "-path");
+  if (asked_ == FileDialogPurpose::export_folder) path_ += title + "-edited";
+  if (makes_film(asked_)) path_ += title + (asked_ == FileDialogPurpose::turntable ? "-turntable" : "-path");
   if (!ending.empty()) path_ += title + ending;
 }
 
-void FileDialog::carry_out(Desk& desk, const fs::path& path) {
-  if (makes_film(desk.asking.path) && desk.jobs.film) throw Error("a film is still being made; Esc ends it");
-  if (desk.asking.path != PathQuestion::light_picture)
-    (reads(desk.asking.path) ? desk.settings.opened_from : desk.settings.written_to) = path.parent_path().string();
-  if (makes_film(desk.asking.path) || desk.asking.path == PathQuestion::screenshot)
-    desk.jobs.pictured = wanted_nodes(desk);
-  switch (desk.asking.path) {
-    case PathQuestion::open:
+void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
+  if (makes_film(editor.dialogs.path) && editor.jobs.film)
+    throw Error("another turntable or camera path is still being rendered; press Esc to cancel it");
+  if (editor.dialogs.path != FileDialogPurpose::light_picture)
+    (reads(editor.dialogs.path) ? editor.settings.opened_from : editor.settings.written_to) =
+        path.parent_path().string();
+  if (makes_film(editor.dialogs.path) || editor.dialogs.path == FileDialogPurpose::screenshot)
+    editor.jobs.rendered_nodes = wanted_nodes(editor);
+  switch (editor.dialogs.path) {
+    case FileDialogPurpose::open:
       if (list_.chosen().size() > 1) {
         std::vector<std::string> several;
         for (const fs::path& one : list_.chosen()) several.push_back(one.string());
-        desk.project.open(several);
+        editor.project.open(several);
       } else {
-        desk.project.open({path.string()});
+        editor.project.open({path.string()});
       }
       break;
-    case PathQuestion::save_project:
-      desk.project.save(path);
+    case FileDialogPurpose::save_project:
+      editor.project.save(path);
       break;
-    case PathQuestion::save_scene:
-      desk.project.save_scene(path);
+    case FileDialogPurpose::save_scene:
+      editor.project.save_scene(path);
       break;
-    case PathQuestion::export_folder:
-      desk.project.export_to(path, wanted_nodes(desk), plain_ ? std::optional(preview_.choice()) : std::nullopt);
+    case FileDialogPurpose::export_folder:
+      editor.project.export_to(path, wanted_nodes(editor), plain_ ? std::optional(preview_.choice()) : std::nullopt);
       break;
-    case PathQuestion::screenshot:
-      desk.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
+    case FileDialogPurpose::screenshot:
+      editor.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
       break;
-    case PathQuestion::turntable:
-      desk.jobs.film.emplace(path, width_, height_, turntable(desk.view.camera, pictures_), desk.now->sources);
+    case FileDialogPurpose::turntable:
+      editor.jobs.film.emplace(path, width_, height_, turntable(editor.view.camera, pictures_), editor.now->sources);
       break;
-    case PathQuestion::camera_path: {
+    case FileDialogPurpose::camera_path: {
       std::vector<Camera> views;
-      for (const std::string& name : view_names(desk.scene())) views.push_back(desk.scene().views.at(name));
-      if (views.size() < 2) throw Error("a path needs two stored views or more");
-      desk.jobs.film.emplace(path, width_, height_, camera_path(views, pictures_), desk.now->sources);
+      for (const std::string& name : view_names(editor.scene())) views.push_back(editor.scene().views.at(name));
+      if (views.size() < 2) throw Error("a camera path needs at least two stored views; store another view first");
+      editor.jobs.film.emplace(path, width_, height_, camera_path(views, pictures_), editor.now->sources);
       break;
     }
-    case PathQuestion::save_script:
-      desk.project.save_script(path);
+    case FileDialogPurpose::save_script:
+      editor.project.save_script(path);
       break;
-    case PathQuestion::light_picture: {
-      LightEdit edit = light_edit(desk.scene().light ? *desk.scene().light : SceneLight{});
+    case FileDialogPurpose::light_picture: {
+      LightEdit edit = light_edit(editor.scene().light ? *editor.scene().light : SceneLight{});
       edit.source = "picture";
       edit.picture = path.string();
       edit.content.clear();
-      desk.edit(edit);
+      editor.edit(edit);
       break;
     }
     default:
-      desk.project.run_script(path);
+      editor.project.run_script(path);
   }
 }
 
 // Buttons left of the answers that open the desktop's own file dialog.
-void FileDialog::draw_desktop_buttons(const Desk& desk, const std::string& ending) {
+void FileDialog::draw_desktop_buttons(const EditorContext& editor, const std::string& ending) {
   if (!DesktopFileDialog::there()) return;
   using Kind = DesktopFileDialog::Kind;
-  const Question& question = question_of(desk.asking.path);
-  const auto offer = [&](const char* label, Kind kind, const char* help, const std::string& files) {
+  const Question& question = question_of(editor.dialogs.path);
+  const auto offer = [&](const std::string& label, const char* id, Kind kind, const char* help,
+                         const std::string& files) {
     ImGui::BeginDisabled(desktop_ != nullptr);
-    if (ui::button(label)) try {
+    if (ui::button((label + "##" + id).c_str())) try {
         desktop_ = std::make_unique<DesktopFileDialog>(kind, question.title, path_, files);
       } catch (const Error& failed) {
-        problem_of_ = path_;
+        problem_path_ = path_;
         problem_ = failed.what();
       }
     ImGui::EndDisabled();
     ui::tip(label, "", help);
     ImGui::SameLine();
   };
-  if (desk.asking.path == PathQuestion::open) {
-    offer("Folders...", Kind::open_folders, "The desktop's dialog, for scenes.", "");
-    offer("Project...", Kind::open_file, "The desktop's dialog, for a project.", ".rebake");
+  if (editor.dialogs.path == FileDialogPurpose::open) {
+    offer("Folders...", "folders", Kind::open_folders, "Opens the desktop's file dialog to choose scenes.", "");
+    offer("Project...", "project", Kind::open_file, "Opens the desktop's file dialog to choose a project.", ".rebake");
   } else {
-    offer("Browse...",
-          reads(desk.asking.path) ? Kind::open_file
-          : ending.empty()        ? Kind::save_folder
-                                  : Kind::save_file,
-          "The desktop's dialog.", ending);
+    offer("Browse...", "browse",
+          reads(editor.dialogs.path) ? Kind::open_file
+          : ending.empty()           ? Kind::save_folder
+                                     : Kind::save_file,
+          "Opens the desktop's file dialog.", ending);
   }
 }
 
-void FileDialog::take_answer(Desk& desk) {
+void FileDialog::take_answer(EditorContext& editor) {
   if (!desktop_) return;
   const std::optional<std::vector<std::string>> paths = desktop_->answer();
   if (!paths) return;
   desktop_.reset();
-  refocuses_ = true;
+  refocus_path_ = true;
   if (paths->empty()) return;
   path_ = paths->front();
-  if (desk.asking.path != PathQuestion::open) return;
-  desk.settings.opened_from = fs::path(path_).parent_path().string();
-  desk.asking.path = PathQuestion::none;
+  if (editor.dialogs.path != FileDialogPurpose::open) return;
+  editor.settings.opened_from = fs::path(path_).parent_path().string();
+  editor.dialogs.path = FileDialogPurpose::none;
   try {
-    desk.project.open(*paths);
+    editor.project.open(*paths);
   } catch (const std::exception& failed) {
-    desk.messages.fail(failed.what());
+    editor.messages.fail(failed.what());
   }
 }
 
@@ -274,15 +283,15 @@ int FileDialog::on_key(ImGuiInputTextCallbackData* data) {
   return 0;
 }
 
-void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
-  take_answer(desk);
-  if (desk.asking.path == PathQuestion::none) {
-    asked_ = PathQuestion::none;
+void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
+  take_answer(editor);
+  if (editor.dialogs.path == FileDialogPurpose::none) {
+    asked_ = FileDialogPurpose::none;
     desktop_.reset();
     return;
   }
-  const Question& question = question_of(desk.asking.path);
-  if (asked_ != desk.asking.path) begin(desk);
+  const Question& question = question_of(editor.dialogs.path);
+  if (asked_ != editor.dialogs.path) begin(editor);
   // Another dialog may have closed the popup.
   if (!ImGui::IsPopupOpen("###path")) ImGui::OpenPopup("###path");
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -301,27 +310,27 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   ImGui::PopFont();
   ImGui::SameLine(0, px(12));
   ImGui::TextDisabled("%s", question.hint);
-  if (ImGui::IsWindowAppearing() || std::exchange(refocuses_, false)) ImGui::SetKeyboardFocusHere();
+  if (ImGui::IsWindowAppearing() || std::exchange(refocus_path_, false)) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
   bool done = ImGui::InputText("##text", &path_,
                                ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
                                    ImGuiInputTextFlags_CallbackHistory,
                                on_key, this);
   announce::item("path");
-  const bool exports = desk.asking.path == PathQuestion::export_folder;
-  const bool opens = desk.asking.path == PathQuestion::open, film = makes_film(desk.asking.path);
-  if (list_.chosen().size() > 1 && !list_.chosen().contains(path_)) list_.choose_none();
+  const bool exports = editor.dialogs.path == FileDialogPurpose::export_folder;
+  const bool opens = editor.dialogs.path == FileDialogPurpose::open, film = makes_film(editor.dialogs.path);
+  if (list_.chosen().size() > 1 && !list_.chosen().contains(path_)) list_.clear_choice();
   const fs::path typed(path_);
   std::error_code error;
   const fs::path folder = typed.parent_path();  // "a/b" for "a/b/"
-  const bool pictures = film || desk.asking.path == PathQuestion::screenshot;
+  const bool pictures = film || editor.dialogs.path == FileDialogPurpose::screenshot;
   const std::string ending = film && video_ ? ".mp4" : question.ending;
   // If all top-level nodes are picked, the option would change nothing.
-  const bool offers_picked = (pictures || desk.asking.path == PathQuestion::export_folder) && !desk.active.empty() &&
-                             desk.active_tops().size() < desk.scene().roots.size();
+  const bool offers_picked = (pictures || editor.dialogs.path == FileDialogPurpose::export_folder) &&
+                             !editor.active.empty() && editor.active_tops().size() < editor.scene().roots.size();
   only_picked_ = only_picked_ && offers_picked;
-  const std::vector<std::string> lost = desk.asking.path == PathQuestion::export_folder
-                                            ? losses(with_only(desk.scene(), wanted_nodes(desk)), plain_)
+  const std::vector<std::string> lost = editor.dialogs.path == FileDialogPurpose::export_folder
+                                            ? export_losses(with_only(editor.scene(), wanted_nodes(editor)), plain_)
                                             : std::vector<std::string>{};
   float below = ImGui::GetFrameHeightWithSpacing() *
                     (1.0F + (pictures ? 1.0F : 0.0F) + (offers_picked ? 1.0F : 0.0F) + (exports ? 1.0F : 0.0F)) +
@@ -333,7 +342,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   ImGui::PushStyleColor(ImGuiCol_ChildBg, color(theme().field));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(6)});
   ImGui::BeginChild("places", {px(180), high}, true);
-  for (const Bookmark& place : bookmarks(desk.settings)) {
+  for (const Bookmark& place : bookmarks(editor.settings)) {
     if (ImGui::Selectable(fmt::format("{}  {}", place.icon, ui::shortened(place.name, px(130))).c_str()))
       path_ = place.path.string() + "/";
     announce::item(place.name);
@@ -344,7 +353,7 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   ImGui::BeginChild("entries", {0, high}, true);
   list_.look_at(folder, ending.empty() ? question.listed : ending);
   // Filter only when reading: a path to be written is usually a new name.
-  list_.filter(reads(desk.asking.path) ? typed.filename().string() : "");
+  list_.filter(reads(editor.dialogs.path) ? typed.filename().string() : "");
   if (const FolderList::Taken taken = list_.draw(thumbnails, opens, opens); !taken.path.empty()) {
     path_ = taken.path.string();
     done = done || taken.at_once;
@@ -353,18 +362,18 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   if (offers_picked) {
-    ui::toggle("Only the picked nodes", only_picked_);
+    ui::toggle("Only the picked nodes##only-picked", only_picked_);
     ImGui::SameLine();
-    ImGui::TextDisabled("%s", desk.scope_words().c_str());
+    ImGui::TextDisabled("%s", editor.scope_words().c_str());
   }
   if (exports) {
-    ui::toggle("One plain folder", plain_);
+    ui::toggle("One plain folder##plain", plain_);
     ui::tip("One plain folder", "",
-            "That any MobileNeRF viewer shows: several decoders, turned and bent parts in one.");
+            "Merges all objects into one folder with one decoder that any MobileNeRF viewer can show.");
     if (plain_) {
       ImGui::SameLine();
-      if (ui::button("Compare...")) preview_.begin(desk, wanted_nodes(desk));
-      ui::tip("Compare...", "", "What each width of the decoder costs and shows, before anything is written.");
+      if (ui::button("Compare...##compare")) preview_.begin(editor, wanted_nodes(editor));
+      ui::tip("Compare...", "", "Compares decoders by error and frame time before the export.");
       ui::hint(preview_.words());
     }
   }
@@ -386,68 +395,68 @@ void FileDialog::draw(Desk& desk, Thumbnails& thumbnails) {
       const bool can = !program_path("ffmpeg").empty();
       ImGui::BeginDisabled(!can);
       const bool was = video_;
-      ui::toggle("Video", video_);
+      ui::toggle("Video##video", video_);
       ImGui::EndDisabled();
       ui::tip("Video", "",
-              can ? fmt::format("An MP4 file of {} pictures a second.", Film::rate)
-                  : std::string("Needs the program ffmpeg."));
+              can ? fmt::format("Writes an MP4 file with {} frames per second.", CameraAnimation::rate)
+                  : std::string("Needs ffmpeg. Install it to write videos."));
       if (was && !video_ && path_.ends_with(".mp4")) path_.resize(path_.size() - 4);
     }
   }
   fs::path path(path_);
   if (!path.has_filename()) path = path.parent_path();
   if (!ending.empty() && path.extension() != ending) path += ending;
-  const bool writes = !reads(desk.asking.path);
+  const bool writes = !reads(editor.dialogs.path);
   const bool filled = fs::is_directory(path, error) && !fs::is_empty(path, error);
-  const bool replaces = writes && path != desk.project.path && (fs::is_regular_file(path, error) || filled);
+  const bool replaces = writes && path != editor.project.path && (fs::is_regular_file(path, error) || filled);
   const bool asks = replaces && replacing_ == path;
   if (asks)
-    ui::wrapped(path.filename().string() + " is there already. Replace it? Enter or the button does.", theme().danger);
-  else if (!problem_.empty() && problem_of_ == path_) {
+    ui::wrapped(path.filename().string() + " already exists. Press Enter or the button to replace it.", theme().danger);
+  else if (!problem_.empty() && problem_path_ == path_) {
     ui::wrapped(problem_, theme().danger);
     announce::item("problem");
   } else
     ImGui::TextUnformatted("");
-  draw_desktop_buttons(desk, ending);
+  draw_desktop_buttons(editor, ending);
   const float width = px(120);
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * width - ImGui::GetStyle().ItemSpacing.x);
-  const bool cancelled = ui::button("Cancel", {width, 0});
+  const bool cancelled = ui::button("Cancel##cancel", {width, 0});
   ImGui::SameLine();
   const std::size_t several = opens ? list_.chosen().size() : 1;
   const std::string action = asks ? "Replace" : several > 1 ? fmt::format("Open {}", several) : question.action;
-  done = ui::primary_button(action.c_str(), {width, 0}) || done;
+  done = ui::primary_button((action + "##confirm").c_str(), {width, 0}) || done;
   if (done) {
-    problem_of_ = path_;
-    problem_ = problem_with(path, desk.asking.path);
+    problem_path_ = path_;
+    problem_ = problem_with(path, editor.dialogs.path);
     // Check for protected sources before asking whether to replace a file.
     if (problem_.empty() && writes) try {
         const bool file = !ending.empty();
-        file ? desk.now->sources.check_file(path) : desk.now->sources.check_folder(path);
+        file ? editor.now->sources.check_file(path) : editor.now->sources.check_folder(path);
       } catch (const Error& refused) {
         problem_ = refused.what();
       }
     if (!problem_.empty()) {
       done = false;
-      refocuses_ = true;
+      refocus_path_ = true;
     }
   }
   if (done && replaces && !asks) {
     replacing_ = path;
     done = false;
-    refocuses_ = true;
+    refocus_path_ = true;
   }
   if (done) try {
-      carry_out(desk, path);
+      perform_action(editor, path);
     } catch (const std::exception& failed) {
-      problem_of_ = path_;
+      problem_path_ = path_;
       problem_ = failed.what();
       done = false;
-      refocuses_ = true;
+      refocus_path_ = true;
     }
-  preview_.draw(desk);
-  if (cancelled) desk.project.saved_then = nullptr;
+  preview_.draw(editor);
+  if (cancelled) editor.project.after_save = nullptr;
   if (done || cancelled) {
-    desk.asking.path = PathQuestion::none;
+    editor.dialogs.path = FileDialogPurpose::none;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();

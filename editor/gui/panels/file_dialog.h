@@ -9,39 +9,39 @@
 
 #include "editor/gui/panels/folder_list.h"
 #include "editor/gui/panels/plain_preview.h"
-#include "editor/gui/window/desk.h"
 #include "editor/gui/window/desktop.h"
+#include "editor/gui/window/editor_context.h"
 
 namespace rebake {
 
 /// File dialog to open, save, export and render. For exports it lists the properties of the scene that would be lost.
 class FileDialog {
  public:
-  /// Draws the dialog if `desk.asking.path` requests one, and performs the action when the user confirms.
-  void draw(Desk& desk, Thumbnails& thumbnails);
+  /// Draws the dialog if `editor.asking.path` requests one, and performs the action when the user confirms.
+  void draw(EditorContext& editor, Thumbnails& thumbnails);
 
   /// Closes the comparison of plain folders; returns false if it is not open.
-  bool leaves_comparing(Desk& desk) { return preview_.leave(desk); }
+  bool close_comparison(EditorContext& editor) { return preview_.leave(editor); }
   /// Whether the desktop's own file dialog is open, which runs in another process.
   bool waits() const { return desktop_ != nullptr; }
 
  private:
   /// Resets the dialog for a new question.
-  void begin(const Desk& desk);
+  void begin(const EditorContext& editor);
   /// The picked nodes if only those are exported or rendered; otherwise empty, for all.
-  std::vector<NodeRef> wanted_nodes(const Desk& desk) const;
-  void draw_desktop_buttons(const Desk& desk, const std::string& ending);
+  std::vector<NodeRef> wanted_nodes(const EditorContext& editor) const;
+  void draw_desktop_buttons(const EditorContext& editor, const std::string& ending);
   /// Takes the answer of the desktop's dialog, if it has one.
-  void take_answer(Desk& desk);
+  void take_answer(EditorContext& editor);
   static int on_key(ImGuiInputTextCallbackData* data);
   /// Performs the action of the question. Throws Error.
-  void carry_out(Desk& desk, const std::filesystem::path& path);
+  void perform_action(EditorContext& editor, const std::filesystem::path& path);
   std::string path_;
-  PathQuestion asked_ = PathQuestion::none;  ///< question that the fields below are for
+  FileDialogPurpose asked_ = FileDialogPurpose::none;  ///< question that the fields below are for
   FolderList list_;
   std::unique_ptr<DesktopFileDialog> desktop_;  ///< the desktop's dialog while it is open, else null
-  std::string problem_, problem_of_;            ///< error message, and the path that it is about
-  bool refocuses_ = false;                      ///< the path field takes the keyboard focus in the next frame
+  std::string problem_, problem_path_;          ///< error message, and the path that it is about
+  bool refocus_path_ = false;                   ///< the path field takes the keyboard focus in the next frame
   std::filesystem::path replacing_;             ///< existing path for which the user was asked about replacing it
   bool only_picked_ = false;                    ///< export or render only the picked nodes
   int width_ = 0, height_ = 0;                  ///< size of rendered images, pixels

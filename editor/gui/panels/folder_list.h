@@ -37,7 +37,7 @@ class FolderList {
   std::string completed(const std::string& name) const;
 
   const std::set<std::filesystem::path>& chosen() const { return chosen_; }
-  void choose_none() { chosen_.clear(); }
+  void clear_choice() { chosen_.clear(); }
 
  private:
   std::filesystem::path folder_;

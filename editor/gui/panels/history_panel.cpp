@@ -7,10 +7,10 @@
 
 namespace rebake {
 
-void HistoryPanel::draw(Desk& desk) {
-  const Snapshot& now = *desk.now;
+void HistoryPanel::draw(EditorContext& editor) {
+  const Snapshot& now = *editor.now;
   const announce::Part part("history");
-  const bool fresh = std::exchange(of_, desk.now) != desk.now;
+  const bool fresh = std::exchange(of_, editor.now) != editor.now;
   const int done = static_cast<int>(now.steps_done), all = static_cast<int>(now.steps.size());
   for (int k = 0; k <= all; ++k) {
     const std::string title = k == 0 ? "Start" : now.steps[static_cast<std::size_t>(k - 1)].title;
@@ -21,8 +21,8 @@ void HistoryPanel::draw(Desk& desk) {
     ImGui::PopID();
     announce::item(fmt::format("{}", k));
     if (k == done && fresh) ImGui::SetScrollHereY(0.8F);
-    if (clicked && k < done) desk.undo(done - k);
-    if (clicked && k > done) desk.redo(k - done);
+    if (clicked && k < done) editor.undo(done - k);
+    if (clicked && k > done) editor.redo(k - done);
   }
 }
 

@@ -14,18 +14,18 @@ namespace rebake {
 namespace {
 
 constexpr std::pair<const char*, const char*> pointer_lines[] = {
-    {"Middle button", "turns the view"},
-    {"Shift + middle, or right button", "moves the view"},
-    {"Wheel", "comes nearer to what is under the pointer"},
-    {"Alt + left button", "turns the view with any tool"},
-    {"Double click", "sets what the view turns about"},
-    {"Right click", "menu of what is under the pointer"},
-    {"Shift, Ctrl, both", "add, remove, keep what is in both"},
-    {"Alt + drag a handle of Move", "moves a copy"},
-    {"X, Y, Z during a drag", "along that axis; with Shift across it"},
-    {"Ctrl + drag beside a cage", "picks its points by a lasso"},
-    {"Digits during a drag", "a number in place of the pointer's way"},
-    {"Esc", "takes back the present drag; else picks nothing"},
+    {"Middle button", "Orbit"},
+    {"Shift + middle, or right button", "Pan"},
+    {"Wheel", "Zoom to the pointer"},
+    {"Alt + left button", "Orbit with any tool"},
+    {"Double click", "Set the orbit centre"},
+    {"Right click", "Context menu"},
+    {"Shift, Ctrl, both", "Add, remove, intersect"},
+    {"Alt + drag a handle of Move", "Duplicate and move"},
+    {"X, Y, Z during a drag", "Constrain to the axis; with Shift to its plane"},
+    {"Ctrl + drag beside a cage", "Select its points by a lasso"},
+    {"Digits during a drag", "Type the amount"},
+    {"Esc", "Cancel the drag, or clear the picked nodes"},
 };
 
 void line(const std::string& key, const std::string& what) {
@@ -40,25 +40,25 @@ void line(const std::string& key, const std::string& what) {
 
 }  // namespace
 
-void draw_keys_sheet(Desk& desk) {
-  if (!desk.asking.keys) return;
+void draw_keys_sheet(EditorContext& editor) {
+  if (!editor.dialogs.keys) return;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
   ImGui::SetNextWindowSize({std::min(px(900), screen.x - px(40)), std::min(px(620), screen.y - px(60))});
   ImGui::PushStyleColor(ImGuiCol_WindowBg, color(theme().popup));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(8));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(18), px(16)});
-  ImGui::Begin("Keys and pointer", &desk.asking.keys,
+  ImGui::Begin("Keyboard and mouse", &editor.dialogs.keys,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar(2);
   ImGui::PopStyleColor();
   const announce::Part part("keys");
   ImGui::PushFont(fonts().heading);
-  ImGui::TextUnformatted("Keys and pointer");
+  ImGui::TextUnformatted("Keyboard and mouse");
   ImGui::PopFont();
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - px(90));
-  if (ui::button("Close", {px(90), 0})) desk.asking.keys = false;
+  if (ui::button("Close", {px(90), 0})) editor.dialogs.keys = false;
   ImGui::BeginChild("columns", {0, 0}, false);
   const int columns = ImGui::GetContentRegionAvail().x > px(640) ? 2 : 1;
   if (ImGui::BeginTable("sheet", columns, ImGuiTableFlags_SizingStretchSame)) {
@@ -80,8 +80,8 @@ void draw_keys_sheet(Desk& desk) {
     for (const char* menu : {"File", "Edit", "Select", "Tool", "View", "Window"}) {
       if (!begin(menu)) continue;
       for (const Command& command : command_table())
-        if (command.menu == std::string_view(menu) && *command.keys_of(desk) != '\0')
-          line(command.keys_of(desk), command.title);
+        if (command.menu == std::string_view(menu) && *command.keys_of(editor) != '\0')
+          line(command.keys_of(editor), command.title);
       ImGui::EndTable();
     }
     ImGui::EndTable();

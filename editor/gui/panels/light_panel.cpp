@@ -74,7 +74,7 @@ void draw_decisions(const Lighting& lighting) {
     if (decision.runs)
       ImGui::TextUnformatted("runs");
     else
-      ImGui::TextDisabled("left out");
+      ImGui::TextDisabled("skipped");
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(ui::shortened(decision.name, ImGui::GetContentRegionAvail().x).c_str());
     ImGui::TableNextColumn();
@@ -95,30 +95,32 @@ void LightPanel::draw_ball(const Lighting& lighting) {
   }
   const float size = px(84);
   ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(ball_->name())), {size, size});
-  ui::tip("The light", "",
-          "A white ball in the light of the first object whose colours change, as it was found or given.");
+  ui::tip("The light", "", "A white ball in the estimated or chosen light of the first object whose colours change.");
 }
 
-void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
-  const auto commit = [&](const SceneLight& changed) { desk.edit(edit_for(changed, true)); };
+void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, bool on) {
+  const auto commit = [&](const SceneLight& changed) { editor.edit(edit_for(changed, true)); };
   bool follows = on;
-  if (ui::toggle("Follows edits", follows)) desk.edit(edit_for(light, follows));
-  ui::tip("Light follows edits", "", "What is bent, set beside something or taken away changes shadows too.");
+  if (ui::toggle("Follows edits##follows-edits", follows)) editor.edit(edit_for(light, follows));
+  ui::tip("Light follows edits", "", "Updates shadows when objects are deformed, moved or removed.");
   if (!on) return;
   ImGui::SameLine();
-  ui::toggle("As baked", desk.view.as_baked);
-  ui::tip("As baked", "", "Shows colours without what light does, to compare.");
+  ui::toggle("As baked##as-baked", editor.view.as_baked);
+  ui::tip("As baked", "", "Shows the baked colours without lighting effects, for comparison.");
   struct Wanted {
+    const char* id;
     const char* name;
     const char* help;
     bool SceneLight::*wanted;
   };
   for (const Wanted& effect :
-       {Wanted{"On itself", "What moved shades its object anew.", &SceneLight::self},
-        Wanted{"On others", "Objects shade each other.", &SceneLight::cast},
-        Wanted{"What is gone", "Shadows of what was removed go too.", &SceneLight::removed},
-        Wanted{"Highlights", "What bent surfaces mirror stays with the light.", &SceneLight::highlights},
-        Wanted{"One light", "All objects stand in one light.", &SceneLight::match}}) {
+       {Wanted{"self", "Self-shadowing", "Updates the shadows of deformed parts on their own object.",
+               &SceneLight::self},
+        Wanted{"cast", "Shadows on others", "Objects cast shadows on each other.", &SceneLight::cast},
+        Wanted{"removed", "Removed occluders", "Removes the shadows of removed objects.", &SceneLight::removed},
+        Wanted{"highlights", "Highlights", "Keeps specular highlights fixed to the light when surfaces rotate.",
+               &SceneLight::highlights},
+        Wanted{"match", "Match lighting", "Lights all objects by the same light.", &SceneLight::match}}) {
     const bool highlights = effect.wanted == &SceneLight::highlights;
     // Highlights need the effect on the object itself: both follow from the motion of its triangles.
     if (highlights && !light.self) continue;
@@ -126,7 +128,7 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
     ui::flow(px(100));
     // The last effect cannot be switched off. "Follows edits" switches off all of them.
     const bool only = wanted && !highlights && light.self + light.cast + light.removed + light.match == 1;
-    if (ui::toggle(effect.name, wanted) && !only) {
+    if (ui::toggle((std::string(effect.name) + "##" + effect.id).c_str(), wanted) && !only) {
       SceneLight changed = light;
       changed.*effect.wanted = wanted;
       if (effect.wanted == &SceneLight::self) changed.highlights = wanted;
@@ -136,18 +138,19 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
   }
   int source = static_cast<int>(light.source);
   ui::label("Light");
-  if (ui::choice("source", source, {"Estimated", "Uniform", "Sky", "Picture"})) {
+  if (ui::choice("source", source,
+                 {"Estimated##estimated", "Uniform##uniform", "Sky##sky", "Image##environment-map"})) {
     SceneLight changed = light;
     changed.source = static_cast<SceneLight::Source>(source);
     if (changed.source == SceneLight::Source::picture && !changed.picture)
-      desk.asking.path = PathQuestion::light_picture;
+      editor.dialogs.path = FileDialogPurpose::light_picture;
     else
       commit(changed);
   }
   if (!dragging_) {
     budget_ = light.budget * 255;
     sun_ = light.sun.direction;
-    turn_ = light.picture_turn * 180 / std::numbers::pi;
+    turn_ = light.picture_rotation * 180 / std::numbers::pi;
   }
   bool now_dragging = false;
   const auto field = [&](const char* id, double& value, const char* format, double step, double low, double high) {
@@ -156,13 +159,13 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
     now_dragging = now_dragging || changed == ui::Changed::dragged;
     return changed == ui::Changed::finished;
   };
-  ui::label("Budget");
+  ui::label("Error budget");
   if (field("budget", budget_, "{:.2g} of 255", 0.05, 0, 255)) {
     SceneLight changed = light;
     changed.budget = budget_ / 255;
     commit(changed);
   }
-  ui::tip("Budget", "", "How far colours may be off for what is left out.");
+  ui::tip("Error budget", "", "Maximum colour error caused by skipped effects.");
   if (light.source == SceneLight::Source::sky) {
     bool finished = false;
     ui::label("Sun");
@@ -170,7 +173,7 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
       if (axis > 0) ImGui::SameLine();
       const char* const names[] = {"sun x", "sun y", "sun z"};
       finished = field(names[axis], sun_[axis], "{:.2f}", 0.02, -1, 1) || finished;
-      ui::tip("Sun", "", "Direction towards the sun, in the objects' own space.");
+      ui::tip("Sun", "", "Direction towards the sun, in object space.");
     }
     if (finished && sun_.norm() > 1e-3) {
       SceneLight changed = light;
@@ -179,32 +182,32 @@ void LightPanel::draw_settings(Desk& desk, const SceneLight& light, bool on) {
     }
   }
   if (light.source == SceneLight::Source::picture && light.picture) {
-    ui::label("Picture");
+    ui::label("Environment map");
     const std::string name = std::filesystem::path(light.picture->path).filename().string();
     if (ui::button((ui::shortened(name, px(130)) + "###another picture").c_str()))
-      desk.asking.path = PathQuestion::light_picture;
+      editor.dialogs.path = FileDialogPurpose::light_picture;
     announce::item("another picture");
-    ui::tip("Another picture", "", light.picture->path);
+    ui::tip("Change environment map", "", light.picture->path);
     ImGui::SameLine();
     if (field("turn", turn_, "{:.0f}°", 1, -360, 360)) {
       SceneLight changed = light;
-      changed.picture_turn = turn_ * std::numbers::pi / 180;
+      changed.picture_rotation = turn_ * std::numbers::pi / 180;
       commit(changed);
     }
-    ui::tip("Turn", "", "Of the picture, about the upright axis.");
+    ui::tip("Rotate", "", "Rotates the environment map about the vertical axis.");
   }
   dragging_ = now_dragging || (dragging_ && ImGui::IsMouseDown(ImGuiMouseButton_Left));
 }
 
-void LightPanel::draw(Desk& desk) {
+void LightPanel::draw(EditorContext& editor) {
   const announce::Part part("light");
-  const bool on = desk.scene().light != nullptr;
-  if (on) last_ = *desk.scene().light;
+  const bool on = editor.scene().light != nullptr;
+  if (on) last_ = *editor.scene().light;
   const SceneLight light = last_;
-  const std::shared_ptr<const Lighting> lighting = on ? desk.relighter.latest() : nullptr;
+  const std::shared_ptr<const Lighting> lighting = on ? editor.relighter.latest() : nullptr;
   const float left = std::min(px(330), 0.5F * ImGui::GetContentRegionAvail().x);
   ImGui::BeginChild("settings", {left, 0});
-  draw_settings(desk, light, on);
+  draw_settings(editor, light, on);
   ImGui::EndChild();
   ImGui::SameLine();
   if (lighting && !lighting->lights.empty()) {
@@ -215,13 +218,13 @@ void LightPanel::draw(Desk& desk) {
   }
   ImGui::BeginChild("what");
   if (!on)
-    ui::muted("Colours stay as they were baked, whatever is bent, moved or removed.");
-  else if (const std::string problem = desk.relighter.problem(); !problem.empty())
+    ui::muted("Colours stay as baked when objects are deformed, moved or removed.");
+  else if (const std::string problem = editor.relighter.problem(); !problem.empty())
     ui::muted(problem);
   else if (!lighting)
-    ui::muted(desk.relighter.busy() ? "Working out the light …" : "Nothing is shown yet.");
+    ui::muted(editor.relighter.busy() ? "Computing the light …" : "No light computed yet.");
   else {
-    if (desk.relighter.busy()) ui::muted("Working out better …");
+    if (editor.relighter.busy()) ui::muted("Refining …");
     draw_decisions(*lighting);
   }
   ImGui::EndChild();

@@ -6,7 +6,7 @@
 namespace rebake {
 
 void draw_log(const Messages& messages) {
-  if (messages.log().empty()) ui::muted("Nothing was said yet.");
+  if (messages.log().empty()) ui::muted("No messages yet.");
   for (const Messages::Line& line : messages.log()) ui::wrapped(line.text, line.failed ? theme().danger : theme().text);
 }
 

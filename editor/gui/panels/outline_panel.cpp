@@ -54,27 +54,27 @@ std::optional<NodeId> dropped_node() {
 
 }  // namespace
 
-void OutlinePanel::pick(Desk& desk, NodeId id) {
+void OutlinerPanel::pick(EditorContext& editor, NodeId id) {
   const ImGuiIO& io = ImGui::GetIO();
-  const bool active = desk.active.contains(id);
-  if (io.KeyShift && find(desk.scene(), shift_from_) != nullptr) {
+  const bool active = editor.active.contains(id);
+  if (io.KeyShift && find(editor.scene(), shift_from_) != nullptr) {
     bool inside = false;
-    for (const PlacedNode& other : placed_nodes(desk.scene())) {
+    for (const PlacedNode& other : placed_nodes(editor.scene())) {
       const bool end = other.node->id == id || other.node->id == shift_from_;
-      if (inside || end) desk.active.insert(other.node->id);
+      if (inside || end) editor.active.insert(other.node->id);
       if (end && id != shift_from_) inside = !inside;
     }
     return;
   }
-  if (!io.KeyCtrl) desk.active.clear();
+  if (!io.KeyCtrl) editor.active.clear();
   if (io.KeyCtrl && active)
-    desk.active.erase(id);
+    editor.active.erase(id);
   else
-    desk.active.insert(id);
+    editor.active.insert(id);
   shift_from_ = id;
 }
 
-void OutlinePanel::draw_name(Desk& desk, const Node& node) {
+void OutlinerPanel::draw_name(EditorContext& editor, const Node& node) {
   if (focus_name_) ImGui::SetKeyboardFocusHere();
   focus_name_ = false;
   ImGui::SetNextItemWidth(-1);
@@ -86,10 +86,10 @@ void OutlinePanel::draw_name(Desk& desk, const Node& node) {
   Rename rename;
   rename.node = NodeRef{node.id};
   rename.name = name_;
-  desk.edit(rename);
+  editor.edit(rename);
 }
 
-void OutlinePanel::draw_node(Desk& desk, const PlacedNode& placed, int depth) {
+void OutlinerPanel::draw_node(EditorContext& editor, const PlacedNode& placed, int depth) {
   const Node& node = *placed.node;
   const NodeRef ref{node.id};
   const announce::Part part(node.name);
@@ -101,19 +101,19 @@ void OutlinePanel::draw_node(Desk& desk, const PlacedNode& placed, int depth) {
   const bool group = !node.children.empty();
   if (group) {
     const bool folded = folded_.contains(node.id);
-    if (ui::quiet_icon(folded ? icons::chevron_right : icons::chevron_down, folded ? "Unfold" : "Fold"))
+    if (ui::quiet_icon(folded ? icons::chevron_right : icons::chevron_down, folded ? "Expand" : "Collapse"))
       folded ? (void)folded_.erase(node.id) : (void)folded_.insert(node.id);
   } else {
-    ImGui::PushStyleColor(ImGuiCol_Text, color(desk.active.contains(node.id) ? theme().on_accent : theme().muted));
+    ImGui::PushStyleColor(ImGuiCol_Text, color(editor.active.contains(node.id) ? theme().on_accent : theme().muted));
     ImGui::TextUnformatted(node.object ? icons::cube_outline : icons::folder_outline);
     ImGui::PopStyleColor();
   }
   ImGui::SameLine(0, px(6));
   if (renaming_ == node.id) {
-    draw_name(desk, node);
+    draw_name(editor, node);
   } else {
     ImGui::PushStyleColor(ImGuiCol_Text, color(placed.visible ? theme().text : theme().muted));
-    const bool active = desk.active.contains(node.id);
+    const bool active = editor.active.contains(node.id);
     if (active) {
       ImGui::PushStyleColor(ImGuiCol_Text, color(theme().on_accent));
       ImGui::PushStyleColor(ImGuiCol_Header, color(theme().accent));
@@ -126,64 +126,65 @@ void OutlinePanel::draw_node(Desk& desk, const PlacedNode& placed, int depth) {
     ImGui::PopStyleColor();
     announce::item("name");
     if (node.object)
-      ui::tip(node.name, "",
-              fmt::format("{} triangles, {} opaque texels, {:.1f} MB. Click picks, double click renames, right click "
-                          "for more.",
-                          node.object->triangle_count(), node.object->opaque_texel_count(),
-                          static_cast<double>(node.object->memory()) / 1e6));
+      ui::tip(
+          node.name, "",
+          fmt::format("{} triangles, {} opaque texels, {:.1f} MB. Click to pick, double-click to rename, right-click "
+                      "for more.",
+                      node.object->triangle_count(), node.object->opaque_texel_count(),
+                      static_cast<double>(node.object->memory()) / 1e6));
     if (clicked && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
       renaming_ = node.id;
       name_ = node.name;
       focus_name_ = true;
-      desk.active = {node.id};
+      editor.active = {node.id};
     } else if (clicked) {
-      pick(desk, node.id);
+      pick(editor, node.id);
     }
     if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) {
-      if (!desk.active.contains(node.id)) desk.active = {node.id};
-      desk.asking.context = true;
+      if (!editor.active.contains(node.id)) editor.active = {node.id};
+      editor.dialogs.context = true;
     }
     if (ImGui::BeginDragDropSource()) {
       ImGui::SetDragDropPayload("node", &node.id, sizeof node.id);
       ImGui::TextUnformatted(node.name.c_str());
       ImGui::EndDragDropSource();
     }
-    if (const auto dragged = dropped_node()) desk.edit(dropped_on(desk.scene(), *dragged, node));
+    if (const auto dragged = dropped_node()) editor.edit(dropped_on(editor.scene(), *dragged, node));
   }
   ImGui::TableNextColumn();
   if (node.object) {
     const std::string text = rounded(static_cast<double>(node.object->triangle_count()));
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x -
                          ImGui::CalcTextSize(text.c_str()).x);
-    ImGui::PushStyleColor(ImGuiCol_Text, color(desk.active.contains(node.id) ? theme().on_accent : theme().muted));
+    ImGui::PushStyleColor(ImGuiCol_Text, color(editor.active.contains(node.id) ? theme().on_accent : theme().muted));
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();
   }
   ImGui::TableNextColumn();
-  const bool on_accent = desk.active.contains(node.id);
+  const bool on_accent = editor.active.contains(node.id);
   if (ui::quiet_icon(node.visible ? icons::eye : icons::eye_off, "Visible", node.visible, on_accent)) {
     if (node.visible)
-      desk.edit(Hide{ref});
+      editor.edit(Hide{ref});
     else
-      desk.edit(Show{ref});
+      editor.edit(Show{ref});
   }
-  ui::tip(node.visible ? "Hide" : "Show", command_key("Hide", desk), "Nothing is exported of what is hidden.");
+  ui::tip(node.visible ? "Hide" : "Show", command_key("Hide", editor), "Hidden nodes are not exported.");
   ImGui::TableNextColumn();
   if (ui::quiet_icon(node.locked ? icons::lock : icons::lock_open_outline, "Locked", node.locked, on_accent)) {
     if (node.locked)
-      desk.edit(Unlock{ref});
+      editor.edit(Unlock{ref});
     else
-      desk.edit(Lock{ref});
+      editor.edit(Lock{ref});
   }
-  ui::tip(node.locked ? "Unlock" : "Lock", "", "No edit changes what is locked.");
+  ui::tip(node.locked ? "Unlock" : "Lock", "", "Locked nodes cannot be edited.");
   ImGui::PopID();
 }
 
-void OutlinePanel::draw(Desk& desk) {
-  const Scene& scene = desk.scene();
+void OutlinerPanel::draw(EditorContext& editor) {
+  const Scene& scene = editor.scene();
   const announce::Part part("outline");
   if (scene.roots.empty()) {
-    ui::muted("Nothing is open yet.");
+    ui::muted("No scene is open.");
     return;
   }
   const auto line = ImGui::GetTextLineHeightWithSpacing();
@@ -206,22 +207,22 @@ void OutlinePanel::draw(Desk& desk) {
       depths[child->id] = depth + 1;
       if (hides) inside_folded.insert(child->id);
     }
-    if (!inside_folded.contains(id)) draw_node(desk, placed, depth);
+    if (!inside_folded.contains(id)) draw_node(editor, placed, depth);
   }
   // Area below the last node: a click clears the picked nodes, a drop moves a node to the top level.
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  if (ImGui::Selectable("##below", false, ImGuiSelectableFlags_SpanAllColumns, {0, px(40)})) desk.active.clear();
+  if (ImGui::Selectable("##below", false, ImGuiSelectableFlags_SpanAllColumns, {0, px(40)})) editor.active.clear();
   announce::item("below");
   if (const auto dragged = dropped_node()) {
     Reorder reorder;
     reorder.node = NodeRef{*dragged};
     reorder.top = true;
     reorder.index = static_cast<int>(scene.roots.size());
-    desk.edit(reorder);
+    editor.edit(reorder);
   }
   ImGui::EndTable();
-  const std::string selected = desk.selected_words();
+  const std::string selected = editor.selected_words();
   const std::string all = fmt::format("{} triangles{}{}", triangles, selected.empty() ? "" : ", ", selected);
   ImGui::TextDisabled("%s", ui::shortened(all, ImGui::GetContentRegionAvail().x).c_str());
 }

@@ -21,7 +21,7 @@ std::string plain(std::string text) {
 }
 
 // Title of the form of an edit, e.g. "All fields: Select picture…".
-std::string words_of(const std::string& op) {
+std::string notation_of(const std::string& op) {
   std::string words = op;
   std::replace(words.begin(), words.end(), '_', ' ');
   words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
@@ -35,13 +35,13 @@ struct Entry {
   std::string op = {};               ///< edit whose form to open; empty for other entries
 };
 
-std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
+std::vector<Entry> entries(const EditorContext& editor, const std::string& filter) {
   std::vector<Entry> all;
   for (const Command& command : command_table())
-    all.push_back({std::string(command.menu) + ": " + command.title, command.keys_of(desk), command.help, &command});
+    all.push_back({std::string(command.menu) + ": " + command.title, command.keys_of(editor), command.help, &command});
   for (const EditType* type : edit_types())
-    all.push_back({words_of(type->op), "", type->help, nullptr, nullptr, type->op});
-  for (const auto& [name, camera] : desk.scene().views)
+    all.push_back({notation_of(type->op), "", type->help, nullptr, nullptr, type->op});
+  for (const auto& [name, camera] : editor.scene().views)
     all.push_back({"Stored view: " + name, "", "", nullptr, &camera});
   // Entries must contain all words, in any order. Underscores count as spaces.
   const std::string wanted = plain(filter);
@@ -67,8 +67,8 @@ std::vector<Entry> entries(const Desk& desk, const std::string& filter) {
 
 }  // namespace
 
-void PalettePanel::draw(Desk& desk) {
-  if (!desk.asking.palette) {
+void PalettePanel::draw(EditorContext& editor) {
+  if (!editor.dialogs.palette) {
     was_open_ = false;
     return;
   }
@@ -78,7 +78,7 @@ void PalettePanel::draw(Desk& desk) {
   ImGui::PushStyleColor(ImGuiCol_WindowBg, color(theme().popup));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(8));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(12), px(12)});
-  ImGui::Begin("All commands", &desk.asking.palette,
+  ImGui::Begin("Command palette", &editor.dialogs.palette,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar(2);
@@ -89,15 +89,15 @@ void PalettePanel::draw(Desk& desk) {
     ImGui::SetKeyboardFocusHere();
   }
   ImGui::SetNextItemWidth(-1);
-  const bool entered = ImGui::InputTextWithHint("##filter", "Type to search; Enter takes the first", &filter_,
+  const bool entered = ImGui::InputTextWithHint("##filter", "Type to search; Enter runs the first result", &filter_,
                                                 ImGuiInputTextFlags_EnterReturnsTrue);
   announce::item("filter");
   was_open_ = true;
   ImGui::BeginChild("entries");
   bool first = true;
   const float keys_at = ImGui::GetContentRegionAvail().x * 0.48F;
-  for (const Entry& entry : entries(desk, filter_)) {
-    const bool can = entry.command == nullptr || entry.command->enabled(desk);
+  for (const Entry& entry : entries(editor, filter_)) {
+    const bool can = entry.command == nullptr || entry.command->enabled(editor);
     ImGui::BeginDisabled(!can);
     const bool taken = ImGui::Selectable(entry.title.c_str(), first) || (entered && first && can);
     ImGui::EndDisabled();
@@ -109,20 +109,20 @@ void PalettePanel::draw(Desk& desk) {
     }
     first = false;
     if (!taken) continue;
-    desk.asking.palette = false;
+    editor.dialogs.palette = false;
     if (entry.command != nullptr)
-      entry.command->run(desk);
+      entry.command->run(editor);
     else if (entry.view != nullptr)
-      desk.view.camera = *entry.view;
+      editor.view.camera = *entry.view;
     else
-      desk.asking.form = entry.op;
+      editor.dialogs.form = entry.op;
     break;
   }
   ImGui::EndChild();
   // A click outside closes the palette.
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) &&
       !ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows | ImGuiHoveredFlags_AllowWhenBlockedByActiveItem))
-    desk.asking.palette = false;
+    editor.dialogs.palette = false;
   ImGui::End();
 }
 

@@ -9,7 +9,7 @@
 #include "editor/edits/nodes/place.h"
 #include "editor/gui/ui/number_field.h"
 #include "editor/gui/view/thumbnails.h"
-#include "editor/gui/window/desk.h"
+#include "editor/gui/window/editor_context.h"
 #include "render/picture.h"
 #include "render/picture_texture.h"
 
@@ -18,14 +18,14 @@ namespace rebake {
 // Panels and overlays of the window. Each draws into the current Dear ImGui window.
 
 /// Outliner: the tree of nodes with name, order, triangle count, visibility and lock.
-class OutlinePanel {
+class OutlinerPanel {
  public:
-  void draw(Desk& desk);
+  void draw(EditorContext& editor);
 
  private:
-  void draw_node(Desk& desk, const PlacedNode& placed, int depth);
-  void draw_name(Desk& desk, const Node& node);
-  void pick(Desk& desk, NodeId id);
+  void draw_node(EditorContext& editor, const PlacedNode& placed, int depth);
+  void draw_name(EditorContext& editor, const Node& node);
+  void pick(EditorContext& editor, NodeId id);
   std::set<NodeId> folded_;                                     ///< collapsed groups
   NodeId renaming_ = NodeId::none, shift_from_ = NodeId::none;  ///< node being renamed; one end of a Shift range
   std::string name_;                                            ///< typed name
@@ -35,24 +35,24 @@ class OutlinePanel {
 /// Number fields for position, rotation and scale of the picked nodes.
 class PropertiesPanel {
  public:
-  void draw(Desk& desk);
+  void draw(EditorContext& editor);
 
  private:
   /// Draws three number fields; returns their change in this frame.
   ui::Changed row(const char* name, Vec3& value, const char* format, double step);
-  void draw_one(Desk& desk, const PlacedNode& placed);
-  void draw_several(Desk& desk);
+  void draw_one(EditorContext& editor, const PlacedNode& placed);
+  void draw_several(EditorContext& editor);
   std::set<NodeId> of_;                                        ///< nodes that the numbers belong to
   Vec3 position_{0, 0, 0}, angles_{0, 0, 0}, scale_{1, 1, 1};  ///< scene units, Euler angles in degrees, factors
-  bool dragging_ = false;    ///< a number is being dragged, so the numbers differ from the document
-  std::size_t said_at_ = 0;  ///< number of history steps when `problem_` was set
+  bool dragging_ = false;         ///< a number is being dragged, so the numbers differ from the document
+  std::size_t problem_step_ = 0;  ///< number of history steps when `problem_` was set
   std::string problem_;
 };
 
 /// List of all history steps, done and undone. A click undoes or redoes up to a step.
 class HistoryPanel {
  public:
-  void draw(Desk& desk);
+  void draw(EditorContext& editor);
 
  private:
   std::shared_ptr<const Snapshot> of_;  ///< snapshot drawn last
@@ -62,11 +62,11 @@ class HistoryPanel {
 class ViewsPanel {
  public:
   /// `drawn`: the scene with the viewport's background, for thumbnails.
-  void draw(Desk& desk, const Scene& drawn, Thumbnails& thumbnails);
+  void draw(EditorContext& editor, const Scene& drawn, Thumbnails& thumbnails);
 
  private:
-  void draw_card(Desk& desk, const Scene& drawn, Thumbnails& thumbnails, const std::string& name);
-  void draw_name(Desk& desk, const std::string& name, float width);
+  void draw_card(EditorContext& editor, const Scene& drawn, Thumbnails& thumbnails, const std::string& name);
+  void draw_name(EditorContext& editor, const std::string& name, float width);
   std::string renaming_, name_;  ///< view being renamed, and the typed name
   bool focus_name_ = false;
 };
@@ -74,10 +74,10 @@ class ViewsPanel {
 /// Light settings: the effects that follow edits, the source of the light, and the decision about each effect.
 class LightPanel {
  public:
-  void draw(Desk& desk);
+  void draw(EditorContext& editor);
 
  private:
-  void draw_settings(Desk& desk, const SceneLight& light, bool on);
+  void draw_settings(EditorContext& editor, const SceneLight& light, bool on);
   void draw_ball(const Lighting& lighting);
   std::optional<PictureTexture> ball_;  ///< image of a ball in the light `ball_of_`
   std::shared_ptr<const Light> ball_of_;
@@ -90,7 +90,7 @@ class LightPanel {
 /// All edits as script lines, to copy or save, and a field to run a typed line.
 class ScriptPanel {
  public:
-  void draw(Desk& desk);
+  void draw(EditorContext& editor);
 
  private:
   std::string line_, problem_;          ///< typed line, and its error message
@@ -106,7 +106,7 @@ struct FrameReport {
   std::string device;
   double scale = 1;              ///< share of the full resolution, each way
   int samples = 4;               ///< per pixel
-  double pictures_a_second = 0;  ///< frame rate while the view last moved
+  double frames_per_second = 0;  ///< frame rate while the view last moved
 };
 /// Draws the cost panel: samples per pixel, target frame rate, measured error over time, and the frame report.
 /// `each_pass`: option to time each pass.
@@ -116,7 +116,7 @@ void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameRep
 class AdjustPanel {
  public:
   /// Draws with the lower left corner at `corner` (window pixels), over a viewport of size `room` (pixels).
-  void draw(Desk& desk, const ImVec2& corner, const ImVec2& room);
+  void draw(EditorContext& editor, const ImVec2& corner, const ImVec2& room);
 
  private:
   /// The last `edits` edits with the changed fields.
@@ -129,10 +129,10 @@ class AdjustPanel {
 
 /// Draws the latest messages as toasts, stacked upwards from their lower right `corner` (window pixels).
 void draw_toasts(Messages& messages, const ImVec2& corner);
-/// Draws the sheet of keys and mouse actions if `desk.asking.keys` is set.
-void draw_keys_sheet(Desk& desk);
+/// Draws the sheet of keys and mouse actions if `editor.asking.keys` is set.
+void draw_keys_sheet(EditorContext& editor);
 /// Draws the start page (open, recent, samples) centred at `middle` (window pixels) while the scene is empty.
-void draw_start(Desk& desk, Thumbnails& thumbnails, const ImVec2& middle);
+void draw_start(EditorContext& editor, Thumbnails& thumbnails, const ImVec2& middle);
 
 /// Draws the message log, newest last.
 void draw_log(const Messages& messages);
@@ -140,7 +140,7 @@ void draw_log(const Messages& messages);
 /// Command palette: searches all commands, edits and stored views by name.
 class PalettePanel {
  public:
-  void draw(Desk& desk);
+  void draw(EditorContext& editor);
 
  private:
   std::string filter_;
@@ -151,16 +151,16 @@ class PalettePanel {
 class EditForm {
  public:
   /// `right`: left border of the panels at the right, in window pixels.
-  void draw(Desk& desk, float right);
+  void draw(EditorContext& editor, float right);
 
  private:
-  /// Resets the form for the edit `desk.asking.form`.
-  void begin(const Desk& desk);
+  /// Resets the form for the edit `editor.asking.form`.
+  void begin(const EditorContext& editor);
   /// The edits that the fields describe: one, or one per picked node. Throws EditError.
-  std::vector<nlohmann::json> lines(const Desk& desk) const;
+  std::vector<nlohmann::json> lines(const EditorContext& editor) const;
   /// Requests a preview if the fields or the scene have changed.
-  void show(Desk& desk);
-  void draw_count(const Desk& desk) const;
+  void show(EditorContext& editor);
+  void draw_count(const EditorContext& editor) const;
   bool previews_ = true;
   std::string previewed_;                     ///< JSON of the edits that the preview shows or is computing
   std::vector<NodePtr> previewed_on_;         ///< root nodes of the scene that the preview started from

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "editor/commands/lit.h"
-#include "editor/commands/plain_scene.h"
+#include "editor/actions/lit.h"
+#include "editor/actions/plain_scene.h"
 #include "editor/edits/support.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/fonts.h"
@@ -21,7 +21,7 @@ namespace rebake {
 struct PlainPreview::Measured {
   Scene scene;
   View view;
-  std::optional<PlainParts> parts;
+  std::optional<PlainSceneBuilder> parts;
   bool exact = false;  ///< one decoder reproduces all texels, so nothing is fitted
   std::vector<NodeRef> nodes;
   struct Row {
@@ -37,7 +37,7 @@ struct PlainPreview::Measured {
 
 namespace {
 
-constexpr const char* failed = "It was stopped, or could not be done: the messages say why.";
+constexpr const char* failed = "The comparison was cancelled or failed. See the message log.";
 constexpr int timed_frames = 5;  // frames per row; the median is shown
 
 // Fewer texels and training steps than an export, for a measurement of a few seconds on any scene.
@@ -51,7 +51,7 @@ FuseOptions quick_options(const Scene& scene) {
 
 }  // namespace
 
-void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
+void PlainPreview::begin(EditorContext& editor, std::vector<NodeRef> nodes) {
   open_ = true;
   nodes_ = std::move(nodes);
   measured_ = nullptr;
@@ -60,14 +60,14 @@ void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
   problem_.clear();
   auto measured = std::make_shared<Measured>();
   constexpr double widest = 520;
-  const double scale = std::min(1.0, widest / std::max(desk.view.width, desk.view.height));
-  measured->view = {desk.view.camera, std::max(1, static_cast<int>(desk.view.width * scale)),
-                    std::max(1, static_cast<int>(desk.view.height * scale)), 4};
+  const double scale = std::min(1.0, widest / std::max(editor.view.width, editor.view.height));
+  measured->view = {editor.view.camera, std::max(1, static_cast<int>(editor.view.width * scale)),
+                    std::max(1, static_cast<int>(editor.view.height * scale)), 4};
   measured->nodes = nodes_;
   wanted_ = std::make_shared<bool>(true);
   working_ = true;
-  desk.jobs.worker.start(
-      "compare plain folders",
+  editor.jobs.worker.start(
+      "comparing plain folders",
       [measured](Session& session) {
         measured->scene = with_only(session.scene(), measured->nodes);
         measured->scene.background = Color::Ones();
@@ -84,12 +84,12 @@ void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
         for (const FuseCandidate& candidate : plan.candidates) measured->rows.push_back({candidate.trial, {}, 0, 0});
         measured->chosen = plan.chosen;
       },
-      [this, &desk, measured, wanted = wanted_] {
+      [this, &editor, measured, wanted = wanted_] {
         if (!*wanted) return;
         working_ = false;
         measured_ = measured;
         exact_.emplace(measured->reference);
-        if (!measured->exact) show(desk, measured->chosen);
+        if (!measured->exact) show(editor, measured->chosen);
       },
       [this, wanted = wanted_] {
         if (!*wanted) return;
@@ -99,7 +99,7 @@ void PlainPreview::begin(Desk& desk, std::vector<NodeRef> nodes) {
 }
 
 // Fits texels with one Gauss–Newton iteration: quick, and an export only refines the result.
-void PlainPreview::show(Desk& desk, std::size_t row) {
+void PlainPreview::show(EditorContext& editor, std::size_t row) {
   row_ = row;
   const auto measured = measured_;
   if (measured->rows[row].picture) {
@@ -110,8 +110,8 @@ void PlainPreview::show(Desk& desk, std::size_t row) {
   // The window reads `rows` while the job runs, so the job fills a copy.
   auto seen = std::make_shared<Measured::Row>(measured->rows[row]);
   working_ = true;
-  desk.jobs.worker.start(
-      "preview plain folder",
+  editor.jobs.worker.start(
+      "rendering the plain folder",
       [measured, seen, row](Session& session) {
         FuseOptions options = quick_options(measured->scene);
         options.iterations = 1;
@@ -137,13 +137,13 @@ void PlainPreview::show(Desk& desk, std::size_t row) {
       });
 }
 
-void PlainPreview::draw_table(Desk& desk) {
+void PlainPreview::draw_table(EditorContext& editor) {
   if (!ImGui::BeginTable("ways", 6, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_BordersInnerH)) return;
   ImGui::TableSetupColumn("decoder", 0, 3.2F);
   ImGui::TableSetupColumn("width");
   ImGui::TableSetupColumn("texels dB", 0, 1.4F);
-  ImGui::TableSetupColumn("here dB", 0, 1.2F);
-  ImGui::TableSetupColumn("ms a frame", 0, 1.6F);
+  ImGui::TableSetupColumn("image dB", 0, 1.2F);
+  ImGui::TableSetupColumn("ms per frame", 0, 1.6F);
   ImGui::TableSetupColumn("seconds", 0, 1.2F);
   ImGui::TableHeadersRow();
   for (std::size_t k = 0; k < measured_->rows.size(); ++k) {
@@ -151,13 +151,12 @@ void PlainPreview::draw_table(Desk& desk) {
     ImGui::PushID(static_cast<int>(k));
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    const std::string name = words_of(row.trial.way);
-    if (ImGui::Selectable(name.c_str(), row_ == k, ImGuiSelectableFlags_SpanAllColumns) && row_ != k) show(desk, k);
+    const std::string name = notation_of(row.trial.way);
+    if (ImGui::Selectable(name.c_str(), row_ == k, ImGuiSelectableFlags_SpanAllColumns) && row_ != k) show(editor, k);
     announce::item(fmt::format("way {}", k));
     // No tooltip on the selected row: it would only cover the others.
     if (row_ != k)
-      ui::tip(name, "",
-              k == measured_->chosen ? "What an export takes by itself. Click to compare it." : "Click to compare it.");
+      ui::tip(name, "", k == measured_->chosen ? "Default of an export. Click to compare." : "Click to compare.");
     ImGui::TableNextColumn();
     ImGui::Text("%d", row.trial.width);
     ImGui::TableNextColumn();
@@ -197,16 +196,15 @@ void PlainPreview::draw_wipe(float width) {
                        color32(theme().panel, 0.85F), px(space::rounding));
     list.AddText({corner.x + pad.x, corner.y + pad.y}, color32(theme().text), text.c_str());
   };
-  caption("as it is", false);
-  caption(plain_ ? fmt::format("plain folder: {:.1f} dB here", measured_->rows[shown_].psnr_db) : "plain folder ...",
-          true);
+  caption("original", false);
+  caption(plain_ ? fmt::format("plain folder: {:.1f} dB", measured_->rows[shown_].psnr_db) : "plain folder ...", true);
 }
 
-bool PlainPreview::leave(Desk& desk) {
+bool PlainPreview::leave(EditorContext& editor) {
   if (!open_) return false;
   open_ = false;
   *wanted_ = false;
-  if (std::exchange(working_, false)) desk.jobs.worker.cancel();
+  if (std::exchange(working_, false)) editor.jobs.worker.cancel();
   measured_ = nullptr;
   exact_.reset();
   plain_.reset();
@@ -215,10 +213,10 @@ bool PlainPreview::leave(Desk& desk) {
 
 std::string PlainPreview::words() const {
   if (!choice_.way) return "the narrowest decoder that reaches 40 dB";
-  return fmt::format("{}, width {}", words_of(*choice_.way), *choice_.width.neurons);
+  return fmt::format("{}, width {}", notation_of(*choice_.way), *choice_.width.neurons);
 }
 
-bool PlainPreview::draw(Desk& desk) {
+bool PlainPreview::draw(EditorContext& editor) {
   if (!open_ && !ImGui::IsPopupOpen("###plain")) return false;
   if (open_ && !ImGui::IsPopupOpen("###plain")) ImGui::OpenPopup("###plain");
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -246,38 +244,38 @@ bool PlainPreview::draw(Desk& desk) {
   if (!problem_.empty()) {
     ui::wrapped(problem_, theme().danger);
   } else if (!measured_) {
-    const Worker::Status status = desk.jobs.worker.status();
-    ui::muted("Measured on some of the texels; this takes a few seconds.");
+    const Worker::Status status = editor.jobs.worker.status();
+    ui::muted("Measuring a sample of the texels. This takes a few seconds.");
     ImGui::ProgressBar(static_cast<float>(status.share), {-1, 0}, status.what.c_str());
   } else if (measured_->exact) {
-    ui::muted("One decoder shows all of it exactly: nothing has to be fitted.");
+    ui::muted("One decoder represents the scene exactly. No fit is needed.");
     announce::item("exact");
   } else {
-    ui::muted("One decoder is to show what several do. Drag across the picture to compare.");
+    ui::muted("One decoder approximates several. Drag across the image to compare.");
     const float most = ImGui::GetContentRegionAvail().y -
                        ImGui::GetTextLineHeightWithSpacing() * (static_cast<float>(measured_->rows.size()) + 4);
     const float aspect = static_cast<float>(measured_->view.width) / static_cast<float>(measured_->view.height);
     draw_wipe(std::clamp(most * aspect, px(160), ImGui::GetContentRegionAvail().x));
-    draw_table(desk);
+    draw_table(editor);
     ui::muted(fmt::format(
-        "Texels: a sample, each for itself. Here: this picture, where edges mix them. A frame of the composition takes "
-        "{:.1f} ms.",
+        "Texels: PSNR of sampled texels. Image: PSNR of this image, in which texels are blended. The original takes "
+        "{:.1f} ms per frame.",
         measured_->reference_ms));
   }
   ImGui::EndChild();
   const float width = px(120);
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * width - ImGui::GetStyle().ItemSpacing.x);
-  const bool cancelled = ui::button("Cancel", {width, 0});
+  const bool cancelled = ui::button("Cancel##cancel", {width, 0});
   ImGui::SameLine();
   const bool can = measured_ && !measured_->exact;
   ImGui::BeginDisabled(!can);
-  if (ui::primary_button("Use this", {width, 0})) {
+  if (ui::primary_button("Use this##use", {width, 0})) {
     const FuseTrial& trial = measured_->rows[row_].trial;
     choice_ = {{trial.width}, trial.way};
     chosen = true;
   }
   ImGui::EndDisabled();
-  if (cancelled || chosen) leave(desk);
+  if (cancelled || chosen) leave(editor);
   ImGui::EndPopup();
   return chosen;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/gui/window/desk.h"
+#include "editor/gui/window/editor_context.h"
 #include "render/picture_texture.h"
 
 namespace rebake {
@@ -16,11 +16,11 @@ class PlainPreview {
  public:
   /// Opens the dialog and measures on a sample of the texels, in the current view. `nodes`: nodes to export; empty for
   /// all.
-  void begin(Desk& desk, std::vector<NodeRef> nodes);
+  void begin(EditorContext& editor, std::vector<NodeRef> nodes);
   /// Draws the dialog if it is open; returns true in the frame in which the user confirms a choice.
-  bool draw(Desk& desk);
+  bool draw(EditorContext& editor);
   /// Closes the dialog in the next frame and cancels its job; returns false if it is not open.
-  bool leave(Desk& desk);
+  bool leave(EditorContext& editor);
   /// Resets the choice to automatic.
   void forget() { choice_ = {}; }
   const Project::PlainChoice& choice() const { return choice_; }
@@ -30,8 +30,8 @@ class PlainPreview {
  private:
   struct Measured;
   /// Selects a row and renders its image if there is none yet.
-  void show(Desk& desk, std::size_t row);
-  void draw_table(Desk& desk);
+  void show(EditorContext& editor, std::size_t row);
+  void draw_table(EditorContext& editor);
   /// Draws the two images with a draggable divider.
   void draw_wipe(float width);
 

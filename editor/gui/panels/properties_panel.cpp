@@ -24,12 +24,12 @@ Vec3 shown(const Vec3& value, double size) {
   return result;
 }
 
-std::string rows_of(const Desk& desk) {
+std::string rows_of(const EditorContext& editor) {
   std::size_t triangles = 0, sets = 0;
   std::uint64_t bytes = 0;
   bool bent = false;
-  for (const NodeId id : desk.active) {
-    const NodePtr one = find(desk.scene(), id);
+  for (const NodeId id : editor.active) {
+    const NodePtr one = find(editor.scene(), id);
     if (!one || !one->object) continue;
     triangles += one->object->triangle_count();
     sets += one->object->sets.size();
@@ -38,7 +38,8 @@ std::string rows_of(const Desk& desk) {
   }
   if (sets == 0) return "";
   return fmt::format("{} triangles in {} texture set{}, {:.1f} MB{}", triangles, sets, sets == 1 ? "" : "s",
-                     static_cast<double>(bytes) / 1e6, bent ? ". Bent: its colours turn with its triangles." : "");
+                     static_cast<double>(bytes) / 1e6,
+                     bent ? ". Deformed: view directions rotate with the triangles." : "");
 }
 
 }  // namespace
@@ -54,23 +55,25 @@ ui::Changed PropertiesPanel::row(const char* name, Vec3& value, const char* form
     const announce::Part part(name);
     const Vec3 before = value;
     const ui::Changed changed = ui::number_field(axes[axis], value[axis], format, step, width);
-    ui::tip(fmt::format("{} {}", name, axes[axis]), "", "Drag to the side, or click and type; 90/4 is a number too.");
+    ui::tip(fmt::format("{} {}", name, axes[axis]), "",
+            "Drag sideways, or click and type a number or an expression such as 90/4.");
     if (changed == ui::Changed::nothing) {
       value[axis] = before[axis];
       continue;
     }
     result = changed;
-    if (changed == ui::Changed::failed) problem_ = "That is no number.";
+    if (changed == ui::Changed::failed)
+      problem_ = "The text is not a number. Type a number or an expression such as 90/4.";
   }
   ImGui::PopID();
   return result;
 }
 
-void PropertiesPanel::draw_one(Desk& desk, const PlacedNode& placed) {
+void PropertiesPanel::draw_one(EditorContext& editor, const PlacedNode& placed) {
   const Placement now = placement_of(placed.node->to_parent);
-  const double size = std::max(1e-300, subtree_bounds(desk.scene(), placed.node->id).isEmpty()
+  const double size = std::max(1e-300, subtree_bounds(editor.scene(), placed.node->id).isEmpty()
                                            ? 1.0
-                                           : subtree_bounds(desk.scene(), placed.node->id).diagonal().norm());
+                                           : subtree_bounds(editor.scene(), placed.node->id).diagonal().norm());
   if (!dragging_) {
     position_ = shown(now.position, size);
     angles_ = shown(euler_degrees(now.rotation), 100);
@@ -93,24 +96,24 @@ void PropertiesPanel::draw_one(Desk& desk, const PlacedNode& placed) {
   problem_.clear();
   if (changed == ui::Changed::cancelled) {
     dragging_ = false;
-    desk.drop_preview();
+    editor.drop_preview();
     return;
   }
   if (place.scale && (scale_.array() == 0).any()) {
-    problem_ = "A scale cannot be 0.";
+    problem_ = "A scale must not be 0.";
     dragging_ = false;
     return;
   }
   dragging_ = changed == ui::Changed::dragged;
   if (dragging_)
-    desk.show_preview({place});
+    editor.show_preview({place});
   else
-    desk.edit(place);
+    editor.edit(place);
 }
 
-void PropertiesPanel::draw_several(Desk& desk) {
+void PropertiesPanel::draw_several(EditorContext& editor) {
   Box box;
-  for (const NodeId id : desk.active) box.extend(subtree_bounds(desk.scene(), id));
+  for (const NodeId id : editor.active) box.extend(subtree_bounds(editor.scene(), id));
   if (box.isEmpty()) return;
   if (!dragging_) {
     position_ = Vec3(0, 0, 0);
@@ -119,16 +122,16 @@ void PropertiesPanel::draw_several(Desk& desk) {
   }
   const double unit = std::pow(10, std::floor(std::log10(std::max(1e-300, box.diagonal().norm()))) - 2);
   ui::Changed changed = ui::Changed::nothing;
-  for (const ui::Changed one : {row("Move by", position_, "{:.5g}", unit), row("Turn by", angles_, "{:.5g}°", 1),
+  for (const ui::Changed one : {row("Move by", position_, "{:.5g}", unit), row("Rotate by", angles_, "{:.5g}°", 1),
                                 row("Scale by", scale_, "{:.5g}", 0.01)})
     if (one != ui::Changed::nothing) changed = one;
   if (changed == ui::Changed::cancelled) {
     dragging_ = false;
-    desk.drop_preview();
+    editor.drop_preview();
   }
   if (changed != ui::Changed::dragged && changed != ui::Changed::finished) return;
   std::vector<Edit> list;
-  for (const NodeId id : desk.active_tops()) {
+  for (const NodeId id : editor.active_tops()) {
     Transform transform;
     transform.node = NodeRef{id};
     transform.pivot = box.center();
@@ -140,38 +143,38 @@ void PropertiesPanel::draw_several(Desk& desk) {
   problem_.clear();
   dragging_ = changed == ui::Changed::dragged;
   if (dragging_)
-    desk.show_preview(list);
+    editor.show_preview(list);
   else
-    desk.edits(list);
+    editor.edits(list);
 }
 
-void PropertiesPanel::draw(Desk& desk) {
+void PropertiesPanel::draw(EditorContext& editor) {
   const announce::Part part("properties");
-  if (desk.active.empty()) {
-    ui::muted("Pick a node in the outline, or click it in the picture.");
+  if (editor.active.empty()) {
+    ui::muted("Pick a node in the outliner or in the viewport.");
     return;
   }
-  const auto placed = find_placed(desk.scene(), *desk.active.begin());
+  const auto placed = find_placed(editor.scene(), *editor.active.begin());
   if (!placed) return;
-  if (of_ != desk.active) dragging_ = false;
+  if (of_ != editor.active) dragging_ = false;
   // Clear an error message after the next step.
-  if (of_ != desk.active || said_at_ != desk.now->steps_done) problem_.clear();
-  of_ = desk.active;
-  said_at_ = desk.now->steps_done;
-  ImGui::TextUnformatted(desk.active.size() == 1 ? placed->node->name.c_str()
-                                                 : fmt::format("{} nodes", desk.active.size()).c_str());
+  if (of_ != editor.active || problem_step_ != editor.now->steps_done) problem_.clear();
+  of_ = editor.active;
+  problem_step_ = editor.now->steps_done;
+  ImGui::TextUnformatted(editor.active.size() == 1 ? placed->node->name.c_str()
+                                                   : fmt::format("{} nodes", editor.active.size()).c_str());
   if (placed->locked) {
     ImGui::SameLine();
     ImGui::TextDisabled("locked");
   }
   ImGui::BeginDisabled(placed->locked);
-  if (desk.active.size() == 1)
-    draw_one(desk, *placed);
+  if (editor.active.size() == 1)
+    draw_one(editor, *placed);
   else
-    draw_several(desk);
+    draw_several(editor);
   ImGui::EndDisabled();
   if (!problem_.empty()) ui::wrapped(problem_, theme().danger);
-  if (const std::string rows = rows_of(desk); !rows.empty()) ui::muted(rows);
+  if (const std::string rows = rows_of(editor); !rows.empty()) ui::muted(rows);
 }
 
 }  // namespace rebake

@@ -11,32 +11,32 @@
 
 namespace rebake {
 
-void ScriptPanel::draw(Desk& desk) {
+void ScriptPanel::draw(EditorContext& editor) {
   const announce::Part part("script");
   if (ui::button("Copy")) {
     std::string text;
-    for (const Edit& edit : desk.now->done) text += to_json(edit).dump() + "\n";
+    for (const Edit& edit : editor.now->done) text += to_json(edit).dump() + "\n";
     ImGui::SetClipboardText(text.c_str());
   }
   ImGui::SameLine();
-  if (ui::button("Save...")) desk.asking.path = PathQuestion::save_script;
+  if (ui::button("Save...")) editor.dialogs.path = FileDialogPurpose::save_script;
   ImGui::SameLine();
-  if (ui::button("Run...")) desk.asking.path = PathQuestion::run_script;
+  if (ui::button("Run...")) editor.dialogs.path = FileDialogPurpose::run_script;
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1);
   if (ImGui::InputTextWithHint("##line", "A line, e.g. {\"op\": \"select\", \"all\": true}", &line_,
                                ImGuiInputTextFlags_EnterReturnsTrue) &&
       !line_.empty()) {
     try {
-      const ScriptCommand command = read_command(read_line(line_), desk.scene());
+      const ScriptCommand command = read_command(read_line(line_), editor.scene());
       if (const Edit* edit = std::get_if<Edit>(&command))
-        desk.edit(*edit);
+        editor.edit(*edit);
       else
-        desk.jobs.worker.start("script line", std::get<Action>(command));
+        editor.jobs.worker.start("script line", std::get<Action>(command));
       line_.clear();
       problem_.clear();
     } catch (const nlohmann::json::exception& error) {
-      problem_ = "no valid JSON: " + said_by(error);
+      problem_ = "not valid JSON: " + json_error_message(error);
     } catch (const Error& error) {
       problem_ = error.what();
     }
@@ -45,11 +45,11 @@ void ScriptPanel::draw(Desk& desk) {
     ui::wrapped(problem_, theme().danger);
   }
   ImGui::BeginChild("lines");
-  const bool fresh = of_ != desk.now;
+  const bool fresh = of_ != editor.now;
   if (fresh) {
-    of_ = desk.now;
+    of_ = editor.now;
     lines_.clear();
-    for (const Edit& edit : desk.now->done) {
+    for (const Edit& edit : editor.now->done) {
       // Shorten long lines, such as regions drawn by hand.
       std::string text = to_json(edit).dump();
       constexpr std::size_t longest = 300;

@@ -16,12 +16,12 @@ namespace fs = std::filesystem;
 namespace {
 
 // Draws a recent path as a card with its thumbnail, or with an icon if `picture` is 0.
-void card(Desk& desk, unsigned picture, const std::string& path, const ImVec2& size) {
+void card(EditorContext& editor, unsigned picture, const std::string& path, const ImVec2& size) {
   const std::string name = fs::path(path).filename().string();
   ImGui::PushID(path.c_str());
   ImGui::BeginGroup();
   const ImVec2 at = ImGui::GetCursorScreenPos(), end{at.x + size.x, at.y + size.y};
-  if (ImGui::InvisibleButton("card", size)) desk.project.open({path});
+  if (ImGui::InvisibleButton("card", size)) editor.project.open({path});
   announce::item(name);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(at, end, color32(theme().field), px(4));
@@ -38,11 +38,11 @@ void card(Desk& desk, unsigned picture, const std::string& path, const ImVec2& s
   ImGui::PopID();
 }
 
-void entry(Desk& desk, const char* icon, const std::string& path) {
+void entry(EditorContext& editor, const char* icon, const std::string& path) {
   const fs::path file(path);
   const std::string name = file.filename().string();
   ImGui::PushID(path.c_str());
-  if (ImGui::Selectable((std::string(icon) + "   " + name).c_str(), false, 0, {0, px(26)})) desk.project.open({path});
+  if (ImGui::Selectable((std::string(icon) + "   " + name).c_str(), false, 0, {0, px(26)})) editor.project.open({path});
   ImGui::PopID();
   announce::item(name);
   ui::tip(name, "", path);
@@ -50,8 +50,8 @@ void entry(Desk& desk, const char* icon, const std::string& path) {
 
 }  // namespace
 
-void draw_start(Desk& desk, Thumbnails& thumbnails, const ImVec2& middle) {
-  if (!desk.scene().roots.empty() || desk.jobs.worker.busy()) return;
+void draw_start(EditorContext& editor, Thumbnails& thumbnails, const ImVec2& middle) {
+  if (!editor.scene().roots.empty() || editor.jobs.worker.busy()) return;
   const float width = px(420);
   ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5F, 0.5F});
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, px(520)});
@@ -67,13 +67,13 @@ void draw_start(Desk& desk, Thumbnails& thumbnails, const ImVec2& middle) {
   ImGui::PushFont(fonts().heading);
   ImGui::TextUnformatted("Open a baked scene");
   ImGui::PopFont();
-  if (!desk.now->done.empty()) ui::muted("The scene is empty. Undo brings back what was removed.");
-  ui::muted("Drop a folder here, or choose one. Several can be composed.");
+  if (!editor.now->done.empty()) ui::muted("The scene is empty. Undo restores removed nodes.");
+  ui::muted("Drop folders here, or choose them. Several scenes can be combined.");
   ImGui::Dummy({0, px(6)});
-  if (ui::primary_button("Open...", {px(140), px(34)})) desk.asking.path = PathQuestion::open;
+  if (ui::primary_button("Open...", {px(140), px(34)})) editor.dialogs.path = FileDialogPurpose::open;
   std::error_code error;
   std::vector<std::string> recent;
-  for (const std::string& path : desk.settings.recent)
+  for (const std::string& path : editor.settings.recent)
     if (recent.size() < 6 && fs::exists(path, error)) recent.push_back(path);
   if (!recent.empty()) {
     ImGui::Dummy({0, px(8)});
@@ -82,14 +82,14 @@ void draw_start(Desk& desk, Thumbnails& thumbnails, const ImVec2& middle) {
     const float gap = px(10), across = (ImGui::GetContentRegionAvail().x - 2 * gap) / 3;
     for (std::size_t k = 0; k < recent.size(); ++k) {
       if (k % 3 != 0) ImGui::SameLine(0, gap);
-      card(desk, thumbnails.of_file(recent[k]), recent[k], {across, across * 0.625F});
+      card(editor, thumbnails.of_file(recent[k]), recent[k], {across, across * 0.625F});
     }
   }
   ImGui::Dummy({0, px(8)});
   ImGui::TextDisabled("Samples");
   const announce::Part inside("samples");
   for (fs::directory_iterator at(sample_folder(), error), end; !error && at != end; at.increment(error))
-    if (at->is_directory(error)) entry(desk, icons::cube_outline, at->path().string());
+    if (at->is_directory(error)) entry(editor, icons::cube_outline, at->path().string());
   ImGui::End();
 }
 

@@ -78,11 +78,11 @@ std::vector<ClosedForm> forms_along(const Edit& edit, const Spine& spine) {
 
 }  // namespace
 
-BendTool::Found BendTool::present(const Desk& desk) const {
-  Found found{axis_, false, {}};
-  for (const DeformTarget& target : desk.deform_targets()) {
+BendTool::SpineInputs BendTool::current_inputs(const EditorContext& editor) const {
+  SpineInputs found{axis_, false, {}};
+  for (const DeformTarget& target : editor.deform_targets()) {
     found.selection = target.selection;
-    for (const PlacedNode& placed : placed_nodes(desk.scene()))
+    for (const PlacedNode& placed : placed_nodes(editor.scene()))
       if (placed.node->object && (!target.node || target.node->id == placed.node->id) &&
           (!target.selection || placed.node->selection))
         found.nodes.push_back(placed.node);
@@ -90,27 +90,27 @@ BendTool::Found BendTool::present(const Desk& desk) const {
   return found;
 }
 
-bool BendTool::made_last(const Desk& desk) const {
-  const std::optional<Bent> here = bent(desk);
-  return here && !desk.now->done.empty() && !forms_along(desk.now->done.back(), here->spine).empty();
+bool BendTool::last_edit_follows_spine(const EditorContext& editor) const {
+  const std::optional<DeformAxisTarget> here = bent(editor);
+  return here && !editor.now->done.empty() && !forms_along(editor.now->done.back(), here->spine).empty();
 }
 
-void BendTool::find_spine(Desk& desk) {
-  const Found now = present(desk);
-  if (now == found_for_) return;
-  found_for_ = now;
+void BendTool::find_spine(EditorContext& editor) {
+  const SpineInputs now = current_inputs(editor);
+  if (now == spine_inputs_) return;
+  spine_inputs_ = now;
   // A second edit keeps the axis and limits of the first.
-  if (made_last(desk)) return;
+  if (last_edit_follows_spine(editor)) return;
   found_.reset();
   from_ = 0;
   to_ = 1;
   flipped_ = false;
-  const std::vector<DeformTarget> targets = desk.deform_targets();
+  const std::vector<DeformTarget> targets = editor.deform_targets();
   if (targets.empty()) return;
   if (axis_ > 0 || !targets.front().selection) {
     // Whole objects usually stand upright: use Y by default.
     const int axis = axis_ > 0 ? axis_ - 1 : 1;
-    const Box box = desk.deform_bounds(targets);
+    const Box box = editor.deform_bounds(targets);
     if (box.isEmpty() || !(box.sizes()[axis] > 0)) return;
     Spine spine;
     spine.foot = box.center();
@@ -121,11 +121,11 @@ void BendTool::find_spine(Desk& desk) {
     return;
   }
   auto found = std::make_shared<Spine>();
-  desk.jobs.worker.start(
-      "looking for the spine",
+  editor.jobs.worker.start(
+      "searching for the spine",
       [targets, found](Session& session) { *found = spine_of_targets(session.scene(), targets); },
       [this, found, now] {
-        if (now != found_for_ || !(found->length > 0)) return;
+        if (now != spine_inputs_ || !(found->length > 0)) return;
         found_ = found;
         // A falloff as wide as the stem avoids a rip at the border. With unselected triangles in between, it would hold
         // everything in place.
@@ -133,9 +133,9 @@ void BendTool::find_spine(Desk& desk) {
       });
 }
 
-std::optional<BendTool::Bent> BendTool::bent(const Desk& desk) const {
+std::optional<BendTool::DeformAxisTarget> BendTool::bent(const EditorContext& editor) const {
   if (!found_) return std::nullopt;
-  Bent bent{desk.deform_targets(), *found_};
+  DeformAxisTarget bent{editor.deform_targets(), *found_};
   if (bent.targets.empty()) return std::nullopt;
   if (flipped_) {
     bent.spine.foot += bent.spine.length * bent.spine.along;
@@ -146,8 +146,8 @@ std::optional<BendTool::Bent> BendTool::bent(const Desk& desk) const {
   return bent;
 }
 
-Vec3 BendTool::shown(const Desk& desk, const Bent& bent, const Vec3& point) {
-  const std::vector<Edit>& done = desk.now->done;
+Vec3 BendTool::shown(const EditorContext& editor, const DeformAxisTarget& bent, const Vec3& point) {
+  const std::vector<Edit>& done = editor.now->done;
   std::size_t first = done.size();
   while (first > 0 && !forms_along(done[first - 1], bent.spine).empty()) --first;
   Vec3 result = point;
@@ -157,7 +157,7 @@ Vec3 BendTool::shown(const Desk& desk, const Bent& bent, const Vec3& point) {
   return result;
 }
 
-Vec3 BendTool::Bent::at(double share) const {
+Vec3 BendTool::DeformAxisTarget::at(double share) const {
   if (!curved) return spine.foot + share * spine.length * spine.along;
   // Beyond its ends the curve is extrapolated linearly.
   const auto pieces = static_cast<double>(spine.curve.size() - 1);
@@ -166,7 +166,7 @@ Vec3 BendTool::Bent::at(double share) const {
   return spine.curve[k] + (share * pieces - piece) * (spine.curve[k + 1] - spine.curve[k]);
 }
 
-double BendTool::Bent::length_to(double share) const {
+double BendTool::DeformAxisTarget::length_to(double share) const {
   if (!curved) return share * spine.length;
   const auto pieces = static_cast<double>(spine.curve.size() - 1);
   double length = 0;
@@ -176,21 +176,22 @@ double BendTool::Bent::length_to(double share) const {
   return length;
 }
 
-Vec3 BendTool::place(const Bent& bent, Handle handle) const {
+Vec3 BendTool::place(const DeformAxisTarget& bent, Handle handle) const {
   return handle == Handle::from ? bent.at(from_) : handle == Handle::to ? bent.at(to_) : bent.tip();
 }
 
-BendTool::Handle BendTool::handle_at(const Desk& desk, const Bent& bent, const Lens& lens, const Vec2& at) const {
+BendTool::Handle BendTool::handle_at(const EditorContext& editor, const DeformAxisTarget& bent,
+                                     const ViewportProjection& lens, const Vec2& at) const {
   for (const Handle handle : {Handle::tip, Handle::to, Handle::from})
-    if (const auto pixel = lens.pixel(shown(desk, bent, place(bent, handle)));
+    if (const auto pixel = lens.pixel(shown(editor, bent, place(bent, handle)));
         pixel && (*pixel - at).norm() < static_cast<double>(px(bend_grab_pixels)))
       return handle;
   return Handle::none;
 }
 
-std::vector<Edit> BendTool::edits(const Desk& desk, const Lens& lens) const {
-  const Bent& bent = *held_bent_;
-  const auto foot = lens.pixel(shown(desk, bent, bent.at(from_))), tip = lens.pixel(shown(desk, bent, bent.tip()));
+std::vector<Edit> BendTool::edits(const EditorContext& editor, const ViewportProjection& lens) const {
+  const DeformAxisTarget& bent = *drag_target_;
+  const auto foot = lens.pixel(shown(editor, bent, bent.at(from_))), tip = lens.pixel(shown(editor, bent, bent.tip()));
   if (!foot || !tip || !(to_ > from_)) return {};
   const Vec2 before = *tip - *foot, after = before + (now_ - began_);
   const auto fill = [&](auto made) {
@@ -214,7 +215,7 @@ std::vector<Edit> BendTool::edits(const Desk& desk, const Lens& lens) const {
       Bend bend;
       // Seen from the foot, the tip moves by half the bend's angle. It follows the pointer on the screen.
       const double angle = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
-      const Vec3 away = -lens.towards_eye(bent.at(0.5));
+      const Vec3 away = -lens.direction_to_eye(bent.at(0.5));
       const Vec3 side = away.cross(bent.spine.along);
       if (!(side.norm() > 0.05)) return {};  // the axis points at the eye
       bend.degrees = typed_.value() ? *typed_.value() : std::abs(angle) * 2 * 180 / std::numbers::pi;
@@ -243,13 +244,13 @@ std::vector<Edit> BendTool::edits(const Desk& desk, const Lens& lens) const {
   }
 }
 
-void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
+void BendTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   if (held_ == Handle::none) {
-    find_spine(desk);
+    find_spine(editor);
     if (!pointer.pressed || !pointer.inside) return;
-    held_bent_ = bent(desk);
-    if (!held_bent_) return;
-    held_ = handle_at(desk, *held_bent_, lens, pointer.at);
+    drag_target_ = bent(editor);
+    if (!drag_target_) return;
+    held_ = handle_at(editor, *drag_target_, lens, pointer.at);
     began_ = now_ = pointer.at;
     typed_.clear();
     typed_text_.clear();
@@ -259,24 +260,24 @@ void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   typed_text_ = typed_.text();
   now_ = pointer.at;
   if (held_ == Handle::tip) {
-    const std::vector<Edit> made = edits(desk, lens);
+    const std::vector<Edit> made = edits(editor, lens);
     readout_ = made.empty() ? "" : readout(made.front());
     if (pointer.released) {
       held_ = Handle::none;
       if (made.empty()) {
-        desk.drop_preview();
+        editor.drop_preview();
       } else {
-        desk.edits(made);
+        editor.edits(made);
       }
     } else if (moved && !made.empty()) {
-      desk.show_preview(made);
+      editor.show_preview(made);
     } else if (moved) {
-      desk.drop_preview();
+      editor.drop_preview();
     }
     return;
   }
   // The limit is the pointer's projection onto the spine's chord on the screen.
-  const auto foot = lens.pixel(held_bent_->at(0)), top = lens.pixel(held_bent_->at(1));
+  const auto foot = lens.pixel(drag_target_->at(0)), top = lens.pixel(drag_target_->at(1));
   if (foot && top && (*top - *foot).squaredNorm() > 1) {
     const double share = std::clamp((now_ - *foot).dot(*top - *foot) / (*top - *foot).squaredNorm(), 0.0, 1.0);
     constexpr double least = 0.02;
@@ -288,7 +289,9 @@ void BendTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   if (pointer.released) held_ = Handle::none;
 }
 
-bool BendTool::key(Desk& /*desk*/, const KeyPress& press) { return held_ == Handle::tip && typed_.key(press); }
+bool BendTool::key(EditorContext& /*editor*/, const KeyPress& press) {
+  return held_ == Handle::tip && typed_.key(press);
+}
 
 std::string BendTool::readout(const Edit& edit) {
   if (const auto* bend = edit.as<Bend>()) return fmt::format("Bend {:.1f}°", bend->degrees);
@@ -298,17 +301,17 @@ std::string BendTool::readout(const Edit& edit) {
   return "";
 }
 
-void BendTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
-                    const ImVec2& origin) const {
-  const std::optional<Bent> here = held_ != Handle::none ? held_bent_ : bent(desk);
+void BendTool::draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer,
+                    ImDrawList& list, const ImVec2& origin) const {
+  const std::optional<DeformAxisTarget> here = held_ != Handle::none ? drag_target_ : bent(editor);
   if (!here) return;
   const announce::Part part("bend");
   const Handle hot = held_ != Handle::none ? held_
-                     : pointer.inside      ? handle_at(desk, *here, lens, pointer.at)
+                     : pointer.inside      ? handle_at(editor, *here, lens, pointer.at)
                                            : Handle::none;
   for (const auto& [handle, name] :
        {std::pair(Handle::from, "from"), std::pair(Handle::to, "to"), std::pair(Handle::tip, "tip")}) {
-    const auto pixel = lens.pixel(shown(desk, *here, place(*here, handle)));
+    const auto pixel = lens.pixel(shown(editor, *here, place(*here, handle)));
     if (!pixel) continue;
     const bool drags = held_ == Handle::tip && handle == Handle::tip;
     const ImVec2 at = on_screen(drags ? Vec2(*pixel + now_ - began_) : *pixel, origin);
@@ -324,21 +327,21 @@ void BendTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, 
              readout_ + (typed_.text().empty() ? "" : "  [" + typed_.text() + "]"));
 }
 
-void BendTool::add_guides(const Desk& desk, Guides& guides) const {
-  const std::optional<Bent> here = held_ != Handle::none ? held_bent_ : bent(desk);
+void BendTool::add_guides(const EditorContext& editor, Guides& guides) const {
+  const std::optional<DeformAxisTarget> here = held_ != Handle::none ? drag_target_ : bent(editor);
   if (!here) return;
   // A polyline, since the spine may be curved.
   constexpr int pieces = 24;
   for (int k = 0; k < pieces; ++k) {
-    const auto at = [&](int piece) { return shown(desk, *here, here->at(from_ + (to_ - from_) * piece / pieces)); };
+    const auto at = [&](int piece) { return shown(editor, *here, here->at(from_ + (to_ - from_) * piece / pieces)); };
     guides.lines.push_back({at(k), at(k + 1), Color(0.35, 0.65, 1), 1, 0.6});
   }
   guides.lines.push_back(
-      {shown(desk, *here, here->at(to_)), shown(desk, *here, here->tip()), Color(1, 0.5, 0.8), 1, 0.6});
+      {shown(editor, *here, here->at(to_)), shown(editor, *here, here->tip()), Color(1, 0.5, 0.8), 1, 0.6});
   // Shade the soft border. During drags, or with too many triangles, draw a ring of its width at the lower limit
   // instead.
   if (!(falloff_ > 0)) return;
-  if (held_ == Handle::none && !desk.preview) guides.triangles = shade_.of(desk, here->targets, falloff_);
+  if (held_ == Handle::none && !editor.preview) guides.triangles = falloff_overlay_.of(editor, here->targets, falloff_);
   if (guides.triangles) return;
   const Vec3 middle = here->at(from_), u = here->spine.along.unitOrthogonal(), v = here->spine.along.cross(u);
   constexpr int corners = 32;
@@ -351,53 +354,54 @@ void BendTool::add_guides(const Desk& desk, Guides& guides) const {
   }
 }
 
-void BendTool::options(Desk& desk) {
+void BendTool::options(EditorContext& editor) {
   int kind = static_cast<int>(kind_);
   if (ui::choice("kind", kind, {"Bend", "Twist", "Taper", "Stretch"})) kind_ = static_cast<Kind>(kind);
   ui::flow(px(130));
   ImGui::SetNextItemWidth(px(130));
   ImGui::Combo("##axis", &axis_, "along its shape\0along X\0along Y\0along Z\0");
   announce::item("Axis");
-  ui::tip("Axis", "", "Along the shape: from where the selection hangs on the rest to its far end.");
+  ui::tip("Axis", "", "Along the shape: from the point where the selection is attached to its far end.");
   ui::flow(px(40));
   if (ui::button("Flip")) flipped_ = !flipped_;
-  ui::tip("Flip", "", "Hold it at the other end.");
+  ui::tip("Flip", "", "Swaps the fixed end and the dragged end.");
   ui::flow(px(90));
   ImGui::BeginDisabled(!found_ || found_->curve.empty() || kind_ == Kind::taper);
-  ui::toggle("Curved", curved_);
+  ui::toggle("Curved##curved", curved_);
   ImGui::EndDisabled();
-  ui::tip("Curved", "", "Along the middle of the shape, however it is bent already, in place of a straight line.");
+  ui::tip("Curved", "", "Deforms along the curved centre line of the shape instead of a straight axis.");
   ui::flow(px(160));
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("Soft border");
+  ImGui::TextDisabled("Falloff");
   ImGui::SameLine();
   double falloff = falloff_;
   const double step = found_ ? found_->length / 200 : 0.01;
-  const ui::Changed changed = ui::number_field("Soft border", falloff, "{:.3g}", step, px(70));
+  const ui::Changed changed = ui::number_field("Falloff", falloff, "{:.3g}", step, px(70));
   if (changed == ui::Changed::dragged || changed == ui::Changed::finished) falloff_ = std::max(0.0, falloff);
-  ui::tip("Soft border", "", "How far what is not selected follows, in scene units; 0 is a hard cut.");
-  if (found_ && found_->touched >= interleaved && desk.seen_last() != nullptr) {
+  ui::tip("Falloff", "", "Width of the transition at the border of the selection, in scene units. 0: hard border.");
+  if (found_ && found_->touched >= interleaved && editor.last_visible_selection() != nullptr) {
     ui::flow(px(180));
-    if (ui::primary_button("Take the back sides too")) {
-      SelectPicture all = *desk.seen_last();
+    if (ui::primary_button("Select occluded triangles##select-occluded")) {
+      SelectPicture all = *editor.last_visible_selection();
       all.through = true;
-      desk.edit(all);
+      editor.edit(all);
     }
-    ui::tip("Take the back sides too", "",
-            "Only what is seen was selected. What lies behind it would stay, and the branch would tear.");
+    ui::tip("Select occluded triangles", "",
+            "Only visible triangles are selected. Occluded ones would stay in place and tear the shape.");
   }
   if (found_ && found_->touched >= interleaved)
-    ui::hint("Parts among it are not selected and stay.");
-  else if (bent(desk))
-    ui::hint("Drag the pink end, or type a number meanwhile; the blue ends are limits.");
+    ui::hint("Unselected triangles among the selection stay in place.");
+  else if (bent(editor))
+    ui::hint("Drag the pink handle, or type a number during the drag. The blue handles set the limits.");
   else
-    ui::hint(desk.jobs.worker.busy() ? "Looking for the spine…" : "There is nothing to bend.");
+    ui::hint(editor.jobs.worker.busy() ? "Searching for the spine…"
+                                       : "Nothing to deform. Select triangles or pick a node.");
 }
 
-void BendTool::cancel(Desk& desk) {
+void BendTool::cancel(EditorContext& editor) {
   held_ = Handle::none;
-  shade_ = {};
-  desk.drop_preview();
+  falloff_overlay_ = {};
+  editor.drop_preview();
 }
 
 }  // namespace rebake

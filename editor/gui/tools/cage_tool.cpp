@@ -59,10 +59,10 @@ struct CageTool::Bound {
 CageTool::CageTool() = default;
 CageTool::~CageTool() = default;
 
-void CageTool::make(Desk& desk) {
-  const std::vector<DeformTarget> targets = desk.deform_targets();
+void CageTool::make(EditorContext& editor) {
+  const std::vector<DeformTarget> targets = editor.deform_targets();
   if (targets.empty()) {
-    desk.messages.fail("There is nothing to put a cage around: open a scene first.");
+    editor.messages.fail("The scene has no visible object for a cage. Open a scene first.");
     return;
   }
   CageDeform edit = edit_;
@@ -76,8 +76,8 @@ void CageTool::make(Desk& desk) {
     edit.cage.lattice = {cells_[0], cells_[1], cells_[2]};
   unbind();
   auto made = std::make_shared<std::shared_ptr<const Bound>>();
-  desk.jobs.worker.start(
-      "making a cage",
+  editor.jobs.worker.start(
+      "building a cage",
       [edit, made](Session& session) {
         auto bound = std::make_shared<Bound>();
         bound->edit = edit;
@@ -103,7 +103,7 @@ void CageTool::make(Desk& desk) {
           bound->partners[static_cast<std::size_t>(axis)] = partners(bound->cage.vertices, axis);
         *made = std::move(bound);
       },
-      [this, &desk, made] {
+      [this, &editor, made] {
         bound_ = *made;
         moved_ = bound_->cage.vertices;
         steps_ = {moved_};
@@ -137,7 +137,7 @@ CageDeform CageTool::edit_for(const Points& points) const {
 
 // Records the cage's points as a step of the document's history: the first release as an edit, each later one as a
 // revision of the edit before.
-void CageTool::commit(Desk& desk) {
+void CageTool::commit(EditorContext& editor) {
   steps_.resize(at_ + 1);
   steps_.push_back(moved_);
   const CageDeform edit = edit_for(moved_);
@@ -148,24 +148,24 @@ void CageTool::commit(Desk& desk) {
     moved_ = steps_[at_];
   };
   if (edit.moves.empty()) {
-    if (std::exchange(at_, 0) > 0) desk.undo(desk.now->revised_steps);  // dragged back to rest
+    if (std::exchange(at_, 0) > 0) editor.undo(editor.now->revised_steps);  // dragged back to rest
   } else if (at_ == 0) {
-    desk.edits({edit}, done, failed);
+    editor.edits({edit}, done, failed);
   } else {
-    desk.revise({edit}, done, failed);
+    editor.revise({edit}, done, failed);
   }
 }
 
 // Follows undo, redo and other edits. The cage is shown while the document's last edit is one of its releases, or while
 // the scene is the one in which it was made.
-void CageTool::follow(Desk& desk) {
-  if (!bound_ || !desk.at_rest()) return;
-  asleep_ = false;
-  if (desk.scene().roots == bound_->scene.roots) {
+void CageTool::follow(EditorContext& editor) {
+  if (!bound_ || !editor.at_rest()) return;
+  hidden_ = false;
+  if (editor.scene().roots == bound_->scene.roots) {
     if (at_ > 0) moved_ = steps_[at_ = 0];
     return;
   }
-  const CageDeform* last = desk.now->done.empty() ? nullptr : desk.now->done.back().as<CageDeform>();
+  const CageDeform* last = editor.now->done.empty() ? nullptr : editor.now->done.back().as<CageDeform>();
   if (last != nullptr)
     // The adjust panel may have changed the falloff.
     edit_.target.falloff = last->target.falloff;
@@ -181,16 +181,16 @@ void CageTool::follow(Desk& desk) {
         return;
       }
   }
-  asleep_ = true;
-  dragging_ = boxing_ = false;
+  hidden_ = true;
+  dragging_ = selecting_region_ = false;
 }
 
 void CageTool::unbind() {
   bound_.reset();
-  dragging_ = boxing_ = asleep_ = false;
+  dragging_ = selecting_region_ = hidden_ = false;
 }
 
-void CageTool::preview(Desk& desk) {
+void CageTool::preview(EditorContext& editor) {
   // The preview computes positions and rotations as the edit does. If that takes long, one with positions only is shown
   // first.
   const auto made = [bound = bound_, points = moved_, falloff = edit_.target.falloff](bool exact) {
@@ -215,22 +215,23 @@ void CageTool::preview(Desk& desk) {
   const bool at_once = static_cast<double>(places * bound_->cage.faces.size()) <= most_exact;
   std::vector<Edit> list;
   if (CageDeform edit = edit_for(moved_); !edit.moves.empty()) list.emplace_back(std::move(edit));
-  desk.show_preview(std::move(list), bound_->scene, made(at_once));
+  editor.show_preview(std::move(list), bound_->scene, made(at_once));
 }
 
-std::vector<std::uint8_t> CageTool::in_front(const Lens& lens) const {
+std::vector<std::uint8_t> CageTool::in_front(const ViewportProjection& lens) const {
   std::vector<Vec3> normals(moved_.size(), Vec3::Zero());
   for (const Face& face : bound_->cage.faces) {
     const Vec3 normal = (moved_[face[1]] - moved_[face[0]]).cross(moved_[face[2]] - moved_[face[0]]);
     for (const std::uint32_t v : face) normals[v] += normal;
   }
   std::vector<std::uint8_t> front(moved_.size());
-  for (std::size_t v = 0; v < moved_.size(); ++v) front[v] = normals[v].dot(lens.towards_eye(moved_[v])) >= 0 ? 1 : 0;
+  for (std::size_t v = 0; v < moved_.size(); ++v)
+    front[v] = normals[v].dot(lens.direction_to_eye(moved_[v])) >= 0 ? 1 : 0;
   return front;
 }
 
 // Front-facing points take precedence over back-facing ones.
-int CageTool::point_at(const Desk& desk, const Lens& lens, const Vec2& at) const {
+int CageTool::point_at(const EditorContext& editor, const ViewportProjection& lens, const Vec2& at) const {
   const std::vector<std::uint8_t> front = in_front(lens);
   for (const std::uint8_t side : {1, 0}) {
     int found = -1;
@@ -240,33 +241,33 @@ int CageTool::point_at(const Desk& desk, const Lens& lens, const Vec2& at) const
         least = (*pixel - at).norm();
         found = static_cast<int>(v);
       }
-    if (found >= 0 || desk.tools.visible_only()) return found;
+    if (found >= 0 || editor.tools.visible_only()) return found;
   }
   return -1;
 }
 
-void CageTool::pick_inside(const Desk& desk, const Lens& lens) {
+void CageTool::pick_inside(const EditorContext& editor, const ViewportProjection& lens) {
   const std::vector<std::uint8_t> front = in_front(lens);
   const Vec2 low = from_.cwiseMin(to_), high = from_.cwiseMax(to_);
   for (std::size_t v = 0; v < moved_.size(); ++v) {
     const auto pixel = lens.pixel(moved_[v]);
-    if (!pixel || (desk.tools.visible_only() && front[v] == 0)) continue;
-    if (lassoes_ ? inside_polygon(line_, *pixel)
-                 : (pixel->array() >= low.array()).all() && (pixel->array() <= high.array()).all())
+    if (!pixel || (editor.tools.visible_only() && front[v] == 0)) continue;
+    if (region_is_lasso_ ? inside_polygon(line_, *pixel)
+                         : (pixel->array() >= low.array()).all() && (pixel->array() <= high.array()).all())
       picked_[v] = 1;
   }
 }
 
-void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
-  if (!dragging_) follow(desk);
+void CageTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+  if (!dragging_) follow(editor);
   if (!shown()) return;
   if (pointer.pressed && pointer.inside) {
-    held_ = point_at(desk, lens, pointer.at);
+    held_ = point_at(editor, lens, pointer.at);
     from_ = to_ = pointer.at;
     if (held_ < 0) {
       if (!pointer.shift) std::fill(picked_.begin(), picked_.end(), std::uint8_t{0});
-      boxing_ = true;
-      lassoes_ = pointer.control;
+      selecting_region_ = true;
+      region_is_lasso_ = pointer.control;
       line_ = {pointer.at};
       return;
     }
@@ -277,19 +278,19 @@ void CageTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     dragging_ = true;
     return;
   }
-  if (boxing_) {
+  if (selecting_region_) {
     to_ = pointer.at;
     line_.insert(line_.end(), pointer.way.begin(), pointer.way.end());
     if (!pointer.released) return;
-    boxing_ = false;
-    pick_inside(desk, lens);
+    selecting_region_ = false;
+    pick_inside(editor, lens);
   }
-  if (dragging_) drag(desk, lens, pointer);
+  if (dragging_) drag(editor, lens, pointer);
 }
 
-std::function<Vec3(const Vec3&)> CageTool::motion(const Lens& lens, const Pointer& pointer) const {
+std::function<Vec3(const Vec3&)> CageTool::motion(const ViewportProjection& lens, const Pointer& pointer) const {
   const Vec3 way = lens.motion(before_[static_cast<std::size_t>(held_)], pointer.at - from_);
-  if (grip_ == Grip::move) return [way](const Vec3& p) { return Vec3(p + way); };
+  if (grip_ == DragTransform::move) return [way](const Vec3& p) { return Vec3(p + way); };
   Box picked;
   for (std::size_t v = 0; v < before_.size(); ++v)
     if (picked_[v] != 0) picked.extend(before_[v]);
@@ -297,18 +298,18 @@ std::function<Vec3(const Vec3&)> CageTool::motion(const Lens& lens, const Pointe
   const auto pixel = lens.pixel(middle);
   const Vec2 a = from_ - pixel.value_or(from_), b = pointer.at - pixel.value_or(from_);
   if (!(a.norm() > 1)) return [](const Vec3& p) { return p; };  // grabbed at the centre: angle undefined
-  if (grip_ == Grip::scale)
+  if (grip_ == DragTransform::scale)
     return [middle, factor = b.norm() / a.norm()](const Vec3& p) { return Vec3(middle + factor * (p - middle)); };
   // Screen angles are clockwise, since y points down.
   const double angle = -std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
   const Mat3 turn =
       Eigen::AngleAxisd(pointer.control ? std::round(angle * 12 / std::numbers::pi) * std::numbers::pi / 12 : angle,
-                        lens.towards_eye(middle))
+                        lens.direction_to_eye(middle))
           .toRotationMatrix();
   return [middle, turn](const Vec3& p) { return Vec3(middle + turn * (p - middle)); };
 }
 
-void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
+void CageTool::drag(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   const std::function<Vec3(const Vec3&)> moves = motion(lens, pointer);
   Box box;
   for (const Vec3& p : bound_->cage.vertices) box.extend(p);
@@ -351,26 +352,26 @@ void CageTool::drag(Desk& desk, const Lens& lens, const Pointer& pointer) {
   }
   if (moved != moved_) {
     moved_ = std::move(moved);
-    preview(desk);
+    preview(editor);
   }
   if (!pointer.released) return;
   dragging_ = false;
-  if (moved_ != before_) commit(desk);
+  if (moved_ != before_) commit(editor);
 }
 
-void CageTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
-                    const ImVec2& origin) const {
+void CageTool::draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer,
+                    ImDrawList& list, const ImVec2& origin) const {
   if (!shown()) return;
   constexpr ImU32 orange = IM_COL32(255, 140, 20, 255);
-  if (boxing_ && lassoes_) {
+  if (selecting_region_ && region_is_lasso_) {
     std::vector<ImVec2> line;
     for (const Vec2& p : line_) line.push_back(on_screen(p, origin));
     list.AddPolyline(line.data(), static_cast<int>(line.size()), orange, ImDrawFlags_Closed, px(1));
-  } else if (boxing_) {
+  } else if (selecting_region_) {
     list.AddRect(on_screen(from_, origin), on_screen(to_, origin), orange);
   }
   const std::vector<std::uint8_t> front = in_front(lens);
-  const int hot = dragging_ ? held_ : pointer.inside ? point_at(desk, lens, pointer.at) : -1;
+  const int hot = dragging_ ? held_ : pointer.inside ? point_at(editor, lens, pointer.at) : -1;
   const announce::Part part("cage");
   for (std::size_t v = 0; v < moved_.size(); ++v) {
     const auto pixel = lens.pixel(moved_[v]);
@@ -387,13 +388,13 @@ void CageTool::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, 
   }
 }
 
-void CageTool::add_guides(const Desk& /*desk*/, Guides& guides) const {
+void CageTool::add_guides(const EditorContext& /*editor*/, Guides& guides) const {
   if (!shown()) return;
   for (const auto& [a, b] : bound_->edges)
     guides.lines.push_back({moved_[a], moved_[b], Color(0.35, 0.65, 1), 0.9, 0.3});
 }
 
-void CageTool::options(Desk& desk) {
+void CageTool::options(EditorContext& editor) {
   int kind = wraps_ ? 1 : 0;
   if (ui::choice("kind", kind, {"Lattice", "Wrap"})) wraps_ = kind == 1;
   ui::flow(px(120));
@@ -403,7 +404,8 @@ void CageTool::options(Desk& desk) {
   else
     ImGui::InputInt3("##cells", cells_);
   ui::tip(wraps_ ? "Coarseness" : "Cells", "",
-          wraps_ ? "The smallest hollow that the cage enters, of its size." : "Along X, Y and Z.");
+          wraps_ ? "Size of the smallest cavity that the cage follows, as a share of the object's size."
+                 : "Number of cells along X, Y and Z.");
   for (int& cells : cells_) cells = std::clamp(cells, 1, 32);
   ui::flow(px(120));
   ImGui::SetNextItemWidth(px(120));
@@ -411,47 +413,51 @@ void CageTool::options(Desk& desk) {
   if (ImGui::Combo("##coordinates", &coordinates, "mean value\0Green\0harmonic\0"))
     edit_.coordinates = static_cast<CageCoordinates>(coordinates);
   ui::tip("Coordinates", "",
-          "Mean value: follows the points. Green: keeps shapes, bulges beyond the cage. Harmonic: stays inside the "
+          "Mean value: follows the points. Green: preserves shapes, may leave the cage. Harmonic: stays inside the "
           "cage, slower.");
   ui::flow(px(90));
   if (!shown()) {
-    if (ui::primary_button("Make cage")) make(desk);
-    ui::hint(fmt::format("Around the selected triangles, else a picked node ({}).", desk.scope_words()));
+    if (ui::primary_button("Make cage##make-cage")) make(editor);
+    ui::hint(fmt::format("Builds a cage around the selected triangles, or around a picked node ({}).",
+                         editor.scope_words()));
     return;
   }
-  if (ui::button("Make cage")) make(desk);
-  ui::tip("Make cage", "", "Another one; what this one did stays.");
+  if (ui::button("Make cage##make-cage")) make(editor);
+  ui::tip("Make cage", "", "Replaces this cage. Its deformation stays.");
   ui::flow(px(130));
   ImGui::SetNextItemWidth(px(110));
-  ImGui::SliderFloat("##soft", &softness_, 0, 1, "soft %.2f");
-  ui::tip("Soft", "", "How far unpicked points follow, of the cage's size.");
+  ImGui::SliderFloat("##soft", &softness_, 0, 1, "radius %.2f");
+  ui::tip("Proportional editing", "", "Radius within which unselected points follow, as a share of the cage's size.");
   ui::flow(px(200));
   int grip = static_cast<int>(grip_);
-  if (ui::choice("grip", grip, {"Move", "Turn", "Scale"})) grip_ = static_cast<Grip>(grip);
+  if (ui::choice("grip", grip, {"Move##move", "Rotate##rotate", "Scale##scale"}))
+    grip_ = static_cast<DragTransform>(grip);
   ui::flow(px(190));
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("Symmetric");
+  ImGui::TextDisabled("Symmetry");
   ImGui::SameLine();
   ui::choice("symmetric", symmetric_, {"Off", "X", "Y", "Z"});
-  ui::tip("Symmetric", "", "Points at the other side of the cage's middle, where there are some, move as these do.");
+  ui::tip("Symmetry", "", "Mirrors the motion to the points on the other side of the cage's centre.");
   ui::flow(px(120));
-  ui::toggle("Visible only", desk.tools.visible_only());
-  ui::tip("Visible only", command_key("Visible only", desk), "Takes points at the front only.");
-  ui::hint("Drag points; a box picks several, with Ctrl a lasso. Each release is a step of the history.");
+  ui::toggle("Visible only##visible-only", editor.tools.visible_only());
+  ui::tip("Visible only", command_key("Visible only", editor), "Selects only points that face the camera.");
+  ui::hint(
+      "Drag points to deform. Drag a box, or a lasso with Ctrl, to select points. Each drag is one step of the "
+      "history.");
 }
 
-void CageTool::cancel(Desk& desk) {
-  if (std::exchange(boxing_, false)) return;
+void CageTool::cancel(EditorContext& editor) {
+  if (std::exchange(selecting_region_, false)) return;
   if (std::exchange(dragging_, false)) {
     moved_ = before_;
-    desk.drop_preview();
+    editor.drop_preview();
     return;
   }
   unbind();
 }
 
-void CageTool::leave(Desk& desk) {
-  cancel(desk);
+void CageTool::leave(EditorContext& editor) {
+  cancel(editor);
   unbind();
 }
 

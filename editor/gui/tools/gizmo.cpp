@@ -31,13 +31,13 @@ double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
 }
 
 // Outline of a handle in viewport pixels: a line along the axis, or for rotation a circle around it.
-std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, double reach, const Lens& lens,
-                          int number) {
+std::vector<Vec2> outline(ToolKind kind, const Vec3& pivot, const Vec3& axis, double reach,
+                          const ViewportProjection& lens, int number) {
   std::vector<Vec2> points;
   const auto add = [&](const Vec3& world) {
     if (const auto pixel = lens.pixel(world)) points.push_back(*pixel);
   };
-  if (kind == ToolKind::turn) {
+  if (kind == ToolKind::rotate) {
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
     constexpr int corners = 48;
     const double radius = number < 3 ? reach : 1.2 * reach;  // the ring around the view direction is outermost
@@ -64,8 +64,8 @@ constexpr double least_tilt = 0.15;
 
 }  // namespace
 
-std::vector<Vec2> Gizmo::plane_handle(const Target& target, const Lens& lens, int axis) const {
-  if (kind_ != ToolKind::move || std::abs(target.axes.col(axis).dot(target.towards_eye)) < least_tilt) return {};
+std::vector<Vec2> Gizmo::plane_handle(const Target& target, const ViewportProjection& lens, int axis) const {
+  if (kind_ != ToolKind::move || std::abs(target.axes.col(axis).dot(target.direction_to_eye)) < least_tilt) return {};
   std::vector<Vec2> corners;
   for (const Vec3& corner : square(target.pivot, target.axes.col((axis + 1) % 3), target.axes.col((axis + 2) % 3),
                                    reach(lens, target.pivot)))
@@ -74,13 +74,13 @@ std::vector<Vec2> Gizmo::plane_handle(const Target& target, const Lens& lens, in
   return corners;
 }
 
-std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) const {
+std::optional<Gizmo::Target> Gizmo::target(const EditorContext& editor, const ViewportProjection& lens) const {
   Target target;
   Box box;
   std::set<NodeId> picked;
-  for (const std::optional<NodeRef>& node : desk.scope())
+  for (const std::optional<NodeRef>& node : editor.scope())
     if (node) picked.insert(node->id);
-  for (const PlacedNode& placed : placed_nodes(desk.scene())) {
+  for (const PlacedNode& placed : placed_nodes(editor.scene())) {
     if (!placed.visible || placed.locked || !placed.node->selection || count(*placed.node->selection) == 0) continue;
     if (!picked.empty() && !picked.contains(placed.node->id)) continue;
     target.nodes.push_back(placed.node->id);
@@ -88,41 +88,41 @@ std::optional<Gizmo::Target> Gizmo::target(const Desk& desk, const Lens& lens) c
   }
   target.triangles = !target.nodes.empty();
   if (!target.triangles) {
-    for (const NodeId id : desk.active_tops()) {
-      const auto placed = find_placed(desk.scene(), id);
+    for (const NodeId id : editor.active_tops()) {
+      const auto placed = find_placed(editor.scene(), id);
       if (!placed || placed->locked) continue;
       target.nodes.push_back(id);
-      box.extend(subtree_bounds(desk.scene(), id));
+      box.extend(subtree_bounds(editor.scene(), id));
     }
   }
   if (target.nodes.empty()) return std::nullopt;
-  const auto first = find_placed(desk.scene(), target.nodes.front());
-  const Ground& ground = desk.scene().ground;
+  const auto first = find_placed(editor.scene(), target.nodes.front());
+  const Ground& ground = editor.scene().ground;
   target.foot = box.isEmpty()
                     ? Vec3(first->to_world.translation())
                     : Vec3(box.center() + (lowest_above(ground, box) - ground.above(box.center())) * ground.normal);
   target.pivot = box.isEmpty() ? Vec3(first->to_world.translation()) : Vec3(box.center());
   target.local = orthogonal_factor(first->to_world.linear());
-  if (desk.tools.local_axes) target.axes = target.local;
-  target.towards_eye = lens.towards_eye(target.pivot);
+  if (editor.tools.local_axes) target.axes = target.local;
+  target.direction_to_eye = lens.direction_to_eye(target.pivot);
   return target;
 }
 
-double Gizmo::reach(const Lens& lens, const Vec3& pivot) {
+double Gizmo::reach(const ViewportProjection& lens, const Vec3& pivot) {
   return static_cast<double>(px(handle_pixels)) * lens.unit(pivot);
 }
 
-int Gizmo::handle_at(const Target& target, const Lens& lens, const Vec2& at) const {
+int Gizmo::handle_at(const Target& target, const ViewportProjection& lens, const Vec2& at) const {
   const auto middle = lens.pixel(target.pivot);
   if (!middle) return none;
-  if (kind_ != ToolKind::turn && (*middle - at).norm() < static_cast<double>(px(gizmo_grab_pixels))) return all;
+  if (kind_ != ToolKind::rotate && (*middle - at).norm() < static_cast<double>(px(gizmo_grab_pixels))) return all;
   for (int axis = 0; axis < 3; ++axis)
     if (const std::vector<Vec2> corners = plane_handle(target, lens, axis);
         !corners.empty() && inside_polygon(corners, at))
       return plane + axis;
   int found = none;
   double least = static_cast<double>(px(gizmo_grab_pixels));
-  for (int axis = 0; axis < (kind_ == ToolKind::turn ? 4 : 3); ++axis) {
+  for (int axis = 0; axis < (kind_ == ToolKind::rotate ? 4 : 3); ++axis) {
     const std::vector<Vec2> line =
         outline(kind_, target.pivot, target.axis(axis), reach(lens, target.pivot), lens, axis);
     for (std::size_t k = 0; k + 1 < line.size(); ++k)
@@ -134,18 +134,18 @@ int Gizmo::handle_at(const Target& target, const Lens& lens, const Vec2& at) con
   return found;
 }
 
-double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
+double Gizmo::amount(const ViewportProjection& lens, const Pointer& pointer) const {
   const auto middle = lens.pixel(at_.pivot);
   if (!middle) return 0;
   const double fine = pointer.shift ? 0.1 : 1;
   double result = 0;
   if (moves_in_plane()) return 1;
-  if (kind_ == ToolKind::turn) {
+  if (kind_ == ToolKind::rotate) {
     const Vec3 axis = at_.axis(held_);
     const Vec2 a = from_ - *middle, b = now_ - *middle;
     double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
     // Screen angles are clockwise, since y points down: negate them for an axis that points at the eye.
-    if (axis.dot(lens.towards_eye(at_.pivot)) > 0) angle = -angle;
+    if (axis.dot(lens.direction_to_eye(at_.pivot)) > 0) angle = -angle;
     result = angle * 180 / std::numbers::pi * fine;
     return pointer.control ? std::round(result / 15) * 15 : result;
   }
@@ -172,7 +172,7 @@ double Gizmo::amount(const Lens& lens, const Pointer& pointer) const {
   return std::round(result / step) * step;
 }
 
-Vec3 Gizmo::motion_in_plane(const Lens& lens, bool orthographic, const Pointer& pointer) const {
+Vec3 Gizmo::motion_in_plane(const ViewportProjection& lens, bool orthographic, const Pointer& pointer) const {
   const int axis = held_ - plane;
   const Vec3 normal = at_.axes.col(axis);
   const auto meets = [&](const Vec2& pixel) -> std::optional<Vec3> {
@@ -191,17 +191,17 @@ Vec3 Gizmo::motion_in_plane(const Lens& lens, bool orthographic, const Pointer& 
   return at_.axes * along;
 }
 
-bool Gizmo::takes_alt(const Desk& desk, const Lens& lens, const Vec2& at) const {
+bool Gizmo::handles_alt_press(const EditorContext& editor, const ViewportProjection& lens, const Vec2& at) const {
   if (kind_ != ToolKind::move) return false;
-  const std::optional<Target> here = target(desk, lens);
+  const std::optional<Target> here = target(editor, lens);
   return here && !here->triangles && handle_at(*here, lens, at) != none;
 }
 
-std::vector<Edit> Gizmo::edits(const Lens& lens) const {
+std::vector<Edit> Gizmo::edits(const ViewportProjection& lens) const {
   Transform transform;
   transform.selection = at_.triangles;
   transform.pivot = at_.pivot;
-  if (kind_ == ToolKind::turn) {
+  if (kind_ == ToolKind::rotate) {
     transform.rotate = Rotation(Eigen::AngleAxisd(amount_ * std::numbers::pi / 180, at_.axis(held_)));
   } else if (kind_ == ToolKind::scale) {
     if (held_ == all)
@@ -211,7 +211,8 @@ std::vector<Edit> Gizmo::edits(const Lens& lens) const {
     // The axes of a mirrored node are not a rotation. Negated ones are, and scale the same.
     transform.scale_axes = Rotation(Eigen::Quaterniond(at_.axes.determinant() < 0 ? Mat3(-at_.axes) : at_.axes));
   } else if (held_ == all) {
-    transform.translate = onto_ ? Vec3(*onto_ - foot_) : Vec3(amount_ * lens.motion(at_.pivot, now_ - from_));
+    transform.translate =
+        snap_point_ ? Vec3(*snap_point_ - foot_) : Vec3(amount_ * lens.motion(at_.pivot, now_ - from_));
   } else if (moves_in_plane()) {
     transform.translate = in_plane_;
   } else {
@@ -232,20 +233,20 @@ std::vector<Edit> Gizmo::edits(const Lens& lens) const {
   return result;
 }
 
-void Gizmo::preview(Desk& desk, const std::vector<Edit>& made) {
+void Gizmo::preview(EditorContext& editor, const std::vector<Edit>& made) {
   if (made.empty())
-    desk.drop_preview();
+    editor.drop_preview();
   else
-    desk.show_preview(made);
+    editor.show_preview(made);
 }
 
-std::optional<Vec3> Gizmo::surface(const Desk& desk, const Lens& lens, const Vec2& at) const {
-  Scene others = desk.scene();
+std::optional<Vec3> Gizmo::surface(const EditorContext& editor, const ViewportProjection& lens, const Vec2& at) const {
+  Scene others = editor.scene();
   for (const NodeId id : at_.nodes) others = with_changed(others, id, [](Node& node) { node.visible = false; });
-  if (const std::optional<Picked> picked = pick(others, lens, at, false)) return picked->world;
+  if (const std::optional<PickHit> picked = pick(others, lens, at, false)) return picked->world;
   // Otherwise the ground plane.
   const ViewRay ray = lens.ray(at);
-  const Ground& ground = desk.scene().ground;
+  const Ground& ground = editor.scene().ground;
   const double t = -ground.above(ray.origin) / ground.normal.dot(ray.direction);
   if (!std::isfinite(t) || t <= 0) return std::nullopt;
   return Vec3(ray.origin + t * ray.direction);
@@ -254,7 +255,7 @@ std::optional<Vec3> Gizmo::surface(const Desk& desk, const Lens& lens, const Vec
 void Gizmo::begin(const Target& target, int handle, const Vec2& at) {
   at_ = target;
   foot_ = target.foot;
-  onto_.reset();
+  snap_point_.reset();
   copies_ = false;
   in_plane_ = Vec3::Zero();
   held_ = handle;
@@ -263,24 +264,24 @@ void Gizmo::begin(const Target& target, int handle, const Vec2& at) {
   typed_.clear();
 }
 
-void Gizmo::end(Desk& desk) {
+void Gizmo::end(EditorContext& editor) {
   held_ = none;
   constrained_ = entered_ = false;
   axis_presses_ = 0;
   typed_.clear();
   if (!std::exchange(by_key_, false)) return;
-  const std::optional<ToolKind> before = std::exchange(desk.tools.before, std::nullopt);
-  if (before && desk.tools.kind == kind_) desk.tools.kind = *before;
+  const std::optional<ToolKind> before = std::exchange(editor.tools.before, std::nullopt);
+  if (before && editor.tools.kind == kind_) editor.tools.kind = *before;
 }
 
-void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
+void Gizmo::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   if (held_ == none) {
-    const bool by_key = std::exchange(desk.tools.drag_begins, std::nullopt).has_value();
+    const bool by_key = std::exchange(editor.tools.pending_drag, std::nullopt).has_value();
     if (!by_key && (!pointer.pressed || !pointer.inside)) return;
-    const std::optional<Target> here = target(desk, lens);
+    const std::optional<Target> here = target(editor, lens);
     if (!here) {
       by_key_ = by_key;
-      end(desk);
+      end(editor);
       return;
     }
     begin(*here, by_key ? all : handle_at(*here, lens, pointer.at), pointer.at);
@@ -289,33 +290,33 @@ void Gizmo::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
     return;
   }
   // If the view changes during the drag, the same pointer motion means another amount.
-  const bool moved = now_ != pointer.at || std::exchange(constrained_, false) || !(camera_ == desk.view.camera);
-  camera_ = desk.view.camera;
+  const bool moved = now_ != pointer.at || std::exchange(constrained_, false) || !(camera_ == editor.view.camera);
+  camera_ = editor.view.camera;
   now_ = pointer.at;
   const double before = amount_;
   amount_ = amount(lens, pointer);
-  if (moves_in_plane()) in_plane_ = motion_in_plane(lens, desk.view.camera.orthographic(), pointer);
+  if (moves_in_plane()) in_plane_ = motion_in_plane(lens, editor.view.camera.orthographic(), pointer);
   const bool free = held_ == all && kind_ == ToolKind::move;
-  if (free && desk.tools.snaps && !at_.triangles)
-    onto_ = surface(desk, lens, now_);
+  if (free && editor.tools.snap_to_surface && !at_.triangles)
+    snap_point_ = surface(editor, lens, now_);
   else
-    onto_.reset();
+    snap_point_.reset();
   if (typed_.value()) amount_ = *typed_.value() - (kind_ == ToolKind::scale ? 1 : 0);
   const bool nothing = moves_in_plane() ? in_plane_.isZero(0) : amount_ == 0 || (free && now_ == from_);
   const std::vector<Edit> made = nothing ? std::vector<Edit>{} : edits(lens);
-  if (moved || amount_ != before) preview(desk, made);
+  if (moved || amount_ != before) preview(editor, made);
   if (by_key_ ? !pointer.pressed && !std::exchange(entered_, false) : !pointer.released) return;
-  end(desk);
+  end(editor);
   if (nothing)
-    desk.drop_preview();
+    editor.drop_preview();
   else
-    desk.edits(made);
+    editor.edits(made);
 }
 
 void Gizmo::constrain(int axis, bool across) {
   if (across) {
     // A plane seen edge-on cannot be dragged in.
-    if (std::abs(at_.axes.col(axis).dot(at_.towards_eye)) < least_tilt) return;
+    if (std::abs(at_.axes.col(axis).dot(at_.direction_to_eye)) < least_tilt) return;
     typed_.clear();
     held_ = plane + axis;
     constrained_ = true;
@@ -328,7 +329,7 @@ void Gizmo::constrain(int axis, bool across) {
   constrained_ = true;
 }
 
-bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
+bool Gizmo::key(EditorContext& /*editor*/, const KeyPress& press) {
   if (held_ == none || press.control || press.alt) return false;
   if (press.key >= GLFW_KEY_X && press.key <= GLFW_KEY_Z) {
     if (!press.repeated) constrain(press.key - GLFW_KEY_X, press.shift && kind_ == ToolKind::move);
@@ -343,20 +344,20 @@ bool Gizmo::key(Desk& /*desk*/, const KeyPress& press) {
   return typed_.key(press);
 }
 
-void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
+void Gizmo::draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
                  const ImVec2& origin) const {
-  const std::optional<Target> here = held_ != none ? std::optional(at_) : target(desk, lens);
+  const std::optional<Target> here = held_ != none ? std::optional(at_) : target(editor, lens);
   if (!here) return;
   const auto middle = lens.pixel(here->pivot);
   if (!middle) return;
   const int hot = held_ != none ? held_ : pointer.inside ? handle_at(*here, lens, pointer.at) : none;
   const announce::Part part("gizmo");
-  for (int axis = 0; axis < (kind_ == ToolKind::turn ? 4 : 3); ++axis) {
+  for (int axis = 0; axis < (kind_ == ToolKind::rotate ? 4 : 3); ++axis) {
     std::vector<ImVec2> line;
     for (const Vec2& p : outline(kind_, here->pivot, here->axis(axis), reach(lens, here->pivot), lens, axis))
       line.push_back(on_screen(p, origin));
     if (line.size() < 2) continue;
-    announce::point(std::string(1, "xyzv"[axis]), line[kind_ == ToolKind::turn ? line.size() / 8 : line.size() - 1]);
+    announce::point(std::string(1, "xyzv"[axis]), line[kind_ == ToolKind::rotate ? line.size() / 8 : line.size() - 1]);
     const ImU32 color = axis == hot ? IM_COL32(255, 230, 60, 255) : axis_colors[axis];
     list.AddPolyline(line.data(), static_cast<int>(line.size()), IM_COL32(0, 0, 0, 120), 0, px(5));
     list.AddPolyline(line.data(), static_cast<int>(line.size()), color, 0, px(3));
@@ -376,11 +377,11 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
     announce::point(std::string(1, "xyz"[axis]) + " plane", on_screen((corners[0] + corners[2]) / 2, origin));
   }
   announce::point("middle", on_screen(*middle, origin));
-  if (kind_ != ToolKind::turn)
+  if (kind_ != ToolKind::rotate)
     list.AddCircleFilled(on_screen(*middle, origin), px(6), hot == all ? IM_COL32(255, 230, 60, 255) : axis_colors[3]);
   if (held_ == none) return;
   const char* const names[] = {"X", "Y", "Z", kind_ == ToolKind::scale ? "all" : "view", "YZ", "ZX", "XY"};
-  std::string text = kind_ == ToolKind::turn    ? fmt::format("{} {:.2f}°", names[held_], amount_)
+  std::string text = kind_ == ToolKind::rotate  ? fmt::format("{} {:.2f}°", names[held_], amount_)
                      : kind_ == ToolKind::scale ? fmt::format("{} × {:.3f}", names[held_], 1 + amount_)
                      : held_ == all             ? std::string(names[held_])
                      : moves_in_plane()         ? fmt::format("{} {:.4g}", names[held_], in_plane_.norm())
@@ -391,29 +392,29 @@ void Gizmo::draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImD
   draw_label(list, on_screen(now_ + Vec2(16, 16), origin), text);
 }
 
-void Gizmo::options(Desk& desk) {
-  ui::toggle("Local axes", desk.tools.local_axes);
-  ui::tip("Local axes", command_key("Local axes", desk), "Handles along the object's own axes.");
-  const Lens lens(desk.view.camera, desk.view.width, desk.view.height);
+void Gizmo::options(EditorContext& editor) {
+  ui::toggle("Local axes", editor.tools.local_axes);
+  ui::tip("Local axes", command_key("Local axes", editor), "Aligns the handles with the object's local axes.");
+  const ViewportProjection lens(editor.view.camera, editor.view.width, editor.view.height);
   if (kind_ == ToolKind::move) {
     ui::flow(px(140));
-    ui::toggle("Snap to surface", desk.tools.snaps);
-    ui::tip("Snap to surface", command_key("Snap to surface", desk),
-            "Dragged by its middle, a node stands on what is under the pointer, else on the ground.");
+    ui::toggle("Snap to surface", editor.tools.snap_to_surface);
+    ui::tip("Snap to surface", command_key("Snap to surface", editor),
+            "Places a node that is dragged by its centre on the surface under the pointer, or on the ground plane.");
   }
-  const std::optional<Target> here = target(desk, lens);
+  const std::optional<Target> here = target(editor, lens);
   if (!here)
     ui::hint("Pick a node, or select triangles.");
   else
-    ui::hint(fmt::format("{}: {}. X Y Z take an axis, digits a number, Ctrl snaps, Shift is fine{}.",
-                         here->triangles ? "The selected triangles" : "The picked nodes",
-                         by_key_ ? "move the pointer, click or Enter ends" : "drag a handle",
+    ui::hint(fmt::format("{}: {}. X, Y, Z constrain to an axis, digits set the amount, Ctrl snaps, Shift is precise{}.",
+                         here->triangles ? "Selected triangles" : "Picked nodes",
+                         by_key_ ? "move the pointer, then click or press Enter" : "drag a handle",
                          kind_ == ToolKind::move && !here->triangles ? ", Alt drags a copy" : ""));
 }
 
-void Gizmo::cancel(Desk& desk) {
-  end(desk);
-  desk.drop_preview();
+void Gizmo::cancel(EditorContext& editor) {
+  end(editor);
+  editor.drop_preview();
 }
 
 }  // namespace rebake

@@ -31,29 +31,29 @@ GroundEdit at_height(const Ground& ground, double height) {
 
 }  // namespace
 
-void GroundTool::add(Desk& desk, const Vec3& point) {
+void GroundTool::add(EditorContext& editor, const Vec3& point) {
   points_.push_back(point);
   if (points_.size() < 3) return;
   GroundEdit edit;
   edit.points.points = std::exchange(points_, {});
-  desk.edit(edit);
+  editor.edit(edit);
 }
 
-void GroundTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
+void GroundTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   if (!click_.ends(pointer)) return;
-  auto picked = std::make_shared<std::optional<Picked>>();
-  desk.jobs.worker.start(
+  auto picked = std::make_shared<std::optional<PickHit>>();
+  editor.jobs.worker.start(
       "pick", [picked, lens, at = pointer.at](Session& session) { *picked = pick(session.scene(), lens, at); },
-      [this, &desk, picked] {
+      [this, &editor, picked] {
         if (*picked)
-          add(desk, (*picked)->world);
+          add(editor, (*picked)->world);
         else
-          desk.messages.say("No surface there. Click three points of the floor.");
+          editor.messages.say("There is no surface at this pixel. Click three points on the floor.");
       });
 }
 
-void GroundTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& /*pointer*/, ImDrawList& list,
-                      const ImVec2& origin) const {
+void GroundTool::draw(const EditorContext& /*editor*/, const ViewportProjection& lens, const Pointer& /*pointer*/,
+                      ImDrawList& list, const ImVec2& origin) const {
   const announce::Part part("ground");
   for (std::size_t k = 0; k < points_.size(); ++k) {
     const auto pixel = lens.pixel(points_[k]);
@@ -65,49 +65,49 @@ void GroundTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& /*p
   }
 }
 
-void GroundTool::options(Desk& desk) {
-  const Ground& ground = desk.scene().ground;
+void GroundTool::options(EditorContext& editor) {
+  const Ground& ground = editor.scene().ground;
   if (!dragging_) height_ = ground.height;
-  const Box box = world_bounds(desk.scene());
+  const Box box = world_bounds(editor.scene());
   const double size = box.isEmpty() || !(box.diagonal().norm() > 0) ? 1 : box.diagonal().norm();
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("Height");
   ImGui::SameLine();
   const ui::Changed changed =
-      ui::number_field("Height", height_, "{:.5g}", std::pow(10, std::floor(std::log10(size)) - 2), px(90));
-  ui::tip("Height", "", "Of the ground plane along its normal. Drag to the side, or click and type.");
+      ui::number_field("height", height_, "{:.5g}", std::pow(10, std::floor(std::log10(size)) - 2), px(90));
+  ui::tip("Height", "", "Height of the ground plane along its normal. Drag sideways, or click and type.");
   if (changed == ui::Changed::dragged) {
     dragging_ = true;
-    desk.show_preview({at_height(ground, height_)});
+    editor.show_preview({at_height(ground, height_)});
   } else if (changed == ui::Changed::finished) {
     dragging_ = false;
-    desk.edit(at_height(ground, height_));
+    editor.edit(at_height(ground, height_));
   } else if (changed == ui::Changed::cancelled) {
     dragging_ = false;
-    desk.drop_preview();
+    editor.drop_preview();
   }
   ui::flow(px(110));
   GroundEdit edit;
-  if (ui::button("Scene's foot")) {
+  if (ui::button("Lowest point##lowest-point")) {
     edit.foot = true;
-    desk.edit(edit);
+    editor.edit(edit);
   }
-  ui::tip("Scene's foot", "", "Level, at the lowest point of everything visible.");
+  ui::tip("Lowest point", "", "Levels the ground plane and moves it to the lowest visible point.");
   ui::flow(px(120));
-  ImGui::BeginDisabled(desk.selected_triangles() == 0);
+  ImGui::BeginDisabled(editor.selected_triangles() == 0);
   if (ui::button("From selection")) {
     edit.selection = true;
-    desk.edit(edit);
+    editor.edit(edit);
   }
   ImGui::EndDisabled();
-  ui::tip("From selection", "", "The plane that fits the selected triangles best.");
-  ui::hint(points_.empty() ? "Or click three points of the floor."
-                           : fmt::format("{} of 3 points. Esc starts again.", points_.size()));
+  ui::tip("From selection", "", "Fits the ground plane to the selected triangles.");
+  ui::hint(points_.empty() ? "Or click three points on the floor."
+                           : fmt::format("{} of 3 points set. Esc clears them.", points_.size()));
 }
 
-void GroundTool::cancel(Desk& desk) {
+void GroundTool::cancel(EditorContext& editor) {
   points_.clear();
-  if (std::exchange(dragging_, false)) desk.drop_preview();
+  if (std::exchange(dragging_, false)) editor.drop_preview();
 }
 
 }  // namespace rebake

@@ -58,44 +58,45 @@ std::optional<HandlesDeform> HandlesTool::edit_for(const Pins& pins) const {
   return edit;
 }
 
-void HandlesTool::begin(Desk& desk) {
+void HandlesTool::begin(EditorContext& editor) {
   end();
-  const std::vector<DeformTarget> targets = desk.deform_targets();
+  const std::vector<DeformTarget> targets = editor.deform_targets();
   if (targets.empty()) return;
   target_ = targets.front();
-  from_ = desk.scene();
-  reach_ = reach_of_coarseness * static_cast<double>(coarseness_) * desk.deform_bounds({target_}).diagonal().norm();
+  from_ = editor.scene();
+  reach_ = reach_of_coarseness * static_cast<double>(coarseness_) * editor.deform_bounds({target_}).diagonal().norm();
   steps_ = {{}};
 }
 
 void HandlesTool::end() {
   from_.reset();
-  asleep_ = false;
+  hidden_ = false;
   pins_.clear();
   steps_.clear();
   at_ = 0;
 }
 
-void HandlesTool::add(Desk& desk, const Lens& lens, const Vec2& at, bool holds) {
-  if (!shown()) begin(desk);
+void HandlesTool::add(EditorContext& editor, const ViewportProjection& lens, const Vec2& at, bool holds) {
+  if (!shown()) begin(editor);
   if (!from_) return;
-  auto picked = std::make_shared<std::optional<Picked>>();
+  auto picked = std::make_shared<std::optional<PickHit>>();
   auto scene = std::make_shared<Scene>();
-  desk.jobs.worker.start(
-      "looking for the surface",
+  editor.jobs.worker.start(
+      "picking the surface",
       [picked, scene, lens, at](Session& session) {
         *scene = session.scene();
         *picked = pick(*scene, lens, at);
       },
-      [this, &desk, picked, scene, holds] {
+      [this, &editor, picked, scene, holds] {
         if (!*picked || !from_) return;
         const auto rest = find_placed(*from_, (*picked)->node), now = find_placed(*scene, (*picked)->node);
         const bool taken =
             rest && now && (!target_.node || target_.node->id == rest->node->id) &&
             (!target_.selection || (rest->node->selection && (*rest->node->selection)[(*picked)->triangle] != 0));
         if (!taken) {
-          desk.messages.say(target_.selection ? "That is not selected: only selected triangles bend."
-                                              : "That is not what bends (" + desk.scope_words() + ").");
+          editor.messages.say(target_.selection
+                                  ? "This triangle is not selected. Only selected triangles are deformed."
+                                  : "This point is not on the deformed object (" + editor.scope_words() + ").");
           return;
         }
         // The same point of the same triangle before the deformation.
@@ -107,34 +108,34 @@ void HandlesTool::add(Desk& desk, const Lens& lens, const Vec2& at, bool holds) 
 
 // Follows undo, redo and other edits. Pins are shown while the document's last edit is one of their releases, or while
 // it has the scene in which they were set.
-void HandlesTool::follow(Desk& desk) {
-  if (!from_ || !desk.at_rest() || busy()) return;
-  asleep_ = false;
-  if (desk.scene().roots == from_->roots) {
+void HandlesTool::follow(EditorContext& editor) {
+  if (!from_ || !editor.at_rest() || busy()) return;
+  hidden_ = false;
+  if (editor.scene().roots == from_->roots) {
     if (at_ > 0) {
       at_ = 0;
       for (Pin& pin : pins_) pin.moved = pin.at;
     }
     return;
   }
-  const HandlesDeform* last = desk.now->done.empty() ? nullptr : desk.now->done.back().as<HandlesDeform>();
+  const HandlesDeform* last = editor.now->done.empty() ? nullptr : editor.now->done.back().as<HandlesDeform>();
   if (last != nullptr)
     for (std::size_t k = 1; k < steps_.size(); ++k)
       if (const auto made = edit_for(steps_[k]); made && to_json(*made) == to_json(*last)) {
         if (at_ != k) pins_ = steps_[at_ = k];
         return;
       }
-  asleep_ = true;
+  hidden_ = true;
 }
 
-void HandlesTool::show(Desk& desk) {
+void HandlesTool::show(EditorContext& editor) {
   std::vector<Edit> list;
   if (const auto wanted = edit_for(pins_)) list.emplace_back(*wanted);
-  desk.show_preview(std::move(list), from_);
+  editor.show_preview(std::move(list), from_);
 }
 
 // Records the pins as a step of the document's history: the first release as an edit, each later one as a revision.
-void HandlesTool::commit(Desk& desk) {
+void HandlesTool::commit(EditorContext& editor) {
   steps_.resize(at_ + 1);
   steps_.push_back(pins_);
   const std::optional<HandlesDeform> wanted = edit_for(pins_);
@@ -147,15 +148,15 @@ void HandlesTool::commit(Desk& desk) {
       for (Pin& pin : pins_) pin.moved = pin.at;
   };
   if (!wanted) {
-    if (std::exchange(at_, 0) > 0) desk.undo(desk.now->revised_steps);  // no pin has moved
+    if (std::exchange(at_, 0) > 0) editor.undo(editor.now->revised_steps);  // no pin has moved
   } else if (at_ == 0) {
-    desk.edits({*wanted}, done, failed);
+    editor.edits({*wanted}, done, failed);
   } else {
-    desk.revise({*wanted}, done, failed);
+    editor.revise({*wanted}, done, failed);
   }
 }
 
-int HandlesTool::pin_at(const Lens& lens, const Vec2& at) const {
+int HandlesTool::pin_at(const ViewportProjection& lens, const Vec2& at) const {
   if (!shown()) return -1;
   int found = -1;
   double least = static_cast<double>(px(pin_grab_pixels));
@@ -167,16 +168,16 @@ int HandlesTool::pin_at(const Lens& lens, const Vec2& at) const {
   return found;
 }
 
-void HandlesTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
-  follow(desk);
+void HandlesTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+  follow(editor);
   if (pointer.pressed && pointer.inside) {
     const int pin = pin_at(lens, pointer.at);
     if (pin < 0) {
-      add(desk, lens, pointer.at, holds_ != pointer.shift);
+      add(editor, lens, pointer.at, holds_ != pointer.shift);
       return;
     }
     if (pointer.control) {
-      take_away(desk, static_cast<std::size_t>(pin));
+      remove_pin(editor, static_cast<std::size_t>(pin));
       return;
     }
     held_ = pin;
@@ -190,22 +191,22 @@ void HandlesTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) 
   if (wanted != pins_[k].moved && (pointer.at != pressed_at_ || pins_[k].moved != before_[k].moved)) {
     pins_[k].moved = wanted;
     pins_[k].holds = false;
-    show(desk);
+    show(editor);
   }
   if (!pointer.released) return;
   held_ = -1;
-  if (pins_[k].moved != before_[k].moved) commit(desk);
+  if (pins_[k].moved != before_[k].moved) commit(editor);
 }
 
-void HandlesTool::take_away(Desk& desk, std::size_t pin) {
+void HandlesTool::remove_pin(EditorContext& editor, std::size_t pin) {
   pins_.erase(pins_.begin() + static_cast<std::ptrdiff_t>(pin));
   if (at_ == 0) return;  // the document has no edit of the pins yet
-  show(desk);
-  commit(desk);
+  show(editor);
+  commit(editor);
 }
 
-void HandlesTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& pointer, ImDrawList& list,
-                       const ImVec2& origin) const {
+void HandlesTool::draw(const EditorContext& /*editor*/, const ViewportProjection& lens, const Pointer& pointer,
+                       ImDrawList& list, const ImVec2& origin) const {
   if (!shown()) return;
   const announce::Part part("handle");
   const int hot = held_ >= 0 ? held_ : pointer.inside ? pin_at(lens, pointer.at) : -1;
@@ -228,45 +229,47 @@ void HandlesTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& po
   }
 }
 
-bool HandlesTool::key(Desk& desk, const KeyPress& press) {
+bool HandlesTool::key(EditorContext& editor, const KeyPress& press) {
   if (press.key != GLFW_KEY_BACKSPACE || pins_.empty() || !shown() || busy()) return false;
-  if (desk.at_rest()) take_away(desk, pins_.size() - 1);
+  if (editor.at_rest()) remove_pin(editor, pins_.size() - 1);
   return true;
 }
 
-void HandlesTool::options(Desk& desk) {
+void HandlesTool::options(EditorContext& editor) {
   int kind = holds_ ? 0 : 1;
-  if (ui::choice("kind", kind, {"Hold", "Pull"})) holds_ = kind == 0;
-  ui::tip("What a click sets", "", "Held points stay; pulled ones are dragged. Shift sets the other kind.");
+  if (ui::choice("kind", kind, {"Fix##fix", "Drag##drag"})) holds_ = kind == 0;
+  ui::tip("Handle type", "", "A click sets a fixed handle or one to drag. Shift sets the other type.");
   ui::flow(px(150));
   ImGui::SetNextItemWidth(px(140));
   ImGui::BeginDisabled(shown());
-  ImGui::SliderFloat("##coarseness", &coarseness_, 0.03F, 0.2F, "fineness %.2f");
+  ImGui::SliderFloat("##coarseness", &coarseness_, 0.03F, 0.2F, "coarseness %.2f");
   ImGui::EndDisabled();
-  ui::tip("Fineness", "", "Of the cage that is bent along, as a share of the size; before the first point is set.");
+  ui::tip("Coarseness", "",
+          "Coarseness of the underlying cage, as a share of the object's size. Fixed once a handle is set.");
   if (shown() && !pins_.empty()) {
     ui::flow(px(60));
     if (ui::button("Clear")) end();
-    ui::tip("Clear", "", "Takes the points away; what they did stays.");
+    ui::tip("Clear", "", "Removes all handles. Their deformation stays.");
   }
-  ui::hint(pins_.empty() || !shown()
-               ? fmt::format("Click points to hold, then points to pull, and drag those ({}).", desk.scope_words())
-               : "Drag a point; Ctrl+click takes it away.");
+  ui::hint(
+      pins_.empty() || !shown()
+          ? fmt::format("Click to set fixed handles, then handles to drag, and drag those ({}).", editor.scope_words())
+          : "Drag a handle to deform. Ctrl+click removes it.");
 }
 
-void HandlesTool::cancel(Desk& desk) {
+void HandlesTool::cancel(EditorContext& editor) {
   if (held_ >= 0) {
     held_ = -1;
     pins_ = before_;
-    desk.drop_preview();
+    editor.drop_preview();
     return;
   }
   end();
 }
 
-void HandlesTool::leave(Desk& desk) {
-  cancel(desk);
-  cancel(desk);
+void HandlesTool::leave(EditorContext& editor) {
+  cancel(editor);
+  cancel(editor);
 }
 
 }  // namespace rebake

@@ -9,14 +9,14 @@ namespace rebake {
 /// document's history: the first an edit, each later one a revision of it (Document::revise).
 class HandlesTool final : public ViewTool {
  public:
-  void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
-  void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
+  void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
+  void draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
-  bool key(Desk& desk, const KeyPress& press) override;
-  void options(Desk& desk) override;
+  bool key(EditorContext& editor, const KeyPress& press) override;
+  void options(EditorContext& editor) override;
   bool busy() const override { return held_ >= 0; }
-  void cancel(Desk& desk) override;
-  void leave(Desk& desk) override;
+  void cancel(EditorContext& editor) override;
+  void leave(EditorContext& editor) override;
 
  private:
   struct Pin {
@@ -29,20 +29,20 @@ class HandlesTool final : public ViewTool {
   /// The edit of these pins; nothing if none has moved.
   std::optional<HandlesDeform> edit_for(const Pins& pins) const;
   /// Starts a new set of pins on the current scene.
-  void begin(Desk& desk);
+  void begin(EditorContext& editor);
   /// Adds a pin on the surface at a viewport pixel, if the target is there. Runs on the worker.
-  void add(Desk& desk, const Lens& lens, const Vec2& at, bool holds);
+  void add(EditorContext& editor, const ViewportProjection& lens, const Vec2& at, bool holds);
   /// Synchronises the pins with the document.
-  void follow(Desk& desk);
+  void follow(EditorContext& editor);
   /// Requests a preview.
-  void show(Desk& desk);
+  void show(EditorContext& editor);
   /// Makes or revises the edit.
-  void commit(Desk& desk);
-  void take_away(Desk& desk, std::size_t pin);
+  void commit(EditorContext& editor);
+  void remove_pin(EditorContext& editor, std::size_t pin);
   /// Removes all pins; their edit stays.
   void end();
-  bool shown() const { return from_ && !asleep_; }
-  int pin_at(const Lens& lens, const Vec2& at) const;
+  bool shown() const { return from_ && !hidden_; }
+  int pin_at(const ViewportProjection& lens, const Vec2& at) const;
 
   bool holds_ = true;  ///< a click sets a fixed pin, otherwise one to drag; Shift inverts it
   float coarseness_ = 0.08F;
@@ -51,7 +51,7 @@ class HandlesTool final : public ViewTool {
   std::size_t at_ = 0;         ///< index into steps_ of the state that the document has
   std::optional<Scene> from_;  ///< scene in which the pins were set; the edit applies to it
   DeformTarget target_;        ///< deformed triangles
-  bool asleep_ = false;        ///< pins are hidden: the document has none of their steps; redo may return to one
+  bool hidden_ = false;        ///< pins are hidden: the document has none of their steps; redo may return to one
   double reach_ = 0;           ///< a pin moves the cage points within this radius, scene units
   int held_ = -1;              ///< index of the dragged pin; −1: none
   Vec2 pressed_at_{0, 0};      ///< viewport pixel where the drag began

@@ -8,11 +8,12 @@ namespace rebake {
 class PickTool final : public ViewTool {
  public:
   explicit PickTool(bool floods) : floods_(floods) {}
-  void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
-  void draw(const Desk&, const Lens&, const Pointer&, ImDrawList&, const ImVec2&) const override {}
-  bool wants_scene() const override { return false; }
-  void options(Desk& desk) override;
-  void cancel(Desk&) override {}
+  void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
+  void draw(const EditorContext&, const ViewportProjection&, const Pointer&, ImDrawList&,
+            const ImVec2&) const override {}
+  bool needs_current_scene() const override { return false; }
+  void options(EditorContext& editor) override;
+  void cancel(EditorContext&) override {}
 
  private:
   bool floods_;

@@ -17,22 +17,22 @@ namespace {
 constexpr double least_step = 2;      // minimum distance between points of a freehand line, pixels
 constexpr double closing_reach = 10;  // a click this near to a polygon's first corner closes it, pixels
 
-PictureFields picture_of(const Desk& desk) {
+PictureFields picture_of(const EditorContext& editor) {
   PictureFields picture;
-  picture.camera = desk.view.camera;
-  picture.size = {desk.view.width, desk.view.height};
+  picture.camera = editor.view.camera;
+  picture.size = {editor.view.width, editor.view.height};
   return picture;
 }
 
 }  // namespace
 
-void RegionTool::pointer(Desk& desk, const Lens& /*lens*/, const Pointer& pointer) {
+void RegionTool::pointer(EditorContext& editor, const ViewportProjection& /*lens*/, const Pointer& pointer) {
   if (pointer.pressed && pointer.inside && points_.empty()) mode_ = select_mode(pointer);
   if (kind_ == ToolKind::polygon) {
     if (!pointer.pressed || !pointer.inside) return;
     const bool closes = points_.size() >= 3 && (points_.front() - pointer.at).norm() < closing_reach;
     if (!closes && !pointer.double_clicked) points_.push_back(pointer.at);
-    if (closes || (pointer.double_clicked && points_.size() >= 3)) finish(desk);
+    if (closes || (pointer.double_clicked && points_.size() >= 3)) finish(editor);
     return;
   }
   if (pointer.pressed && pointer.inside) points_ = {pointer.at};
@@ -45,14 +45,14 @@ void RegionTool::pointer(Desk& desk, const Lens& /*lens*/, const Pointer& pointe
     for (const Vec2& at : pointer.way)
       if (!pointer.pressed && (points_.back() - at).norm() >= least_step) points_.push_back(at);
   }
-  if (pointer.released) finish(desk);
+  if (pointer.released) finish(editor);
 }
 
-void RegionTool::finish(Desk& desk) {
+void RegionTool::finish(EditorContext& editor) {
   const std::vector<Vec2> points = std::exchange(points_, {});
-  PictureFields picture = picture_of(desk);
+  PictureFields picture = picture_of(editor);
   if (paints()) {
-    picture.brush = BrushStroke{points, desk.settings.brush_radius};
+    picture.brush = BrushStroke{points, editor.settings.brush_radius};
   } else if (kind_ == ToolKind::rectangle) {
     const Vec2 &a = points.front(), &b = points.back();
     if (std::abs(a.x() - b.x()) < 1 || std::abs(a.y() - b.y()) < 1) return;  // a click
@@ -64,22 +64,22 @@ void RegionTool::finish(Desk& desk) {
   if (kind_ == ToolKind::erase) {
     Erase erase;
     erase.picture = picture;
-    erase.through = !desk.tools.visible_only();
-    desk.edit_scope(erase);
+    erase.through = !editor.tools.visible_only();
+    editor.edit_scope(erase);
     return;
   }
   SelectPicture select;
   select.picture = picture;
-  select.through = !desk.tools.visible_only();
+  select.through = !editor.tools.visible_only();
   select.mode = mode_;
-  desk.edit_scope(select);
+  editor.edit_scope(select);
 }
 
-void RegionTool::draw(const Desk& desk, const Lens& /*lens*/, const Pointer& pointer, ImDrawList& list,
-                      const ImVec2& origin) const {
+void RegionTool::draw(const EditorContext& editor, const ViewportProjection& /*lens*/, const Pointer& pointer,
+                      ImDrawList& list, const ImVec2& origin) const {
   constexpr ImU32 light = IM_COL32(255, 255, 255, 230), dark = IM_COL32(0, 0, 0, 160);
   if (paints()) {
-    const auto radius = static_cast<float>(desk.settings.brush_radius);
+    const auto radius = static_cast<float>(editor.settings.brush_radius);
     for (const Vec2& point : points_)
       list.AddCircleFilled(on_screen(point, origin), radius, IM_COL32(255, 140, 20, 24), 24);
     if (!pointer.inside) return;
@@ -101,31 +101,32 @@ void RegionTool::draw(const Desk& desk, const Lens& /*lens*/, const Pointer& poi
   list.AddPolyline(line.data(), static_cast<int>(line.size()), light, ImDrawFlags_Closed, 1);
 }
 
-bool RegionTool::key(Desk& desk, const KeyPress& press) {
+bool RegionTool::key(EditorContext& editor, const KeyPress& press) {
   if (kind_ != ToolKind::polygon || points_.size() < 3 || press.key != GLFW_KEY_ENTER) return false;
-  finish(desk);
+  finish(editor);
   return true;
 }
 
-void RegionTool::options(Desk& desk) {
-  ui::toggle("Visible only", desk.tools.visible_only());
-  ui::tip("Visible only", command_key("Visible only", desk), "Takes what is seen; off, what lies behind it too.");
+void RegionTool::options(EditorContext& editor) {
+  ui::toggle("Visible only##visible-only", editor.tools.visible_only());
+  ui::tip("Visible only", command_key("Visible only", editor),
+          "Selects only visible triangles. Off: also those behind them.");
   if (paints()) {
-    auto radius = static_cast<float>(desk.settings.brush_radius);
+    auto radius = static_cast<float>(editor.settings.brush_radius);
     ui::flow(px(185));
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("Size");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(px(140));
     if (ImGui::SliderFloat("##size", &radius, 1, 200, "%.0f px"))
-      desk.settings.brush_radius = static_cast<double>(radius);
+      editor.settings.brush_radius = static_cast<double>(radius);
     announce::item("Size");
   }
-  ui::hint(kind_ == ToolKind::erase     ? "Paint over what is to become transparent."
-           : kind_ == ToolKind::polygon ? "Click corners; Enter or the first corner closes."
-                                        : "Shift adds, Ctrl removes, both keep what is in both.");
+  ui::hint(kind_ == ToolKind::erase     ? "Paint over texels to make them transparent."
+           : kind_ == ToolKind::polygon ? "Click corners. Press Enter or click the first corner to close the polygon."
+                                        : "Shift adds, Ctrl removes, both intersect.");
 }
 
-void RegionTool::cancel(Desk& /*desk*/) { points_.clear(); }
+void RegionTool::cancel(EditorContext& /*editor*/) { points_.clear(); }
 
 }  // namespace rebake

@@ -8,19 +8,19 @@ namespace rebake {
 class RegionTool final : public ViewTool {
  public:
   explicit RegionTool(ToolKind kind) : kind_(kind) {}
-  void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) override;
-  void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
+  void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
+  void draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
-  bool key(Desk& desk, const KeyPress& press) override;
-  void options(Desk& desk) override;
-  bool wants_scene() const override { return false; }
+  bool key(EditorContext& editor, const KeyPress& press) override;
+  void options(EditorContext& editor) override;
+  bool needs_current_scene() const override { return false; }
   bool busy() const override { return !points_.empty(); }
-  void cancel(Desk& desk) override;
+  void cancel(EditorContext& editor) override;
 
  private:
   bool paints() const { return kind_ == ToolKind::brush || kind_ == ToolKind::erase; }
   /// Makes the edit from the points.
-  void finish(Desk& desk);
+  void finish(EditorContext& editor);
 
   ToolKind kind_;
   std::vector<Vec2> points_;           ///< viewport pixels: two corners of the rectangle, or the line drawn so far

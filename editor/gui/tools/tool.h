@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "editor/gui/ui/style.h"
-#include "editor/gui/view/lens.h"
-#include "editor/gui/window/desk.h"
+#include "editor/gui/view/viewport_projection.h"
+#include "editor/gui/window/editor_context.h"
 #include "editor/gui/window/window.h"
 
 namespace rebake {
@@ -23,7 +23,7 @@ struct Pointer {
   bool inside = false;                                   ///< over the viewport, and no window or popup covers it
   bool pressed = false, down = false, released = false;  ///< left button: pressed this frame, held, released this frame
   bool double_clicked = false;                           ///< left button, this frame
-  bool let_go = false;                                   ///< the right button cancelled the tool's drag this frame
+  bool cancelled_drag = false;                           ///< the right button cancelled the tool's drag this frame
   bool shift = false, control = false, alt = false;
 };
 
@@ -48,26 +48,29 @@ class ViewTool {
  public:
   virtual ~ViewTool() = default;
   /// Handles the pointer in one frame.
-  virtual void pointer(Desk& desk, const Lens& lens, const Pointer& pointer) = 0;
+  virtual void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) = 0;
   /// Draws 2D handles over the viewport, whose top left corner is at `origin` (window pixels).
-  virtual void draw(const Desk& desk, const Lens& lens, const Pointer& pointer, ImDrawList& list,
-                    const ImVec2& origin) const = 0;
+  virtual void draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer,
+                    ImDrawList& list, const ImVec2& origin) const = 0;
   /// Adds lines and triangles in world space.
-  virtual void add_guides(const Desk& /*desk*/, Guides& /*guides*/) const {}
+  virtual void add_guides(const EditorContext& /*editor*/, Guides& /*guides*/) const {}
   /// Handles a key press before commands see it; returns true if the tool used it.
-  virtual bool key(Desk& /*desk*/, const KeyPress& /*press*/) { return false; }
+  virtual bool key(EditorContext& /*editor*/, const KeyPress& /*press*/) { return false; }
   /// Draws the tool's options and help into the tool bar.
-  virtual void options(Desk& desk) = 0;
+  virtual void options(EditorContext& editor) = 0;
   /// Whether pointer() needs the current scene. If so, it is not called while the worker is busy, except during a drag.
-  virtual bool wants_scene() const { return true; }
+  virtual bool needs_current_scene() const { return true; }
   /// Whether a press with Alt at this pixel is for the tool; otherwise it orbits the view.
-  virtual bool takes_alt(const Desk& /*desk*/, const Lens& /*lens*/, const Vec2& /*at*/) const { return false; }
+  virtual bool handles_alt_press(const EditorContext& /*editor*/, const ViewportProjection& /*lens*/,
+                                 const Vec2& /*at*/) const {
+    return false;
+  }
   /// Whether a drag or an unfinished shape is in progress, which Escape cancels.
   virtual bool busy() const { return false; }
   /// Cancels the drag or shape in progress; without one, resets the tool. Edits stay.
-  virtual void cancel(Desk& desk) = 0;
+  virtual void cancel(EditorContext& editor) = 0;
   /// Called when another tool becomes active. Edits stay.
-  virtual void leave(Desk& desk) { cancel(desk); }
+  virtual void leave(EditorContext& editor) { cancel(editor); }
 };
 
 /// All tools by kind; the table is in tools.cpp. Tools own no GPU objects.

@@ -5,7 +5,7 @@
 
 namespace rebake {
 
-/// Tools of the viewport. `flood` selects by colour, `volume` by a box or sphere, `turn` rotates.
+/// Tools of the viewport. `flood` selects by colour, `volume` by a box or sphere, `rotate` rotates.
 enum class ToolKind {
   pick,
   rectangle,
@@ -16,7 +16,7 @@ enum class ToolKind {
   volume,
   erase,
   move,
-  turn,
+  rotate,
   scale,
   cage,
   bend,
@@ -27,16 +27,18 @@ enum class ToolKind {
 /// The active tool, and options that tools share.
 struct ToolState {
   ToolKind kind = ToolKind::pick;
-  std::optional<ToolKind> drag_begins;  ///< tool whose drag begins in the next frame without a button (Blender's keys)
-  std::optional<ToolKind> before;       ///< tool to return to after such a drag
+  std::optional<ToolKind> pending_drag;  ///< tool whose drag begins in the next frame without a button (Blender's keys)
+  std::optional<ToolKind> before;        ///< tool to return to after such a drag
   /// Whether the active tool affects only visible triangles or points, not occluded ones.
-  bool& visible_only() { return takes_seen.try_emplace(kind, at_first()).first->second; }
-  bool visible_only() const { return takes_seen.contains(kind) ? takes_seen.at(kind) : at_first(); }
+  bool& visible_only() { return visible_only_overrides.try_emplace(kind, default_visible_only()).first->second; }
+  bool visible_only() const {
+    return visible_only_overrides.contains(kind) ? visible_only_overrides.at(kind) : default_visible_only();
+  }
   /// Default of visible_only(). Cages are edited from all sides.
-  bool at_first() const { return kind != ToolKind::cage; }
-  std::map<ToolKind, bool> takes_seen;  ///< visible_only() of tools for which it was changed
-  bool local_axes = false;              ///< gizmos use the node's axes, not the world's
-  bool snaps = false;                   ///< a freely moved node is placed on the surface under the pointer
+  bool default_visible_only() const { return kind != ToolKind::cage; }
+  std::map<ToolKind, bool> visible_only_overrides;  ///< visible_only() of tools for which it was changed
+  bool local_axes = false;                          ///< gizmos use the node's axes, not the world's
+  bool snap_to_surface = false;                     ///< a freely moved node is placed on the surface under the pointer
 };
 
 }  // namespace rebake

@@ -17,7 +17,7 @@ Tools make_tools() {
   for (const ToolKind kind :
        {ToolKind::rectangle, ToolKind::lasso, ToolKind::polygon, ToolKind::brush, ToolKind::erase})
     tools[kind] = std::make_unique<RegionTool>(kind);
-  for (const ToolKind kind : {ToolKind::move, ToolKind::turn, ToolKind::scale})
+  for (const ToolKind kind : {ToolKind::move, ToolKind::rotate, ToolKind::scale})
     tools[kind] = std::make_unique<Gizmo>(kind);
   tools[ToolKind::volume] = std::make_unique<VolumeTool>();
   tools[ToolKind::bend] = std::make_unique<BendTool>();
@@ -38,7 +38,7 @@ std::span<const ToolButton> tool_buttons() {
       {icons::package_variant, "Volume", ToolKind::volume},
       {icons::eraser, "Eraser", ToolKind::erase, true},
       {icons::cursor_move, "Move", ToolKind::move, true},
-      {icons::rotate_3d, "Turn", ToolKind::turn},
+      {icons::rotate_3d, "Rotate", ToolKind::rotate},
       {icons::arrow_expand_all, "Scale", ToolKind::scale},
       {icons::cube_unfolded, "Cage", ToolKind::cage, true},
       {icons::vector_curve, "Bend, twist, taper", ToolKind::bend},

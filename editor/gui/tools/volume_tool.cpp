@@ -25,12 +25,12 @@ Vec3 outwards(int side) {
 
 }  // namespace
 
-void VolumeTool::place(const Desk& desk) {
-  const Box box = desk.focus();
+void VolumeTool::place(const EditorContext& editor) {
+  const Box box = editor.focus();
   if (box.isEmpty()) return;
   volume_.center = box.center();
   volume_.half = (box.diagonal() / 4).cwiseMax(box.diagonal().norm() / 50);
-  if (ball_) volume_.half.setConstant(volume_.half.mean());
+  if (sphere_) volume_.half.setConstant(volume_.half.mean());
 }
 
 Vec3 VolumeTool::handle(int number) const {
@@ -38,7 +38,7 @@ Vec3 VolumeTool::handle(int number) const {
   return volume_.center + outwards(number).cwiseProduct(volume_.half);
 }
 
-int VolumeTool::handle_at(const Lens& lens, const Vec2& at) const {
+int VolumeTool::handle_at(const ViewportProjection& lens, const Vec2& at) const {
   int found = none;
   double least = static_cast<double>(px(grab_pixels));
   for (int number = 0; number <= middle; ++number)
@@ -49,8 +49,8 @@ int VolumeTool::handle_at(const Lens& lens, const Vec2& at) const {
   return found;
 }
 
-void VolumeTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
-  if (volume_.half.isZero(0)) place(desk);
+void VolumeTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+  if (volume_.half.isZero(0)) place(editor);
   if (volume_.half.isZero(0)) return;
   if (held_ == none) {
     if (!pointer.pressed || !pointer.inside) return;
@@ -72,7 +72,7 @@ void VolumeTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
       const Vec2 along = *there - *here;
       const double moved = way.dot(along) / along.squaredNorm() * step;
       const double least = 1e-6 * before_.half.norm();
-      if (ball_) {
+      if (sphere_) {
         volume_.half.setConstant(std::max(least, before_.half.x() + moved));
       } else {
         const int k = held_ / 2;
@@ -86,24 +86,24 @@ void VolumeTool::pointer(Desk& desk, const Lens& lens, const Pointer& pointer) {
   if (pointer.released) held_ = none;
 }
 
-void VolumeTool::select(Desk& desk, SelectMode mode) const {
+void VolumeTool::select(EditorContext& editor, SelectMode mode) const {
   Select edit;
   edit.mode = mode;
-  if (ball_)
+  if (sphere_)
     edit.sphere = SphereRegion{volume_.center, volume_.half.x()};
   else
     edit.box = BoxRegion{volume_.center - volume_.half, volume_.center + volume_.half};
-  desk.edit_scope(edit);
+  editor.edit_scope(edit);
 }
 
-bool VolumeTool::key(Desk& desk, const KeyPress& press) {
+bool VolumeTool::key(EditorContext& editor, const KeyPress& press) {
   if (busy() || (press.key != GLFW_KEY_ENTER && press.key != GLFW_KEY_KP_ENTER) || volume_.half.isZero(0)) return false;
-  select(desk, press.shift ? SelectMode::add : press.control ? SelectMode::remove : SelectMode::set);
+  select(editor, press.shift ? SelectMode::add : press.control ? SelectMode::remove : SelectMode::set);
   return true;
 }
 
-void VolumeTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& pointer, ImDrawList& list,
-                      const ImVec2& origin) const {
+void VolumeTool::draw(const EditorContext& /*editor*/, const ViewportProjection& lens, const Pointer& pointer,
+                      ImDrawList& list, const ImVec2& origin) const {
   if (volume_.half.isZero(0)) return;
   const int hot = held_ != none ? held_ : pointer.inside ? handle_at(lens, pointer.at) : none;
   const announce::Part part("volume");
@@ -118,7 +118,7 @@ void VolumeTool::draw(const Desk& /*desk*/, const Lens& lens, const Pointer& poi
   }
 }
 
-void VolumeTool::add_guides(const Desk& /*desk*/, Guides& guides) const {
+void VolumeTool::add_guides(const EditorContext& /*editor*/, Guides& guides) const {
   if (volume_.half.isZero(0)) return;
   const Color color(0.35, 0.65, 1);
   const auto line = [&](const Vec3& a, const Vec3& b) {
@@ -128,7 +128,7 @@ void VolumeTool::add_guides(const Desk& /*desk*/, Guides& guides) const {
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 u(0, 0, 0), v(0, 0, 0), w(0, 0, 0);
     u[axis] = v[(axis + 1) % 3] = w[(axis + 2) % 3] = 1;
-    if (!ball_) {
+    if (!sphere_) {
       for (const double s : {-1.0, 1.0})
         for (const double t : {-1.0, 1.0}) line(s * v + t * w - u, s * v + t * w + u);
       continue;
@@ -142,30 +142,30 @@ void VolumeTool::add_guides(const Desk& /*desk*/, Guides& guides) const {
   }
 }
 
-void VolumeTool::options(Desk& desk) {
-  int shape = ball_ ? 1 : 0;
-  if (ui::choice("shape", shape, {"Box", "Ball"})) {
-    ball_ = shape == 1;
-    if (ball_) volume_.half.setConstant(volume_.half.mean());
+void VolumeTool::options(EditorContext& editor) {
+  int shape = sphere_ ? 1 : 0;
+  if (ui::choice("shape", shape, {"Box##box", "Sphere##sphere"})) {
+    sphere_ = shape == 1;
+    if (sphere_) volume_.half.setConstant(volume_.half.mean());
   }
   ImGui::BeginDisabled(volume_.half.isZero(0));
   ui::flow(px(70));
-  if (ui::primary_button("Select")) select(desk, SelectMode::set);
-  ui::tip("Select", "Enter", "What lies in the volume, by triangles' centres.");
+  if (ui::primary_button("Select")) select(editor, SelectMode::set);
+  ui::tip("Select", "Enter", "Selects the triangles whose centre is inside the volume.");
   ui::flow(px(50));
-  if (ui::button("Add")) select(desk, SelectMode::add);
+  if (ui::button("Add##add")) select(editor, SelectMode::add);
   ui::tip("Add", "Shift+Enter");
   ui::flow(px(80));
-  if (ui::button("Take away")) select(desk, SelectMode::remove);
-  ui::tip("Take away", "Ctrl+Enter");
+  if (ui::button("Remove##remove")) select(editor, SelectMode::remove);
+  ui::tip("Remove", "Ctrl+Enter");
   ui::flow(px(60));
-  if (ui::button("Centre")) place(desk);
-  ui::tip("Centre", "", "Over the middle of the picked nodes, or of all.");
+  if (ui::button("Recentre")) place(editor);
+  ui::tip("Recentre", "", "Moves the volume to the centre of the picked nodes, or of the scene.");
   ImGui::EndDisabled();
-  ui::hint("Drag the middle or the sides.");
+  ui::hint("Drag the centre to move the volume, or the sides to resize it.");
 }
 
-void VolumeTool::cancel(Desk& /*desk*/) {
+void VolumeTool::cancel(EditorContext& /*editor*/) {
   if (std::exchange(held_, none) != none) volume_ = before_;
 }
 

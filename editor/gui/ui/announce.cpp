@@ -13,7 +13,7 @@ namespace rebake::announce {
 
 namespace {
 
-struct Told {
+struct AnnounceState {
   int pipe = -1;
   std::vector<std::string> parts;
   nlohmann::json items = nlohmann::json::object();
@@ -21,9 +21,9 @@ struct Told {
 };
 
 // For the window's thread only.
-Told& told() {
-  static Told one = [] {
-    Told made;
+AnnounceState& told() {
+  static AnnounceState one = [] {
+    AnnounceState made;
     const char* const path = std::getenv("REBAKE_ANNOUNCE");
     if (path == nullptr) return made;
     std::signal(SIGPIPE, SIG_IGN);

@@ -17,20 +17,20 @@ std::string announced(const char* label) {
 }
 
 // RAII: while an instance exists, buttons have the colours of a selected or primary button.
-class Chosen {
+class SelectedButtonColors {
  public:
-  explicit Chosen(bool chosen) : chosen_(chosen) {
+  explicit SelectedButtonColors(bool chosen) : chosen_(chosen) {
     if (!chosen_) return;
     const Rgb accent = theme().accent;
     for (const ImGuiCol one : {ImGuiCol_Button, ImGuiCol_ButtonHovered, ImGuiCol_ButtonActive})
       ImGui::PushStyleColor(one, color(accent, one == ImGuiCol_Button ? 1.0F : 0.92F));
     ImGui::PushStyleColor(ImGuiCol_Text, color(theme().on_accent));
   }
-  ~Chosen() {
+  ~SelectedButtonColors() {
     if (chosen_) ImGui::PopStyleColor(4);
   }
-  Chosen(const Chosen&) = delete;
-  Chosen& operator=(const Chosen&) = delete;
+  SelectedButtonColors(const SelectedButtonColors&) = delete;
+  SelectedButtonColors& operator=(const SelectedButtonColors&) = delete;
 
  private:
   bool chosen_;
@@ -65,7 +65,7 @@ bool button(const char* label, const ImVec2& size) {
 }
 
 bool primary_button(const char* label, const ImVec2& size) {
-  const Chosen colors(true);
+  const SelectedButtonColors colors(true);
   return button(label, size);
 }
 
@@ -74,7 +74,7 @@ bool icon_button(const char* icon, const char* name, bool chosen) {
   ImGui::PushID(name);
   bool pressed = false;
   {
-    const Chosen colors(chosen);
+    const SelectedButtonColors colors(chosen);
     if (!chosen) ImGui::PushStyleColor(ImGuiCol_Button, color(theme().panel, 0));
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
     if (fonts().have_icons) {
@@ -123,9 +123,9 @@ bool choice(const char* label, int& value, std::initializer_list<const char*> na
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(1), px(space::gap)});
   for (const char* name : names) {
     if (index > 0) ImGui::SameLine();
-    const Chosen colors(index == value);
+    const SelectedButtonColors colors(index == value);
     if (ImGui::Button(name)) value = index;
-    announce::item(name);
+    announce::item(announced(name));
     ++index;
   }
   ImGui::PopStyleVar();

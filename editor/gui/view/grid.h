@@ -2,13 +2,13 @@
 
 #include <vector>
 
-#include "editor/gui/window/desk.h"
+#include "editor/gui/window/editor_context.h"
 #include "render/graph/plan.h"
 
 namespace rebake {
 
 /// Appends a grid of 20 × 20 squares on the scene's ground plane, around the scene. A square's side is the largest
 /// power of ten that is at most the scene's diagonal. The ground's x axis is red, its z axis blue.
-void add_grid(const Desk& desk, std::vector<Guides::Line>& lines);
+void add_grid(const EditorContext& editor, std::vector<Guides::Line>& lines);
 
 }  // namespace rebake

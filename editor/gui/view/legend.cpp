@@ -9,31 +9,31 @@
 
 namespace rebake {
 
-void draw_legend(const Desk& desk, ImDrawList& list, const ImVec2& origin) {
+void draw_legend(const EditorContext& editor, ImDrawList& list, const ImVec2& origin) {
   std::string text;
-  if (desk.view.cut > 0 && desk.view.inspect == Guides::Inspect::none) {
+  if (editor.view.cut > 0 && editor.view.inspect == Guides::Inspect::none) {
     draw_label(list, {origin.x + px(12), origin.y + px(12)},
-               fmt::format("Cut {:.4g} before the eye: Alt + wheel moves it", desk.view.cut));
+               fmt::format("Near clipping plane at {:.4g}. Alt + wheel moves it.", editor.view.cut));
     return;
   }
-  switch (desk.view.inspect) {
+  switch (editor.view.inspect) {
     case Guides::Inspect::none:
       return;
     case Guides::Inspect::wireframe:
-      text = "Wireframe: every triangle, a colour for each texture set";
+      text = "Wireframe: all triangles, one colour per texture set";
       break;
     case Guides::Inspect::opacity:
-      text = "Opacity: grey shows, dark red is transparent";
+      text = "Opacity: grey is opaque, dark red is transparent";
       break;
     case Guides::Inspect::texture_sets:
-      text = "Texture sets: a colour for each";
+      text = "Texture sets: one colour per set";
       break;
     case Guides::Inspect::channel:
-      text = fmt::format("Feature channel {}{}: black is 0, white 255", desk.view.channel,
-                         desk.view.channel == 0 ? " (opacity)" : "");
+      text = fmt::format("Feature channel {}{}: black is 0, white is 255", editor.view.channel,
+                         editor.view.channel == 0 ? " (opacity)" : "");
       break;
     case Guides::Inspect::overdraw:
-      text = "Overdraw: the brighter, the more triangles behind each other";
+      text = "Overdraw: brighter where more triangles overlap";
       break;
   }
   draw_label(list, {origin.x + px(12), origin.y + px(12)}, text);

@@ -55,7 +55,7 @@ Camera orbited(const Camera& seen, double right_pixels, double down_pixels, int 
   return result;
 }
 
-Camera looked(const Camera& seen, double right_pixels, double down_pixels, int height) {
+Camera looked_around(const Camera& seen, double right_pixels, double down_pixels, int height) {
   const double turn = std::numbers::pi / 2 / height;
   const Camera camera = upright(seen);
   Camera result = camera;
@@ -102,7 +102,7 @@ Camera flown(const Camera& camera, double right, double up, double forward) {
   return result;
 }
 
-Camera centred(const Camera& camera, const Vec3& point) {
+Camera with_orbit_center(const Camera& camera, const Vec3& point) {
   // The depth of the point does not change.
   const Vec3 back = (camera.eye - camera.target).normalized();
   const double depth = (camera.eye - point).dot(back);
@@ -135,7 +135,7 @@ Camera along_axis(const Camera& camera, const Vec3& axis) {
   return result;
 }
 
-Camera projected_otherwise(const Camera& camera) {
+Camera toggled_projection(const Camera& camera) {
   Camera result = camera;
   if (camera.orthographic()) {
     result.ortho_height = 0;
@@ -192,7 +192,7 @@ std::vector<Camera> camera_path(const std::vector<Camera>& through, int count) {
   return cameras;
 }
 
-Camera with_depth_for(const Camera& camera, const Box& box) {
+Camera with_clip_planes_for(const Camera& camera, const Box& box) {
   Camera result = camera;
   if (camera.orthographic() && !box.isEmpty()) {
     const Vec3 back = (camera.eye - camera.target).normalized();

@@ -21,15 +21,15 @@ Camera zoomed(const Camera& camera, const Vec3& towards, double factor);
 Camera framed(const Camera& camera, const Box& box, double aspect);
 /// Makes a point the target, for orbiting around it. The camera moves sideways only, so the picture is shifted but not
 /// scaled. A point behind the eye changes nothing.
-Camera centred(const Camera& camera, const Vec3& point);
+Camera with_orbit_center(const Camera& camera, const Vec3& point);
 /// Translates eye and target along the camera's axes, in scene units.
 Camera flown(const Camera& camera, double right, double up, double forward);
 /// Rotates the view direction around the eye (first-person look): `height` pixels are 90°.
-Camera looked(const Camera& camera, double right_pixels, double down_pixels, int height);
+Camera looked_around(const Camera& camera, double right_pixels, double down_pixels, int height);
 /// Looks at the target along a world axis, from the same distance. `axis` points from the target to the eye.
 Camera along_axis(const Camera& camera, const Vec3& axis);
 /// Toggles between perspective and orthographic projection; objects at the target keep their size in the picture.
-Camera projected_otherwise(const Camera& camera);
+Camera toggled_projection(const Camera& camera);
 /// `count` cameras on a Catmull-Rom spline through the given ones (at least one), from the first to the last. Targets,
 /// directions to the eye, logarithms of distances, and fields of view are interpolated.
 std::vector<Camera> camera_path(const std::vector<Camera>& through, int count);
@@ -37,6 +37,6 @@ std::vector<Camera> camera_path(const std::vector<Camera>& through, int count);
 std::vector<Camera> turntable(const Camera& camera, int count);
 /// Sets near and far planes that enclose the box. Moves an orthographic camera along its view direction to a place in
 /// front of the box, which does not change the picture.
-Camera with_depth_for(const Camera& camera, const Box& box);
+Camera with_clip_planes_for(const Camera& camera, const Box& box);
 
 }  // namespace rebake

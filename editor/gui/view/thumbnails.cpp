@@ -3,7 +3,7 @@
 #include <set>
 #include <utility>
 
-#include "editor/commands/views.h"
+#include "editor/actions/views.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
 #include "render/thumbnail.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "editor/commands/lit.h"
+#include "editor/actions/lit.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/support.h"
 #include "editor/gui/ui/announce.h"
@@ -29,10 +29,10 @@ constexpr auto settle_time = std::chrono::milliseconds(200);
 constexpr double upload_ms = 6;  // per frame, while a scene is uploaded
 
 // The scene with the theme's background, unless the settings ask for the scene's own.
-Scene on_ground(const Scene& scene, const Desk& desk) {
+Scene with_viewport_background(const Scene& scene, const EditorContext& editor) {
   Scene result = scene;
   const Rgb ground = theme().viewport;
-  if (!desk.settings.scene_background) result.background = Color(ground.r, ground.g, ground.b) / 255;
+  if (!editor.settings.scene_background) result.background = Color(ground.r, ground.g, ground.b) / 255;
   return result;
 }
 
@@ -44,7 +44,7 @@ bool same_view(const View& a, const View& b) {
 }
 
 // Whether two cameras differ at most in their near and far planes.
-bool from_one_place(const Camera& a, Camera b) {
+bool same_pose(const Camera& a, Camera b) {
   b.near_plane = a.near_plane;
   b.far_plane = a.far_plane;
   return a == b;
@@ -58,57 +58,57 @@ Viewport::Viewport(Renderer& renderer, Tools& tools, std::function<std::unique_p
 }
 Viewport::~Viewport() = default;
 
-Scene Viewport::drawn(const Desk& desk) { return on_ground(desk.scene(), desk); }
+Scene Viewport::drawn(const EditorContext& editor) { return with_viewport_background(editor.scene(), editor); }
 
-bool Viewport::key(Desk& desk, const KeyPress& press) { return tool(desk).key(desk, press); }
+bool Viewport::key(EditorContext& editor, const KeyPress& press) { return tool(editor).key(editor, press); }
 
-bool Viewport::cancel(Desk& desk) {
-  if (desk.view.flying) {
-    desk.view.flying = false;
+bool Viewport::cancel(EditorContext& editor) {
+  if (editor.view.flying) {
+    editor.view.flying = false;
     return true;
   }
-  if (std::exchange(desk.tools.drag_begins, std::nullopt)) {
-    desk.tools.kind = desk.tools.before.value_or(desk.tools.kind);
-    desk.tools.before.reset();
+  if (std::exchange(editor.tools.pending_drag, std::nullopt)) {
+    editor.tools.kind = editor.tools.before.value_or(editor.tools.kind);
+    editor.tools.before.reset();
     return true;
   }
-  const bool held = tool(desk).busy();
-  tool(desk).cancel(desk);
+  const bool held = tool(editor).busy();
+  tool(editor).cancel(editor);
   return held;
 }
 
 bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
 
-double Viewport::next_frame_in(const Desk& desk) const {
-  if (desk.jobs.film && desk.jobs.film->waits()) return 0.1;
+double Viewport::next_frame_in(const EditorContext& editor) const {
+  if (editor.jobs.film && editor.jobs.film->waits()) return 0.1;
   if (arrival_) return 0;
-  if (desk.jobs.film || desk.view.flying || (thumbnails_.wants() && !moving() && desk.at_rest())) return 0;
+  if (editor.jobs.film || editor.view.flying || (thumbnails_.wants() && !moving() && editor.at_rest())) return 0;
   // A reduced picture is followed by one at full quality.
   if (!moving())
-    return made_ && (made_->view.width != made_->shown_width || made_->view.samples != desk.view.samples) ? 0 : -1;
+    return made_ && (made_->view.width != made_->shown_width || made_->view.samples != editor.view.samples) ? 0 : -1;
   return std::chrono::duration<double>(settle_time).count();
 }
 
 bool Viewport::all_made() const {
-  return made_ && ahead_of_ && same_scene(ahead_of_->scene, made_->scene) && ahead_of_->lighting == made_->lighting &&
-         ahead_of_->view.samples == made_->view.samples;
+  return made_ && compiled_for_ && same_scene(compiled_for_->scene, made_->scene) &&
+         compiled_for_->lighting == made_->lighting && compiled_for_->view.samples == made_->view.samples;
 }
 
-bool Viewport::wants_ahead() const {
+bool Viewport::may_compile_ahead() const {
   return made_ && texture_ != 0 && !moving() && made_->guides.inspect == Guides::Inspect::none && !all_made();
 }
 
-void Viewport::make_ahead(const Desk& desk) {
+void Viewport::compile_next_program(const EditorContext& editor) {
   try {
-    const View view{made_->view.camera, desk.view.width, desk.view.height, desk.view.samples};
-    if (renderer_.make_ahead(made_->scene, view, {}, made_->lighting.get())) return;
+    const View view{made_->view.camera, editor.view.width, editor.view.height, editor.view.samples};
+    if (renderer_.compile_next_program(made_->scene, view, {}, made_->lighting.get())) return;
   } catch (const std::exception&) {
     // The frame that needs the program reports the error.
   }
-  ahead_of_ = made_;
+  compiled_for_ = made_;
 }
 
-void Viewport::fly(Desk& desk) {
+void Viewport::fly(EditorContext& editor) {
   const ImGuiIO& io = ImGui::GetIO();
   const auto held = [&](int key, char letter) {
     return io.KeysDown[key] || io.KeysDown[static_cast<unsigned char>(letter)] ? 1.0 : 0.0;
@@ -116,24 +116,25 @@ void Viewport::fly(Desk& desk) {
   const Clock::time_point now = Clock::now();
   const double seconds = std::min(0.2, std::chrono::duration<double>(now - flown_at_).count());
   flown_at_ = now;
-  const double speed = desk.focus().isEmpty() ? 1 : desk.focus().diagonal().norm() * (io.KeyShift ? 1.0 : 0.3);
+  const double speed = editor.focus().isEmpty() ? 1 : editor.focus().diagonal().norm() * (io.KeyShift ? 1.0 : 0.3);
   if (io.WantTextInput || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) return;
   const double right = held(GLFW_KEY_RIGHT, 'D') - held(GLFW_KEY_LEFT, 'A'), up = held('E', 'E') - held('Q', 'Q'),
                forward = held(GLFW_KEY_UP, 'W') - held(GLFW_KEY_DOWN, 'S');
   if (right == 0 && up == 0 && forward == 0) return;
-  const bool parallel = desk.view.camera.orthographic();
-  desk.view.camera =
-      flown(desk.view.camera, right * speed * seconds, up * speed * seconds, parallel ? 0 : forward * speed * seconds);
+  const bool parallel = editor.view.camera.orthographic();
+  editor.view.camera = flown(editor.view.camera, right * speed * seconds, up * speed * seconds,
+                             parallel ? 0 : forward * speed * seconds);
   // In an orthographic view, moving forward has no visible effect, so it zooms.
-  if (parallel) desk.view.camera = zoomed(desk.view.camera, desk.view.camera.target, std::exp(-2 * forward * seconds));
+  if (parallel)
+    editor.view.camera = zoomed(editor.view.camera, editor.view.camera.target, std::exp(-2 * forward * seconds));
 }
 
-void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
+void Viewport::navigate(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   const ImGuiIO& io = ImGui::GetIO();
-  const bool picks = desk.tools.kind == ToolKind::pick;
+  const bool picks = editor.tools.kind == ToolKind::pick;
   if (pointer.inside) {
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) (io.KeyShift ? panning_ : orbiting_) = true;
-    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && !pointer.let_go) {
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && !pointer.cancelled_drag) {
       panning_ = true;
       right_pressed_at_ = pointer.at;
     }
@@ -141,113 +142,114 @@ void Viewport::navigate(Desk& desk, const Lens& lens, const Pointer& pointer) {
         (io.KeyAlt ? !pointer.pressed : picks && !io.KeyShift && !io.KeyCtrl))
       orbiting_ = true;
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && picks && !io.KeyShift && !io.KeyCtrl)
-      if (const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false))
-        desk.view.camera = centred(desk.view.camera, picked->world);
-    if (io.MouseWheel != 0 && desk.view.cut > 0 && io.KeyAlt) {
-      const double size = desk.focus().isEmpty() ? 1 : desk.focus().diagonal().norm();
-      desk.view.cut = std::max(1e-6 * size, desk.view.cut + 0.02 * size * static_cast<double>(io.MouseWheel));
+      if (const std::optional<PickHit> picked = pick(editor.scene(), lens, pointer.at, false))
+        editor.view.camera = with_orbit_center(editor.view.camera, picked->world);
+    if (io.MouseWheel != 0 && editor.view.cut > 0 && io.KeyAlt) {
+      const double size = editor.focus().isEmpty() ? 1 : editor.focus().diagonal().norm();
+      editor.view.cut = std::max(1e-6 * size, editor.view.cut + 0.02 * size * static_cast<double>(io.MouseWheel));
     } else if (io.MouseWheel != 0) {
       // Zooms to the surface under the pointer, else to the point under the pointer at the target's depth.
-      const std::optional<Picked> picked = pick(desk.scene(), lens, pointer.at, false);
+      const std::optional<PickHit> picked = pick(editor.scene(), lens, pointer.at, false);
       const ViewRay ray = lens.ray(pointer.at);
-      const Vec3 at = picked ? picked->world : Vec3(ray.origin + ray.direction * lens.depth(desk.view.camera.target));
-      desk.view.camera = zoomed(desk.view.camera, at, std::pow(0.85, static_cast<double>(io.MouseWheel)));
+      const Vec3 at = picked ? picked->world : Vec3(ray.origin + ray.direction * lens.depth(editor.view.camera.target));
+      editor.view.camera = zoomed(editor.view.camera, at, std::pow(0.85, static_cast<double>(io.MouseWheel)));
     }
   }
   // A right click without a drag opens the context menu.
   if (panning_ && ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
       (right_pressed_at_ - pointer.at).norm() < static_cast<double>(px(4)))
-    desk.asking.context = true;
+    editor.dialogs.context = true;
   if (!io.MouseDown[0] && !io.MouseDown[2]) orbiting_ = false;
   if (!io.MouseDown[1] && !io.MouseDown[2]) panning_ = false;
   const double dx = static_cast<double>(io.MouseDelta.x), dy = static_cast<double>(io.MouseDelta.y);
   if (dx == 0 && dy == 0) return;
   if (orbiting_)
-    desk.view.camera = desk.view.flying ? looked(desk.view.camera, dx, dy, desk.view.height)
-                                        : orbited(desk.view.camera, dx, dy, desk.view.height);
+    editor.view.camera = editor.view.flying ? looked_around(editor.view.camera, dx, dy, editor.view.height)
+                                            : orbited(editor.view.camera, dx, dy, editor.view.height);
   else if (panning_)
-    desk.view.camera = panned(desk.view.camera, dx, dy, desk.view.height);
+    editor.view.camera = panned(editor.view.camera, dx, dy, editor.view.height);
 }
 
 // Bounds for the camera's planes: the scene, and for an orthographic camera, which is placed in front of them, also
 // preview and guides.
-Box Viewport::drawn_bounds(const Desk& desk) const {
-  Box box = world_bounds(desk.scene());
-  if (!desk.view.camera.orthographic()) return box;
-  if (desk.preview) box.extend(world_bounds(desk.shown()));
-  for (const Guides::Line& line : guides(desk).lines) box.extend(line.from).extend(line.to);
+Box Viewport::drawn_bounds(const EditorContext& editor) const {
+  Box box = world_bounds(editor.scene());
+  if (!editor.view.camera.orthographic()) return box;
+  if (editor.preview) box.extend(world_bounds(editor.shown()));
+  for (const Guides::Line& line : guides(editor).lines) box.extend(line.from).extend(line.to);
   return box;
 }
 
-Guides Viewport::guides(const Desk& desk) const {
+Guides Viewport::guides(const EditorContext& editor) const {
   Guides result;
-  result.selection = desk.view.show_selection;
-  result.dimmed = desk.selected_out_of_scope();
-  result.inspect = desk.view.inspect;
-  result.channel = desk.view.channel;
-  if (desk.settings.grid) add_grid(desk, result.lines);
+  result.selection = editor.view.show_selection;
+  result.dimmed = editor.selected_out_of_scope();
+  result.inspect = editor.view.inspect;
+  result.channel = editor.view.channel;
+  if (editor.settings.grid) add_grid(editor, result.lines);
   // Picked nodes are outlined while the tool works on whole nodes.
-  const bool nodes =
-      desk.tools.kind == ToolKind::pick ||
-      ((desk.tools.kind == ToolKind::move || desk.tools.kind == ToolKind::turn || desk.tools.kind == ToolKind::scale) &&
-       desk.selected_triangles() == 0);
-  if (nodes && !desk.active.empty())
-    for (const std::optional<NodeRef>& node : desk.scope()) result.outlined.push_back(node->id);
-  tools_.at(desk.tools.kind)->add_guides(desk, result);
+  const bool nodes = editor.tools.kind == ToolKind::pick ||
+                     ((editor.tools.kind == ToolKind::move || editor.tools.kind == ToolKind::rotate ||
+                       editor.tools.kind == ToolKind::scale) &&
+                      editor.selected_triangles() == 0);
+  if (nodes && !editor.active.empty())
+    for (const std::optional<NodeRef>& node : editor.scope()) result.outlined.push_back(node->id);
+  tools_.at(editor.tools.kind)->add_guides(editor, result);
   return result;
 }
 
 // Uploads a part of a new scene; true while it is incomplete and the previous one must be shown. Not used for previews
 // of drags, which change little, nor for steps in such quick succession that none of them would be visible.
-bool Viewport::arrives(const Desk& desk, const Scene& scene) {
-  const bool other = made_ && !desk.preview && made_->scene.roots != scene.roots;
+bool Viewport::uploads_scene(const EditorContext& editor, const Scene& scene) {
+  const bool other = made_ && !editor.preview && made_->scene.roots != scene.roots;
   if (other && arrival_ && arrival_->roots != scene.roots && Clock::now() - arrival_->began < settle_time) {
     arrival_.reset();
     return false;
   }
-  const double there = other ? renderer_.arrive(scene, upload_ms) : 1;
+  const double there = other ? renderer_.upload_slice(scene, upload_ms) : 1;
   if (there < 1) {
     if (!arrival_ || arrival_->roots != scene.roots)
-      arrival_ = Arrival{scene.roots, !from_one_place(made_->view.camera, desk.view.camera), Clock::now()};
+      arrival_ = Arrival{scene.roots, !same_pose(made_->view.camera, editor.view.camera), Clock::now()};
     arrival_->there = there;
     return true;
   }
-  if (arrival_ && !other) renderer_.forget_arrival();
+  if (arrival_ && !other) renderer_.evict_staged();
   arrival_.reset();
   return false;
 }
 
-void Viewport::picture(Desk& desk) {
-  const bool still = !moving() && !desk.view.flying;
-  const double wanted_picture_ms = std::max(10.0, 1000.0 / desk.view.target_rate - rest_ms_);
+void Viewport::picture(EditorContext& editor) {
+  const bool still = !moving() && !editor.view.flying;
+  const double wanted_picture_ms = std::max(10.0, 1000.0 / editor.view.target_rate - rest_ms_);
   View view;
-  const Scene scene = on_ground(desk.shown(), desk);
-  view.camera = desk.view.camera;
-  view.samples = desk.view.samples;
-  view.width = desk.view.width;
-  view.height = desk.view.height;
-  desk.relighter.request(scene, desk.preview.has_value(), scene.light ? desk.deform_nodes() : std::set<NodeId>{});
+  const Scene scene = with_viewport_background(editor.shown(), editor);
+  view.camera = editor.view.camera;
+  view.samples = editor.view.samples;
+  view.width = editor.view.width;
+  view.height = editor.view.height;
+  editor.relighter.request(scene, editor.preview.has_value(), scene.light ? editor.deform_nodes() : std::set<NodeId>{});
   const std::shared_ptr<const Lighting> lighting =
-      scene.light && !desk.view.as_baked ? desk.relighter.latest() : nullptr;
-  Made wanted{scene, lighting, view, guides(desk), each_pass_, desk.view.wipe, desk.view.width, desk.view.height};
+      scene.light && !editor.view.as_baked ? editor.relighter.latest() : nullptr;
+  DrawnFrame wanted{
+      scene, lighting, view, guides(editor), each_pass_, editor.view.wipe, editor.view.width, editor.view.height};
   // Whether full quality is cheap: nothing has changed, or only the changed pixels would be drawn.
   const auto stays_full = [&] {
     return made_ && same_view(made_->view, view) &&
            ((same_scene(made_->scene, scene) && made_->lighting == lighting && made_->guides == wanted.guides) ||
-            (!desk.view.wipe && renderer_.keeps(scene, view, wanted.guides, lighting.get())));
+            (!editor.view.wipe && renderer_.keeps(scene, view, wanted.guides, lighting.get())));
   };
   double scale = 1;
   const bool quick = !still && full_ms_ > wanted_picture_ms && !stays_full();
   if (quick) {
     view.samples = 1;
-    scale = desk.view.moving_share > 0 ? desk.view.moving_share : moving_scale_;
-    view.width = std::max(16, static_cast<int>(std::lround(desk.view.width * scale)));
-    view.height = std::max(16, static_cast<int>(std::lround(desk.view.height * scale)));
+    scale = editor.view.moving_share > 0 ? editor.view.moving_share : moving_scale_;
+    view.width = std::max(16, static_cast<int>(std::lround(editor.view.width * scale)));
+    view.height = std::max(16, static_cast<int>(std::lround(editor.view.height * scale)));
     wanted.view = view;
   }
-  if (arrives(desk, scene)) {
-    if (arrival_->stays || from_one_place(made_->view.camera, view.camera)) return;
-    view.camera = with_depth_for(view.camera, world_bounds(made_->scene));
+  if (uploads_scene(editor, scene)) {
+    if (arrival_->stays || same_pose(made_->view.camera, view.camera)) return;
+    view.camera = with_clip_planes_for(view.camera, world_bounds(made_->scene));
     wanted.scene = made_->scene;
     wanted.lighting = made_->lighting;
     wanted.guides = made_->guides;
@@ -255,8 +257,8 @@ void Viewport::picture(Desk& desk) {
   }
   if (made_ && same_scene(made_->scene, wanted.scene) && made_->lighting == wanted.lighting &&
       same_view(made_->view, view) && made_->guides == wanted.guides && made_->each_pass == each_pass_ &&
-      made_->wipe == desk.view.wipe) {
-    if (!quick) keep_picture(desk);
+      made_->wipe == editor.view.wipe) {
+    if (!quick) write_recent_thumbnail(editor);
     return;
   }
   // Set before drawing, so that an error is reported only once.
@@ -264,45 +266,46 @@ void Viewport::picture(Desk& desk) {
   texture_ = 0;
   const Renderer::Shown shown =
       renderer_.show(wanted.scene, view, {}, wanted.guides, each_pass_, wanted.lighting.get());
-  if (!arrival_) renderer_.forget_arrival();
+  if (!arrival_) renderer_.evict_staged();
   const double ms = shown.times.frame_ms;
-  if (view.width == desk.view.width && view.samples == desk.view.samples && !shown.kept) full_ms_ = ms;
+  if (view.width == editor.view.width && view.samples == editor.view.samples && !shown.kept) full_ms_ = ms;
   // Assumes that the duration is proportional to the number of pixels.
   if (quick) moving_scale_ = std::clamp(scale * std::sqrt(wanted_picture_ms / ms), 0.35, 1.0);
   // Smoothed frame rate of the current movement.
   const Clock::time_point now = Clock::now();
   const double since = std::chrono::duration<double>(now - drawn_at_).count();
   drawn_at_ = now;
-  double rate = report_.pictures_a_second;
+  double rate = report_.frames_per_second;
   if (!still && since < 0.5) rate = rate > 0 ? 0.8 * rate + 0.2 / since : 1 / since;
   report_ = {shown.times, shown.passes, renderer_.peak_gpu_bytes(), report_.device, scale, view.samples, rate};
-  if (!desk.view.wipe) {
+  if (!editor.view.wipe) {
     before_.reset();
   } else if (!arrival_) {
     // A second renderer holds the imported scene on the GPU during the comparison.
     if (!before_) before_ = std::make_unique<Renderer>(window_context_());
     Guides before;
-    before.inspect = desk.view.inspect;
-    before.channel = desk.view.channel;
-    if (desk.settings.grid) add_grid(desk, before.lines);
-    before_texture_ = before_->show(on_ground(desk.project.imported, desk), view, {}, before, false).texture;
+    before.inspect = editor.view.inspect;
+    before.channel = editor.view.channel;
+    if (editor.settings.grid) add_grid(editor, before.lines);
+    before_texture_ =
+        before_->show(with_viewport_background(editor.project.imported, editor), view, {}, before, false).texture;
   }
   texture_ = shown.texture;
   drew_ = true;
-  if (!quick) keep_picture(desk);
+  if (!quick) write_recent_thumbnail(editor);
 }
 
 // Writes the thumbnail that the recovery dialog shows: after each step, but at most every two seconds.
-void Viewport::keep_journal_picture(const Desk& desk) {
+void Viewport::write_recovery_thumbnail(const EditorContext& editor) {
   constexpr std::chrono::seconds least_time{2};
-  if (desk.now->journal.empty() || desk.scene().roots.empty()) return;
-  const bool other = journal_of_ != desk.now->journal;
-  if (!other && (journal_step_ == desk.now->steps_done || Clock::now() - journal_at_ < least_time)) return;
-  journal_of_ = desk.now->journal;
-  journal_step_ = desk.now->steps_done;
+  if (editor.now->journal.empty() || editor.scene().roots.empty()) return;
+  const bool other = journal_of_ != editor.now->journal;
+  if (!other && (journal_step_ == editor.now->steps_done || Clock::now() - journal_at_ < least_time)) return;
+  journal_of_ = editor.now->journal;
+  journal_step_ = editor.now->steps_done;
   journal_at_ = Clock::now();
   try {
-    const std::filesystem::path file = thumbnail_file(desk.now->journal);
+    const std::filesystem::path file = thumbnail_file(editor.now->journal);
     std::filesystem::create_directories(file.parent_path());
     write_png(thumbnail_of(renderer_.shown_image(), Thumbnails::width, Thumbnails::height), file, {});
   } catch (const std::exception&) {
@@ -312,19 +315,19 @@ void Viewport::keep_journal_picture(const Desk& desk) {
 
 // Writes the thumbnail of the file that was just opened or saved, for the list of recent files. Uses the first picture
 // at full quality, even if the view still moves: a fast driver does not draw it again when the view rests.
-void Viewport::keep_picture(const Desk& desk) {
-  if (desk.view.flying || desk.preview || arrival_ || texture_ == 0) return;
-  keep_journal_picture(desk);
-  const std::vector<Edit>& done = desk.now->done;
-  const bool imported = done.size() == 1 && done.front().is<Import>() && !desk.settings.recent.empty();
-  const std::string of = !desk.project.path.empty() ? (desk.project.unsaved() ? "" : desk.project.path.string())
-                         : imported                 ? desk.settings.recent.front()
-                                                    : "";
-  if (of.empty() || (of == kept_of_ && kept_step_ == desk.now->steps_done)) return;
-  kept_of_ = of;
-  kept_step_ = desk.now->steps_done;
+void Viewport::write_recent_thumbnail(const EditorContext& editor) {
+  if (editor.view.flying || editor.preview || arrival_ || texture_ == 0) return;
+  write_recovery_thumbnail(editor);
+  const std::vector<Edit>& done = editor.now->done;
+  const bool imported = done.size() == 1 && done.front().is<Import>() && !editor.settings.recent.empty();
+  const std::string of = !editor.project.path.empty() ? (editor.project.unsaved() ? "" : editor.project.path.string())
+                         : imported                   ? editor.settings.recent.front()
+                                                      : "";
+  if (of.empty() || (of == recent_thumbnail_of_ && kept_step_ == editor.now->steps_done)) return;
+  recent_thumbnail_of_ = of;
+  kept_step_ = editor.now->steps_done;
   try {
-    thumbnails_.keep(of, desk.settings.recent, renderer_.shown_image());
+    thumbnails_.keep(of, editor.settings.recent, renderer_.shown_image());
   } catch (const std::exception&) {
     // Without a writable cache the list has no thumbnails; nothing else depends on them.
   }
@@ -337,15 +340,15 @@ void Viewport::frame_took(double ms) {
 }
 
 // Draws the before/after line, which the pointer can drag. True if the pointer drags or hovers it.
-bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer) {
+bool Viewport::draw_wipe(EditorContext& editor, ImDrawList& list, const ImVec2& origin, const Pointer& pointer) {
   const double grab = static_cast<double>(px(8));
-  const double at = desk.view.wipe_at * desk.view.width;
+  const double at = editor.view.wipe_at * editor.view.width;
   const bool hot = pointer.inside && std::abs(pointer.at.x() - at) < grab;
   if (hot && pointer.pressed) wiping_ = true;
   if (!pointer.down) wiping_ = false;
-  if (wiping_) desk.view.wipe_at = std::clamp(pointer.at.x() / desk.view.width, 0.02, 0.98);
-  const float x = origin.x + static_cast<float>(desk.view.wipe_at * desk.view.width);
-  const float bottom = origin.y + static_cast<float>(desk.view.height);
+  if (wiping_) editor.view.wipe_at = std::clamp(pointer.at.x() / editor.view.width, 0.02, 0.98);
+  const float x = origin.x + static_cast<float>(editor.view.wipe_at * editor.view.width);
+  const float bottom = origin.y + static_cast<float>(editor.view.height);
   announce::point("wipe", {x, (origin.y + bottom) / 2});
   list.AddLine({x, origin.y}, {x, bottom}, IM_COL32(0, 0, 0, 200), 4);
   list.AddLine({x, origin.y}, {x, bottom}, hot || wiping_ ? IM_COL32(255, 230, 60, 255) : IM_COL32(255, 255, 255, 255),
@@ -356,48 +359,48 @@ bool Viewport::draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, con
 }
 
 // Writes a requested screenshot, or the next picture of a film.
-void Viewport::write_pictures(Desk& desk) {
+void Viewport::write_pictures(EditorContext& editor) {
   const auto written = [&](const Camera& camera, int width, int height, const std::filesystem::path& path) {
     made_.reset();
-    const Scene scene = with_only(desk.scene(), desk.jobs.pictured);
-    const View view{with_depth_for(camera, world_bounds(scene)), width, height, desk.view.samples};
-    const Lighting lighting = desk.view.as_baked ? Lighting{} : lit(desk.scene());
-    write_png(renderer_.render(scene, view, {}, &lighting), path, desk.now->sources);
+    const Scene scene = with_only(editor.scene(), editor.jobs.rendered_nodes);
+    const View view{with_clip_planes_for(camera, world_bounds(scene)), width, height, editor.view.samples};
+    const Lighting lighting = editor.view.as_baked ? Lighting{} : lit(editor.scene());
+    write_png(renderer_.render(scene, view, {}, &lighting), path, editor.now->sources);
   };
   try {
-    if (const auto shot = std::exchange(desk.jobs.screenshot, std::nullopt)) {
-      written(desk.view.camera, shot->width, shot->height, shot->path);
-      desk.messages.say("Wrote " + shot->path.string());
+    if (const auto shot = std::exchange(editor.jobs.screenshot, std::nullopt)) {
+      written(editor.view.camera, shot->width, shot->height, shot->path);
+      editor.messages.say("Wrote " + shot->path.string());
     }
-    if (desk.jobs.film) {
-      const std::string said = desk.jobs.film->go_on(
+    if (editor.jobs.film) {
+      const std::string said = editor.jobs.film->run_step(
           [&](const Camera& camera, const std::filesystem::path& path) {
-            written(camera, desk.jobs.film->width(), desk.jobs.film->height(), path);
+            written(camera, editor.jobs.film->width(), editor.jobs.film->height(), path);
           },
-          desk.now->sources);
+          editor.now->sources);
       if (!said.empty()) {
-        desk.messages.say(said);
-        desk.jobs.film.reset();
+        editor.messages.say(said);
+        editor.jobs.film.reset();
       }
     }
   } catch (const std::exception& error) {
-    desk.jobs.film.reset();
-    desk.messages.fail(error.what());
+    editor.jobs.film.reset();
+    editor.messages.fail(error.what());
   }
 }
 
-void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves) {
+void Viewport::draw(EditorContext& editor, const std::vector<std::array<double, 2>>& moves) {
   const ImVec2 size = ImGui::GetContentRegionAvail(), origin = ImGui::GetCursorScreenPos();
-  desk.view.width = std::max(16, static_cast<int>(size.x));
-  desk.view.height = std::max(16, static_cast<int>(size.y));
-  if (desk.tools.drag_begins && *desk.tools.drag_begins != desk.tools.kind) {
+  editor.view.width = std::max(16, static_cast<int>(size.x));
+  editor.view.height = std::max(16, static_cast<int>(size.y));
+  if (editor.tools.pending_drag && *editor.tools.pending_drag != editor.tools.kind) {
     // Another tool was chosen before the requested drag could begin.
-    desk.tools.drag_begins.reset();
-    desk.tools.before.reset();
+    editor.tools.pending_drag.reset();
+    editor.tools.before.reset();
   }
-  if (desk.tools.kind != last_tool_) {
-    tools_.at(last_tool_)->leave(desk);
-    last_tool_ = desk.tools.kind;
+  if (editor.tools.kind != last_tool_) {
+    tools_.at(last_tool_)->leave(editor);
+    last_tool_ = editor.tools.kind;
   }
   ImGui::InvisibleButton(
       "viewport", size,
@@ -413,76 +416,79 @@ void Viewport::draw(Desk& desk, const std::vector<std::array<double, 2>>& moves)
   pointer.alt = io.KeyAlt;
   pointer.pressed =
       ImGui::IsMouseClicked(ImGuiMouseButton_Left) &&
-      (!io.KeyAlt || tool(desk).takes_alt(desk, Lens(desk.view.camera, desk.view.width, desk.view.height), pointer.at));
+      (!io.KeyAlt ||
+       tool(editor).handles_alt_press(
+           editor, ViewportProjection(editor.view.camera, editor.view.width, editor.view.height), pointer.at));
   pointer.down = io.MouseDown[0];
   pointer.released = ImGui::IsMouseReleased(ImGuiMouseButton_Left);
   pointer.double_clicked = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
   // The right button cancels a drag, as Escape does.
-  pointer.let_go = tool(desk).busy() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
-  if (pointer.let_go) tool(desk).cancel(desk);
+  pointer.cancelled_drag = tool(editor).busy() && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
+  if (pointer.cancelled_drag) tool(editor).cancel(editor);
   pointer.shift = io.KeyShift;
   pointer.control = io.KeyCtrl;
 
   list.PushClipRect(origin, {origin.x + size.x, origin.y + size.y}, true);
   list.ChannelsSplit(2);
   list.ChannelsSetCurrent(1);
-  draw_legend(desk, list, origin);
-  if (desk.view.marked) {
-    const ImVec2 at = on_screen(desk.view.marked->cwiseProduct(Vec2(desk.view.width, desk.view.height)), origin);
+  draw_legend(editor, list, origin);
+  if (editor.view.marked) {
+    const ImVec2 at = on_screen(editor.view.marked->cwiseProduct(Vec2(editor.view.width, editor.view.height)), origin);
     announce::point("largest error", at);
     list.AddCircle(at, px(14), IM_COL32(0, 0, 0, 200), 0, px(5));
     list.AddCircle(at, px(14), IM_COL32(255, 230, 60, 255), 0, px(2.5F));
     draw_label(list, {at.x + px(22), at.y - px(8)}, "largest error");
   }
-  const bool on_axes = draw_axes(desk, list, {origin.x + size.x, origin.y}, pointer.inside && !tool(desk).busy());
-  if (on_axes || (desk.view.wipe && draw_wipe(desk, list, origin, pointer))) {
+  const bool on_axes = draw_axes(editor, list, {origin.x + size.x, origin.y}, pointer.inside && !tool(editor).busy());
+  if (on_axes || (editor.view.wipe && draw_wipe(editor, list, origin, pointer))) {
     pointer.inside = false;
     pointer.pressed = false;
   }
   try {
-    navigate(desk, Lens(desk.view.camera, desk.view.width, desk.view.height), pointer);
+    navigate(editor, ViewportProjection(editor.view.camera, editor.view.width, editor.view.height), pointer);
   } catch (const std::exception& error) {
-    desk.messages.fail(error.what());
+    editor.messages.fail(error.what());
   }
-  if (desk.view.flying) fly(desk);
+  if (editor.view.flying) fly(editor);
   // These planes are also those that edits use to select through this camera.
-  desk.view.camera = with_depth_for(desk.view.camera, drawn_bounds(desk));
-  if (desk.view.cut > 0)
-    desk.view.camera.near_plane =
-        std::min(std::max(desk.view.camera.near_plane, desk.view.cut), desk.view.camera.far_plane / 2);
-  const Lens lens(desk.view.camera, desk.view.width, desk.view.height);
+  editor.view.camera = with_clip_planes_for(editor.view.camera, drawn_bounds(editor));
+  if (editor.view.cut > 0)
+    editor.view.camera.near_plane =
+        std::min(std::max(editor.view.camera.near_plane, editor.view.cut), editor.view.camera.far_plane / 2);
+  const ViewportProjection lens(editor.view.camera, editor.view.width, editor.view.height);
   try {
-    if (!desk.jobs.worker.busy() || !tool(desk).wants_scene() || tool(desk).busy())
-      tool(desk).pointer(desk, lens, pointer);
+    if (!editor.jobs.worker.busy() || !tool(editor).needs_current_scene() || tool(editor).busy())
+      tool(editor).pointer(editor, lens, pointer);
     else if (pointer.pressed && pointer.inside)
-      desk.messages.say("Something is still being done: click again when it is, or press Esc to stop it.");
-    last_tool_ = desk.tools.kind;  // after a drag that a key began, the previous tool returns without ViewTool::leave()
+      editor.messages.say("A job is still running. Click again when it has finished, or press Esc to cancel it.");
+    last_tool_ =
+        editor.tools.kind;  // after a drag that a key began, the previous tool returns without ViewTool::leave()
   } catch (const std::exception& error) {
-    desk.messages.fail(error.what());
-    tool(desk).cancel(desk);
+    editor.messages.fail(error.what());
+    tool(editor).cancel(editor);
   }
   // Changes are drawn at reduced quality first, and at full quality after settle_time.
-  if (!(desk.view.camera == last_camera_) || (made_ && made_->scene.roots != desk.shown().roots)) {
-    last_camera_ = desk.view.camera;
+  if (!(editor.view.camera == last_camera_) || (made_ && made_->scene.roots != editor.shown().roots)) {
+    last_camera_ = editor.view.camera;
     moved_at_ = Clock::now();
   }
   try {
-    write_pictures(desk);
-    if (thumbnails_.wants() && !moving() && desk.at_rest() && !tool(desk).busy()) {
+    write_pictures(editor);
+    if (thumbnails_.wants() && !moving() && editor.at_rest() && !tool(editor).busy()) {
       made_.reset();
-      thumbnails_.draw_one(renderer_, on_ground(desk.scene(), desk));
+      thumbnails_.draw_one(renderer_, with_viewport_background(editor.scene(), editor));
     }
-    picture(desk);
-    tool(desk).draw(desk, lens, pointer, list, origin);
+    picture(editor);
+    tool(editor).draw(editor, lens, pointer, list, origin);
   } catch (const std::exception& error) {
-    desk.messages.fail(error.what());
+    editor.messages.fail(error.what());
   }
   list.ChannelsSetCurrent(0);
   if (texture_ != 0)
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_)), origin,
                   {origin.x + size.x, origin.y + size.y}, {0, 1}, {1, 0});
-  if (desk.view.wipe && before_) {
-    const auto share = static_cast<float>(desk.view.wipe_at);
+  if (editor.view.wipe && before_) {
+    const auto share = static_cast<float>(editor.view.wipe_at);
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(before_texture_)), origin,
                   {origin.x + share * size.x, origin.y + size.y}, {0, 1}, {share, 0});
   }

@@ -20,21 +20,21 @@ class Viewport {
 
   /// Draws into the current Dear ImGui window and fills it. `moves`: pointer positions since the last frame, in window
   /// pixels.
-  void draw(Desk& desk, const std::vector<std::array<double, 2>>& moves);
+  void draw(EditorContext& editor, const std::vector<std::array<double, 2>>& moves);
   /// Offers a key to the current tool before commands get it; true if the tool used it.
-  bool key(Desk& desk, const KeyPress& press);
+  bool key(EditorContext& editor, const KeyPress& press);
   /// Cancels flying, a drag that a key has requested, or the current tool's drag; false if there is none.
-  bool cancel(Desk& desk);
-  ViewTool& tool(const Desk& desk) { return *tools_.at(desk.tools.kind); }
+  bool cancel(EditorContext& editor);
+  ViewTool& tool(const EditorContext& editor) { return *tools_.at(editor.tools.kind); }
 
   /// Seconds until a new frame is needed without any event; negative: never.
-  double next_frame_in(const Desk& desk) const;
+  double next_frame_in(const EditorContext& editor) const;
   /// Whether all shader programs that other views of the current scene may need are compiled.
   bool all_made() const;
-  /// Whether some of these may be missing and the view rests, so that make_ahead() is useful.
-  bool wants_ahead() const;
+  /// Whether some of these may be missing and the view rests, so that compile_next_program() is useful.
+  bool may_compile_ahead() const;
   /// Compiles one missing shader program. To be called when the window is idle.
-  void make_ahead(const Desk& desk);
+  void compile_next_program(const EditorContext& editor);
   /// To be called with the duration of each window frame; ignored unless the frame drew a new picture.
   void frame_took(double ms);
   /// Uploaded share of a new scene's GPU data, 0 … 1. Below 1, the previous scene is shown.
@@ -45,12 +45,12 @@ class Viewport {
   bool& each_pass() { return each_pass_; }
   Thumbnails& thumbnails() { return thumbnails_; }
   /// The document's scene, with the background that the viewport shows.
-  static Scene drawn(const Desk& desk);
+  static Scene drawn(const EditorContext& editor);
 
  private:
   using Clock = std::chrono::steady_clock;
   /// Inputs of the picture that was drawn last. It is drawn again only if they change.
-  struct Made {
+  struct DrawnFrame {
     Scene scene;
     std::shared_ptr<const Lighting> lighting;
     View view;
@@ -65,16 +65,16 @@ class Viewport {
     Clock::time_point began;
     double there = 0;  ///< uploaded share, 0 … 1
   };
-  bool arrives(const Desk& desk, const Scene& scene);
-  void navigate(Desk& desk, const Lens& lens, const Pointer& pointer);
-  void fly(Desk& desk);
-  void picture(Desk& desk);
-  Guides guides(const Desk& desk) const;
-  Box drawn_bounds(const Desk& desk) const;
-  bool draw_wipe(Desk& desk, ImDrawList& list, const ImVec2& origin, const Pointer& pointer);
-  void write_pictures(Desk& desk);
-  void keep_picture(const Desk& desk);
-  void keep_journal_picture(const Desk& desk);
+  bool uploads_scene(const EditorContext& editor, const Scene& scene);
+  void navigate(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer);
+  void fly(EditorContext& editor);
+  void picture(EditorContext& editor);
+  Guides guides(const EditorContext& editor) const;
+  Box drawn_bounds(const EditorContext& editor) const;
+  bool draw_wipe(EditorContext& editor, ImDrawList& list, const ImVec2& origin, const Pointer& pointer);
+  void write_pictures(EditorContext& editor);
+  void write_recent_thumbnail(const EditorContext& editor);
+  void write_recovery_thumbnail(const EditorContext& editor);
   bool moving() const;
 
   Vec2 right_pressed_at_{0, 0};
@@ -89,13 +89,14 @@ class Viewport {
   std::function<std::unique_ptr<gl::Context>()> window_context_;
   Camera last_camera_;
   FrameReport report_;
-  std::optional<Made> made_;
-  std::optional<Made> ahead_of_;         ///< picture for whose scene make_ahead() has compiled all programs
+  std::optional<DrawnFrame> made_;
+  std::optional<DrawnFrame>
+      compiled_for_;                     ///< picture for whose scene compile_next_program() has compiled all programs
   unsigned before_texture_ = 0;          ///< OpenGL texture of the imported scene's picture
   ToolKind last_tool_ = ToolKind::pick;  ///< tool of the previous frame
   unsigned texture_ = 0;                 ///< OpenGL texture of the picture; 0: it could not be drawn
   Thumbnails thumbnails_;
-  std::string kept_of_;               ///< file or folder of the last thumbnail in the list of recent files
+  std::string recent_thumbnail_of_;   ///< file or folder of the last thumbnail in the list of recent files
   std::size_t kept_step_ = 0;         ///< number of steps of history at that thumbnail
   std::filesystem::path journal_of_;  ///< journal of the last recovery thumbnail
   std::size_t journal_step_ = 0;      ///< number of steps of history at the last recovery thumbnail

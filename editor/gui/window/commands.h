@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "editor/gui/window/desk.h"
+#include "editor/gui/window/editor_context.h"
 #include "editor/gui/window/window.h"
 
 namespace rebake {
@@ -15,16 +15,16 @@ struct Command {
   const char* keys;          ///< alternative keys separated by spaces, e.g. "Ctrl+Shift+Z Ctrl+Y"; empty for none
   const char* blender_keys;  ///< the same in the keymap that follows Blender
   const char* help;          ///< tooltip: one sentence; may be empty
-  bool (*enabled)(const Desk& desk);
-  void (*run)(Desk& desk);
-  bool (*checked)(const Desk& desk) = nullptr;  ///< state of a toggle; null for other commands
-  bool repeats = false;                         ///< runs repeatedly while its key is held
+  bool (*enabled)(const EditorContext& editor);
+  void (*run)(EditorContext& editor);
+  bool (*checked)(const EditorContext& editor) = nullptr;  ///< state of a toggle; null for other commands
+  bool repeats = false;                                    ///< runs repeatedly while its key is held
 
   /// Keys in the current keymap.
-  const char* keys_of(const Desk& desk) const { return desk.settings.blender_keys ? blender_keys : keys; }
+  const char* keys_of(const EditorContext& editor) const { return editor.settings.blender_keys ? blender_keys : keys; }
   /// First key in the current keymap; empty for none.
-  std::string key_of(const Desk& desk) const {
-    const std::string all = keys_of(desk);
+  std::string key_of(const EditorContext& editor) const {
+    const std::string all = keys_of(editor);
     return all.substr(0, all.find(' '));
   }
 };
@@ -38,12 +38,12 @@ std::optional<KeyPress> parse_key(const std::string& text);
 /// The command with this title. Throws std::invalid_argument if there is none.
 const Command& command_named(const std::string& title);
 /// First key of a command in the current keymap, for tooltips; empty for none.
-std::string command_key(const std::string& title, const Desk& desk);
+std::string command_key(const std::string& title, const EditorContext& editor);
 
 /// Stores the current camera as a view of the scene, under `name` or, if empty, the first free name "view N".
-void store_view(Desk& desk, const std::string& name = "");
+void store_view(EditorContext& editor, const std::string& name = "");
 
 /// The command that a key starts in the current keymap; null for none.
-const Command* command_for(const KeyPress& press, const Desk& desk);
+const Command* command_for(const KeyPress& press, const EditorContext& editor);
 
 }  // namespace rebake

@@ -8,7 +8,7 @@
 
 #include "editor/fields/values.h"
 #include "editor/gui/view/view_state.h"
-#include "editor/gui/window/film.h"
+#include "editor/gui/window/camera_animation.h"
 #include "editor/gui/window/worker.h"
 #include "editor/studies/study.h"
 
@@ -26,8 +26,8 @@ struct Jobs {
     int width = 0, height = 0;  ///< size in pixels
   };
   std::optional<Screenshot> screenshot;  ///< screenshot to be written in the next frame
-  std::optional<Film> film;              ///< running animation job
-  std::vector<NodeRef> pictured;         ///< nodes that screenshots and films show; empty: all
+  std::optional<CameraAnimation> film;   ///< running animation job
+  std::vector<NodeRef> rendered_nodes;   ///< nodes that screenshots and films show; empty: all
 
   /// Measured time and error of rendering choices, for one view of one scene.
   struct Costs {

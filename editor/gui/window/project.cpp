@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "editor/commands/export.h"
-#include "editor/commands/save.h"
+#include "editor/actions/export_action.h"
+#include "editor/actions/save.h"
 #include "editor/document/journal.h"
 #include "editor/document/project.h"
 #include "editor/edits/nodes/import.h"
@@ -26,7 +26,7 @@ void keep_journal(Document& document) {
   const fs::path folder = journal_folder();
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) throw FileError(folder, "cannot be made, so work is not kept safe: " + failed.message());
+  if (failed) throw FileError(folder, "cannot be created, so there is no crash recovery: " + failed.message());
   const auto since = std::chrono::system_clock::now().time_since_epoch();
   document.keep_journal(folder / fmt::format("{}-{}.journal",
                                              std::chrono::duration_cast<std::chrono::milliseconds>(since).count(),
@@ -63,8 +63,8 @@ void Project::open(const std::vector<std::string>& paths, bool wanted) {
   }
 }
 
-void Project::open_project(const fs::path& file, const Relinked& links) {
-  auto gone = std::make_shared<std::vector<SourcesGone::Source>>();
+void Project::open_project(const fs::path& file, const SourceLinks& links) {
+  auto gone = std::make_shared<std::vector<SourcesUnavailable::Source>>();
   worker_.start(
       "open",
       [file, links, gone](Session& session) {
@@ -73,7 +73,7 @@ void Project::open_project(const fs::path& file, const Relinked& links) {
           keep_journal(opened);
           session.document.discard_journal();
           session.document = std::move(opened);
-        } catch (const SourcesGone& moved) {
+        } catch (const SourcesUnavailable& moved) {
           *gone = moved.sources;  // the user is asked for new paths
         }
       },
@@ -90,8 +90,8 @@ void Project::open_project(const fs::path& file, const Relinked& links) {
       });
 }
 
-void Project::recover(const fs::path& journal, const Relinked& links, bool go_on_without) {
-  auto gone = std::make_shared<std::vector<SourcesGone::Source>>();
+void Project::recover(const fs::path& journal, const SourceLinks& links, bool go_on_without) {
+  auto gone = std::make_shared<std::vector<SourcesUnavailable::Source>>();
   auto problem = std::make_shared<std::string>();
   worker_.start(
       "recover",
@@ -108,16 +108,16 @@ void Project::recover(const fs::path& journal, const Relinked& links, bool go_on
           LostWork open;
           open.journal = present;
           discard(open);
-          said += "; the work that was open is in the trash (File, Discarded work)";
+          said += "; the work that was open before was moved to the trash (File, Discarded work)";
         }
-        if (recovered.torn) said += "; one more was being made when the editor ended: it is lost";
+        if (recovered.torn) said += "; the last edit was incomplete when the editor ended and is lost";
         session.say(said);
         if (recovered.lost.empty()) {
           // The new journal holds everything.
           if (recovered.journal) recovered.journal->discard();
           return;
         }
-        *problem = fmt::format("not all could be got back; {} keeps what there is:", journal.string());
+        *problem = fmt::format("not everything could be recovered; {} was kept:", journal.string());
         for (const std::string& lost : recovered.first_lost()) *problem += "\n" + lost;
       },
       [this, journal, links, gone, problem, go_on_without] {
@@ -133,25 +133,26 @@ void Project::recover(const fs::path& journal, const Relinked& links, bool go_on
       });
 }
 
-void Project::ask_for_sources(const fs::path& wanted_by, const std::vector<SourcesGone::Source>& gone,
-                              const Relinked& links) {
-  relinking = Relinking{wanted_by, {}, links};
-  for (const SourcesGone::Source& source : gone)
-    relinking->sources.push_back({source.path, source.trouble, relinked(source.path, source.content, links).string()});
+void Project::ask_for_sources(const fs::path& needed_by, const std::vector<SourcesUnavailable::Source>& gone,
+                              const SourceLinks& links) {
+  relinking = Relinking{needed_by, {}, links};
+  for (const SourcesUnavailable::Source& source : gone)
+    relinking->sources.push_back(
+        {source.path, source.trouble, resolved_source(source.path, source.content, links).string()});
 }
 
 void Project::relink(bool go_on_without) {
   const Relinking wanted = *std::exchange(relinking, std::nullopt);
-  Relinked links = wanted.known;
+  SourceLinks links = wanted.known;
   for (const Relinking::Source& source : wanted.sources) {
     links.erase(source.path);
     if (source.now != source.path.string() && !source.now.empty()) links.emplace(source.path, source.now);
   }
-  if (is_project_file(wanted.wanted_by)) {
-    open_project(wanted.wanted_by, links);
+  if (is_project_file(wanted.needed_by)) {
+    open_project(wanted.needed_by, links);
     return;
   }
-  recover(wanted.wanted_by, links, go_on_without);
+  recover(wanted.needed_by, links, go_on_without);
 }
 
 void Project::save(const fs::path& file) {
@@ -169,10 +170,10 @@ void Project::save(const fs::path& file) {
         settings_.remember(file.string());
         messages_.say("Saved " + file.string());
         for (const std::string& warning : *warnings) messages_.fail(warning);
-        if (saved_then) std::exchange(saved_then, nullptr)();
+        if (after_save) std::exchange(after_save, nullptr)();
       },
       // After a failed save the follow-up is dropped, so that a later save does not trigger it.
-      [this] { saved_then = nullptr; });
+      [this] { after_save = nullptr; });
 }
 
 void Project::save_scene(const fs::path& folder) {

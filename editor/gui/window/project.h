@@ -12,7 +12,7 @@
 #include "editor/gui/window/messages.h"
 #include "editor/gui/window/settings.h"
 #include "editor/gui/window/worker.h"
-#include "mesh_ops/features/fuse_way.h"
+#include "mesh_ops/features/fuse_method.h"
 
 namespace rebake {
 
@@ -27,7 +27,7 @@ class Project {
 
   std::filesystem::path path;        ///< project file; empty until the document is saved or opened
   std::vector<std::string> to_open;  ///< project to open after the question about unsaved work; empty for none
-  std::function<void()> saved_then;  ///< called once after the next successful save
+  std::function<void()> after_save;  ///< called once after the next successful save
   Scene imported;                    ///< scene for comparison: after the imports, or as the project was opened
   /// Shows an error message.
   void say_failed(const std::string& problem) { messages_.fail(problem); }
@@ -39,9 +39,9 @@ class Project {
       std::string trouble;         ///< description of the problem
       std::string now;             ///< new path, as edited in the dialog
     };
-    std::filesystem::path wanted_by;  ///< the project or journal
+    std::filesystem::path needed_by;  ///< the project or journal
     std::vector<Source> sources;
-    Relinked known;  ///< answers to earlier questions
+    SourceLinks known;  ///< answers to earlier questions
   };
   std::optional<Relinking> relinking;  ///< the open question, if any
 
@@ -52,7 +52,7 @@ class Project {
   void open(const std::vector<std::string>& paths, bool wanted = false);
   /// Replaces the document by the work of a journal; unsaved work in the document goes to the trash. If sources are
   /// missing, sets `relinking` instead, unless `go_on_without`: then recovers as much as possible.
-  void recover(const std::filesystem::path& journal, const Relinked& links = {}, bool go_on_without = false);
+  void recover(const std::filesystem::path& journal, const SourceLinks& links = {}, bool go_on_without = false);
   /// Opens or recovers again with the answers in `relinking`, and closes the question. `go_on_without`: as for
   /// recover().
   void relink(bool go_on_without);
@@ -61,7 +61,7 @@ class Project {
   /// Options of an export as one plain folder, as in ExportAction.
   struct PlainChoice {
     FuseWidth width;
-    std::optional<FuseWay> way;
+    std::optional<FuseMethod> way;
   };
   /// Exports `nodes`, or the whole scene if empty; as one plain folder if `plain` is set.
   void export_to(const std::filesystem::path& folder, const std::vector<NodeRef>& nodes = {},
@@ -72,9 +72,9 @@ class Project {
   bool unsaved() const;
 
  private:
-  void open_project(const std::filesystem::path& file, const Relinked& links);
-  void ask_for_sources(const std::filesystem::path& wanted_by, const std::vector<SourcesGone::Source>& gone,
-                       const Relinked& links);
+  void open_project(const std::filesystem::path& file, const SourceLinks& links);
+  void ask_for_sources(const std::filesystem::path& needed_by, const std::vector<SourcesUnavailable::Source>& gone,
+                       const SourceLinks& links);
 
   Worker& worker_;
   Settings& settings_;

@@ -57,11 +57,11 @@ std::string Relighter::problem() const {
 }
 
 // Publishes light that is rotated with the surfaces dragged since the last full result. False if that does not apply.
-bool Relighter::turn_along(const Scene& scene) {
+bool Relighter::publish_rotated_light(const Scene& scene) {
   if (!start_) return false;
   std::optional<Lighting> turned;
   try {
-    turned = turned_lighting(start_scene_, *start_, scene);
+    turned = dragged_lighting(start_scene_, *start_, scene);
   } catch (const std::exception&) {
     // The traced pass reports the error.
     return false;
@@ -90,7 +90,7 @@ void Relighter::loop() {
     const int full = next.scene.light->rays;
     cancel_ = false;
     lock.unlock();
-    const bool turned = turn_along(next.scene);
+    const bool turned = publish_rotated_light(next.scene);
     lock.lock();
     if (turned) wake_();
     // A newer request has arrived: skips the traced passes.
@@ -111,7 +111,7 @@ void Relighter::loop() {
         LightingOptions options;
         options.rays = rays;
         // Only full results are cached on disk.
-        const std::shared_ptr<Results> results = kept_results();
+        const std::shared_ptr<ResultCache> results = result_cache();
         options.results = results.get();
         options.keep_traced = rays == full;
         if (!next.rough && rays == full) options.turning = next.nodes;

@@ -25,7 +25,7 @@ class Relighter {
 
   /// Requests the light of a scene and cancels an earlier, different request. `rough`: no full result, for drags.
   /// `nodes`: nodes that may be dragged next. If only their triangles have moved since the last full result, their
-  /// light is rotated with the surface (TurnedLight) instead of traced.
+  /// light is rotated with the surface (DragLight) instead of traced.
   void request(const Scene& scene, bool rough, std::set<NodeId> nodes);
   /// The latest result; null if the baked light is to be shown. May belong to an earlier scene and is then approximate.
   /// Lighting::map_of() ignores it for texture sets whose UVs have changed.
@@ -44,7 +44,7 @@ class Relighter {
   };
   void loop();
   bool same(const Wanted& a, const Wanted& b) const;
-  bool turn_along(const Scene& scene);
+  bool publish_rotated_light(const Scene& scene);
 
   std::function<void()> wake_;
   mutable std::mutex mutex_;

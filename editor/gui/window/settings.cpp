@@ -12,7 +12,8 @@ namespace rebake {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-NLOHMANN_JSON_SERIALIZE_ENUM(Looks, {{Looks::dark, "dark"}, {Looks::light, "light"}, {Looks::system, "system"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(ColorTheme,
+                             {{ColorTheme::dark, "dark"}, {ColorTheme::light, "light"}, {ColorTheme::system, "system"}})
 NLOHMANN_JSON_SERIALIZE_ENUM(BottomTab, {{BottomTab::history, "history"},
                                          {BottomTab::views, "views"},
                                          {BottomTab::light, "light"},
@@ -70,7 +71,7 @@ Settings read_settings(const fs::path& file, std::string& problem) {
   if (!fs::exists(file)) return {};
   try {
     const json read = json::parse(read_file(file));
-    if (!read.is_object()) throw Error("they must be an object");
+    if (!read.is_object()) throw Error("the top level must be a JSON object");
     Settings settings;
     for_fields(settings, [&](const char* name, auto& value) {
       if (read.contains(name)) read.at(name).get_to(value);
@@ -85,7 +86,7 @@ Settings read_settings(const fs::path& file, std::string& problem) {
     settings.window_height = std::clamp(settings.window_height, 400, 16384);
     return settings;
   } catch (const std::exception& error) {
-    problem = file.string() + ": these settings are not used: " + error.what();
+    problem = file.string() + ": cannot be read, so default settings are used: " + error.what();
     return {};
   }
 }
@@ -95,7 +96,7 @@ void write_settings(const Settings& settings, const fs::path& file) {
   for_fields(settings, [&](const char* name, const auto& value) { object[name] = value; });
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
-  if (error) throw FileError(file.parent_path(), "cannot be made: " + error.message());
+  if (error) throw FileError(file.parent_path(), "cannot be created: " + error.message());
   write_file_atomically(file, object.dump(1) + "\n", {});
 }
 

@@ -7,13 +7,13 @@
 namespace rebake {
 
 /// Colour theme; `system` follows the desktop.
-enum class Looks { dark, light, system };
+enum class ColorTheme { dark, light, system };
 /// Tab of the bottom panel.
 enum class BottomTab { history, views, light, script, cost, log };
 
 /// User settings, stored as JSON in the configuration folder.
 struct Settings {
-  Looks looks = Looks::dark;
+  ColorTheme looks = ColorTheme::dark;
   double text_scale = 1;          ///< 0.6 … 3, multiplied by the monitor's scale
   bool scene_background = false;  ///< the viewport shows the scene's background, not the theme's
   bool adjust_open = true;        ///< the panel with the fields of the last step is open

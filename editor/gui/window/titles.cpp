@@ -121,7 +121,7 @@ std::string verb_of(const Edit& edit) {
                                                            {"unlock", "Unlocked"},
                                                            {"remove", "Removed"},
                                                            {"duplicate", "Copied"},
-                                                           {"merge", "Joined"},
+                                                           {"merge", "Merged"},
                                                            {"group", "Grouped"},
                                                            {"reorder", "Moved in the outline:"},
                                                            {"place", "Placed"},
@@ -130,13 +130,13 @@ std::string verb_of(const Edit& edit) {
                                                            {"fill", "Filled holes of"}};
   if (const auto* transform = edit.as<Transform>()) {
     const bool turns = !transform->rotate.matrix().isIdentity(0), scales = transform->scale.value != Vec3::Ones();
-    return turns && !scales ? "Turned" : scales && !turns ? "Scaled" : scales ? "Turned and scaled" : "Moved";
+    return turns && !scales ? "Rotated" : scales && !turns ? "Scaled" : scales ? "Rotated and scaled" : "Moved";
   }
   if (const auto* bend = edit.as<Bend>()) return fmt::format("Bent by {:.4g}°:", bend->degrees);
   if (const auto* twist = edit.as<Twist>()) return fmt::format("Twisted by {:.4g}°:", twist->degrees);
   if (const auto* taper = edit.as<Taper>()) return fmt::format("Tapered by {:.4g}:", taper->factor);
   if (const auto* stretch = edit.as<Stretch>()) return fmt::format("Stretched by {:.4g}:", stretch->factor);
-  if (edit.is<CageDeform>()) return "Bent by a cage:";
+  if (edit.is<CageDeform>()) return "Deformed by a cage:";
   if (edit.is<HandlesDeform>()) return "Moved by handles:";
   if (const auto found = verbs.find(edit.type().op); found != verbs.end()) return found->second;
   std::string words = edit.type().op;
@@ -154,7 +154,7 @@ std::string special(const Edit& edit) {
   if (const auto* view = edit.as<StoreView>()) return "Stored the view \"" + view->name + "\"";
   if (const auto* view = edit.as<RenameView>())
     return "Renamed the view \"" + view->name + "\" to \"" + view->to + "\"";
-  if (const auto* view = edit.as<RemoveView>()) return "Forgot the view \"" + view->name + "\"";
+  if (const auto* view = edit.as<RemoveView>()) return "Removed the view \"" + view->name + "\"";
   if (const auto* light = edit.as<LightEdit>())
     return light->effects == std::vector<std::string>{"none"} ? "Light stays as baked" : "Light follows edits";
   if (const auto* rename = edit.as<Rename>()) return "Renamed to \"" + rename->name + "\"";
@@ -218,7 +218,7 @@ std::string title_of(const std::vector<Edit>& group, const Scene& later) {
   if (std::string said = special(first); !said.empty()) return said;
   const std::string of = together(named(group, later, later));
   if (first.type().selects) return "Selected triangles" + (of.empty() ? "" : " in " + of);
-  if (first.is<DeleteSelected>()) return "Deleted what was selected" + (of.empty() ? "" : " in " + of);
+  if (first.is<DeleteSelected>()) return "Deleted the selected triangles" + (of.empty() ? "" : " in " + of);
   return verb_of(first) + " " + (of.empty() ? "the selection" : of);
 }
 

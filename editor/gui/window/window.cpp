@@ -17,7 +17,7 @@ namespace {
 
 std::string last_error = "unknown";  // global because GLFW's error callback has no user pointer
 
-constexpr const char* without_window = "without a window there are: rebake run, render, export, batch";
+constexpr const char* without_window = "commands that need no window: rebake run, render, export, batch";
 
 class WindowContext final : public gl::Context {
  public:
@@ -77,7 +77,7 @@ class Window::Callbacks {
 WindowSystem::WindowSystem() {
   glfwSetErrorCallback([](int, const char* text) { last_error = text; });
   if (glfwInit() != GLFW_TRUE)
-    throw DeviceError(fmt::format("no window can be opened here ({}); {}", last_error, without_window));
+    throw DeviceError(fmt::format("cannot open a window ({}); {}", last_error, without_window));
 }
 WindowSystem::~WindowSystem() { glfwTerminate(); }
 void WindowSystem::wake() { glfwPostEmptyEvent(); }
@@ -91,8 +91,7 @@ Window::Window(const WindowSystem& /*system*/, const std::string& title, int wid
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr)
-    throw DeviceError(
-        fmt::format("no window with OpenGL 3.3 core can be opened here ({}); {}", last_error, without_window));
+    throw DeviceError(fmt::format("cannot open a window with OpenGL 3.3 core ({}); {}", last_error, without_window));
   glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwSetWindowUserPointer(window_, this);
   glfwMakeContextCurrent(window_);

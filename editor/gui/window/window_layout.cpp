@@ -73,20 +73,20 @@ void WindowLayout::draw(Viewport& viewport, const std::vector<std::array<double,
   viewport_ = &viewport;
   moves_ = &moves;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  if (desk_.view.alone)
+  if (editor_.view.alone)
     picture({0, 0}, screen);
   else
     lay_out(screen);
   // Thumbnails hold the nodes of their scene, so they are freed when the panel is closed.
   if (!std::exchange(views_shown_, false)) viewport.thumbnails().forget_views();
-  palette_.draw(desk_);
-  form_.draw(desk_, desk_.view.alone ? screen.x : screen.x - side_width(screen));
-  draw_keys_sheet(desk_);
+  palette_.draw(editor_);
+  form_.draw(editor_, editor_.view.alone ? screen.x : screen.x - side_width(screen));
+  draw_keys_sheet(editor_);
 }
 
 // Width of the side panels in pixels, at most 40 % of the window.
 float WindowLayout::side_width(const ImVec2& screen) const {
-  return std::min(static_cast<float>(desk_.settings.side_width) * px(1), 0.4F * screen.x);
+  return std::min(static_cast<float>(editor_.settings.side_width) * px(1), 0.4F * screen.x);
 }
 
 void WindowLayout::lay_out(const ImVec2& screen) {
@@ -95,8 +95,9 @@ void WindowLayout::lay_out(const ImVec2& screen) {
   const float height = screen.y - top - status_line;
   const auto s = px(1);
   const float side = side_width(screen), tools = px(50);
-  const float bottom =
-      !desk_.settings.bottom_open ? 0 : std::min(static_cast<float>(desk_.settings.bottom_height) * s, 0.45F * height);
+  const float bottom = !editor_.settings.bottom_open
+                           ? 0
+                           : std::min(static_cast<float>(editor_.settings.bottom_height) * s, 0.45F * height);
   const float line = ImGui::GetFrameHeight() + px(14), options = std::max(line, options_height_);
   panel(
       "tool bar", {0, top}, {tools, height}, [&] { tool_bar(); }, {px(8), px(8)}, ImGuiWindowFlags_NoScrollbar);
@@ -105,7 +106,7 @@ void WindowLayout::lay_out(const ImVec2& screen) {
       [&] {
         scope();
         const announce::Part part("options");
-        viewport_->tool(desk_).options(desk_);
+        viewport_->tool(editor_).options(editor_);
         options_height_ = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + px(7);
       },
       {px(10), px(7)}, ImGuiWindowFlags_NoScrollbar);
@@ -115,40 +116,40 @@ void WindowLayout::lay_out(const ImVec2& screen) {
   panel("status", {0, screen.y - status_line}, {screen.x, status_line}, [&] { status(); }, {px(10), px(3)});
   splitter("side", {screen.x - side - px(3), top}, {px(6), height - bottom}, ImGuiMouseCursor_ResizeEW,
            [&](const ImVec2& moved) {
-             desk_.settings.side_width =
-                 std::clamp(desk_.settings.side_width - static_cast<double>(moved.x / s), 200.0, 700.0);
+             editor_.settings.side_width =
+                 std::clamp(editor_.settings.side_width - static_cast<double>(moved.x / s), 200.0, 700.0);
            });
   if (bottom > 0)
     splitter("height", {tools, top + height - bottom - px(3)}, {screen.x - tools, px(6)}, ImGuiMouseCursor_ResizeNS,
              [&](const ImVec2& moved) {
-               desk_.settings.bottom_height =
-                   std::clamp(desk_.settings.bottom_height - static_cast<double>(moved.y / s), 80.0, 800.0);
+               editor_.settings.bottom_height =
+                   std::clamp(editor_.settings.bottom_height - static_cast<double>(moved.y / s), 80.0, 800.0);
              });
 }
 
 // The viewport and the panels that float over it.
 void WindowLayout::picture(const ImVec2& at, const ImVec2& size) {
   panel(
-      "picture", at, size, [&] { viewport_->draw(desk_, *moves_); }, {0, 0}, ImGuiWindowFlags_NoScrollbar);
-  desk_.view.marked.reset();  // panels set it again in each frame
-  draw_start(desk_, viewport_->thumbnails(), {at.x + size.x / 2, at.y + size.y / 2});
-  if (!desk_.view.alone) adjust_.draw(desk_, {at.x, at.y + size.y}, size);
-  draw_toasts(desk_.messages, {at.x + size.x, at.y + size.y});
+      "picture", at, size, [&] { viewport_->draw(editor_, *moves_); }, {0, 0}, ImGuiWindowFlags_NoScrollbar);
+  editor_.view.marked.reset();  // panels set it again in each frame
+  draw_start(editor_, viewport_->thumbnails(), {at.x + size.x / 2, at.y + size.y / 2});
+  if (!editor_.view.alone) adjust_.draw(editor_, {at.x, at.y + size.y}, size);
+  draw_toasts(editor_.messages, {at.x + size.x, at.y + size.y});
   context_menu();
 }
 
 void WindowLayout::sides(const ImVec2& at, const ImVec2& size) {
-  Settings& settings = desk_.settings;
+  Settings& settings = editor_.settings;
   const float closed = px(space::heading + 26);
   const bool both = settings.outline_open && settings.properties_open;
   const float upper = !settings.outline_open      ? closed
                       : !settings.properties_open ? size.y - closed
                                                   : size.y * static_cast<float>(settings.outline_share);
   panel("outline", at, {size.x, upper - 1}, [&] {
-    if (ui::section("Outline", settings.outline_open)) outline_.draw(desk_);
+    if (ui::section("Outline", settings.outline_open)) outline_.draw(editor_);
   });
   panel("properties", {at.x, at.y + upper}, {size.x, size.y - upper}, [&] {
-    if (ui::section("Properties", settings.properties_open)) properties_.draw(desk_);
+    if (ui::section("Properties", settings.properties_open)) properties_.draw(editor_);
   });
   if (both)
     splitter("sides", {at.x, at.y + upper - px(3)}, {size.x, px(6)}, ImGuiMouseCursor_ResizeNS,
@@ -160,19 +161,19 @@ void WindowLayout::sides(const ImVec2& at, const ImVec2& size) {
 
 // Shows which nodes the current tool works on.
 void WindowLayout::scope() {
-  const ToolKind kind = desk_.tools.kind;
-  if (kind == ToolKind::pick || desk_.scene().roots.empty()) return;
+  const ToolKind kind = editor_.tools.kind;
+  if (kind == ToolKind::pick || editor_.scene().roots.empty()) return;
   ImGui::AlignTextToFramePadding();
   ImGui::PushStyleColor(ImGuiCol_Text, color(theme().accent_text));
-  ImGui::TextUnformatted(ui::shortened(desk_.scope_words(), px(160)).c_str());
+  ImGui::TextUnformatted(ui::shortened(editor_.scope_words(), px(160)).c_str());
   ImGui::PopStyleColor();
-  ui::tip("Works " + desk_.scope_words(), "",
-          "Tools work on the picked nodes; with none picked, on all that is visible and not locked.");
+  ui::tip("Works " + editor_.scope_words(), "",
+          "Tools work on the picked nodes, or on all visible, unlocked nodes if none are picked.");
   ImGui::SameLine(0, px(space::section));
 }
 
 void WindowLayout::context_menu() {
-  if (std::exchange(desk_.asking.context, false)) ImGui::OpenPopup("context");
+  if (std::exchange(editor_.dialogs.context, false)) ImGui::OpenPopup("context");
   if (!ImGui::BeginPopup("context")) return;
   const announce::Part part("context");
   for (const char* title : {"Frame selection", "", "Duplicate", "Group", "Hide", "Show all", "Separate", "", "Grow",
@@ -187,9 +188,9 @@ void WindowLayout::context_menu() {
 }
 
 void WindowLayout::menu_item(const Command& command) {
-  const bool checked = command.checked != nullptr && command.checked(desk_);
-  if (ImGui::MenuItem(command.title, command.key_of(desk_).c_str(), checked, command.enabled(desk_)))
-    command.run(desk_);
+  const bool checked = command.checked != nullptr && command.checked(editor_);
+  if (ImGui::MenuItem(command.title, command.key_of(editor_).c_str(), checked, command.enabled(editor_)))
+    command.run(editor_);
   announce::item(command.title);
   if (*command.help != '\0') ui::tip(command.title, "", command.help);
 }
@@ -210,15 +211,15 @@ void WindowLayout::menu() {
     if (!open) continue;
     for (const Command& command : command_table())
       if (command.menu == std::string_view(name)) menu_item(command);
-    if (name == std::string_view("File") && ImGui::BeginMenu("Recent", !desk_.settings.recent.empty())) {
-      const std::vector<std::string> recent = desk_.settings.recent;
+    if (name == std::string_view("File") && ImGui::BeginMenu("Recent", !editor_.settings.recent.empty())) {
+      const std::vector<std::string> recent = editor_.settings.recent;
       for (const std::string& path : recent)
-        if (ImGui::MenuItem(path.c_str())) desk_.project.open({path});
+        if (ImGui::MenuItem(path.c_str())) editor_.project.open({path});
       ImGui::EndMenu();
     }
-    if (name == std::string_view("View") && ImGui::BeginMenu("Stored views", !desk_.scene().views.empty())) {
-      for (const std::string& view : view_names(desk_.scene()))
-        if (ImGui::MenuItem(view.c_str())) desk_.view.camera = desk_.scene().views.at(view);
+    if (name == std::string_view("View") && ImGui::BeginMenu("Stored views", !editor_.scene().views.empty())) {
+      for (const std::string& view : view_names(editor_.scene()))
+        if (ImGui::MenuItem(view.c_str())) editor_.view.camera = editor_.scene().views.at(view);
       ImGui::EndMenu();
     }
     ImGui::EndMenu();
@@ -237,42 +238,44 @@ void WindowLayout::tool_bar() {
       ImGui::Dummy({0, px(1)});
     }
     const Command& command = command_named(button.command);
-    const bool taken = desk_.tools.kind == button.kind;
-    if (ui::icon_button(button.icon, command.title, taken)) desk_.tools.kind = button.kind;
+    const bool taken = editor_.tools.kind == button.kind;
+    if (ui::icon_button(button.icon, command.title, taken)) editor_.tools.kind = button.kind;
     // In a small window the button may be scrolled out of view.
     if (taken && std::exchange(shown_tool_, button.kind) != button.kind) ImGui::SetScrollHereY();
     if (button.kind == ToolKind::lasso) draw_lasso(color32(taken ? theme().on_accent : theme().text));
-    ui::tip(command.title, command.key_of(desk_), command.help);
+    ui::tip(command.title, command.key_of(editor_), command.help);
   }
 }
 
 void WindowLayout::tabs() {
   const announce::Part part("tabs");
-  int tab = static_cast<int>(desk_.settings.bottom_tab);
-  if (ui::choice("tabs", tab, {"History", "Views", "Light", "Script", "Cost", "Messages"}))
-    desk_.settings.bottom_tab = static_cast<BottomTab>(tab);
+  int tab = static_cast<int>(editor_.settings.bottom_tab);
+  if (ui::choice("tabs", tab,
+                 {"History##history", "Views##views", "Light##light", "Script##script", "Performance##cost",
+                  "Message log##messages"}))
+    editor_.settings.bottom_tab = static_cast<BottomTab>(tab);
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - px(24));
-  if (ui::quiet_icon(icons::close, "Close")) desk_.settings.bottom_open = false;
+  if (ui::quiet_icon(icons::close, "Close")) editor_.settings.bottom_open = false;
   ImGui::BeginChild("content");
-  switch (desk_.settings.bottom_tab) {
+  switch (editor_.settings.bottom_tab) {
     case BottomTab::history:
-      history_.draw(desk_);
+      history_.draw(editor_);
       break;
     case BottomTab::views:
-      views_.draw(desk_, Viewport::drawn(desk_), viewport_->thumbnails());
+      views_.draw(editor_, Viewport::drawn(editor_), viewport_->thumbnails());
       views_shown_ = true;
       break;
     case BottomTab::light:
-      light_.draw(desk_);
+      light_.draw(editor_);
       break;
     case BottomTab::script:
-      script_.draw(desk_);
+      script_.draw(editor_);
       break;
     case BottomTab::cost:
-      draw_costs(desk_.jobs, desk_.view, *desk_.now, viewport_->report(), viewport_->each_pass());
+      draw_costs(editor_.jobs, editor_.view, *editor_.now, viewport_->report(), viewport_->each_pass());
       break;
     default:
-      draw_log(desk_.messages);
+      draw_log(editor_.messages);
   }
   ImGui::EndChild();
 }
@@ -280,12 +283,12 @@ void WindowLayout::tabs() {
 void WindowLayout::status() {
   const announce::Part part("status");
   ImGui::AlignTextToFramePadding();
-  if (desk_.jobs.film) {
-    ImGui::Text("%s (Esc ends it)", desk_.jobs.film->doing().c_str());
-  } else if (desk_.jobs.worker.busy()) {
-    const Worker::Status now = desk_.jobs.worker.status();
-    if (ui::quiet_icon(icons::close, "Stop")) desk_.jobs.worker.cancel();
-    ui::tip("Stop", "Esc");
+  if (editor_.jobs.film) {
+    ImGui::Text("%s (Esc cancels)", editor_.jobs.film->doing().c_str());
+  } else if (editor_.jobs.worker.busy()) {
+    const Worker::Status now = editor_.jobs.worker.status();
+    if (ui::quiet_icon(icons::close, "Cancel")) editor_.jobs.worker.cancel();
+    ui::tip("Cancel", "Esc");
     ImGui::SameLine();
     ImGui::ProgressBar(static_cast<float>(now.share), {px(160), px(6)}, "");
     ImGui::SameLine();
@@ -295,15 +298,15 @@ void WindowLayout::status() {
   } else if (viewport_->arrived() < 1) {
     ImGui::ProgressBar(static_cast<float>(viewport_->arrived()), {px(160), px(6)}, "");
     ImGui::SameLine();
-    ImGui::TextUnformatted("going to the graphics card");
-  } else if (!desk_.status.empty()) {
-    ImGui::TextUnformatted(ui::shortened(desk_.status, 0.5F * ImGui::GetWindowWidth()).c_str());
+    ImGui::TextUnformatted("uploading to the graphics card");
+  } else if (!editor_.status.empty()) {
+    ImGui::TextUnformatted(ui::shortened(editor_.status, 0.5F * ImGui::GetWindowWidth()).c_str());
   } else {
-    ImGui::TextDisabled("Middle button turns, wheel zooms. F1 shows all keys, Ctrl+P finds any command.");
+    ImGui::TextDisabled("Middle button orbits, wheel zooms. F1 shows all keys, Ctrl+P finds any command.");
   }
   // On the right: the size of the selection, and buttons for the tabs of the bottom panel.
-  std::string selected = desk_.selected_words();
-  if (!selected.empty() && desk_.seen_last() != nullptr) selected += ", visible sides only";
+  std::string selected = editor_.selected_words();
+  if (!selected.empty() && editor_.last_visible_selection() != nullptr) selected += ", visible sides only";
   const float buttons = px(6 * 30);
   ImGui::SameLine(ImGui::GetWindowWidth() - buttons - px(20) - ImGui::CalcTextSize(selected.c_str()).x);
   ImGui::TextDisabled("%s", selected.c_str());
@@ -316,11 +319,12 @@ void WindowLayout::status() {
   for (const Tab& one :
        {Tab{BottomTab::history, icons::history, "History"}, Tab{BottomTab::views, icons::image_multiple, "Views"},
         Tab{BottomTab::light, icons::weather_sunny, "Light"}, Tab{BottomTab::script, icons::script, "Script"},
-        Tab{BottomTab::cost, icons::chart_line, "Cost"}, Tab{BottomTab::log, icons::message_text, "Messages"}}) {
+        Tab{BottomTab::cost, icons::chart_line, "Performance"},
+        Tab{BottomTab::log, icons::message_text, "Message log"}}) {
     const Command& command = command_named(one.command);
-    const bool open = desk_.settings.bottom_open && desk_.settings.bottom_tab == one.tab;
-    if (ui::quiet_icon(one.icon, one.command, open)) command.run(desk_);
-    ui::tip(command.title, command.key_of(desk_), command.help);
+    const bool open = editor_.settings.bottom_open && editor_.settings.bottom_tab == one.tab;
+    if (ui::quiet_icon(one.icon, one.command, open)) command.run(editor_);
+    ui::tip(command.title, command.key_of(editor_), command.help);
     ImGui::SameLine(0, px(6));
   }
 }

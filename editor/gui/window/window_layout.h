@@ -12,7 +12,7 @@ namespace rebake {
 /// Layout of the window: menu, tool bar, tool options, viewport, side and bottom panels, status bar.
 class WindowLayout {
  public:
-  explicit WindowLayout(Desk& desk) : desk_(desk) {}
+  explicit WindowLayout(EditorContext& editor) : editor_(editor) {}
   /// Draws everything except dialogs. `moves`: pointer positions since the last frame, in window pixels.
   void draw(Viewport& viewport, const std::vector<std::array<double, 2>>& moves);
 
@@ -29,10 +29,10 @@ class WindowLayout {
   void tabs();
   void status();
 
-  Desk& desk_;
+  EditorContext& editor_;
   Viewport* viewport_ = nullptr;  ///< argument of the current draw()
   const std::vector<std::array<double, 2>>* moves_ = nullptr;
-  OutlinePanel outline_;
+  OutlinerPanel outline_;
   PropertiesPanel properties_;
   AdjustPanel adjust_;
   HistoryPanel history_;

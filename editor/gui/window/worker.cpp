@@ -184,17 +184,17 @@ void Worker::loop() {
     try {
       next.job(session_);
     } catch (const Cancelled&) {
-      failed = sentence(next.title) + " was stopped";
+      failed = sentence(next.title) + " was cancelled";
       stopped = true;
     } catch (const std::filesystem::filesystem_error& error) {
       failed = sentence(next.title) + " failed: " + error.path1().string() + ": " + error.code().message();
     } catch (const std::bad_alloc&) {
-      failed = sentence(next.title) + " failed: memory is out";
+      failed = sentence(next.title) + " failed: out of memory";
     } catch (const std::exception& error) {
       failed = sentence(next.title) + " failed: " + error.what();
     }
     if (!failed.empty() && session_.document.history().undo_count() != before)
-      failed += " (what was done before stays, and can be undone)";
+      failed += " (earlier edits of this job are kept and can be undone)";
     publish(scene_before);
     {
       const std::lock_guard lock(mutex_);

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "editor/commands/session.h"
+#include "editor/actions/session.h"
 
 namespace rebake {
 

@@ -1,0 +1,20 @@
+#include "editor/actions/redo.h"
+
+#include "editor/actions/describe.h"
+
+#include <fmt/format.h>
+
+namespace rebake {
+
+void run(Session& session, const RedoAction& action) {
+  if (action.steps < 1 || static_cast<std::size_t>(action.steps) > session.document.history().redo_count())
+    throw FieldError("steps",
+                     fmt::format("is out of range: {} edits can be redone", session.document.history().redo_count()));
+  for (int step = 0; step < action.steps; ++step) session.document.redo(1, session.progress);
+}
+
+REBAKE_DESCRIBE_ACTION(
+    RedoAction, "Redoes undone edits.",
+    (auto& action, auto& visit) { visit("steps", action.steps, Need::optional, "number of edits"); })
+
+}  // namespace rebake

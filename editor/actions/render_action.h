@@ -1,0 +1,25 @@
+#pragma once
+
+#include "editor/actions/action.h"
+#include "editor/actions/session.h"
+#include "editor/fields/values.h"
+
+namespace rebake {
+
+/// Renders the scene to a PNG.
+struct RenderAction {
+  static constexpr const char* op = "render";
+  std::string out;
+  std::string view;              ///< name of a stored view; empty: `camera`
+  std::optional<Camera> camera;  ///< nothing: a camera that frames the scene
+  int width = 800;               ///< pixels
+  int height = 800;              ///< pixels
+  int samples = 4;               ///< samples per pixel: 1, 4 or 16
+  std::vector<NodeRef> nodes;    ///< only these and their children; empty: all
+};
+template <>
+const ActionType& action_type<RenderAction>();
+
+void run(Session& session, const RenderAction& action);
+
+}  // namespace rebake

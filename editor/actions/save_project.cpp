@@ -1,0 +1,22 @@
+#include "editor/actions/save_project.h"
+
+#include "editor/actions/describe.h"
+
+#include <filesystem>
+
+namespace rebake {
+
+void run(Session& session, const SaveProjectAction& action) {
+  if (std::filesystem::path(action.out).extension() != ".rebake")
+    throw FieldError("out", "must end in .rebake, the extension of projects");
+  for (const std::string& warning : session.document.save(action.out, session.progress))
+    session.say("warning: " + warning);
+  session.outputs.push_back(action.out);
+  session.say("saved " + action.out);
+}
+
+REBAKE_DESCRIBE_ACTION(
+    SaveProjectAction, "Writes a project file: the sources, by relative path and content hash, and all edits.",
+    (auto& action, auto& visit) { visit("out", action.out, Need::required, "file to write, NAME.rebake"); })
+
+}  // namespace rebake

@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "editor/cli/options.h"
+#include "editor/cli/subcommands.h"
+#include "editor/cli/terminal.h"
+#include "editor/fields/codec.h"
+
+namespace rebake {
+
+namespace {
+
+using nlohmann::json;
+
+json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+std::size_t chunk_count(const BakedObject& object) {
+  if (!object.origin) return object.sets.size();
+  std::size_t total = 0;
+  for (const Origin::Set& set : object.origin->sets) total += set.geometry.size();
+  return total;
+}
+
+json object_info(const PlacedNode& placed) {
+  const BakedObject& object = *placed.node->object;
+  json sizes = json::array();
+  for (const TextureSet& set : object.sets) sizes.push_back({set.texels->width(), set.texels->height()});
+  const Box box = transformed(object.bounds(), placed.to_world);
+  return {{"name", placed.node->name},
+          {"visible", placed.visible},
+          {"locked", placed.locked},
+          {"layout", Codec<Layout>::write(object.layout)},
+          {"texture_sets", object.sets.size()},
+          {"texture_sizes", sizes},
+          {"chunks", chunk_count(object)},
+          {"vertices", object.vertex_count()},
+          {"triangles", object.triangle_count()},
+          {"opaque_texels", object.opaque_texel_count()},
+          {"bounds", {{"min", list(box.min())}, {"max", list(box.max())}}},
+          {"axes", Codec<Axes>::write(object.axes)},
+          {"decoder", {Decoder::inputs, object.decoder->hidden0(), object.decoder->hidden1(), 3}},
+          {"turned", object.any_rotations()},
+          {"assumptions", object.origin ? object.origin->assumptions : std::vector<std::string>()},
+          {"memory", object.memory()}};
+}
+
+json scene_info(const Scene& scene) {
+  json objects = json::array();
+  std::set<const BakedObject*> seen;
+  std::uint64_t sets = 0, chunks = 0, vertices = 0, triangles = 0, texels = 0, memory = 0;
+  Box box;
+  json axes, decoder;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object) continue;
+    const BakedObject& object = *placed.node->object;
+    objects.push_back(object_info(placed));
+    box.extend(transformed(object.bounds(), placed.to_world));
+    triangles += object.triangle_count();
+    vertices += object.vertex_count();
+    // An object that several nodes share counts once.
+    if (seen.insert(&object).second) {
+      sets += object.sets.size();
+      chunks += chunk_count(object);
+      texels += object.opaque_texel_count();
+      memory += object.memory();
+    }
+    const json own_axes = Codec<Axes>::write(object.axes), own_decoder = objects.back().at("decoder");
+    axes = axes.is_null() || axes == own_axes ? own_axes : json("mixed");
+    decoder = decoder.is_null() || decoder == own_decoder ? own_decoder : json("mixed");
+  }
+  json out = {{"texture_sets", sets},
+              {"chunks", chunks},
+              {"vertices", vertices},
+              {"triangles", triangles},
+              {"opaque_texels", texels},
+              {"axes", axes},
+              {"decoder", decoder},
+              {"memory", memory},
+              {"objects", objects},
+              {"views", json::array()},
+              {"background", list(scene.background)}};
+  out["bounds"] = box.isEmpty() ? json() : json{{"min", list(box.min())}, {"max", list(box.max())}};
+  for (const auto& [name, camera] : scene.views) out["views"].push_back(name);
+  return out;
+}
+
+std::string megabytes(double bytes) { return fmt::format("{:.1f} MB", bytes / 1e6); }
+
+void print(const json& info) {
+  for (const json& o : info.at("objects")) {
+    const json &low = o.at("bounds").at("min"), &high = o.at("bounds").at("max");
+    fmt::print("{}{}\n", printable(o.at("name").get<std::string>()), o.at("visible").get<bool>() ? "" : "  (hidden)");
+    fmt::print("  layout         {}, {} texture set(s), {} geometry file(s)\n", o.at("layout").get<std::string>(),
+               o.at("texture_sets").get<std::size_t>(), o.at("chunks").get<std::size_t>());
+    fmt::print("  geometry       {} vertices, {} triangles\n", o.at("vertices").get<std::size_t>(),
+               o.at("triangles").get<std::size_t>());
+    std::string sizes;
+    for (const json& size : o.at("texture_sizes"))
+      sizes += fmt::format("{}{}×{}", sizes.empty() ? "" : ", ", size[0].get<int>(), size[1].get<int>());
+    fmt::print("  texels         {} opaque, in {}\n", o.at("opaque_texels").get<std::uint64_t>(), sizes);
+    fmt::print("  bounds         ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n", low[0].get<double>(),
+               low[1].get<double>(), low[2].get<double>(), high[0].get<double>(), high[1].get<double>(),
+               high[2].get<double>());
+    fmt::print("  axes           {}\n", o.at("axes").get<std::string>());
+    const json& d = o.at("decoder");
+    fmt::print("  decoder        {}-{}-{}-{}\n", d[0].get<int>(), d[1].get<int>(), d[2].get<int>(), d[3].get<int>());
+    fmt::print("  memory         {}\n", megabytes(o.at("memory").get<double>()));
+  }
+  if (info.at("objects").size() > 1)
+    fmt::print("total            {} triangles, {} opaque texels, {}\n", info.at("triangles").get<std::size_t>(),
+               info.at("opaque_texels").get<std::uint64_t>(), megabytes(info.at("memory").get<double>()));
+}
+
+}  // namespace
+
+void describe_info(SubcommandDescription& command) {
+  struct Options {
+    std::string folder;
+    std::string axes = "360";
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  command.option("folder", options->folder, "MobileNeRF folder or Rebake scene", "FOLDER|SCENE").required();
+  command.flag("--json", options->json, "print JSON; memory in bytes");
+  add_axes_option(command, options->axes);
+  command.does([options] {
+    const nlohmann::json info = scene_info(read_all({options->folder}, options->axes, progress_bar()).scene);
+    if (options->json)
+      fmt::print("{}\n", info.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+    else
+      print(info);
+  });
+}
+
+}  // namespace rebake

@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "editor/cli/subcommands.h"
+#include "editor/cli/terminal.h"
+#include "editor/document/document.h"
+#include "editor/document/project.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+
+namespace rebake {
+
+namespace {
+
+struct Recovery {
+  std::string journal, out;
+  std::vector<std::string> sources;
+  bool keep = false, replace = false;
+};
+
+// Position of the "=" between old and new path: the first one whose right side is an existing path, else the first one.
+// Paths may contain "=" too.
+std::size_t separator_of(const std::string& pair) {
+  for (std::size_t at = pair.find('='); at != std::string::npos; at = pair.find('=', at + 1))
+    if (std::error_code error; at + 1 < pair.size() && std::filesystem::exists(pair.substr(at + 1), error)) return at;
+  return pair.find('=');
+}
+
+SourceLinks links_of(const std::vector<std::string>& pairs) {
+  SourceLinks links;
+  for (const std::string& pair : pairs) {
+    const std::size_t equals = separator_of(pair);
+    if (equals == std::string::npos || equals == 0 || equals + 1 == pair.size())
+      throw FieldError("--source", "\"" + pair + "\" must be OLD=NEW");
+    links.emplace(absolute_path(pair.substr(0, equals)), pair.substr(equals + 1));
+  }
+  return links;
+}
+
+// Whether a file is a project, even a damaged one.
+bool holds_project(const std::filesystem::path& path) {
+  return read_file(path).find("\"rebake_project\"") != std::string::npos;
+}
+
+// Number of edits of a project; 0 if it cannot be parsed.
+std::size_t edits_in_project(const std::filesystem::path& path) {
+  const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
+  return root.is_object() && root.contains("edits") ? root.at("edits").size() : 0;
+}
+
+// Throws FileError if --replace would replace a project with more edits.
+void refuse_larger_project(const Recovery& options, std::size_t recovered) {
+  if (!options.replace || !std::filesystem::exists(options.out)) return;
+  if (const std::size_t there = edits_in_project(options.out); there > recovered)
+    throw FileError(options.out, fmt::format("contains {} edits, more than the {} recovered ones, so it is not "
+                                             "replaced; choose another name",
+                                             there, recovered));
+}
+
+// Saves a project with moved sources again, with their new paths.
+void relink_project(const Recovery& options) {
+  const Document document = Document::open(options.journal, links_of(options.sources), progress_bar());
+  const std::vector<std::string> warnings = document.save(options.out, progress_bar());
+  clear_progress_bar();
+  for (const std::string& warning : warnings) print_message("warning: " + warning);
+  fmt::print("{} edits of {} saved in {}\n", document.history().undo_count(), printable(options.journal),
+             printable(options.out));
+}
+
+void recover(const Recovery& options) {
+  if (!options.out.ends_with(".rebake")) throw FieldError("--out", "must end in .rebake, the extension of projects");
+  std::error_code error;
+  const bool is_project = is_project_file(options.journal) && !Journal::is_journal(options.journal);
+  if (!is_project && std::filesystem::equivalent(options.out, options.journal, error))
+    throw FieldError("--out", "is the journal itself, which would be overwritten; name another file");
+  if (options.replace && std::filesystem::exists(options.out) && !holds_project(options.out))
+    throw FileError(options.out, "is not a project, so it is not replaced; choose another name");
+  if (!options.replace && std::filesystem::exists(options.out))
+    throw FileError(options.out, "already exists; choose another name, or use --replace");
+  if (is_project) {
+    relink_project(options);
+    return;
+  }
+  Document::Recovered recovered = Document::recover(options.journal, links_of(options.sources), progress_bar());
+  // An empty project would block the next attempt.
+  const bool nothing = recovered.edits == 0;
+  if (!nothing) refuse_larger_project(options, recovered.edits);
+  if (!nothing)
+    for (const std::string& warning : recovered.document.save(options.out, progress_bar()))
+      print_message("warning: " + warning);
+  clear_progress_bar();
+  const std::size_t undone = recovered.document.history().redo_count();
+  if (nothing && recovered.lost.empty())
+    throw FileError(options.journal,
+                    undone > 0       ? "contains only undone edits, so no project is written"
+                    : recovered.torn ? "contains no complete edit: the program ended while it wrote the first one"
+                                     : "contains no edit, so no project is written; remove it if nothing is missing");
+  fmt::print("{} {} recovered{}\n", recovered.edits, recovered.edits == 1 ? "edit" : "edits",
+             nothing ? "; no project is written" : " into " + printable(options.out));
+  if (std::fflush(stdout) != 0 && !nothing)
+    throw FileError(options.out, "is written, but standard output is not writable; the journal stays");
+  if (undone > 0) print_message(fmt::format("note: {} undone edits are not part of the project", undone));
+  if (recovered.header_damaged)
+    print_message("note: the journal's first line is damaged; all edits after it are intact");
+  if (recovered.torn) print_message("note: the last edit is lost: the program ended while it was written");
+  if (recovered.lost.empty()) {
+    // The project is on the disk now.
+    if (options.keep) return;
+    if (recovered.journal)
+      recovered.journal->discard();
+    else
+      recovered.document.discard_journal();
+    return;
+  }
+  print_message("the journal is not removed, because these lines could not be recovered:");
+  for (const std::string& lost : recovered.first_lost()) print_message("  " + lost);
+  for (const SourcesUnavailable::Source& source : recovered.gone)
+    print_message(
+        fmt::format("if {} was moved: --source '{}=NEW'", source.path.filename().string(), source.path.string()));
+  throw ExitWith{1};
+}
+
+}  // namespace
+
+void describe_recover(SubcommandDescription& command) {
+  auto options = std::make_shared<Recovery>();
+  command
+      .option("journal", options->journal, "journal of run --journal or of the editor, or a project with moved sources",
+              "JOURNAL")
+      .required();
+  command.option("-o,--out", options->out, "project to write", "FILE.rebake").required();
+  command.option("--source", options->sources, "new location of a moved source", "OLD=NEW...");
+  command.flag("--replace", options->replace, "replace an existing project");
+  command.flag("--keep", options->keep, "do not remove the journal");
+  command.does([options] { recover(*options); });
+}
+
+}  // namespace rebake

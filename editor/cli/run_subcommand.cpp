@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "editor/actions/export_action.h"
+#include "editor/actions/session.h"
+#include "editor/cli/subcommands.h"
+#include "editor/cli/terminal.h"
+#include "editor/document/sources.h"
+#include "editor/edits/nodes/import.h"
+#include "editor/script/script.h"
+#include "editor/script/script_inputs.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/scene_files.h"
+
+namespace rebake {
+
+namespace {
+
+using nlohmann::json;
+
+// A line of --list-files; `what`: "read" or "wrote".
+std::string line_of(const char* what, const std::filesystem::path& path, std::uint64_t content) {
+  return json{{what, absolute_path(path).string()}, {"content", hash_text(content)}}.dump(
+             -1, ' ', false, json::error_handler_t::replace) +
+         '\n';
+}
+
+// One JSON line per input of the script and per file or folder that it wrote, with content hashes.
+std::string file_list(const Session& session, const std::string& script,
+                      const std::map<std::string, std::string>& variables) {
+  std::set<std::filesystem::path> read;
+  for (const Edit& edit : session.document.history().edits())
+    if (const auto source = source_of(edit)) read.insert(absolute_path(source->path));
+  for (const ScriptInput& input : script_inputs(script, variables)) read.insert(absolute_path(input.path));
+  std::string lines;
+  for (const std::filesystem::path& path : read) lines += line_of("read", path, content_hash_at(path));
+  std::set<std::filesystem::path> wrote;
+  for (const std::vector<std::string>* const written : {&session.exports, &session.outputs})
+    for (const std::string& path : *written) wrote.insert(absolute_path(path));
+  // Pipes and devices have no content to hash.
+  for (const std::filesystem::path& path : wrote)
+    if (std::filesystem::is_directory(path) || std::filesystem::is_regular_file(path))
+      lines += line_of("wrote", path, content_hash_at(path));
+  return lines;
+}
+
+// Throws FileError if the journal would lie in a source folder of the script, where it would count as one of its files.
+void check_journal(const std::filesystem::path& journal, const std::string& scene, const std::string& script,
+                   const std::map<std::string, std::string>& variables) {
+  SourceGuard guard;
+  if (!scene.empty()) guard.add(scene);
+  for (const ScriptInput& input : script_inputs(script, variables)) guard.add_input(input.path);
+  guard.check_file(journal);
+}
+
+// Protects existing inputs from outputs of earlier lines: files, and the files in scene folders. A scene folder may be
+// replaced as a whole before it is imported, because a script may import its own export and may run again. It may not
+// if the import expects a content hash.
+void protect_input_files(Document& document, const std::string& script,
+                         const std::map<std::string, std::string>& variables) {
+  for (const ScriptInput& input : script_inputs(script, variables)) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(input.path, error) && input.path.filename() != "scene.json")
+      document.protect_file(input.path, "a file that this script reads");
+    else if (input.content_known)
+      document.protect_input(input.path, "a scene that this script reads");
+    else if (const std::filesystem::path folder = scene_folder_of(input.path);
+             std::filesystem::is_directory(folder, error))
+      document.protect_contents(folder, "a scene that this script reads");
+  }
+}
+
+// Protects the paths in a list for --protect, except those that this scene's own script reads: protect_input_files()
+// protects them.
+void protect_listed(Document& document, const std::filesystem::path& list, const std::string& scene) {
+  const std::string text = read_file(list);
+  std::istringstream words{text};
+  for (std::string reader, path; std::getline(words, reader, '\0') && std::getline(words, path, '\0');) {
+    if (reader.empty() || reader != scene) document.protect_input(path, "a file that another scene's script reads");
+  }
+  document.protect_file(list, "a file of the running batch");
+}
+
+}  // namespace
+
+void describe_run(SubcommandDescription& command) {
+  struct Options {
+    std::string script, journal, scene, out, files, sources;
+    std::vector<std::string> variables;
+    bool fields = false;
+    int threads = 0, parent = 0;
+  };
+  auto options = std::make_shared<Options>();
+  command.option("script", options->script, "script file; its relative paths start at the current folder",
+                 "SCRIPT.jsonl");
+  command.option("--var", options->variables, "replaces {name} in the script's strings", "name=value...");
+  command
+      .option("--journal", options->journal,
+              "journal of all edits for crash recovery; removed when the script succeeds", "FILE")
+      .not_empty();
+  command.option("--scene", options->scene, "folder to import first, as the node \"scene\"; defines {name} and {path}",
+                 "FOLDER");
+  command.option("--out", options->out, "folder to export to at the end, unless the script exports", "FOLDER");
+  command.option("--list-files", options->files, "file for one JSON line per input and per output, with content hashes",
+                 "FILE");
+  command.option(
+      "--protect", options->sources,
+      "list of folders and files that must not be overwritten: pairs of the scene that reads it (empty: all) "
+      "and its path, each ended by a zero byte",
+      "FILE");
+  command.option("--threads", options->threads, "maximum number of threads", "N [one per core]").between(1, 4096);
+  command.option("--parent", options->parent, "end when the process with this id ends", "PID");
+  command.flag("--fields", options->fields, "print every command, field, unit and default as Markdown");
+  command.does([options] {
+    if (options->fields) {
+      fmt::print("{}", command_reference());
+      return;
+    }
+    if (options->script.empty()) throw FieldError("script", "is missing: name a script to run");
+    if (options->parent != 0) {
+      ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+      if (::getppid() != options->parent) throw Error("the process that started this one has ended");
+    }
+    std::optional<tbb::global_control> threads;
+    if (options->threads > 0)
+      threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options->threads));
+    std::map<std::string, std::string> variables;
+    for (const std::string& pair : options->variables) {
+      const std::size_t equals = pair.find('=');
+      if (equals == std::string::npos || equals == 0) throw FieldError("--var", "\"" + pair + "\" must be name=value");
+      variables[pair.substr(0, equals)] = pair.substr(equals + 1);
+    }
+    Session session;
+    session.progress = progress_bar();
+    session.say = print_message;
+    if (!options->sources.empty())
+      protect_listed(session.document, options->sources, options->scene.empty() ? "" : folder_title(options->scene));
+    const std::string script = read_input(options->script);
+    session.document.protect_file(options->script, "the script of this run");
+    if (!options->scene.empty()) {
+      variables["name"] = folder_title(options->scene);
+      variables["path"] = options->scene;
+    }
+    protect_input_files(session.document, script, variables);
+    if (!options->journal.empty()) {
+      check_journal(options->journal, options->scene, script, variables);
+      session.document.keep_journal(options->journal);
+    }
+    if (!options->scene.empty()) {
+      Import import;
+      import.path = options->scene;
+      import.as = "scene";
+      session.edit(import);
+    }
+    try {
+      run_script(session, script, options->script, variables);
+      if (!options->out.empty() && session.exports.empty()) {
+        ExportAction action;
+        action.out = options->out;
+        run(session, action);
+      }
+      if (!options->files.empty())
+        write_file_atomically(options->files, file_list(session, script, variables), session.document.sources());
+    } catch (const Error&) {
+      if (!options->journal.empty())
+        session.say(fmt::format("the edits so far are in {0}; to recover them: rebake recover {0} -o FILE.rebake",
+                                options->journal));
+      throw;
+    }
+    session.document.discard_journal();
+    if (session.below_requested_psnr) throw ExitWith{4};
+  });
+}
+
+}  // namespace rebake

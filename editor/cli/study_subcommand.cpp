@@ -1,0 +1,69 @@
+#include "editor/studies/study.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "editor/cli/options.h"
+#include "editor/cli/subcommands.h"
+#include "editor/cli/terminal.h"
+#include "editor/studies/default_scene.h"
+#include "mesh_ops/base/error.h"
+
+namespace rebake {
+
+void describe_study(SubcommandDescription& command) {
+  struct Options {
+    std::string name, out;
+    std::vector<std::string> scenes;
+    int frames = 9;
+    std::string axes = "360";
+    ViewOptions view;
+  };
+  auto options = std::make_shared<Options>();
+  std::string names;
+  for (const Study& study : study_table) names += fmt::format("\n  {:<10} {}", study.name, study.help);
+  command.footer("Studies:" + names);
+  command.option("name", options->name, "name of the study", "NAME").required();
+  command.option("-o,--out", options->out, "folder to write to", "FOLDER").required();
+  command.option("--scene", options->scenes, "scenes to measure", "FOLDER|SCENE... [the sample ficus]");
+  command.option("--frames", options->frames, "timed frames per variant", "N [9]").between(1, 1000);
+  options->view.add_to(command);
+  add_axes_option(command, options->axes);
+  command.does([options] {
+    for (const Study& study : study_table) {
+      if (options->name != study.name) continue;
+      if (options->scenes.empty()) options->scenes.push_back(default_study_scene().string());
+      auto [scene, sources] = read_all(options->scenes, options->axes, progress_bar());
+      options->view.set_background(scene);
+      options->view.protect_files(sources);
+      prepare_study_folder(study, options->out, sources);
+      std::unique_ptr<Renderer> renderer;
+      const auto on_demand = [&]() -> Renderer& {
+        if (!renderer) renderer = std::make_unique<Renderer>();
+        return *renderer;
+      };
+      const StudyTable table =
+          study.run({on_demand, scene, options->view.view(scene), options->frames, progress_bar()});
+      clear_progress_bar();
+      std::size_t width = 6;
+      for (const StudyTable::Row& row : table.rows) width = std::max(width, row.choice.size());
+      fmt::print("{:<{}}", "choice", width);
+      for (const std::string& column : table.columns) fmt::print("  {}", column);
+      fmt::print("\n");
+      for (const StudyTable::Row& row : table.rows) {
+        fmt::print("{:<{}}", row.choice, width);
+        for (std::size_t k = 0; k < row.values.size(); ++k)
+          fmt::print("  {:>{}}", std::isnan(row.values[k]) ? "-" : fmt::format("{:.4g}", row.values[k]),
+                     table.columns[k].size());
+        fmt::print("\n");
+      }
+      write_study(study, table, options->out, sources);
+      return;
+    }
+    throw FieldError("name", fmt::format("there is no study \"{}\"; rebake study --help lists them", options->name));
+  });
+}
+
+}  // namespace rebake

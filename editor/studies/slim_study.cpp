@@ -1,0 +1,72 @@
+#include "editor/edits/shape/slim.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "editor/actions/plain_scene.h"
+#include "editor/studies/study.h"
+#include "mesh_ops/formats/feature_png.h"
+#include "mesh_ops/formats/obj.h"
+
+namespace rebake {
+
+namespace {
+
+// Size of all visible objects in folders on disk in MB: triangles as OBJ, texels as PNG.
+double folder_megabytes(const Scene& scene) {
+  std::uint64_t bytes = 0;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->object || !placed.visible) continue;
+    for (const TextureSet& set : placed.node->object->sets) {
+      const Soup& soup = set.soup;
+      bytes += write_obj(soup.positions(), soup.uvs(), soup.faces(), 0, soup.faces().size()).size();
+      for (const int image : {0, 1}) bytes += write_feature_png(*set.texels, image).size();
+    }
+  }
+  return static_cast<double>(bytes) / 1e6;
+}
+
+std::size_t triangles_in(const Scene& scene) {
+  std::size_t triangles = 0;
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->object && placed.visible) triangles += placed.node->object->triangle_count();
+  return triangles;
+}
+
+}  // namespace
+
+StudyTable study_slim(const StudyInput& input) {
+  StudyTable table{{"megabytes", "image PSNR dB (at most 70)", "milliseconds per frame", "worst image dB", "triangles"},
+                   {},
+                   0,
+                   1,
+                   false,
+                   false};
+  table.second_x = 2;
+  // The infinite PSNR of equal images cannot be plotted: cap it.
+  constexpr double equal_db = 70;
+  const auto add = [&](const std::string& name, const Scene& scene) {
+    PlainReport report;
+    constexpr int size = 400;
+    measure_pictures(input.renderer(), input.scene, {}, scene, report, input.progress, size);
+    table.rows.push_back({name,
+                          {folder_megabytes(scene), std::min(equal_db, report.whole.psnr_db),
+                           median_frame_ms(input.renderer(), scene, input.view, input.frames),
+                           std::min(equal_db, report.whole.worst_psnr_db), static_cast<double>(triangles_in(scene))}});
+  };
+  add("original", input.scene);
+  for (const int rays : {64, 1024, Slim{}.rays}) {
+    Slim edit;
+    edit.rays = rays;
+    add(fmt::format("at most {} rays", rays), apply(input.scene, edit, input.progress).scene);
+  }
+  for (const double psnr : {50.0, 45.0, 40.0, 35.0, 30.0}) {
+    Slim edit;
+    edit.psnr = psnr;
+    add(fmt::format("psnr {:.0f}", psnr), apply(input.scene, edit, input.progress).scene);
+  }
+  return table;
+}
+
+}  // namespace rebake
