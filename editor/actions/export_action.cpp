@@ -35,7 +35,7 @@ struct PictureLoss {
   double share_beyond = 0;             ///< share of pixels that differ by more than 2/255
 };
 PictureLoss picture_loss(Session& session, const Scene& scene, const Scene& other, const Lighting* lighting = nullptr) {
-  const Camera front = framing_of(scene, 1);
+  const Camera front = framing_camera(scene, 1);
   PictureLoss loss;
   double squares = 0;
   constexpr int sides = 4;
@@ -90,7 +90,7 @@ void report_lost_light(Session& session, const Scene& scene) {
       [](const PictureLoss& loss) {
         return fmt::format(
             "the folder does not contain light that follows edits: colours are as baked, {:.1f} dB PSNR from the scene "
-            "over four sides, {:.1f} dB at worst; the option plain fits them",
+            "over four side views, {:.1f} dB at worst; the option plain fits them",
             loss.mean_db, loss.worst_db);
       },
       &lighting);
@@ -102,7 +102,7 @@ void report_losses(Session& session, const Scene& scene, const ExportAction& act
   const Scene flat = without_bends(scene, &bent);
   if (!bent.empty())
     report_loss(session, scene, flat, [](const PictureLoss& loss) {
-      return fmt::format("the result has {:.1f} dB PSNR over four sides, {:.1f} dB at worst", loss.mean_db,
+      return fmt::format("the result has {:.1f} dB PSNR over four side views, {:.1f} dB at worst", loss.mean_db,
                          loss.worst_db);
     });
   // Within one decoder, samples are averaged before decoding; across decoders, after. So pixels differ at edges between
@@ -128,7 +128,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
     const std::filesystem::path folder = absolute_path(action.report).parent_path();
     if (!std::filesystem::is_directory(folder)) throw FieldError("report", "folder does not exist: " + folder.string());
     if (std::filesystem::is_directory(action.report)) throw FieldError("report", "is a folder; name a file");
-    check_replaces_report(action.report);
+    check_report_path(action.report);
   }
   PlainReport report;
   const auto start = std::chrono::steady_clock::now();

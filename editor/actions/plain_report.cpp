@@ -107,7 +107,7 @@ std::vector<View> measurement_views(const Scene& scene, int size) {
   bool forward = true;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.visible && placed.node->object) forward = forward && placed.node->object->axes == Axes::forward;
-  const Camera front = framing_of(scene, 1);
+  const Camera front = framing_camera(scene, 1);
   const Vec3 away = front.eye - front.target, up = front.up.normalized(), right = up.cross(away).normalized();
   constexpr int count = 20;
   std::vector<View> views;
@@ -135,8 +135,8 @@ void measure_pictures(Renderer& renderer, const Scene& composition, const Lighti
   for (const PlacedNode& placed : placed_nodes(composition))
     if (placed.visible && placed.node->object) nodes.push_back(placed);
   // A node's pixels are those that change without it. Skipped for many nodes, because each needs a picture per view.
-  constexpr std::size_t most_nodes = 16;
-  if (nodes.size() < 2 || nodes.size() > most_nodes) nodes.clear();
+  constexpr std::size_t max_nodes = 16;
+  if (nodes.size() < 2 || nodes.size() > max_nodes) nodes.clear();
   std::vector<Squares> of_node(nodes.size());
   Squares whole;
   double similar = 0;
@@ -226,7 +226,7 @@ std::vector<std::string> lines_of(const PlainReport& report) {
   return lines;
 }
 
-void check_replaces_report(const std::filesystem::path& path) {
+void check_report_path(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) return;
   const auto there = nlohmann::json::parse(read_file(path), nullptr, false);

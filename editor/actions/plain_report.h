@@ -37,7 +37,7 @@ struct PlainReport {
 
 /// Throws FileError if there is a non-empty file at `path` that is not an earlier report, so that no other file is
 /// overwritten.
-void check_replaces_report(const std::filesystem::path& path);
+void check_report_path(const std::filesystem::path& path);
 
 /// Twenty held-out views of `size`² pixels: all around the scene, or from the front if it is forward-facing.
 std::vector<View> measurement_views(const Scene& scene, int size);

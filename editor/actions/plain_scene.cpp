@@ -140,8 +140,8 @@ Scene best_plain_scene(const Scene& scene, const Lighting& lighting, const FuseO
   if (parts.composition.exact()) return exact_scene(scene, options, report);
   std::vector<std::size_t> order = candidate_order(parts.make_plan(options, progress));
   // Each trial fits all texels, so with a time limit there is only one.
-  constexpr std::size_t most_tries = 3;
-  order.resize(options.seconds > 0 ? 1 : std::min(order.size(), most_tries));
+  constexpr std::size_t max_tries = 3;
+  order.resize(options.seconds > 0 ? 1 : std::min(order.size(), max_tries));
   std::optional<Scene> best;
   for (const std::size_t candidate : order) {
     PlainReport tried;

@@ -14,7 +14,7 @@ namespace rebake {
 void run(Session& session, const RenderAction& action) {
   check_png_path(action.out, session.document.sources());
   const Scene scene = with_only(session.scene(), action.nodes);
-  const View view = chosen_view(scene, action.camera, action.view, action.width, action.height, action.samples);
+  const View view = resolve_view(scene, action.camera, action.view, action.width, action.height, action.samples);
   // Objects that are not drawn still cast shadows.
   const Lighting lighting = lit(session.scene(), session.progress);
   const Image picture = session.renderer().render(scene, view, {}, &lighting);
@@ -23,7 +23,7 @@ void run(Session& session, const RenderAction& action) {
   session.say(fmt::format("rendered {}", action.out));
   for (const LightDecision& decision : lighting.summary)
     session.say(fmt::format("light: {} {}: {}", decision.runs ? "runs" : "skipped", decision.name, decision.words()));
-  if (const auto why = why_blank(scene, view, picture)) session.say(*why);
+  if (const auto why = blank_reason(scene, view, picture)) session.say(*why);
 }
 
 REBAKE_DESCRIBE_ACTION(

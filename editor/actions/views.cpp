@@ -81,7 +81,7 @@ void check_vertex_distances(const Scene& scene) {
 
 }  // namespace
 
-Camera framing_of(const Scene& scene, double aspect, double fov_degrees) {
+Camera framing_camera(const Scene& scene, double aspect, double fov_degrees) {
   bool forward = true;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.visible && placed.node->object) forward = forward && placed.node->object->axes == Axes::forward;
@@ -105,8 +105,8 @@ Camera fitted(const Scene& scene, const Camera& camera, double aspect) {
   return with_planes(camera, world_bounds(scene), aspect);
 }
 
-View chosen_view(const Scene& scene, const std::optional<Camera>& camera, const std::string& view_name, int width,
-                 int height, int samples) {
+View resolve_view(const Scene& scene, const std::optional<Camera>& camera, const std::string& view_name, int width,
+                  int height, int samples) {
   if (camera && !view_name.empty()) throw FieldError("view", "cannot be combined with camera");
   View view;
   view.width = width;
@@ -115,12 +115,12 @@ View chosen_view(const Scene& scene, const std::optional<Camera>& camera, const 
   const double aspect = static_cast<double>(width) / std::max(height, 1);
   view.camera = camera               ? fitted(scene, *camera, aspect)
                 : !view_name.empty() ? fitted(scene, stored_view(scene, view_name), aspect)
-                                     : framing_of(scene, aspect);
+                                     : framing_camera(scene, aspect);
   check(view);
   return view;
 }
 
-std::optional<std::string> why_blank(const Scene& scene, const View& view, const Image& picture) {
+std::optional<std::string> blank_reason(const Scene& scene, const View& view, const Image& picture) {
   const auto& bytes = picture.rgb;
   for (std::size_t i = 3; i < bytes.size(); ++i)
     if (bytes[i] != bytes[i - 3]) return std::nullopt;

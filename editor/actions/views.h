@@ -9,19 +9,20 @@
 
 namespace rebake {
 
-/// A camera that frames all visible objects, or their dense centre if a distant backdrop surrounds it. Forward-facing
-/// if all objects are. Throws EditError for vertices beyond 1e150.
-Camera framing_of(const Scene& scene, double aspect, double fov_degrees = Camera{}.fov_degrees);
+/// A camera that frames all visible objects, or the 5 %–95 % quantile box of triangle centres if a distant backdrop
+/// surrounds it. Forward-facing if all objects are. `aspect`: width / height; `fov_degrees`: vertical. Throws EditError
+/// for vertices beyond 1e150.
+Camera framing_camera(const Scene& scene, double aspect, double fov_degrees = Camera{}.fov_degrees);
 
 /// The camera; near and far planes that are 0 are fitted to the visible objects.
 Camera fitted(const Scene& scene, const Camera& camera, double aspect);
 
 /// View with the given camera, else with the stored view of that name, else with a camera that frames the scene. Throws
 /// FieldError if both are given, and for an invalid size, number of samples or camera.
-View chosen_view(const Scene& scene, const std::optional<Camera>& camera, const std::string& view_name, int width,
-                 int height, int samples);
+View resolve_view(const Scene& scene, const std::optional<Camera>& camera, const std::string& view_name, int width,
+                  int height, int samples);
 
-/// The reason why all pixels of a picture are equal, as a sentence for people; nothing if they are not.
-std::optional<std::string> why_blank(const Scene& scene, const View& view, const Image& picture);
+/// The reason why all pixels of a picture are equal, as a sentence for users; nothing if pixels differ.
+std::optional<std::string> blank_reason(const Scene& scene, const View& view, const Image& picture);
 
 }  // namespace rebake

@@ -44,8 +44,8 @@ const char* to_string(BatchResult::Status status);
 /// Scenes of a batch.
 struct BatchScenes {
   std::vector<std::filesystem::path> shard_scenes;  ///< folders of this shard in the order of their names; may be empty
-  /// Paths that scripts must not overwrite: the scenes of all shards, and the inputs of scripts. `first` is the name of
-  /// the one scene whose script may, since no other reads the path; empty if none may.
+  /// Paths that scripts must not overwrite: the scenes of all shards, and the inputs of scripts. `first`: name of the
+  /// only scene that reads the path and may therefore overwrite it; empty: none.
   std::vector<std::pair<std::string, std::filesystem::path>> protected_paths;
 };
 

@@ -15,7 +15,7 @@ void describe_compare(SubcommandDescription& command) {
   struct Options {
     std::string a, b;
     int tolerance = 2;
-    double least_psnr = 0;
+    double min_psnr = 0;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
@@ -25,10 +25,10 @@ void describe_compare(SubcommandDescription& command) {
       .option("--tolerance", options->tolerance, "largest difference per channel that counts as equal, in 1/255",
               "N [2]")
       .between(0, 255);
-  command.option("--min-psnr", options->least_psnr, "minimum PSNR; exit code 3 below it", "dB");
+  command.option("--min-psnr", options->min_psnr, "minimum PSNR; exit code 3 below it", "dB");
   command.flag("--json", options->json, "print JSON; psnr_db is null for equal pictures");
   command.does([options] {
-    if (std::isnan(options->least_psnr)) throw FieldError("--min-psnr", "must be a number (dB)");
+    if (std::isnan(options->min_psnr)) throw FieldError("--min-psnr", "must be a number (dB)");
     const Difference d = compare(read_image(options->a), read_image(options->b), options->tolerance);
     if (options->json) {
       nlohmann::json out = {{"ssim", d.ssim},
@@ -44,7 +44,7 @@ void describe_compare(SubcommandDescription& command) {
                  d.largest, d.largest > 0 ? fmt::format(" at pixel {}, {}", d.x, d.y) : "", d.share_beyond * 100,
                  options->tolerance);
     }
-    if (d.psnr_db < options->least_psnr) throw ExitWith{3};
+    if (d.psnr_db < options->min_psnr) throw ExitWith{3};
   });
 }
 

@@ -27,7 +27,8 @@ void describe_export(SubcommandDescription& command) {
     std::string axes = "360";
   };
   auto options = std::make_shared<Options>();
-  command.option("folder", options->folder, "folder or scene to export", "FOLDER|SCENE").required();
+  command.option("folder", options->folder, "MobileNeRF folder, Rebake scene or project", "FOLDER|SCENE|PROJECT")
+      .required();
   command.option("-o,--out", options->out, "output folder; replaced atomically", "FOLDER").required();
   command.option("--layout", options->layout, "layout of the output", "split|chunked|unsplit [as read]")
       .one_of(std::vector<std::string>{"split", "chunked", "unsplit"});
@@ -56,7 +57,7 @@ void describe_export(SubcommandDescription& command) {
     Session session;
     session.progress = progress_bar();
     session.say = print_message;
-    Opened opened = read_all({options->folder}, options->axes, session.progress);
+    LoadedScene opened = load_scenes({options->folder}, options->axes, session.progress);
     session.document = Document(std::move(opened.scene));
     // The sources include the scene or project file that refers to the source folders.
     opened.sources.check_folder(options->out);

@@ -123,11 +123,12 @@ void describe_info(SubcommandDescription& command) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  command.option("folder", options->folder, "MobileNeRF folder or Rebake scene", "FOLDER|SCENE").required();
+  command.option("folder", options->folder, "MobileNeRF folder, Rebake scene or project", "FOLDER|SCENE|PROJECT")
+      .required();
   command.flag("--json", options->json, "print JSON; memory in bytes");
   add_axes_option(command, options->axes);
   command.does([options] {
-    const nlohmann::json info = scene_info(read_all({options->folder}, options->axes, progress_bar()).scene);
+    const nlohmann::json info = scene_info(load_scenes({options->folder}, options->axes, progress_bar()).scene);
     if (options->json)
       fmt::print("{}\n", info.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
     else

@@ -10,6 +10,7 @@
 #include "editor/cli/options.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
+#include "editor/document/journal.h"
 #include "editor/edits/edit.h"
 #include "editor/edits/results.h"
 #include "editor/fields/field_info.h"
@@ -151,7 +152,7 @@ void train(const Options& options) {
     throw FieldError("edit",
                      "is missing: give an edit that moves the object, such as '{\"op\": \"bend\", \"degrees\": 60, "
                      "\"axis\": [0, 1, 0]}'");
-  auto [scene, sources] = read_all(options.paths, options.axes, progress_bar());
+  auto [scene, sources] = load_scenes(options.paths, options.axes, progress_bar());
   for (const std::string& text : options.edits) {
     const json edit = json::parse(text, nullptr, false);  // invalid JSON is reported below
     for (const char* field : {"mesh", "picture"})
@@ -160,6 +161,7 @@ void train(const Options& options) {
   }
   if (!options.out.empty()) {
     sources.check_file(options.out);
+    Journal::refuse_overwriting(options.out);
     const std::filesystem::path folder = std::filesystem::absolute(options.out).parent_path();
     if (!std::filesystem::is_directory(folder)) throw FieldError("out", "folder does not exist: " + folder.string());
   } else if (!result_cache()) {
@@ -219,7 +221,7 @@ void keep_model(const Options& options) {
     throw FieldError("paths", options.paths.front() + " is a folder: give the model file first, then the scene");
   const std::string bytes = read_model_bytes(options.paths.front());
   const TransferModel model = transfer_model_of(bytes);
-  auto [scene, sources] = read_all({options.paths.begin() + 1, options.paths.end()}, options.axes, progress_bar());
+  auto [scene, sources] = load_scenes({options.paths.begin() + 1, options.paths.end()}, options.axes, progress_bar());
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.node->object) continue;
     for (const BakedBody& body : bodies_of(*placed.node->object))

@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   // A write beyond the file size limit then fails with an error instead of killing the process.
   std::signal(SIGXFSZ, SIG_IGN);
   rebake::stop_on_interrupt();
-  rebake::set_result_cache(rebake::ResultStore::of_user());
+  rebake::set_result_cache(rebake::ResultStore::user_store());
   const auto fail = [](const std::string& what) {
     rebake::clear_progress_bar();
     rebake::write_stderr(rebake::coloured("error:", "1;31") + " " + rebake::printable(what) + "\n");

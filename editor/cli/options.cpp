@@ -58,8 +58,8 @@ void add_axes_option(SubcommandDescription& command, std::string& axes) {
 }
 Axes axes_of(const std::string& word) { return Codec<Axes>::read(word, {}); }
 
-Opened read_all(const std::vector<std::string>& folders, const std::string& axes, const Progress& progress) {
-  Opened opened;
+LoadedScene load_scenes(const std::vector<std::string>& folders, const std::string& axes, const Progress& progress) {
+  LoadedScene opened;
   Scene& scene = opened.scene;
   for (const std::string& folder : folders) {
     Scene read;
@@ -125,7 +125,7 @@ View ViewOptions::view(const Scene& scene) const {
   view.samples = samples;
   if (view.width < 1 || view.height < 1) throw FieldError("--size", "must be at least 1x1");
   const double aspect = static_cast<double>(view.width) / view.height;
-  view.camera = framing_of(scene, aspect, fov.value_or(Camera{}.fov_degrees));
+  view.camera = framing_camera(scene, aspect, fov.value_or(Camera{}.fov_degrees));
   if (!camera_file.empty()) {
     if (const auto found = scene.views.find(camera_file); found != scene.views.end()) {
       view.camera = found->second;

@@ -15,19 +15,20 @@ namespace rebake {
 /// Parses "x,y,z". Throws FieldError for the option `option`.
 Vec3 parse_vec3(const std::string& text, const char* option);
 
-/// Adds --axes 360|forward: the orientation of MobileNeRF folders.
+/// Adds --axes 360|forward, the orientation of MobileNeRF folders: y up, or forward-facing.
 void add_axes_option(SubcommandDescription& command, std::string& axes);
-/// Throws Error for another word.
+/// Converts "360" or "forward". Throws Error for any other word.
 Axes axes_of(const std::string& word);
 
 /// All folders, scenes and projects of a command line in one scene, with unique node names.
-struct Opened {
+struct LoadedScene {
   Scene scene;
   SourceGuard sources;  ///< files and folders that must not be overwritten
 };
-Opened read_all(const std::vector<std::string>& folders, const std::string& axes, const Progress& progress);
+LoadedScene load_scenes(const std::vector<std::string>& folders, const std::string& axes, const Progress& progress);
 
-/// Camera and rendering options of subcommands that render. Texts are parsed by view() and render_options().
+/// Camera and rendering options of subcommands that render, as given: eye, target, up and background as "x,y,z", size
+/// as "WxH", the others as words of RenderOptions. view() and render_options() parse them.
 struct ViewOptions {
   std::string size = "800x800", eye, target, up, camera_file, background;
   std::optional<double> fov, near_plane, far_plane;
@@ -37,8 +38,8 @@ struct ViewOptions {
 
   /// Adds the options to a subcommand.
   void add_to(SubcommandDescription& command);
-  /// The view of `scene`. Options override the camera file or stored view, or a camera that frames the scene. Throws
-  /// FieldError, FileError.
+  /// Starts from the camera file or the stored view that --camera names, else from a camera that frames the scene.
+  /// Options override its fields. Throws FieldError, FileError.
   View view(const Scene& scene) const;
   RenderOptions render_options() const;
   /// Sets the scene's background if --background is given. Throws FieldError.

@@ -46,16 +46,15 @@ bool holds_project(const std::filesystem::path& path) {
   return read_file(path).find("\"rebake_project\"") != std::string::npos;
 }
 
-// Number of edits of a project; 0 if it cannot be parsed.
-std::size_t edits_in_project(const std::filesystem::path& path) {
-  const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
-  return root.is_object() && root.contains("edits") ? root.at("edits").size() : 0;
-}
-
-// Throws FileError if --replace would replace a project with more edits.
+// Throws FileError if --replace would replace a project with more edits, or a damaged one.
 void refuse_larger_project(const Recovery& options, std::size_t recovered) {
   if (!options.replace || !std::filesystem::exists(options.out)) return;
-  if (const std::size_t there = edits_in_project(options.out); there > recovered)
+  const nlohmann::json root = nlohmann::json::parse(read_file(options.out), nullptr, false);
+  if (!root.is_object() || !root.contains("edits"))
+    throw FileError(options.out,
+                    "is a damaged project, which may contain more edits, so it is not replaced; choose "
+                    "another name");
+  if (const std::size_t there = root.at("edits").size(); there > recovered)
     throw FileError(options.out, fmt::format("contains {} edits, more than the {} recovered ones, so it is not "
                                              "replaced; choose another name",
                                              there, recovered));
@@ -64,10 +63,12 @@ void refuse_larger_project(const Recovery& options, std::size_t recovered) {
 // Saves a project with moved sources again, with their new paths.
 void relink_project(const Recovery& options) {
   const Document document = Document::open(options.journal, links_of(options.sources), progress_bar());
+  refuse_larger_project(options, document.history().undo_count());
   const std::vector<std::string> warnings = document.save(options.out, progress_bar());
   clear_progress_bar();
   for (const std::string& warning : warnings) print_message("warning: " + warning);
-  fmt::print("{} edits of {} saved in {}\n", document.history().undo_count(), printable(options.journal),
+  const std::size_t edits = document.history().undo_count();
+  fmt::print("{} {} of {} saved in {}\n", edits, edits == 1 ? "edit" : "edits", printable(options.journal),
              printable(options.out));
 }
 

@@ -81,7 +81,7 @@ json run_audit(const Scene& scene, const View& view, const RenderOptions& how, c
   all.everything = true;
   // In 1/255; plus 1 because both pictures are rounded.
   const double allowed = (lighting.left_out + plan(scene, view, how, nullptr, &lighting).left_out) * 255 + 1;
-  const double most_beyond = lighting.estimated ? Lighting::most_beyond : 0;
+  const double max_beyond = lighting.estimated ? Lighting::max_beyond : 0;
   Renderer renderer;
   const Difference difference =
       compare(renderer.render(scene, view, how, &lighting), renderer.render(scene, view, all, &everything),
@@ -92,9 +92,9 @@ json run_audit(const Scene& scene, const View& view, const RenderOptions& how, c
       difference.largest, difference.share_beyond * 100, allowed,
       lighting.estimated ? "bounds and estimates" : "bounds");
   if (!quiet) fmt::print("audit: {}\n", found);
-  if (difference.share_beyond > most_beyond)
+  if (difference.share_beyond > max_beyond)
     throw Error(fmt::format("audit failed at pixel {}, {}: {}; {:g} % are allowed", difference.x, difference.y, found,
-                            most_beyond * 100));
+                            max_beyond * 100));
   return {{"largest", difference.largest}, {"allowed", allowed}, {"share_beyond", difference.share_beyond}};
 }
 
@@ -102,7 +102,7 @@ void render(const Rendering& options) {
   if (options.out.empty() && !options.plan && !options.audit && options.time == 0)
     throw FieldError("-o", "is missing: name a PNG to write, or use --plan, --audit or --time");
   if (!options.out.empty()) check_png_path(options.out, {});
-  auto [scene, sources] = read_all(options.folders, options.axes, progress_bar());
+  auto [scene, sources] = load_scenes(options.folders, options.axes, progress_bar());
   options.view.protect_files(sources);
   if (!options.out.empty()) check_png_path(options.out, sources);
   options.view.set_background(scene);
@@ -117,7 +117,7 @@ void render(const Rendering& options) {
     if (!options.out.empty()) {
       const Image picture = renderer->render(scene, view, how, &lighting);
       write_png(picture, options.out, sources);
-      if (const auto why = why_blank(scene, view, picture)) write_stderr(fmt::format("note: {}\n", *why));
+      if (const auto why = blank_reason(scene, view, picture)) write_stderr(fmt::format("note: {}\n", *why));
     }
     if (options.time > 0) {
       const json times = measure(*renderer, scene, view, how, lighting, options.time);
@@ -141,7 +141,8 @@ void render(const Rendering& options) {
 
 void describe_render(SubcommandDescription& command) {
   auto options = std::make_shared<Rendering>();
-  command.option("folders", options->folders, "folders and scenes to render together", "FOLDER|SCENE...").required();
+  command.option("folders", options->folders, "folders and scenes to render together", "FOLDER|SCENE|PROJECT...")
+      .required();
   command.option("-o,--out", options->out, "PNG to write", "OUT.png");
   options->view.add_to(command);
   add_axes_option(command, options->axes);

@@ -14,6 +14,7 @@
 #include "editor/actions/session.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
+#include "editor/document/journal.h"
 #include "editor/document/sources.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
@@ -170,6 +171,7 @@ void describe_run(SubcommandDescription& command) {
         action.out = options->out;
         run(session, action);
       }
+      if (!options->files.empty()) Journal::refuse_overwriting(options->files);
       if (!options->files.empty())
         write_file_atomically(options->files, file_list(session, script, variables), session.document.sources());
     } catch (const Error&) {

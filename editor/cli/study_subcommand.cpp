@@ -27,7 +27,7 @@ void describe_study(SubcommandDescription& command) {
   command.footer("Studies:" + names);
   command.option("name", options->name, "name of the study", "NAME").required();
   command.option("-o,--out", options->out, "folder to write to", "FOLDER").required();
-  command.option("--scene", options->scenes, "scenes to measure", "FOLDER|SCENE... [the sample ficus]");
+  command.option("--scene", options->scenes, "scenes to measure", "FOLDER|SCENE|PROJECT... [the sample ficus]");
   command.option("--frames", options->frames, "timed frames per variant", "N [9]").between(1, 1000);
   options->view.add_to(command);
   add_axes_option(command, options->axes);
@@ -35,7 +35,7 @@ void describe_study(SubcommandDescription& command) {
     for (const Study& study : study_table) {
       if (options->name != study.name) continue;
       if (options->scenes.empty()) options->scenes.push_back(default_study_scene().string());
-      auto [scene, sources] = read_all(options->scenes, options->axes, progress_bar());
+      auto [scene, sources] = load_scenes(options->scenes, options->axes, progress_bar());
       options->view.set_background(scene);
       options->view.protect_files(sources);
       prepare_study_folder(study, options->out, sources);

@@ -1,8 +1,11 @@
 #include "editor/cli/subcommand.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "editor/cli/subcommands.h"
+#include "editor/cli/terminal.h"
 #include "editor/cli/version.h"
 
 namespace rebake {
@@ -93,6 +96,13 @@ int run_program(int argc, char** argv) {
   try {
     program.parse(argc, argv);
     return 0;
+  } catch (const CLI::RequiredError& error) {
+    // CLI11 ignores a first word that is no subcommand.
+    if (argc > 1 && argv[1][0] != '-' && program.get_subcommands().empty()) {
+      write_stderr(fmt::format("error: there is no subcommand \"{}\"; rebake --help lists all\n", argv[1]));
+      return 2;
+    }
+    return program.exit(error) == 0 ? 0 : 2;
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : 2;
   }

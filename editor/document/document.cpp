@@ -87,14 +87,14 @@ std::vector<JournalLine> lines_to_replay(const Journal::Contents& contents, cons
                                          bool& skips_undone) {
   std::vector<JournalLine> lines;
   for (const std::string& text : contents.entries) lines.push_back({lines.size() + 2, json::parse(text)});
-  const StepsDone done = steps_done(contents);
+  const ActiveSteps done = steps_done(contents);
   std::vector<JournalLine> left;
   for (const std::size_t line : done.lines) left.push_back(lines[line]);
   const auto misses = [&](const std::vector<JournalLine>& some) {
     return std::any_of(some.begin(), some.end(),
                        [&](const JournalLine& line) { return reads_missing_source(line.entry, links); });
   };
-  skips_undone = !done.partly && misses(lines) && !misses(left);
+  skips_undone = !done.partial && misses(lines) && !misses(left);
   return skips_undone ? left : lines;
 }
 
@@ -200,12 +200,14 @@ void Document::keep_journal(const fs::path& path) {
     throw Error("a journal needs a document that began empty: begin with an empty scene and import its contents");
   std::vector<json> entries;
   const std::vector<History::Entry> all = history_.entries();
-  for (std::size_t first = 0; first < history_.undo_count();) {
+  for (std::size_t first = 0; first < all.size();) {
     std::vector<Edit> step = {all[first].edit};
     const std::size_t replaced = all[first].replaced;
-    for (++first; first < history_.undo_count() && all[first].joined; ++first) step.push_back(all[first].edit);
+    for (++first; first < all.size() && all[first].joined; ++first) step.push_back(all[first].edit);
     entries.push_back(entry_of(step, replaced));
   }
+  // Undone steps can be redone, so the journal contains them.
+  if (history_.redo_count() > 0) entries.push_back({{"undo", history_.redo_count()}});
   sources().check_file(path);
   journal_ = Journal::create(absolute_path(path), entries);
 }
@@ -301,10 +303,7 @@ bool Document::redo_step(const Progress& progress) {
 std::vector<std::string> Document::save(const fs::path& project, const Progress& progress) const {
   if (!starts_empty_)
     throw Error("the document did not begin empty, so it cannot be saved as a project: import its contents instead");
-  if (Journal::is_journal(project))
-    throw FileError(
-        project,
-        "is a journal that may contain unsaved work: recover it with \"rebake recover\", or name another file");
+  Journal::refuse_overwriting(project);
   std::vector<History::Entry> entries = history_.entries();
   entries.erase(entries.begin() + static_cast<std::ptrdiff_t>(history_.undo_count()), entries.end());
   return write_project(project, entries, sources(), progress);

@@ -9,9 +9,9 @@
 
 namespace rebake {
 
-/// Linear undo history: edits, and a cache of the scenes after them. Scenes share unchanged data. Within a memory
-/// budget, the scenes farthest from the present are evicted first (every 32nd last) and recomputed from the edits on
-/// demand.
+/// Linear undo history: edits, and a cache of the scenes after them. Scenes share unchanged data. If the memory budget
+/// is exceeded, the scenes farthest from the present are evicted first, every 32nd scene last. Evicted scenes are
+/// recomputed from the edits on demand.
 class History {
  public:
   static constexpr std::uint64_t default_budget = 2ULL << 30;

@@ -70,8 +70,11 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
     const std::size_t end = bytes.find('\n', begin);
     const bool ends = end != std::string_view::npos;
     const std::string_view line = bytes.substr(begin, ends ? end - begin : end);
-    const std::optional<json> entry = whole(line);
+    std::optional<json> entry = whole(line);
     begin = ends ? end + 1 : bytes.size();
+    // Damage of the newline itself: the entry before it is intact.
+    const bool newline_damaged = !entry && !ends && (entry = whole(line.substr(0, line.size() - 1)));
+    if (newline_damaged) --begin;
     if (number == 0 && entry && entry->contains("rebake_journal")) {
       const json& of = entry->at("rebake_journal");
       if (!of.is_number_unsigned() || of.get<std::uint64_t>() > journal_version)
@@ -92,6 +95,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
       contents.entries.push_back(text);
       parsed.good_bytes = begin;
       parsed.ends_in_newline = ends;
+      if (newline_damaged) break;
     } else if (number > 0 && !ends) {
       contents.torn = true;  // the program ended while it wrote this last line
     } else if (number > 0) {
@@ -251,6 +255,12 @@ bool Journal::is_journal(const fs::path& path) {
   return first.find("\"rebake_journal\"") != std::string::npos;
 }
 
+void Journal::refuse_overwriting(const fs::path& path) {
+  if (is_journal(path))
+    throw FileError(
+        path, "is a journal that may contain unsaved work: recover it with \"rebake recover\", or name another file");
+}
+
 bool Journal::in_use(const fs::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return false;
@@ -261,7 +271,7 @@ bool Journal::in_use(const fs::path& path) {
 
 Journal::Contents Journal::read(const fs::path& path) { return parse(path, read_file(path)).contents; }
 
-StepsDone steps_done(const Journal::Contents& contents) {
+ActiveSteps steps_done(const Journal::Contents& contents) {
   struct Step {
     std::size_t line, end;  // index into entries; number of edits after the step
   };
@@ -282,14 +292,14 @@ StepsDone steps_done(const Journal::Contents& contents) {
       steps.push_back({line, done});
     }
   }
-  StepsDone result;
+  ActiveSteps result;
   std::size_t end = 0;
   for (const Step& step : steps) {
     if (step.end > done) break;
     result.lines.push_back(step.line);
     end = step.end;
   }
-  result.partly = end != done;
+  result.partial = end != done;
   return result;
 }
 

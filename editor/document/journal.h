@@ -14,19 +14,20 @@ namespace rebake {
 ///     <16 hexadecimal digits: XXH64 of the rest of the line> {"rebake_journal": 3}
 ///     <digits> {"n": 1, "edit": {"op": "import", …}}
 ///     <digits> {"n": 2, "edits": [{"op": "hide", …}, {"op": "hide", …}]}     one step of several edits
-///     <digits> {"n": 3, "undo": 2}     undoes 2 edits; true: 1
+///     <digits> {"n": 3, "undo": 2}     undoes 2 edits; `true` means 1
 ///     <digits> {"n": 4, "edit": {"op": "cage", …}, "replaces": 1}     applied to the scene before the last edit
 ///     <digits> {"n": 5, "adjust": {"undo": 1, "edits": [{…}]}}     replaces the last edit; undo cannot return to it
 ///
 /// Version 1 had no lines with several edits, version 2 no "replaces"; both are still read.
 class Journal {
  public:
+  struct Contents;
+
   /// Creates a journal with these entries, all on the disk on return. Throws FileError if the file exists (it may
   /// contain unsaved work) or cannot be written.
   static Journal create(const std::filesystem::path& path, const std::vector<nlohmann::json>& entries);
   /// Opens a journal for appending: truncates a torn last line. A damaged journal is left unchanged and refuses further
   /// entries. Locks the file. Throws FileError as read() does, and if another process has locked it.
-  struct Contents;
   static Journal resume(const std::filesystem::path& path, Contents& contents);
 
   ~Journal();
@@ -51,10 +52,12 @@ class Journal {
       std::size_t number;  ///< line number in the file, from 1
       std::string entry;   ///< its JSON
     };
-    std::vector<Line> after;  ///< intact lines behind the damage
+    std::vector<Line> after;  ///< intact lines after the damage
   };
   /// Whether the file's first line is that of a journal, even with a wrong checksum.
   static bool is_journal(const std::filesystem::path& path);
+  /// Throws FileError if the file at `path` is a journal, which an output would overwrite.
+  static void refuse_overwriting(const std::filesystem::path& path);
   /// Whether a process has locked it for writing.
   static bool in_use(const std::filesystem::path& path);
   /// Parses a journal. Throws FileError for a file that is no journal or has a newer version.
@@ -66,11 +69,11 @@ class Journal {
   std::unique_ptr<File> file_;
 };
 
-/// Steps that are done, not undone, after all intact lines of a journal. The edits of one line are one step.
-struct StepsDone {
+/// Steps in effect (not undone) after all intact lines of a journal. The edits of one line are one step.
+struct ActiveSteps {
   std::vector<std::size_t> lines;  ///< index into Contents::entries of each step
-  bool partly = false;             ///< one more step is done in part: undo or redo counted single edits
+  bool partial = false;            ///< an undo or redo ended inside a step of several edits
 };
-StepsDone steps_done(const Journal::Contents& contents);
+ActiveSteps steps_done(const Journal::Contents& contents);
 
 }  // namespace rebake

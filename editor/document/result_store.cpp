@@ -23,7 +23,7 @@ constexpr const char* extension = ".result";
 
 ResultStore::ResultStore(fs::path folder, std::uint64_t limit) : folder_(std::move(folder)), limit_(limit) {}
 
-std::shared_ptr<ResultStore> ResultStore::of_user() {
+std::shared_ptr<ResultStore> ResultStore::user_store() {
   if (const char* chosen = std::getenv("REBAKE_RESULTS"))
     return *chosen != '\0' ? std::make_shared<ResultStore>(chosen) : nullptr;
   const auto cache = user_folder("XDG_CACHE_HOME", ".cache");

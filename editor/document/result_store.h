@@ -19,7 +19,7 @@ class ResultStore final : public ResultCache {
 
   /// The store in $REBAKE_RESULTS, else in the user's cache folder. Null if REBAKE_RESULTS is empty or there is no home
   /// folder.
-  static std::shared_ptr<ResultStore> of_user();
+  static std::shared_ptr<ResultStore> user_store();
 
   std::optional<std::string> find(const std::string& key) override;
   void keep(const std::string& key, std::string_view bytes) override;

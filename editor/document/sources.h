@@ -43,14 +43,14 @@ class SourcesUnavailable : public FileError {
   struct Source {
     std::filesystem::path path;  ///< path as imported
     std::string content;         ///< content hash as imported
-    std::string trouble;         ///< reason, for people
+    std::string trouble;         ///< reason, for users
   };
   SourcesUnavailable(const std::filesystem::path& file, const std::string& message, std::vector<Source> gone)
       : FileError(file, message), sources(std::move(gone)) {}
   std::vector<Source> sources;
 };
 
-/// Reason why a source with this content hash, relinked, is unusable (missing or changed), for people; empty if it is
+/// Reason why a source with this content hash, relinked, is unusable (missing or changed), for users; empty if it is
 /// unchanged.
 std::string source_problem(const std::filesystem::path& source, const std::string& content, const SourceLinks& links);
 

@@ -15,7 +15,7 @@ namespace rebake {
 class Edit;
 struct FieldInfo;
 
-/// Messages for people about the effect of an edit.
+/// Messages for users about the effect of an edit.
 struct Report {
   std::vector<std::string> lines;
 };

@@ -432,9 +432,9 @@ void FieldReader::finish() const {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     // Prefers the name of a missing required field as the suggestion.
     const std::string meant = nearest_word(name, missing_), near = meant.empty() ? nearest_word(name, known_) : meant;
-    throw FieldError(
-        name, near.empty() ? fmt::format("is not a known field; its fields are {}", fmt::join(known_, ", "))
-                           : fmt::format("is not a known field; did you mean \"{}\"?", near));
+    throw FieldError(name, near.empty()
+                               ? fmt::format("is not a known field; its fields are {}", fmt::join(known_, ", "))
+                               : fmt::format("is not a known field; did you mean \"{}\"?", near));
   }
   if (!missing_.empty()) throw FieldError(missing_.front(), "is missing");
 }

@@ -16,7 +16,7 @@ struct FieldInfo {
   bool required = false;
 };
 
-/// Name of the unit, for people; empty for Unit::none.
+/// Name of the unit, for users; empty for Unit::none.
 const char* to_string(Unit unit);
 /// Notation of the field's value with its unit: "number, in degrees".
 std::string notation_of(const FieldInfo& field);

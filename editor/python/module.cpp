@@ -147,7 +147,7 @@ py::array render_picture(PyDocument& document, int width, int height, int sample
         wanted.is_null() ? std::nullopt : std::optional(Codec<Camera>::read(wanted, session.scene()));
     const Lighting lighting = lit(session.scene());
     image = session.renderer().render(
-        session.scene(), chosen_view(session.scene(), given, view_name, width, height, samples), {}, &lighting);
+        session.scene(), resolve_view(session.scene(), given, view_name, width, height, samples), {}, &lighting);
   });
   return py::array_t<std::uint8_t>({image.height, image.width, 3}, image.rgb.data());
 }
@@ -372,7 +372,7 @@ std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journa
 
 PYBIND11_MODULE(rebake, module) {
   py::module_::import("numpy");  // here, because two threads must not import it first at the same time
-  set_result_cache(ResultStore::of_user());
+  set_result_cache(ResultStore::user_store());
   module.doc() = "Edit and compose baked NeRF scenes (MobileNeRF format).";
   const auto& error = py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
   py::register_exception<FileError>(module, "FileError", error);

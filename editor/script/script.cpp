@@ -60,9 +60,9 @@ ScriptCommand read_command(const json& line, const Scene& scene) {
     known.emplace_back(type->op);
   }
   const std::string near = nearest_word(name, known);
-  throw FieldError("op", near.empty()
-                             ? fmt::format("\"{}\" is not an edit or action; known are {}", name, fmt::join(known, ", "))
-                             : fmt::format("\"{}\" is not an edit or action; did you mean \"{}\"?", name, near));
+  throw FieldError(
+      "op", near.empty() ? fmt::format("\"{}\" is not an edit or action; known are {}", name, fmt::join(known, ", "))
+                         : fmt::format("\"{}\" is not an edit or action; did you mean \"{}\"?", name, near));
 }
 
 json with_variables(json line, const std::map<std::string, std::string>& variables) {

@@ -59,8 +59,8 @@ class Body {
       }
     if (!object_)
       throw Error("the scene has no visible object whose light could be estimated; pass another one with --scene");
-    constexpr std::size_t most_sites = 8000;
-    charts_ = light_charts(*object_, 4, most_sites);
+    constexpr std::size_t max_sites = 8000;
+    charts_ = light_charts(*object_, 4, max_sites);
     sites_ = light_sites(*object_, charts_);
     rays_ = std::make_unique<SceneRays>(
         std::vector<SceneRays::Instance>{{rays_of(*object_), Affine::Identity(), object_->bounds().diagonal().norm()}});

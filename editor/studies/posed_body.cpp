@@ -22,9 +22,9 @@ PosedBody in_lattice(std::string name, ProxyMesh rest) {
   box = Box(box.min() - room, box.max() + room);
   // Two cells along the shortest side, three along the others.
   std::array<int, 3> cells{3, 3, 3};
-  Eigen::Index thinnest = 0;
-  box.sizes().minCoeff(&thinnest);
-  cells[static_cast<std::size_t>(thinnest)] = 2;
+  Eigen::Index min_reliable_height = 0;
+  box.sizes().minCoeff(&min_reliable_height);
+  cells[static_cast<std::size_t>(min_reliable_height)] = 2;
   PosedBody body{std::move(name), std::move(rest), lattice_cage(box, cells[0], cells[1], cells[2]), nullptr, {}};
   body.coordinates = mean_value_coordinates(body.cage);
   return body;
@@ -51,14 +51,14 @@ ProxyMesh PosedBody::random_pose(std::uint32_t seed, double amplitude) const {
 
 ProxyMesh PosedBody::bent(double degrees) const {
   const Box box = bounds(rest);
-  Eigen::Index longest = 0, thinnest = 0;
+  Eigen::Index longest = 0, min_reliable_height = 0;
   box.sizes().maxCoeff(&longest);
-  box.sizes().minCoeff(&thinnest);
+  box.sizes().minCoeff(&min_reliable_height);
   ClosedForm form;
   form.kind = ClosedForm::Kind::bend;
   form.origin = box.center();
   form.axis = Vec3::Unit(longest);
-  form.direction = Vec3::Unit(thinnest);
+  form.direction = Vec3::Unit(min_reliable_height);
   form.from = -box.sizes()[longest] / 2;
   form.to = box.sizes()[longest] / 2;
   form.radians = degrees * std::numbers::pi / 180;

@@ -45,7 +45,7 @@ std::string reason() { return std::strerror(errno); }
 std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MB"; }
 
 // Reads to the end of the file. `expected`: likely size in bytes. Throws FileError beyond `most` bytes.
-std::string read_all(const fs::path& path, int file, std::uint64_t expected, std::uint64_t most) {
+std::string load_scenes(const fs::path& path, int file, std::uint64_t expected, std::uint64_t most) {
   std::string bytes;
   std::size_t filled = 0;
   bytes.resize(expected + 1);
@@ -88,7 +88,7 @@ std::string read_some(const fs::path& path, std::uint64_t most, bool pipes) {
   const Input input = open_input(path, pipes);
   if (input.size.value_or(0) > most)
     throw FileError(path, "is larger than " + megabytes(most) + ", the size limit for reading");
-  return read_all(path, input.file.value, input.size.value_or(65536), most);
+  return load_scenes(path, input.file.value, input.size.value_or(65536), most);
 }
 
 void write_synced(const fs::path& path, int flags, const std::function<void(const AtomicFolder::Append&)>& make) {
@@ -139,6 +139,7 @@ bool holds_mount(const fs::path& path) {
 bool is_source(const fs::path& path, const SourceGuard& guard) {
   try {
     guard.check_folder(path);
+    guard.check_file(path / "any file");  // also protects sources that may be replaced as a whole
     return false;
   } catch (const FileError&) {
     return true;

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <deque>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/file_calls.h"
@@ -14,15 +15,15 @@ namespace fs = std::filesystem;
 namespace {
 
 // Number of entries after which the search for links and protected files stops; no scene has more.
-constexpr std::size_t most_entries = 20000;
+constexpr std::size_t max_entries = 20000;
 
 // Canonical path without a trailing slash; components that do not exist yet stay as named.
 fs::path plain_path(const fs::path& path) {
   std::error_code error;
   fs::path named = fs::absolute(path);
   // A dangling link: writing through it creates its target.
-  constexpr int most_links = 40;
-  for (int k = 0; k < most_links && fs::is_symlink(named, error) && !fs::exists(named, error); ++k)
+  constexpr int max_links = 40;
+  for (int k = 0; k < max_links && fs::is_symlink(named, error) && !fs::exists(named, error); ++k)
     named = named.parent_path() / fs::read_symlink(named, error);
   fs::path result = fs::weakly_canonical(named, error);
   if (error) result = named.lexically_normal();
@@ -33,14 +34,22 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-// Calls `visit` with every entry below a folder, without following links.
+// Calls `visit` with the entries below a folder, level by level, without following links. All entries of the folder
+// itself are visited, and at most max_entries below.
 template <class Visit>
 void for_each_entry(const fs::path& folder, const Visit& visit) {
-  std::error_code error;
   std::size_t count = 0;
-  for (fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, error), end;
-       !error && at != end && count < most_entries; at.increment(error), ++count)
-    visit(*at);
+  for (std::deque<fs::path> waiting{folder}; !waiting.empty(); waiting.pop_front()) {
+    const bool limited = waiting.front() != folder;
+    std::error_code error;
+    for (fs::directory_iterator at(waiting.front(), fs::directory_options::skip_permission_denied, error), end;
+         !error && at != end; at.increment(error)) {
+      if (limited && ++count > max_entries) return;
+      visit(*at);
+      std::error_code ignored;
+      if (!at->is_symlink(ignored) && at->is_directory(ignored)) waiting.push_back(at->path());
+    }
+  }
 }
 
 }  // namespace
@@ -66,25 +75,41 @@ void SourceGuard::add(const fs::path& source) {
   add_folder(plain_path(file ? fs::absolute(source).parent_path() : source), "a source of this scene");
 }
 
-void SourceGuard::add_folder(const fs::path& folder, const std::string& role) {
+void SourceGuard::add_folder(const fs::path& folder, const std::string& role, const fs::path& owner) {
   // Many nodes share a source; its links are searched once.
-  if (!add_source({folder, true, role, identity_of(folder), false})) return;
+  if (add_source({folder, true, role, identity_of(folder), false, owner})) add_link_targets(folder, owner);
+}
+
+void SourceGuard::add_link_targets(const fs::path& folder, const fs::path& owner) {
   const std::string linked = "the target of a link in a source of this scene";
+  const auto is_object = [](const fs::path& path) {
+    std::error_code ignored;
+    return fs::exists(path / "mlp.json", ignored);
+  };
   for_each_entry(folder, [&](const fs::directory_entry& entry) {
     std::error_code ignored;
     if (!entry.is_symlink(ignored)) return;
     const fs::path target = plain_path(entry.path());
     if (lies_in(target, folder)) return;
-    if (!fs::is_directory(target, ignored)) add_source({target, false, linked, identity_of(target), false});
-    // A linked folder belongs to the scene if it is one of its objects.
-    else if (fs::exists(target / "mlp.json", ignored))
-      add_folder(target, linked);
+    if (!fs::is_directory(target, ignored)) {
+      add_source({target, false, linked, identity_of(target), false, owner});
+      return;
+    }
+    // The scene reads a linked folder if it is an object, or contains objects.
+    if (is_object(target)) {
+      add_folder(target, linked, owner);
+      return;
+    }
+    for_each_entry(target, [&](const fs::directory_entry& below) {
+      std::error_code error;
+      if (below.is_directory(error) && is_object(below.path())) add_folder(plain_path(below.path()), linked, owner);
+    });
   });
 }
 
 void SourceGuard::add_file(const fs::path& source, const std::string& role) {
   const fs::path path = plain_path(source);
-  add_source({path, false, role, identity_of(path), false});
+  add_source({path, false, role, identity_of(path), false, {}});
 }
 
 void SourceGuard::add_input(const fs::path& source, const std::string& role) {
@@ -97,12 +122,14 @@ void SourceGuard::add_input(const fs::path& source, const std::string& role) {
 
 void SourceGuard::add_contents(const fs::path& folder, const std::string& role) {
   const fs::path path = plain_path(folder);
-  add_source({path, true, role, identity_of(path), true});
+  if (add_source({path, true, role, identity_of(path), true, {}})) add_link_targets(path, path);
 }
 
 void SourceGuard::release_contents(const fs::path& folder) {
   const fs::path path = plain_path(folder);
-  std::erase_if(sources_, [&](const Source& source) { return source.replaceable && is_same(source, path); });
+  std::erase_if(sources_, [&](const Source& source) {
+    return source.owner == path || (source.replaceable && is_same(source, path));
+  });
 }
 
 bool SourceGuard::add_source(Source source) {
@@ -111,6 +138,7 @@ bool SourceGuard::add_source(Source source) {
       // The source may have been replaced since. Undo and journals still need the earlier one if it was moved.
       if (!source.seen.empty() && !was_seen(known, source.seen)) known.seen.push_back(source.seen.front());
       known.replaceable = known.replaceable && source.replaceable;
+      if (source.owner.empty()) known.owner.clear();
       known.role = std::move(source.role);
       return false;
     }

@@ -46,14 +46,18 @@ class SourceGuard {
     std::filesystem::path path;  ///< canonical
     bool is_folder;
     std::string role;
-    std::vector<Identity> seen;  ///< identity of the path's target at each time it was added
-    bool replaceable = false;    ///< replacing the whole folder is allowed, see add_contents()
+    std::vector<Identity> seen;   ///< identity of the path's target at each time it was added
+    bool replaceable = false;     ///< replacing the whole folder is allowed, see add_contents()
+    std::filesystem::path owner;  ///< the folder of add_contents() that has a link to this source; empty: none
   };
   static std::vector<Identity> identity_of(const std::filesystem::path& path);
   static bool was_seen(const Source& source, const std::vector<Identity>& there);
   static bool is_same(const Source& source, const std::filesystem::path& path);
   // Adds a folder and the targets of links in it.
-  void add_folder(const std::filesystem::path& folder, const std::string& role);
+  void add_folder(const std::filesystem::path& folder, const std::string& role,
+                  const std::filesystem::path& owner = {});
+  // Adds the targets of links in a folder: files, and folders of objects.
+  void add_link_targets(const std::filesystem::path& folder, const std::filesystem::path& owner);
   // Returns false if the source is known already.
   bool add_source(Source source);
   // The source that a file at canonical path `wanted` would overwrite or be added to; null if none.

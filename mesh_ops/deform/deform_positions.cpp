@@ -82,7 +82,7 @@ DeformedPositions deform_positions(const BakedObject& object, const WeldedCorner
     report.folded += determinants[i] <= 0 ? 1 : 0;
     report.undefined += defined[i] == 0 ? 1 : 0;
     if (is_number[i] == 0) continue;
-    report.least_determinant = any ? std::min(report.least_determinant, determinants[i]) : determinants[i];
+    report.min_determinant = any ? std::min(report.min_determinant, determinants[i]) : determinants[i];
     any = true;
   }
   // Places without a unique nearest rotation take a neighbour's: breadth-first from the places that have one.

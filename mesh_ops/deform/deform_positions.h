@@ -17,7 +17,7 @@ struct DeformationReport {
   std::size_t outside = 0;         ///< places where the coordinates are undefined; they do not move
   std::size_t opaque_outside = 0;  ///< places counted in `outside` that belong to triangles with opaque texels
   std::size_t not_finite = 0;      ///< places with a non-finite position or Jacobian; they do not move
-  double least_determinant = 1;    ///< smallest det J over all finite places
+  double min_determinant = 1;      ///< smallest det J over all finite places
 };
 
 /// A deformation of space, with Jacobians: maps world-space points to their deformed positions.

@@ -22,7 +22,7 @@ constexpr double cell_reach = 1.75;
 // Nodes farther from the surface than this lie on the same side as their neighbours.
 constexpr double clear_of_surface = 1.01;
 // Nodes nearer to the surface than this take its value.
-constexpr double least_cut = 1e-8;
+constexpr double min_cut = 1e-8;
 // Search radius of an outer node for samples to extrapolate from, and the radius if too few are found.
 constexpr double search_radius = 2.45, wide_search_radius = 3.75;
 
@@ -198,7 +198,7 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
   std::vector<Hit> hits;
   const auto add = [&](std::ptrdiff_t node, std::size_t direction, double share, const SurfacePoint& point) {
     if (domain.slot_of[static_cast<std::size_t>(node)] != none)
-      hits.push_back({static_cast<std::size_t>(node), direction, std::max(share, least_cut), point});
+      hits.push_back({static_cast<std::size_t>(node), direction, std::max(share, min_cut), point});
   };
   for (std::uint32_t f = 0; f < faces.size(); ++f) {
     progress.at(task, 0);
@@ -241,11 +241,11 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
           add(node, on, share, point);
           add(node + stride, back, 1 - share, point);
           // The links of a node on the surface are cut on both sides.
-          if (share < least_cut) {
+          if (share < min_cut) {
             add(node, back, 0, point);
             add(node - stride, on, 1, point);
           }
-          if (1 - share < least_cut) {
+          if (1 - share < min_cut) {
             add(node + stride, on, 0, point);
             add(node + 2 * stride, back, 1, point);
           }
@@ -267,7 +267,7 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
       hits.push_back(
           {node,
            direction,
-           here ? least_cut : 1.0,
+           here ? min_cut : 1.0,
            {nearest_[beside], nearest_on(place_of(beside), vertices[face[0]], vertices[face[1]], vertices[face[2]])}});
       cut[slot * grid_directions + direction] = 1;
     }
@@ -369,8 +369,8 @@ std::vector<DirichletGrid::Term> DirichletGrid::extrapolation_terms(const OuterN
       }
   if (samples.size() < 3) return {};
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(moments);
-  constexpr double least_spread = 1e-3;
-  if (!(axes.eigenvalues()[0] >= least_spread * axes.eigenvalues()[2])) return {};
+  constexpr double min_spread = 1e-3;
+  if (!(axes.eigenvalues()[0] >= min_spread * axes.eigenvalues()[2])) return {};
   const Vec3 pull = axes.eigenvectors() * (axes.eigenvectors().transpose() * out).cwiseQuotient(axes.eigenvalues());
   std::vector<Term> terms;
   double rest = 1;

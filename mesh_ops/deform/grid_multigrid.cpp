@@ -17,7 +17,7 @@ namespace {
 // Grids with fewer nodes than this are solved by smoothing alone.
 constexpr std::size_t coarsest_nodes = 64;
 constexpr int coarsest_sweeps = 60;
-constexpr int most_cycles = 80;
+constexpr int max_cycles = 80;
 // Relative tolerance: largest residual over the largest right side. A few rounding errors.
 constexpr double converged = 3e-15;
 
@@ -252,7 +252,7 @@ const std::vector<GridLanes>& GridMultigrid::solve(const std::vector<GridLanes>&
     if (row != GridDomain::none) scale = std::max(scale, right[slot].abs().maxCoeff() * 6 / finest.rows[row].diagonal);
   }
   double before = std::numeric_limits<double>::infinity();
-  for (int done = 0; done < most_cycles; ++done) {
+  for (int done = 0; done < max_cycles; ++done) {
     check_stop();
     const double left = cycle(0);
     if (left <= converged * scale) return finest.values;

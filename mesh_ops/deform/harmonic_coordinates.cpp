@@ -15,7 +15,7 @@ namespace rebake {
 namespace {
 
 // Limits in bytes: stored weights (one per cage vertex and grid node), and memory of the solver.
-constexpr double most_bytes = 2e9, most_solver_bytes = 8e9;
+constexpr double max_bytes = 2e9, max_solver_bytes = 8e9;
 constexpr double solver_bytes = 450;  // bytes per node, for eight functions together
 
 // Each weight is the harmonic function that is 1 at one cage vertex, 0 at the others, and linear on every face.
@@ -127,8 +127,8 @@ class Harmonic final : public Coordinates {
                 "coarser cage",
                 resolution, what, bytes * 1e-9, most * 1e-9));
     };
-    check("need", nodes * static_cast<double>(rows() * sizeof(double)), most_bytes);
-    check("temporarily need", nodes * solver_bytes, most_solver_bytes);
+    check("need", nodes * static_cast<double>(rows() * sizeof(double)), max_bytes);
+    check("temporarily need", nodes * solver_bytes, max_solver_bytes);
   }
 
   CageFrame frame_;

@@ -11,14 +11,14 @@ namespace pl = plane_local;
 // If the terms are at most this many times as large as their sum, ten digits remain. Otherwise all faces are evaluated
 // with 50 digits: outside thin cages and beside sharp edges, where points are few, since it takes a tenth of a
 // millisecond per face. Beyond `exact_within` diagonals, weights are of no use and stay as double gives them.
-constexpr double most_cancelled = 1e5, exact_within = 10;
+constexpr double max_cancellation = 1e5, exact_within = 10;
 // The same limit for points near a face. They are few, so all digits are preserved.
-constexpr double most_cancelled_near = 8;
+constexpr double max_cancelled_near = 8;
 
 class MeanValue final : public Coordinates {
  public:
   MeanValue(const Cage& cage, MeanValueBatch batch)
-      : Coordinates(cage.vertices.size()), frame_(frame_of(cage)), run_(batch) {
+      : Coordinates(cage.vertices.size()), frame_(frame_of(cage)), evaluate_batch_(batch) {
     for (const Vec3& v : frame_.vertices) vertices_.insert(vertices_.end(), {v.x(), v.y(), v.z()});
     for (const EdgeFrame& edge : frame_.edges) {
       edges_.insert(edges_.end(), {edge.first, edge.second});
@@ -105,8 +105,8 @@ class MeanValue final : public Coordinates {
         for (const FaceFrame* face : needles_)
           needle_sizes[lane] += add_face<T>(*face, point_of(local, lane), start.data() + lane, near[lane]);
     }
-    const std::size_t left = run_(batch_, local.data(), start.empty() ? nullptr : start.data(), workspace.data(),
-                                  weights, gradients, left_out.data());
+    const std::size_t left = evaluate_batch_(batch_, local.data(), start.empty() ? nullptr : start.data(),
+                                             workspace.data(), weights, gradients, left_out.data());
     double* const sums = workspace.data() + batch_sums_at(batch_, pl::has_gradient<T>);
     std::array<std::uint8_t, batch_lanes> again{};
     for (std::size_t n = 0; n < left; ++n) {
@@ -122,15 +122,15 @@ class MeanValue final : public Coordinates {
     const auto cancels = [&](std::size_t lane) {
       double total = 0;
       for (std::size_t v = 0; v < rows(); ++v) total += sums[v * row + lane];
-      return sizes[lane] + needle_sizes[lane] > most_cancelled * std::abs(total);
+      return sizes[lane] + needle_sizes[lane] > max_cancellation * std::abs(total);
     };
     thread_local std::vector<T> exact;
     for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
       const Vec3 p = point_of(local, lane);
       const bool far_out = frame_.is_far_out(p);
-      if (far_out
-              ? mean_value_weights(frame_, p, exact) > most_cancelled && p.stableNorm() < exact_within * frame_.diagonal
-              : near[lane].empty() && cancels(lane)) {
+      if (far_out ? mean_value_weights(frame_, p, exact) > max_cancellation &&
+                        p.stableNorm() < exact_within * frame_.diagonal
+                  : near[lane].empty() && cancels(lane)) {
         exact.assign(rows(), pl::constant<T>(0));
         add_near_faces<T>(frame_, pl::local_point(p, T()), wide_local_point(frame_, places[lane]), all_faces_, exact);
       } else if (far_out) {
@@ -146,7 +146,7 @@ class MeanValue final : public Coordinates {
         }
         const double divisor = add_near_faces<T>(frame_, pl::local_point(p, T()),
                                                  wide_local_point(frame_, places[lane]), near[lane], exact);
-        if (!near[lane].empty() && sizes[lane] + needle_sizes[lane] > most_cancelled_near * std::abs(divisor)) {
+        if (!near[lane].empty() && sizes[lane] + needle_sizes[lane] > max_cancelled_near * std::abs(divisor)) {
           exact.assign(rows(), pl::constant<T>(0));
           add_near_faces<T>(frame_, pl::local_point(p, T()), wide_local_point(frame_, places[lane]), all_faces_, exact);
         }
@@ -200,7 +200,7 @@ class MeanValue final : public Coordinates {
   std::vector<double> vertices_, edge_frames_, face_frames_;
   std::vector<std::uint32_t> edges_, faces_;
   BatchCage batch_;
-  MeanValueBatch run_;
+  MeanValueBatch evaluate_batch_;
 };
 
 }  // namespace

@@ -31,9 +31,9 @@ inline const double epsilon = static_cast<double>(std::numeric_limits<typename R
 
 /// A lower bound for squared heights, far below the square of any height that rounding produces.
 template <class T>
-inline const double least_square = std::max(static_cast<double>(std::numeric_limits<typename RealOf<T>::type>::min()),
-                                            1e-300) *
-                                   1e10;
+inline const double min_square = std::max(static_cast<double>(std::numeric_limits<typename RealOf<T>::type>::min()),
+                                          1e-300) *
+                                 1e10;
 
 template <class T>
 using Point = std::array<T, 3>;
@@ -93,7 +93,7 @@ Seen<T> seen(const FaceFrameOf<R>& face, const std::array<Point<T>, 3>& offsets)
     s.a[k] = s.along[m] * nt + s.out[m] * no;
     s.c[k] = real::sqrt(s.a[k] * s.a[k] + s.h * s.h);
     // On an edge's line, quotients by c have a limit; this value of c reaches it.
-    if (value_of(s.c[k]) == 0) s.c[k] = constant<T>(std::sqrt(least_square<T>));
+    if (value_of(s.c[k]) == 0) s.c[k] = constant<T>(std::sqrt(min_square<T>));
     s.begin[k] = s.along[i] * et + s.out[i] * eo;
     s.end[k] = s.along[j] * et + s.out[j] * eo;
   }
@@ -227,7 +227,7 @@ std::array<T, 3> mean_value(const FaceFrameOf<R>& face, const Seen<T>& s) {
   }
   T square = s.h * s.h;
   // In the plane the second form has a limit; this height reaches it.
-  if (value_of(square) < least_square<T>) square = constant<T>(least_square<T>);
+  if (value_of(square) < min_square<T>) square = constant<T>(min_square<T>);
   T whole = constant<T>(0);
   if (distance_in_plane(s) < 8 * std::abs(value_of(s.h))) {
     for (std::size_t k = 0; k < 3; ++k) whole += s.a[k] * q[k];

@@ -45,10 +45,10 @@ void for_each_opaque(const Texels& texels, const Patch& patch, Visit visit) {
 
 // Sensitivity of colours to each feature: root mean square of central differences at a sample of texels.
 Features weights_of(const Texels& texels, const std::vector<Patch>& patches, const TexelColors& looks) {
-  constexpr std::size_t most_samples = 256;
+  constexpr std::size_t max_samples = 256;
   constexpr double step = 0.02;
   std::vector<Features> moved;  // per sample and feature: one step up, then one down
-  const std::size_t every = std::max<std::size_t>(1, patches.size() / most_samples);
+  const std::size_t every = std::max<std::size_t>(1, patches.size() / max_samples);
   for (std::size_t k = 0; k < patches.size(); k += every) {
     bool taken = false;
     for_each_opaque(texels, patches[k], [&](int, int, const Features& features) {
@@ -98,9 +98,9 @@ double squared_distance(const Patch& a, const Patch& b) {
 double color_loss(const Texels& texels, const TexelColors& looks, const Patch& a, const Patch& b, double most) {
   const SetTexels &first = texels[a.set], &second = texels[b.set];
   const double values = 3.0 * static_cast<double>(a.opaque * looks.directions());
-  constexpr std::size_t at_once = 4 * network_lanes;
+  constexpr std::size_t batch_size = 4 * network_lanes;
   std::vector<Features> features;  // alternating: of a, of b
-  std::vector<Color> colors(2 * at_once * looks.directions());
+  std::vector<Color> colors(2 * batch_size * looks.directions());
   double sum = 0;
   const auto add = [&] {
     looks.decode_into(features, colors);
@@ -117,7 +117,7 @@ double color_loss(const Texels& texels, const TexelColors& looks, const Patch& a
       if (!p.opaque() || (p == q && first.code == second.code)) continue;
       features.push_back(decode_features(p, first.code));
       features.push_back(decode_features(q, second.code));
-      if (features.size() < 2 * at_once) continue;
+      if (features.size() < 2 * batch_size) continue;
       add();
       if (sum > most * values) return sum / values;
     }
@@ -176,18 +176,18 @@ DuplicatePatches near_duplicate_patches(const BakedObject& object, double square
     }
   }
   using Kind = std::tuple<int, int, std::uint64_t>;
-  std::map<Kind, std::multimap<double, std::size_t>> leaders;
+  std::map<Kind, std::multimap<double, std::size_t>> representatives;
   // Weights are means over a sample, so the search radius is larger than the allowed loss: a patch's features may
   // matter less than the average.
   constexpr double reach = 4;
-  constexpr std::size_t most_decoded = 8;
+  constexpr std::size_t max_decoded = 8;
   double lost = 0, opaque = 0;
   for (std::size_t k = 0; k < patches.size(); ++k) {
     if (k % 256 == 0)
       progress.at("finding near-duplicate patches", static_cast<double>(k) / static_cast<double>(patches.size()));
     const Patch& patch = patches[k];
     opaque += static_cast<double>(patch.opaque);
-    auto& known = leaders[{patch.rect.width(), patch.rect.height(), patch.mask}];
+    auto& known = representatives[{patch.rect.width(), patch.rect.height(), patch.mask}];
     const double most = reach * squared_loss, radius = std::sqrt(most);
     std::vector<std::pair<double, std::size_t>> near;
     for (auto it = known.lower_bound(patch.quarters[key] - radius);
@@ -195,18 +195,18 @@ DuplicatePatches near_duplicate_patches(const BakedObject& object, double square
       if (const double distance = squared_distance(patch, patches[it->second]); distance <= most)
         near.emplace_back(distance, it->second);
     std::sort(near.begin(), near.end());
-    bool follows = false;
-    for (std::size_t n = 0; n < near.size() && n < most_decoded && !follows; ++n) {
-      const Patch& leader = patches[near[n].second];
-      const double loss = color_loss(texels, looks, leader, patch, squared_loss);
+    bool is_duplicate = false;
+    for (std::size_t n = 0; n < near.size() && n < max_decoded && !is_duplicate; ++n) {
+      const Patch& representative = patches[near[n].second];
+      const double loss = color_loss(texels, looks, representative, patch, squared_loss);
       if (!(loss <= squared_loss)) continue;
-      result.representative_of[patch.set][patch.patch] = {leader.set, leader.patch};
+      result.representative_of[patch.set][patch.patch] = {representative.set, representative.patch};
       ++result.merged;
       result.texels += patch.opaque;
       lost += loss * static_cast<double>(patch.opaque);
-      follows = true;
+      is_duplicate = true;
     }
-    if (!follows) known.emplace(patch.quarters[key], k);
+    if (!is_duplicate) known.emplace(patch.quarters[key], k);
   }
   result.squared_loss = opaque > 0 ? lost / opaque : 0;
   return result;

@@ -48,9 +48,9 @@ class OpaquePoints {
         if ((nearest - Vec2(x + 0.5, y + 0.5)).squaredNorm() > 0.5) continue;
         // Reservoir sampling: a uniform choice of all (Vitter 1985).
         const Vec3 place = at(barycentric(uv_, nearest));
-        if (places_.size() < most_places)
+        if (places_.size() < max_places)
           places_.push_back(place);
-        else if (const std::size_t k = dice.below(number + 1); k < most_places)
+        else if (const std::size_t k = dice.below(number + 1); k < max_places)
           places_[k] = place;
         ++number;
       }
@@ -88,7 +88,7 @@ class OpaquePoints {
     return nearest;
   }
 
-  static constexpr std::size_t most_places = 1024;
+  static constexpr std::size_t max_places = 1024;
   const FeatureTexture& texels_;
   std::array<Vec2, 3> uv_;
   std::array<Vec3, 3> corners_;
@@ -191,7 +191,7 @@ double missed_share_bound(std::size_t triangles, int rays) {
   return 1 - std::pow(0.05 / static_cast<double>(std::max<std::size_t>(1, triangles)), 1.0 / std::max(1, rays));
 }
 
-VisibilityReport traced_visibility(const BakedObject& object, const EyeRegion& eyes, int most_rays,
+VisibilityReport traced_visibility(const BakedObject& object, const EyeRegion& eyes, int max_rays,
                                    const Progress& progress) {
   const auto tree = rays_of(object);
   const double size = object.bounds().diagonal().norm();
@@ -212,8 +212,8 @@ VisibilityReport traced_visibility(const BakedObject& object, const EyeRegion& e
     while (sent.shows && sent.rays < until && sent.through < enough) {
       const Vec3 point = points.random(dice);
       Vec3 eye;
-      if (!eyes.standpoints.empty()) {
-        const Viewpoint& from = eyes.standpoints[dice.below(eyes.standpoints.size())];
+      if (!eyes.viewpoints.empty()) {
+        const Viewpoint& from = eyes.viewpoints[dice.below(eyes.viewpoints.size())];
         eye = from.back.isZero(0) ? from.eye : Vec3(point + 1.5 * size * from.back);
       } else if (eyes.box) {
         const Vec3 share(dice.share(), dice.share(), dice.share());
@@ -232,7 +232,7 @@ VisibilityReport traced_visibility(const BakedObject& object, const EyeRegion& e
   std::vector<std::size_t> open(all.size());  // triangles that no ray has reached yet
   std::iota(open.begin(), open.end(), std::size_t{0});
   constexpr int first_rays = 1024;
-  int until = std::min(first_rays, most_rays);
+  int until = std::min(first_rays, max_rays);
   for (bool more = true; more;) {
     std::atomic<std::size_t> done = 0, found = 0;
     tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t k) {
@@ -245,8 +245,8 @@ VisibilityReport traced_visibility(const BakedObject& object, const EyeRegion& e
     std::erase_if(open, [&](std::size_t k) { return all[k].through > 0 || !all[k].shows; });
     // The first round finds the clearly visible triangles. The rest counts as unseen after a further round that finds
     // nothing.
-    more = !open.empty() && until < most_rays && (found > 0 || until == first_rays);
-    if (more) until = std::min(2 * until, most_rays);
+    more = !open.empty() && until < max_rays && (found > 0 || until == first_rays);
+    if (more) until = std::min(2 * until, max_rays);
   }
   VisibilityReport seen;
   seen.rays_each = until;

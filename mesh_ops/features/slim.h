@@ -12,8 +12,8 @@ namespace rebake {
 
 /// Possible eye positions: these standpoints, else anywhere in the box, else all around the object.
 struct EyeRegion {
-  std::vector<Viewpoint> standpoints;  ///< in object space
-  std::optional<Box> box;              ///< in world space
+  std::vector<Viewpoint> viewpoints;  ///< in object space
+  std::optional<Box> box;             ///< in world space
   Affine world_to_object = Affine::Identity();
 };
 
@@ -29,9 +29,9 @@ struct VisibilityReport {
 };
 
 /// Traces rays between random eyes and each triangle until four are unoccluded. For triangles that 1024 rays do not
-/// reach, the number of rays is doubled until a doubling finds nothing new or `most_rays` are traced. Triangles without
+/// reach, the number of rays is doubled until a doubling finds nothing new or `max_rays` are traced. Triangles without
 /// an opaque texel are unseen. Only opaque texels occlude. The same result at any number of threads.
-VisibilityReport traced_visibility(const BakedObject& object, const EyeRegion& eyes, int most_rays,
+VisibilityReport traced_visibility(const BakedObject& object, const EyeRegion& eyes, int max_rays,
                                    const Progress& progress = {});
 /// Upper bound, with 95 % confidence, of the unoccluded share of lines of sight of any of `triangles` triangles that
 /// `rays` rays each did not reach: (1 - share)^rays = 0.05 / triangles.

@@ -125,7 +125,7 @@ std::size_t count_texture_sets(const fs::path& folder, std::size_t obj_num) {
            fs::exists(folder / feature_name(Layout::split, set, 1));
   };
   std::size_t count = 0;
-  while (count < most_texture_sets && has_geometry(folder, count) && (count < obj_num || has_textures(count))) ++count;
+  while (count < max_texture_sets && has_geometry(folder, count) && (count < obj_num || has_textures(count))) ++count;
   for (std::size_t set = count + 1; count < obj_num && set < count + gap; ++set)
     if (has_geometry(folder, set))
       throw FileError(folder / geometry_name(Layout::split, count, 0),

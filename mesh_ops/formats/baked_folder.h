@@ -22,7 +22,7 @@ std::string geometry_name(Layout layout, std::size_t set, std::size_t chunk);
 std::string feature_name(Layout layout, std::size_t set, int image);
 
 /// More sets than any capture has; a larger count means that a file is damaged.
-inline constexpr std::size_t most_texture_sets = 4096;
+inline constexpr std::size_t max_texture_sets = 4096;
 
 /// Number of chunks per set; chunk viewers load exactly this many.
 inline constexpr std::size_t chunks_per_set = 8;

@@ -9,7 +9,7 @@
 
 namespace rebake {
 
-/// Encodes baked.bin, a sidecar file (side_file.h) beside a folder's own files: the vertex displacements since light
+/// Encodes baked.bin, a sidecar file (sidecar_file.h) beside a folder's own files: the vertex displacements since light
 /// was baked (Soup::displacement), and the body that each face belongs to (BakedObject::body). Mark "rebakebp",
 /// version 1. Per texture set with such values: displacements (3 f32 per vertex) as corner_values(), then runs of faces
 /// of the same body. A run is two put_varint() numbers: face count and body number.

@@ -119,7 +119,7 @@ void for_each_near(Panorama& panorama, const Vec3& middle, double reach, Visit v
 // Replaces very bright spots by suns: disks with the same irradiance.
 std::vector<Sun> suns_of(Panorama& panorama) {
   constexpr std::size_t most = 4;
-  constexpr int most_tried = 64;
+  constexpr int max_tried = 64;
   // Outshines, left: relative to the mean luminance. Reach: radians.
   constexpr double outshines = 30, left = 10, reach = 0.1;
   constexpr double worth = 0.005;  // share of all light below which a spot stays in the sky
@@ -132,7 +132,7 @@ std::vector<Sun> suns_of(Panorama& panorama) {
       bright.push_back(static_cast<float>(luminance(panorama.at(x, y))));
       all += panorama.solid_angle(y) * luminance(panorama.at(x, y));
     }
-  for (int tried = 0; tried < most_tried && suns.size() < most; ++tried) {
+  for (int tried = 0; tried < max_tried && suns.size() < most; ++tried) {
     const auto brightest = std::max_element(bright.begin(), bright.end());
     const auto number = static_cast<int>(brightest - bright.begin());
     const Vec3 middle = panorama.direction(number % panorama.width, number / panorama.width);

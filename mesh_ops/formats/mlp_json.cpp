@@ -77,8 +77,8 @@ int read_obj_num(const json& value, const std::filesystem::path& name) {
     if (!text.empty() && text.size() < 6 && text.find_first_not_of("0123456789") == std::string::npos)
       count = std::stod(text);
   }
-  if (count != std::floor(count) || count < 1 || count > static_cast<double>(most_texture_sets))
-    throw FileError(name, fmt::format("\"obj_num\" must be a whole number from 1 to {}", most_texture_sets));
+  if (count != std::floor(count) || count < 1 || count > static_cast<double>(max_texture_sets))
+    throw FileError(name, fmt::format("\"obj_num\" must be a whole number from 1 to {}", max_texture_sets));
   return static_cast<int>(count);
 }
 

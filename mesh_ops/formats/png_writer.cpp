@@ -32,13 +32,13 @@ namespace {
 
 using State = PngEncoder::State;
 
-constexpr std::size_t most_waiting = std::size_t{1} << 20;
+constexpr std::size_t max_waiting = std::size_t{1} << 20;
 
 void append(png_structp png, png_bytep bytes, std::size_t count) {
   State& state = *static_cast<State*>(png_get_io_ptr(png));
   try {
     state.waiting.append(reinterpret_cast<const char*>(bytes), count);
-    if (state.waiting.size() >= most_waiting) state.flush();
+    if (state.waiting.size() >= max_waiting) state.flush();
   } catch (...) {
     state.thrown = std::current_exception();  // exceptions must not pass through libpng
   }

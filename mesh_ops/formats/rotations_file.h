@@ -9,9 +9,9 @@
 
 namespace rebake {
 
-/// Encodes turns.bin, a sidecar file (side_file.h) beside a folder's own files: the rotations of vertices relative to
-/// their object (Soup::rotation). Mark "rebaketn", version 1. Per texture set with rotations: PackedRotation::bytes()
-/// per vertex, as corner_values().
+/// Encodes turns.bin, a sidecar file (sidecar_file.h) beside a folder's own files: the rotations of vertices relative
+/// to their object (Soup::rotation). Mark "rebaketn", version 1. Per texture set with rotations:
+/// PackedRotation::bytes() per vertex, as corner_values().
 std::string write_rotations(const std::vector<TextureSet>& sets);
 
 /// Decodes turns.bin into the sets of an object read from the same folder. Throws FileError.

@@ -26,7 +26,7 @@ namespace {
 
 constexpr int scene_version = 1;
 constexpr std::size_t longest_folder_name = 200;  // file systems allow 255 bytes; a number is appended
-constexpr std::size_t most_bodies = 65536;        // range of the body number of a face (16 bits)
+constexpr std::size_t max_bodies = 65536;         // range of the body number of a face (16 bits)
 
 json affine_json(const Affine& affine) {
   json rows = json::array();
@@ -144,9 +144,9 @@ LightPicture read_picture(const json& value) {
     at += 3;
     return read_color({radiance[at - 3], radiance[at - 2], radiance[at - 1]});
   });
-  constexpr std::size_t most_suns = 16;
-  if (value.at("suns").size() > most_suns)
-    throw FieldError("light", fmt::format("has an environment map with more than {} suns", most_suns));
+  constexpr std::size_t max_suns = 16;
+  if (value.at("suns").size() > max_suns)
+    throw FieldError("light", fmt::format("has an environment map with more than {} suns", max_suns));
   for (const json& sun : value.at("suns")) {
     picture.light.suns.push_back(read_sun(sun));
     // Unit vectors keep their bits.
@@ -257,8 +257,8 @@ class SceneReader {
     const auto read = read_folder(folder, value.value("axes", "360"));
     if (!value.contains("bodies")) return read;
     const json& bodies = value.at("bodies");
-    if (!bodies.is_array() || bodies.empty() || bodies.size() > most_bodies)
-      throw FileError(name_, fmt::format("node \"{}\": \"bodies\" must be a list of 1 to {}", node, most_bodies));
+    if (!bodies.is_array() || bodies.empty() || bodies.size() > max_bodies)
+      throw FileError(name_, fmt::format("node \"{}\": \"bodies\" must be a list of 1 to {}", node, max_bodies));
     const bool places = value.value("baked_places", false);
     auto& known = edited_[fmt::format("{}\n{}\n{}", folder, places, bodies.dump())];
     if (known) return known;

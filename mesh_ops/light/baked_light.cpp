@@ -16,7 +16,7 @@ BakedLight::BakedLight(std::shared_ptr<const BakedObject> object, const SceneLig
                                 return set.soup.vertex_attributes().shared(Soup::displacement) != nullptr;
                               })),
       options_(options) {
-  charts = light_charts(*object_, options.spacing, options.most_nodes);
+  charts = light_charts(*object_, options.spacing, options.max_nodes);
   sites = light_sites(*object_, charts);
   colors = site_colors(*object_, charts, sites, std::vector<float>(sites.size(), 0.5F));
   if (const auto given = given_light(settings)) {
@@ -24,7 +24,7 @@ BakedLight::BakedLight(std::shared_ptr<const BakedObject> object, const SceneLig
     confidence = 1;
   } else {
     const LightEstimate estimate =
-        cached_estimate(*bodies_.front().object, options.spacing, options.most_nodes, options.results, progress);
+        cached_estimate(*bodies_.front().object, options.spacing, options.max_nodes, options.results, progress);
     light = std::make_shared<const Light>(estimate.light);
     confidence = estimate.confidence;
   }
@@ -99,8 +99,8 @@ std::vector<SiteLight> BakedLight::among(const std::vector<Occluder>& others, in
   };
   // Above this size, visibility flags would take too much memory: the own object is then traced again for every set of
   // occluders.
-  constexpr std::uint64_t most_bytes = std::uint64_t{1} << 26;
-  const bool few = VisibilityFlags::memory_for(sites.size(), rays, light->suns.size()) <= most_bytes;
+  constexpr std::uint64_t max_bytes = std::uint64_t{1} << 26;
+  const bool few = VisibilityFlags::memory_for(sites.size(), rays, light->suns.size()) <= max_bytes;
   auto lit = cached_light(sites.now, sides, occluders, *light, Mat3::Identity(), rays, results, progress,
                           few ? own : std::function<const VisibilityFlags&()>());
   if (others.empty()) visible_light_[rays] = lit;

@@ -83,7 +83,7 @@ std::vector<sh::Coefficients> transfer_of_bytes(std::string_view bytes) {
 }  // namespace
 
 std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& object, double spacing,
-                                                            std::size_t most_nodes) {
+                                                            std::size_t max_nodes) {
   for (;; spacing *= 1.5) {
     std::vector<std::shared_ptr<const LightChart>> charts;
     std::size_t nodes = 0;
@@ -91,7 +91,7 @@ std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& o
       charts.push_back(std::make_shared<const LightChart>(light_chart(set, spacing)));
       nodes += charts.back()->nodes.size();
     }
-    if (nodes <= most_nodes || spacing > 1000) return charts;
+    if (nodes <= max_nodes || spacing > 1000) return charts;
   }
 }
 
@@ -205,10 +205,10 @@ std::vector<sh::Coefficients> cached_transfer(const std::vector<LightSite>& site
   return transfer_of_bytes(bytes);
 }
 
-LightEstimate cached_estimate(const BakedObject& body, double spacing, std::size_t most_nodes, ResultCache* results,
+LightEstimate cached_estimate(const BakedObject& body, double spacing, std::size_t max_nodes, ResultCache* results,
                               const Progress& progress) {
   const auto make = [&] {
-    const auto charts = light_charts(body, spacing, most_nodes);
+    const auto charts = light_charts(body, spacing, max_nodes);
     const LightSites sites = light_sites(body, charts);
     const auto colors = site_colors(body, charts, sites, std::vector<float>(sites.size(), 0.5F));
     return estimated_light(sites, colors, rays_among({{std::make_shared<const BakedObject>(body), Affine::Identity()}}),
@@ -221,7 +221,7 @@ LightEstimate cached_estimate(const BakedObject& body, double spacing, std::size
   const Decoder& d = *body.decoder;
   append(inputs, d);
   append(inputs, &spacing, sizeof(spacing));
-  append(inputs, &most_nodes, sizeof(most_nodes));
+  append(inputs, &max_nodes, sizeof(max_nodes));
   append(inputs, &body.axes, sizeof(body.axes));
   for (const TextureSet& set : body.sets) {
     const AlphaCode code = set.texels->alpha_code();

@@ -34,12 +34,12 @@ std::vector<sh::Coefficients> cached_transfer(const std::vector<LightSite>& site
                                               const std::vector<Occluder>& occluders, int rays, ResultCache* results,
                                               const Progress& progress);
 
-/// Charts of all texture sets, with nodes `spacing` texels apart, or farther to stay within `most_nodes`.
+/// Charts of all texture sets, with nodes `spacing` texels apart, or farther to stay within `max_nodes`.
 std::vector<std::shared_ptr<const LightChart>> light_charts(const BakedObject& object, double spacing,
-                                                            std::size_t most_nodes);
+                                                            std::size_t max_nodes);
 
 /// estimated_light() of an object, cached.
-LightEstimate cached_estimate(const BakedObject& body, double spacing, std::size_t most_nodes, ResultCache* results,
+LightEstimate cached_estimate(const BakedObject& body, double spacing, std::size_t max_nodes, ResultCache* results,
                               const Progress& progress);
 
 /// fitted_gloss() with the occluder `body`, cached.

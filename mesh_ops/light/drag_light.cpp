@@ -13,7 +13,7 @@ namespace rebake {
 namespace {
 
 // Smallest determinant of a matrix that counts as a rotation; comparisons with it reject NaN.
-constexpr double least_volume = 0.5;
+constexpr double min_volume = 0.5;
 
 // Orthonormal frame of a triangle: its normal, and the bisectors of two edge directions, which stretching rotates
 // least. Not a rotation if the triangle has no area.
@@ -65,7 +65,7 @@ std::vector<Mat3> node_rotations(const TextureSet& from, const TextureSet& to, c
                                   : Mat3(weight * (*after)[now[k]].matrix());
       }
       // Corners whose rotations differ by half a turn have no mean rotation.
-      if (const Mat3 turn = rotation_near(mean); turn.determinant() > least_volume) turns[i] = turn;
+      if (const Mat3 turn = rotation_near(mean); turn.determinant() > min_volume) turns[i] = turn;
       return;
     }
     const auto frame = [](const TextureSet& set, const Face& f) {
@@ -73,7 +73,7 @@ std::vector<Mat3> node_rotations(const TextureSet& from, const TextureSet& to, c
       return frame_of(positions[f[0]], positions[f[1]], positions[f[2]]);
     };
     const Mat3 turn = frame(to, now) * frame(from, face).transpose();
-    if (turn.determinant() > least_volume) turns[i] = turn;
+    if (turn.determinant() > min_volume) turns[i] = turn;
   });
   return turns;
 }

@@ -47,7 +47,7 @@ struct Views {
 // Candidate exponents. Broader lobes cannot be distinguished from diffuse colour.
 constexpr std::array<double, 7> sharpnesses{4, 8, 16, 32, 64, 128, 256};
 constexpr int views_per_side = 24;
-constexpr std::size_t most_sites = 6000;
+constexpr std::size_t max_sites = 6000;
 constexpr double few_sites = 50;
 
 // Normal equations of the least-squares fit of one material.
@@ -96,7 +96,7 @@ Gloss gloss_environment(const Light& light) {
   gloss.suns = light.suns;
   std::stable_sort(gloss.suns.begin(), gloss.suns.end(),
                    [](const Sun& a, const Sun& b) { return a.irradiance.sum() > b.irradiance.sum(); });
-  if (gloss.suns.size() > Gloss::most_suns) gloss.suns.resize(Gloss::most_suns);
+  if (gloss.suns.size() > Gloss::max_suns) gloss.suns.resize(Gloss::max_suns);
   return gloss;
 }
 
@@ -127,7 +127,7 @@ GlossFit fitted_gloss(const BakedObject& object, const std::vector<std::shared_p
   if (sites.size() == 0) return fit;
   const std::vector<std::uint32_t> clusters = chromaticity_clusters(colors);
   const std::size_t materials = *std::max_element(clusters.begin(), clusters.end()) + 1;
-  const std::size_t step = std::max<std::size_t>(1, sites.size() / most_sites);
+  const std::size_t step = std::max<std::size_t>(1, sites.size() / max_sites);
   std::vector<std::size_t> looked_at;
   for (std::size_t i = 0; i < sites.size(); i += step)
     if (sites.baked[i].normal.squaredNorm() > 0.5) looked_at.push_back(i);
@@ -227,8 +227,8 @@ GlossFit fitted_gloss(const BakedObject& object, const std::vector<std::shared_p
     best = std::move(amounts);
     fit.gloss.sharpness = sharpnesses[j];
   }
-  constexpr double least_explained = 0.1;
-  if (!(most >= least_explained * all) || !(all > 0)) return fit;
+  constexpr double min_explained = 0.1;
+  if (!(most >= min_explained * all) || !(all > 0)) return fit;
   fit.explained = most / all;
   for (std::size_t i = 0; i < sites.size(); ++i) fit.amounts[i] = best[clusters[i]].cast<float>();
   return fit;

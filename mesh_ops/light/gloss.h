@@ -15,7 +15,7 @@ struct Gloss {
   std::vector<Sun> suns;
   double sharpness = 0;  ///< exponent of the suns' lobes (Phong 1975)
   /// Maximum number of suns in shaders; the strongest are used.
-  static constexpr std::size_t most_suns = 4;
+  static constexpr std::size_t max_suns = 4;
 };
 
 /// The environment of a light, with sharpness 0.

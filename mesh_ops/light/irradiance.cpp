@@ -33,9 +33,9 @@ SiteBundles::MayPass may_pass(const SiteBundles& bundles, const VisibilityFlags*
 // Number of direction sets. Together they have about 512 directions, so that their common error is small over a part of
 // a surface; each set has at least 32 sites.
 std::size_t sets_for(int rays, std::size_t sites) {
-  constexpr std::size_t enough = 512, least_sites = 32;
+  constexpr std::size_t enough = 512, min_sites = 32;
   return std::clamp<std::size_t>(enough / static_cast<std::size_t>(std::max(1, rays)), 1,
-                                 std::max<std::size_t>(1, sites / least_sites));
+                                 std::max<std::size_t>(1, sites / min_sites));
 }
 
 // Directions to points of a sun's disk, in the sites' space.

@@ -125,7 +125,7 @@ Surface surface_of(const WeldedCorners& welded, std::vector<std::array<Vec3, 3>>
 
 // Offset of ray origins in facet sizes: small on smooth surfaces, up to half a facet on ragged ones, because a soup
 // would occlude itself.
-constexpr double least_offset = 0.02, offset_per_sine = 0.5;
+constexpr double min_offset = 0.02, offset_per_sine = 0.5;
 
 // The site at barycentric weights `w` of a face. `rough`: the surface as baked; its roughness counts, because bending
 // adds none.
@@ -148,7 +148,7 @@ LightSite site_at(const Surface& surface, const Surface& rough, std::size_t face
   for (std::size_t side = 0; side < 2; ++side) {
     double roughness = 0;
     for (std::size_t k = 0; k < 3; ++k) roughness += w[static_cast<Eigen::Index>(k)] * rough.roughness[face][k][side];
-    site.offset[side] = surface.pitch[face] * std::clamp(offset_per_sine * roughness, least_offset, 1.0);
+    site.offset[side] = surface.pitch[face] * std::clamp(offset_per_sine * roughness, min_offset, 1.0);
   }
   return site;
 }

@@ -83,7 +83,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     result.decisions.push_back({kind, fmt::format("{} {}", kind, whose), false, change, 0, std::move(why), ""});
     return result.decisions.size() - 1;
   };
-  const auto say_estimate = [&](const char* kind, const std::string& whose, const ChangeEstimate& estimate) {
+  const auto add_estimate = [&](const char* kind, const std::string& whose, const ChangeEstimate& estimate) {
     const std::size_t line = say(kind, whose, estimate.change, estimate.words());
     result.decisions[line].estimated = true;
     return line;
@@ -108,14 +108,14 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
       say("self-shadow", receiver.name(), 0, "no triangle moved relative to its object");
     else
       own = removed ? say("self-shadow", receiver.name(), 0, "")
-                    : say_estimate("self-shadow", receiver.name(), receiver.sampled_change(true, false, progress));
+                    : add_estimate("self-shadow", receiver.name(), receiver.sampled_change(true, false, progress));
     own_line[k] = own;
     if (own && !removed) candidates.push_back({*own, k, Candidate::Kind::self});
     if (self && !settings.highlights) say("highlights", receiver.name(), 0, "disabled in the light settings");
     if (self && settings.highlights) {
       gloss[k] = receiver.gloss(light_for(k), progress);
       if (gloss[k])
-        candidates.push_back({say_estimate("highlights", receiver.name(), receiver.estimated_gloss_change(*gloss[k])),
+        candidates.push_back({add_estimate("highlights", receiver.name(), receiver.estimated_gloss_change(*gloss[k])),
                               k, Candidate::Kind::highlights});
       else
         say("highlights", receiver.name(), 0, receiver.no_gloss_reason(light_for(k)));
@@ -123,7 +123,7 @@ Lighting lighting_of(const Scene& scene, const LightingOptions& options, const P
     if (receiver.missing() && !removed) say("removed shadow", receiver.name(), 0, "disabled in the light settings");
     if (removed) {
       const std::size_t line =
-          say_estimate("removed shadow", receiver.name(), receiver.sampled_change(receiver.moved(), true, progress));
+          add_estimate("removed shadow", receiver.name(), receiver.sampled_change(receiver.moved(), true, progress));
       candidates.push_back({line, k, Candidate::Kind::removed});
       if (own) follows[*own] = line;
     }

@@ -23,9 +23,9 @@ struct Lighting {
   std::map<NodeId, std::shared_ptr<const DragLight>> turning;  ///< previews during drags (LightingOptions::turning)
   double left_out = 0;  ///< sum of the bounds and estimates of omitted effects, in display colours
   /// Whether an effect was omitted because of an estimate: a few places may change more (ChangeEstimate). In pictures
-  /// these are at most a share most_beyond of the pixels.
+  /// these are at most a share max_beyond of the pixels.
   bool estimated = false;
-  static constexpr double most_beyond = 0.01;
+  static constexpr double max_beyond = 0.01;
 
   /// The map of a node's texture set; null if nothing changes or its vertices have changed since.
   std::shared_ptr<const LightMap> map_of(NodeId node, std::size_t number, const TextureSet& set) const;
@@ -33,8 +33,8 @@ struct Lighting {
 
 struct LightingOptions {
   int rays = 0;        ///< 0: the scene's setting
-  double spacing = 4;  ///< distance of light nodes in texels; larger for objects with more than `most_nodes`
-  std::size_t most_nodes = 400000;
+  double spacing = 4;  ///< distance of light nodes in texels; larger for objects with more than `max_nodes`
+  std::size_t max_nodes = 400000;
   bool everything = false;         ///< run all effects, for audits
   ResultCache* results = nullptr;  ///< cache of estimates and traced light; null for none
   bool keep_traced = true;         ///< false: cache estimates only

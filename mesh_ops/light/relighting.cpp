@@ -156,7 +156,7 @@ namespace {
 // such sites use the object's; infinite if the object has few.
 std::vector<Radiance> largest_albedos(const LightSites& sites, const std::vector<Radiance>& colors,
                                       const std::vector<Radiance>& before, const Radiance& lambda, std::size_t parts) {
-  constexpr std::size_t least_sites = 16;
+  constexpr std::size_t min_sites = 16;
   constexpr double infinite = std::numeric_limits<double>::infinity();
   std::vector<Radiance> result(parts, Radiance::Constant(infinite));
   for (int c = 0; c < 3; ++c) {
@@ -169,14 +169,13 @@ std::vector<Radiance> largest_albedos(const LightSites& sites, const std::vector
       of_part[sites.part[i]].push_back(all.back());
     }
     const auto high = [](std::vector<double>& values) {
-      if (values.size() < least_sites) return infinite;
+      if (values.size() < min_sites) return infinite;
       const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
       std::nth_element(values.begin(), at, values.end());
       return *at;
     };
     const double of_object = high(all);
-    for (std::size_t p = 0; p < parts; ++p)
-      result[p][c] = of_part[p].size() < least_sites ? of_object : high(of_part[p]);
+    for (std::size_t p = 0; p < parts; ++p) result[p][c] = of_part[p].size() < min_sites ? of_object : high(of_part[p]);
   }
   return result;
 }

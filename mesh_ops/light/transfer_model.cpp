@@ -281,8 +281,8 @@ TransferModel transfer_model_of(std::string_view bytes) {
       net->seconds = about.at("learning_seconds");
       model.net_error = about.at("held_back_error");
       model.turning_error = about.value("turning_error", model.turning_error);
-      constexpr int most_channels = 64;
-      if (net->channels < 8 || net->channels > most_channels || net->channels % 8 != 0)
+      constexpr int max_channels = 64;
+      if (net->channels < 8 || net->channels > max_channels || net->channels % 8 != 0)
         throw Error("\"channels\" in the first line must be a multiple of 8 from 8 to 64");
       const std::uint64_t vertices = about.at("vertices"), faces = about.at("faces");
       if (!fits(static_cast<double>(vertices), 2 * sizeof(double)) || !fits(static_cast<double>(faces), sizeof(Face)) ||

@@ -9,7 +9,8 @@ namespace rebake {
 // each with twice as many channels.
 inline constexpr int unet_levels = 3, unet_inputs = 6, unet_outputs = 16;
 
-/// One convolution.
+/// One convolution: numbers of input and output channels, kernel size and stride in pixels. Padded to equal output size
+/// at stride 1.
 struct UnetLayer {
   int inputs, outputs, kernel, stride;
 };

@@ -36,7 +36,7 @@ void require_unet_training() {
   if (!can_train_unet()) throw Error(module().problem);
 }
 
-Unet trained_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress) {
+Unet train_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress) {
   const auto texels = static_cast<std::size_t>(images.side) * static_cast<std::size_t>(images.side);
   if (images.images.size() != images.poses * unet_inputs * texels ||
       images.targets.size() != images.poses * unet_outputs * texels || images.poses == 0)

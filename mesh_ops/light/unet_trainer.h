@@ -7,12 +7,12 @@
 
 namespace rebake {
 
-/// Training set of a Unet: one geometry image and its target per pose.
+/// Training set of a Unet: one geometry image and its target per pose (deformation of the object).
 struct UnetImages {
   int side = 64;  ///< pixels per side
   std::size_t poses = 0;
-  std::vector<float> images;   ///< inputs: [pose][6][row][column]
-  std::vector<float> targets;  ///< expected outputs: [pose][16][row][column]
+  std::vector<float> images;   ///< [pose][unet_inputs][row][column]: position and normal (see unet.h)
+  std::vector<float> targets;  ///< expected outputs: [pose][unet_outputs][row][column] (see unet.h)
 };
 
 /// Training parameters. `channels`: those of the finest level, a multiple of 8; `batch`: poses per step.
@@ -28,6 +28,6 @@ bool can_train_unet();
 void require_unet_training();
 /// Trains a Unet. Throws Error if the module is missing or fails, and std::invalid_argument for sizes that do not
 /// match.
-Unet trained_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress = {});
+Unet train_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress = {});
 
 }  // namespace rebake

@@ -97,7 +97,7 @@ UnetTransfer UnetTransfer::Training::learnt(const UnetTraining& options, const P
   const double deviation = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, poses_ * values)));
   const float scale = deviation > 0 ? static_cast<float>(deviation) : 1.0F;
   for (float& value : images.targets) value /= scale;
-  const Unet net = trained_unet(images, options, progress);
+  const Unet net = train_unet(images, options, progress);
   return UnetTransfer({image_.chart(), image_.side(), options.channels, net.weights(), bounds(rest_), std::move(mean),
                        scale, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
 }

@@ -13,7 +13,7 @@ namespace rebake {
 namespace {
 
 // Number of triangles that can be tested at the cost of one ray.
-constexpr std::size_t triangles_a_ray = 30;
+constexpr std::size_t triangles_per_ray = 30;
 // Points per block. Blocks are compact if consecutive points are close together.
 constexpr std::size_t block_size = 256;
 // Limit of the number of points per cell, averaged over points; beyond it single rays are faster.
@@ -63,11 +63,11 @@ void ParallelRays::Scratch::find_cells(std::size_t axis, std::size_t part_count,
   counts.assign(part_count, 0);
   for (std::size_t k = 0; k < count; ++k) ++counts[parts[axis][k]];
   cell_of[axis].resize(part_count);
-  const double cells_a_point = static_cast<double>(cells) / static_cast<double>(count);
+  const double cells_per_point = static_cast<double>(cells) / static_cast<double>(count);
   std::uint32_t before = 0;
   for (std::size_t part = 0; part < part_count; ++part) {
     cell_of[axis][part] =
-        static_cast<std::uint16_t>(std::min(cells - 1, static_cast<std::uint32_t>(before * cells_a_point)));
+        static_cast<std::uint16_t>(std::min(cells - 1, static_cast<std::uint32_t>(before * cells_per_point)));
     before += counts[part];
   }
 }
@@ -92,12 +92,12 @@ std::optional<PointGrid> ParallelRays::Scratch::grid(std::span<const std::int8_t
       parts[axis][k] = static_cast<std::uint16_t>(std::min(last, (at[k] - least) * scale[axis]));
   }
   // Cells are twice as high as wide, because the cells of a row are tested in one pass.
-  constexpr double most_columns = 2048;
-  const double aspect = extent[1] > 0 ? static_cast<double>(extent[0] / extent[1]) : most_columns * most_columns;
+  constexpr double max_columns = 2048;
+  const double aspect = extent[1] > 0 ? static_cast<double>(extent[0] / extent[1]) : max_columns * max_columns;
   const auto points = static_cast<double>(count);
   result.columns =
-      static_cast<std::uint32_t>(std::clamp(std::sqrt(points * aspect), 1.0, std::min(points, most_columns)));
-  result.rows = static_cast<std::uint32_t>(std::clamp(points / (2 * result.columns), 1.0, most_columns));
+      static_cast<std::uint32_t>(std::clamp(std::sqrt(points * aspect), 1.0, std::min(points, max_columns)));
+  result.rows = static_cast<std::uint32_t>(std::clamp(points / (2 * result.columns), 1.0, max_columns));
   find_cells(0, part_count, result.columns);
   find_cells(1, part_count, result.rows);
   const auto cell = [&](std::size_t k) { return cell_of[1][parts[1][k]] * result.columns + cell_of[0][parts[0][k]]; };
@@ -222,7 +222,7 @@ void ParallelRays::shade_by(std::size_t instance, const Vec3& direction, std::si
   if (count == 0) return;
   scratch.count = count;
   const std::optional<PointGrid> grid =
-      count * triangles_a_ray < tree.triangle_count() ? std::nullopt : scratch.grid(ways);
+      count * triangles_per_ray < tree.triangle_count() ? std::nullopt : scratch.grid(ways);
   if (!grid) {
     const Vec3 in_object = placed.to_object.linear() * direction;
     for (const std::uint32_t i : std::span(scratch.asked).first(count))

@@ -27,16 +27,16 @@ double lowest_above(const Ground& ground, const Box& box) {
 }
 
 Ground ground_through(const std::array<Vec3, 3>& points) {
-  constexpr double least_sine = 1e-9;
+  constexpr double min_sine = 1e-9;
   const Vec3 a = points[1] - points[0], b = points[2] - points[0];
   const Vec3 along = a.stableNormalized(), across = b.stableNormalized();
   Vec3 normal = along.cross(across);
   const double sine = normal.norm();
-  if (!(sine > least_sine) || !points[0].allFinite())
+  if (!(sine > min_sine) || !points[0].allFinite())
     throw std::invalid_argument("the points are collinear or not finite");
   normal /= sine;
   int largest = 1;
-  if (std::abs(normal.y()) <= least_sine) normal.cwiseAbs().maxCoeff(&largest);
+  if (std::abs(normal.y()) <= min_sine) normal.cwiseAbs().maxCoeff(&largest);
   if (normal[largest] < 0) normal = -normal;
   return {normal, normal.dot(points[0])};
 }

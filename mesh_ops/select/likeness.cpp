@@ -36,7 +36,7 @@ class WorldShape {
 
 Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector<TriangleSet>& picked) {
   Likeness mean;
-  double total = 0;
+  double total = 0, opaque = 0;
   // The sign of normals is ignored: the mean axis is the eigenvector with the largest eigenvalue of the sum of their
   // outer products.
   Mat3 planes = Mat3::Zero();
@@ -48,8 +48,12 @@ Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector
       if (picked[k][f] == 0) continue;
       const TriangleTraits& t = (*traits)[f];
       const Vec3 area = shape.area(t);
-      mean.color += vector_of(t.color);
-      mean.features += features_of(t);
+      // Fully transparent triangles have no colour and no features.
+      if (t.opacity > 0) {
+        mean.color += vector_of(t.color);
+        mean.features += features_of(t);
+        opaque += 1;
+      }
       mean.opacity += static_cast<double>(t.opacity);
       mean.area += area.norm();
       const Vec3 normal = area.stableNormalized();
@@ -57,8 +61,8 @@ Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector
       total += 1;
     }
   }
-  mean.color /= total;
-  mean.features /= total;
+  mean.color /= std::max(opaque, 1.0);
+  mean.features /= std::max(opaque, 1.0);
   mean.opacity /= total;
   mean.area /= total;
   mean.normal = Eigen::SelfAdjointEigenSolver<Mat3>(planes).eigenvectors().col(2);
@@ -67,9 +71,9 @@ Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector
 
 TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, const LikenessBounds& bounds) {
   // 90 degrees includes all planes, but its rounded cosine is above 0.
-  const double least_cosine = bounds.orientation && *bounds.orientation < 90
-                                  ? elementary::sine_cosine(*bounds.orientation * std::numbers::pi / 180).cosine
-                                  : 0;
+  const double min_cosine = bounds.orientation && *bounds.orientation < 90
+                                ? elementary::sine_cosine(*bounds.orientation * std::numbers::pi / 180).cosine
+                                : 0;
   const auto traits = traits_of(*placed.node->object);
   const WorldShape shape(placed);
   TriangleSet flags(traits->size());
@@ -83,7 +87,7 @@ TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, cons
       const Vec3 area = shape.area(t);
       if (bounds.size && (area.norm() > model.area * *bounds.size || area.norm() * *bounds.size < model.area)) return;
       const Vec3 normal = area.stableNormalized();
-      if (bounds.orientation && (normal.isZero(0) || std::abs(normal.dot(model.normal)) < least_cosine)) return;
+      if (bounds.orientation && (normal.isZero(0) || std::abs(normal.dot(model.normal)) < min_cosine)) return;
     }
     flags[f] = 1;
   });

@@ -44,8 +44,8 @@ void MaskCuller::look_at(const BakedObject& object, const Affine& to_world) {
     const ViewRay &a = corners[k], &b = corners[(k + 1) % 4], &across = corners[(k + 2) % 4];
     Vec3 normal = a.direction.cross(b.origin + b.direction - a.origin);
     // The rays are too close: rounding would rotate the plane by more than a pixel.
-    constexpr double least_sine = 1e-6;
-    if (!(normal.norm() > least_sine)) {
+    constexpr double min_sine = 1e-6;
+    if (!(normal.norm() > min_sine)) {
       sides_[k] = {};
       continue;
     }

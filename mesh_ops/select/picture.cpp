@@ -198,7 +198,7 @@ const std::array<Vec3, 7> inner_points = {
 
 }  // namespace
 
-TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Viewpoint>& standpoints) {
+TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Viewpoint>& viewpoints) {
   const auto rays = rays_of(object);
   const double size = object.bounds().diagonal().norm();
   TriangleSet flags(object.triangle_count(), 0);
@@ -232,7 +232,7 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Viewpo
       bool seen = false;
       for (std::size_t k = 0; k < tried && !seen; ++k) {
         const Vec3& point = opaque[k * opaque.size() / tried];
-        for (const Viewpoint& from : standpoints) {
+        for (const Viewpoint& from : viewpoints) {
           // Parallel rays start outside the object.
           const Vec3 eye = from.back.isZero(0) ? from.eye : Vec3(point + 1.5 * size * from.back);
           // The ray ends before the point by more than the tree's error.

@@ -79,7 +79,7 @@ Viewpoint viewpoint_of(const Camera& camera, const Affine& to_object);
 
 /// Triangles without an opaque texel visible from any of the viewpoints. Tests up to 16 texels per triangle: one that
 /// is visible only through a gap smaller than their spacing counts as unseen.
-TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Viewpoint>& standpoints);
+TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Viewpoint>& viewpoints);
 
 /// `count` viewpoints spread evenly on a sphere around a box; its radius is `distance` times the box's half diagonal.
 std::vector<Viewpoint> viewpoints_around(const Box& box, int count, double distance);

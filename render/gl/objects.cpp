@@ -76,7 +76,7 @@ Buffer make_buffer(unsigned target, const void* data, std::size_t bytes) {
   return buffer;
 }
 
-Texture make_texture(unsigned internal_format, int width, int height, int bytes_a_texel) {
+Texture make_texture(unsigned internal_format, int width, int height, int bytes_per_texel) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   if (width > largest || height > largest)
@@ -116,7 +116,7 @@ Texture make_texture(unsigned internal_format, int width, int height, int bytes_
     glTexParameteri(GL_TEXTURE_2D, parameter, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
   const std::uint64_t bytes = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
-                              static_cast<std::uint64_t>(bytes_a_texel);
+                              static_cast<std::uint64_t>(bytes_per_texel);
   take(bytes);
   Texture texture(name, bytes);
   check_memory("picture or its textures");

@@ -67,7 +67,7 @@ using Program = Handle<ProgramTraits>;
 Buffer make_buffer(unsigned target, const void* data, std::size_t bytes);
 /// Creates a 2-D texture without mipmaps, clamped to its edges, with linear filtering for GL_RGBA8 and nearest sampling
 /// for other formats. Throws DeviceError if it is too large or memory is out.
-Texture make_texture(unsigned internal_format, int width, int height, int bytes_a_texel);
+Texture make_texture(unsigned internal_format, int width, int height, int bytes_per_texel);
 /// Creates a buffer texture that reads `buffer` in a format such as GL_RGBA32F.
 Texture make_buffer_texture(const Buffer& buffer, unsigned internal_format);
 /// Creates a framebuffer; `depth` may be null. Throws DeviceError if the driver does not support these attachments.

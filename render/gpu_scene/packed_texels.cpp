@@ -13,7 +13,7 @@ namespace rebake {
 namespace {
 
 // Share of the whole texture above which packing is not worthwhile.
-constexpr double most_packed = 0.9;
+constexpr double max_packed = 0.9;
 constexpr int widest = 16384;  // maximum side of the packed texture
 
 struct Range {
@@ -110,9 +110,9 @@ TexelPacking pack_texels(const TextureSet& set, const std::vector<std::uint8_t>&
   }
   const double all = static_cast<double>(width) * height;
   packing.width = std::clamp(static_cast<int>(std::ceil(std::sqrt(area))), std::max(widest_rect, 2), widest);
-  if (area < most_packed * all) packing.height = place_in_rows(packing.rects, packing.width);
-  if (area >= most_packed * all || packing.height > widest ||
-      static_cast<double>(packing.width) * packing.height >= most_packed * all) {
+  if (area < max_packed * all) packing.height = place_in_rows(packing.rects, packing.width);
+  if (area >= max_packed * all || packing.height > widest ||
+      static_cast<double>(packing.width) * packing.height >= max_packed * all) {
     packing.whole = true;
     packing.width = width;
     packing.height = height;

@@ -49,13 +49,13 @@ std::uint64_t area_of(const std::vector<PackedRect>& rects) {
 // Codes texels; nullopt if they may exceed max_coded_words (a texel takes at most one word) or save less than a tenth:
 // overlapping rectangles would be stored several times, and tiny ones are smaller uncoded.
 std::optional<CodedTexels> code_if_worthwhile(const TexelPacking& packing, const FeatureTexture& texels) {
-  constexpr double most_coded = 0.9;  // share of the uncoded size
+  constexpr double max_coded = 0.9;  // share of the uncoded size
   const double plain = static_cast<double>(sizeof(Texel)) * packing.width * packing.height;
   if (area_of(packing.rects) > max_coded_words) return std::nullopt;
   if (static_cast<double>(sizeof(Texel) * area_of(packing.rects)) > 2 * plain) return std::nullopt;
   CodedTexels made = coded(packing.rects, texels);
   const std::size_t bytes = made.blocks.size() * sizeof(TexelBlock) + made.words.size() * sizeof(std::uint64_t);
-  if (static_cast<double>(bytes) > most_coded * plain) return std::nullopt;
+  if (static_cast<double>(bytes) > max_coded * plain) return std::nullopt;
   return made;
 }
 

@@ -11,9 +11,9 @@ namespace rebake {
 namespace {
 
 // Maximum number of changed tiles per texture that are compared texel by texel; with more, a whole frame is faster.
-constexpr std::size_t most_tiles = 64;
+constexpr std::size_t max_tiles = 64;
 // Share of the picture above which a whole frame is as fast, because partial frames run without occlusion culling.
-constexpr double most_pixels = 1.0 / 3;
+constexpr double max_pixels = 1.0 / 3;
 
 bool same_frame(const DecodeFrame& a, const DecodeFrame& b) {
   return a.decoder == b.decoder && a.alpha_code == b.alpha_code && a.world_to_decoder == b.world_to_decoder;
@@ -34,7 +34,7 @@ bool same_but_texels(const Draw& a, const Draw& b) {
           (was.width() == is.width() && was.height() == is.height() && was.alpha_code() == is.alpha_code()));
 }
 
-// Bounding rectangle of the changed texels per changed tile; nullopt if more than most_tiles tiles changed.
+// Bounding rectangle of the changed texels per changed tile; nullopt if more than max_tiles tiles changed.
 std::optional<std::vector<PixelRect>> changed_texels(const FeatureTexture& before, const FeatureTexture& now) {
   constexpr int size = TexelTile::size;
   std::vector<PixelRect> changed;
@@ -52,7 +52,7 @@ std::optional<std::vector<PixelRect>> changed_texels(const FeatureTexture& befor
             rect = join(rect, {x, y, x + 1, y + 1});
       }
       if (rect.empty()) continue;
-      if (changed.size() == most_tiles) return std::nullopt;
+      if (changed.size() == max_tiles) return std::nullopt;
       changed.push_back(
           {rect.left + column * size, rect.top + row * size, rect.right + column * size, rect.bottom + row * size});
     }
@@ -111,8 +111,7 @@ ChangedPixels changed_pixels(const FramePlan* before, const FramePlan& now) {
   if (!any) return {std::nullopt, "nothing changed since the last frame"};
   pixels = around(pixels, mask_radius, now.view);
   const auto area = [](double width, double height) { return width * height; };
-  if (area(pixels.right - pixels.left, pixels.bottom - pixels.top) >
-      most_pixels * area(now.view.width, now.view.height))
+  if (area(pixels.right - pixels.left, pixels.bottom - pixels.top) > max_pixels * area(now.view.width, now.view.height))
     return {std::nullopt, "texels changed in much of the picture since the last frame"};
   return {pixels,
           fmt::format("texels changed since the last frame in {}×{} of {}×{} pixels; the other pixels are reused",

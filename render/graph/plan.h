@@ -136,7 +136,7 @@ struct FramePlan {
 FramePlan plan(const Scene& scene, const View& view, const RenderOptions& options = {}, const Guides* guides = nullptr,
                const Lighting* lighting = nullptr, const DeviceFacts& device = {});
 
-/// One line per pass, such as "left out  node frames     one decoder and orientation in view".
+/// One line per pass, such as "skipped   node frames     one decoder and orientation in view".
 std::string describe(const std::vector<PlannedPass>& passes);
 
 }  // namespace rebake

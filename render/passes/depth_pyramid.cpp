@@ -53,8 +53,8 @@ bool DepthPyramid::hides(const ScreenTriangle& t) const {
   const int left = std::max(t.samples.left - rect_.left, 0), bottom = std::max(t.samples.bottom - rect_.bottom, 0),
             right = std::min(t.samples.right, rect_.right - 1) - rect_.left,
             top = std::min(t.samples.top, rect_.top - 1) - rect_.bottom;
-  constexpr int most_blocks = 1024;
-  if ((right / block - left / block + 1) * (top / block - bottom / block + 1) > most_blocks) return false;
+  constexpr int max_blocks = 1024;
+  if ((right / block - left / block + 1) * (top / block - bottom / block + 1) > max_blocks) return false;
   // A linear function a · x + b · y + c at the centre of the sample in column x, row y of the rectangle.
   struct Linear {
     double a, b, c;

@@ -78,7 +78,7 @@ std::optional<Decision> decide_node_frames(const FrameFacts& facts) {
   return Decision{true, fmt::format("{} decoders or orientations in view", count)};
 }
 
-std::optional<Decision> decide_turned_rays(const FrameFacts& facts) {
+std::optional<Decision> decide_rotated_rays(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   if (!facts.plan.uses_view_direction) return Decision{false, "no decoder in view depends on the view direction"};
   if (facts.rotated_draws == 0) return Decision{false, "no triangle was rotated relative to its object"};
@@ -98,6 +98,6 @@ const Effect effects::geometry{"geometry", Effect::Kind::colors, decide, execute
 const Effect effects::supersampling{"supersampling", Effect::Kind::colors, decide_supersampling};
 const Effect effects::view_direction{"view direction", Effect::Kind::colors, decide_view_direction};
 const Effect effects::node_frames{"node frames", Effect::Kind::colors, decide_node_frames};
-const Effect effects::rotated_rays{"turned rays", Effect::Kind::colors, decide_turned_rays};
+const Effect effects::rotated_rays{"turned rays", Effect::Kind::colors, decide_rotated_rays};
 
 }  // namespace rebake

@@ -77,10 +77,10 @@ struct Candidate {
 // Whether visibility from one camera predicts visibility from another.
 bool is_near(const Camera& a, const Camera& b) {
   const Vec3 to_a = a.target - a.eye, to_b = b.target - b.eye;
-  constexpr double most_turned = 0.9;  // cosine of the angle: 26°
-  constexpr double most_moved = 0.25;  // share of the distance to the target
-  return to_a.dot(to_b) > most_turned * to_a.norm() * to_b.norm() &&
-         (a.eye - b.eye).norm() < most_moved * std::max(to_a.norm(), to_b.norm()) &&
+  constexpr double max_turned = 0.9;  // cosine of the angle: 26°
+  constexpr double max_moved = 0.25;  // share of the distance to the target
+  return to_a.dot(to_b) > max_turned * to_a.norm() * to_b.norm() &&
+         (a.eye - b.eye).norm() < max_moved * std::max(to_a.norm(), to_b.norm()) &&
          a.orthographic() == b.orthographic();
 }
 
@@ -109,9 +109,9 @@ struct Set {
   std::vector<std::uint8_t>* flags;
 };
 
-class Frame {
+class TwoPassCulling {
  public:
-  Frame(const PassInput& input, const std::function<const gl::Program&(const Draw&)>& use)
+  TwoPassCulling(const PassInput& input, const std::function<const gl::Program&(const Draw&)>& use)
       : input_(input), use_(use), state_(*input.state.occlusion), side_(input.plan.view.side()) {
     const PixelRect& covered = input.plan.covered;
     rect_ = {covered.left * side_, (input.plan.view.height - covered.bottom) * side_, covered.right * side_,
@@ -152,7 +152,7 @@ class Frame {
     OcclusionState::CameraVisibility& memory = state_.visibilities.back();
     // Nothing has changed: draws the triangles that the test per sample found visible.
     if (memory.known) {
-      gather(OcclusionState::close);
+      upload_faces_with(OcclusionState::close);
       draw_gathered();
       counts() = memory.counts;
       state_.blocks = memory.blocks;
@@ -160,7 +160,7 @@ class Frame {
     }
     counts() = {};
     std::vector<Candidate> candidates;
-    timed([&] { candidates = in_view(); });
+    timed([&] { candidates = frustum_cull(); });
     bool remembered = false;
     for (const Candidate& c : candidates)
       for_faces(c, [&](std::uint32_t, std::uint8_t& flags) {
@@ -172,14 +172,14 @@ class Frame {
     if (!remembered)
       for (const Candidate& c : candidates)
         for_faces(c, [](std::uint32_t, std::uint8_t& flags) { flags |= OcclusionState::pending; });
-    const std::size_t first = gather(OcclusionState::pending).back();
+    const std::size_t first = upload_faces_with(OcclusionState::pending).back();
     draw_gathered();
     glFinish();  // so that the measured time excludes drawing
     timed([&] {
       read_depth();
-      look(candidates);
+      test_candidates(candidates);
     });
-    const std::size_t missing = gather(OcclusionState::pending).back();
+    const std::size_t missing = upload_faces_with(OcclusionState::pending).back();
     bool any_tie_found = false;
     if (missing > 0 && missing <= first / missing_ratio) {
       timed([&] { any_tie_found = any_depth_tie(); });
@@ -188,7 +188,7 @@ class Frame {
     counts().triangles_drawn = first + missing;
     // Draws all visible triangles again, in scene order. If many were missing, this is faster than a test for ties.
     if (any_tie_found || missing > first / missing_ratio) {
-      gather(OcclusionState::shown);
+      upload_faces_with(OcclusionState::shown);
       clear();
       draw_gathered();
       counts().drawn_again = true;
@@ -253,7 +253,7 @@ class Frame {
     }
   }
 
-  std::vector<Candidate> in_view() {
+  std::vector<Candidate> frustum_cull() {
     std::vector<Candidate> candidates;
     for (std::size_t s = 0; s < sets_.size(); ++s) {
       const std::vector<FaceCluster>& clusters = sets_[s].mesh->nearby.clusters;
@@ -296,7 +296,7 @@ class Frame {
   }
 
   // Tests candidates against the Hi-Z pyramid. Visible triangles become `shown`, and `pending` if not drawn yet.
-  void look(const std::vector<Candidate>& candidates) {
+  void test_candidates(const std::vector<Candidate>& candidates) {
     using Where = ScreenBounds::Where;
     const bool closely = tests_per_sample();
     tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
@@ -323,7 +323,7 @@ class Frame {
   }
 
   // Uploads the indices of faces with a flag, in scene order. Returns offsets: 0, then the end of each set.
-  const std::vector<std::size_t>& gather(std::uint8_t flag) {
+  const std::vector<std::size_t>& upload_faces_with(std::uint8_t flag) {
     ends_.assign(1, 0);
     indices_.clear();
     for (const Set& set : sets_) {
@@ -396,11 +396,11 @@ class Frame {
       TieQueryScope(const TieQueryScope&) = delete;
       TieQueryScope& operator=(const TieQueryScope&) = delete;
       bool ended = false;
-    } quiet(static_cast<GLenum>(function));
+    } tie_query(static_cast<GLenum>(function));
     draw_gathered();
-    quiet.end();
+    tie_query.end();
     GLuint any = 0;
-    glGetQueryObjectuiv(quiet.query, GL_QUERY_RESULT, &any);
+    glGetQueryObjectuiv(tie_query.query, GL_QUERY_RESULT, &any);
     return any != 0;
   }
 
@@ -422,7 +422,7 @@ void draw_sets(const PassInput& input, const std::function<const gl::Program&(co
   clear();
   if (input.plan.runs(effects::occlusion)) {
     if (!input.state.occlusion) input.state.occlusion = std::make_shared<OcclusionState>();
-    Frame(input, use).draw(clear);
+    TwoPassCulling(input, use).draw(clear);
     return;
   }
   draw_all_sets(input, use);

@@ -172,7 +172,7 @@ std::string light_preamble(const Draw& draw) {
                      !draw.light                  ? 0
                      : draw.light->offset.empty() ? 1
                                                   : 2,
-                     draw.light && draw.light->gloss ? 1 : 0, Gloss::most_suns);
+                     draw.light && draw.light->gloss ? 1 : 0, Gloss::max_suns);
 }
 
 namespace {
@@ -234,14 +234,14 @@ void bind_gloss(const GpuLight& light, const Gloss& gloss, const gl::Program& pr
       sky[k][c] = static_cast<float>(harmonic_constants[k] *
                                      gloss.sky[static_cast<std::size_t>(c)][static_cast<Eigen::Index>(k)]);
   glUniform3fv(location(program, "gloss_sky"), sh::count, glm::value_ptr(sky[0]));
-  std::array<glm::vec3, Gloss::most_suns> directions{}, lights{};
+  std::array<glm::vec3, Gloss::max_suns> directions{}, lights{};
   for (std::size_t k = 0; k < gloss.suns.size(); ++k)
     for (int c = 0; c < 3; ++c) {
       directions[k][c] = static_cast<float>(gloss.suns[k].direction[c]);
       lights[k][c] = static_cast<float>(gloss.suns[k].irradiance[c]);
     }
-  glUniform3fv(location(program, "gloss_sun_direction"), Gloss::most_suns, glm::value_ptr(directions[0]));
-  glUniform3fv(location(program, "gloss_sun_light"), Gloss::most_suns, glm::value_ptr(lights[0]));
+  glUniform3fv(location(program, "gloss_sun_direction"), Gloss::max_suns, glm::value_ptr(directions[0]));
+  glUniform3fv(location(program, "gloss_sun_light"), Gloss::max_suns, glm::value_ptr(lights[0]));
   set_uniform(program, "gloss_sun_count", static_cast<int>(gloss.suns.size()));
   set_uniform(program, "gloss_sharpness", static_cast<float>(gloss.sharpness));
 }

@@ -15,7 +15,7 @@ constexpr double roundings = 16;
 // Displacement of a corner in samples when it is snapped to the grid of 1/256, with a margin.
 constexpr double snapping = 1.0 / 128;
 // Height of a triangle in samples below which its depth is rounding noise.
-constexpr double thinnest = 1.0 / 32;
+constexpr double min_reliable_height = 1.0 / 32;
 
 }  // namespace
 
@@ -53,26 +53,26 @@ ScreenBounds ScreenBounder::covered(double left, double bottom, double right, do
 
 ScreenBounds ScreenBounder::box(const Box& box) const {
   ScreenBounds bounds;
-  unsigned beyond = ~0U;
+  unsigned outcode = ~0U;
   std::array<Eigen::Vector4d, 8> clip;
-  const Eigen::Vector4d room = clip_error_.array() + clip_error_.w();
-  double least_w = std::numeric_limits<double>::infinity();
+  const Eigen::Vector4d margin = clip_error_.array() + clip_error_.w();
+  double min_w = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 8; ++k) {
     const Eigen::Vector4d c = to_clip_ * box.corner(static_cast<Box::CornerType>(k)).homogeneous();
     const double depth = c.z() * factor_ + c.w() * offset_;
-    beyond &= (c.x() < -c.w() - room.x() ? 1U : 0U) | (c.x() > c.w() + room.x() ? 2U : 0U) |
-              (c.y() < -c.w() - room.y() ? 4U : 0U) | (c.y() > c.w() + room.y() ? 8U : 0U) |
-              (depth < -room.z() ? 16U : 0U) | (depth > c.w() + room.z() ? 32U : 0U);
-    if (!(c.w() >= least_w)) least_w = c.w();
+    outcode &= (c.x() < -c.w() - margin.x() ? 1U : 0U) | (c.x() > c.w() + margin.x() ? 2U : 0U) |
+               (c.y() < -c.w() - margin.y() ? 4U : 0U) | (c.y() > c.w() + margin.y() ? 8U : 0U) |
+               (depth < -margin.z() ? 16U : 0U) | (depth > c.w() + margin.z() ? 32U : 0U);
+    if (!(c.w() >= min_w)) min_w = c.w();
     clip[static_cast<std::size_t>(k)] = c;
   }
   // Frustum culling: all corners are beyond one plane.
-  if (beyond != 0) {
+  if (outcode != 0) {
     bounds.where = ScreenBounds::Where::outside;
     return bounds;
   }
   // Behind the eye, or so close that rounding errors dominate.
-  if (!(least_w > 64 * clip_error_.w())) return bounds;
+  if (!(min_w > 64 * clip_error_.w())) return bounds;
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const Eigen::Vector4d& c : clip) {
     const Vec3 at = c.head<3>() / c.w();
@@ -81,7 +81,7 @@ ScreenBounds ScreenBounder::box(const Box& box) const {
   }
   if (!(low.allFinite() && high.allFinite())) return bounds;
   const Vec3 largest = low.cwiseAbs().cwiseMax(high.cwiseAbs());
-  const Vec3 error = (clip_error_.head<3>() + largest * clip_error_.w()) / least_w +
+  const Vec3 error = (clip_error_.head<3>() + largest * clip_error_.w()) / min_w +
                      float_rounding * roundings * (largest + Vec3(1, 1, std::abs(offset_)));
   const Vec3 half(half_width_, half_height_, 0);
   const Vec3 room_on_screen = error.cwiseProduct(half).array() + snapping;
@@ -99,7 +99,7 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
               abs_offset = std::abs(offset);
   const float half_width = number(half_width_), half_height = number(half_height_);
   const float ex = number(clip_error_.x()), ey = number(clip_error_.y()), ez = number(clip_error_.z()),
-              ew = number(clip_error_.w()), least_sound = 64 * ew, rounding = number(float_rounding * roundings);
+              ew = number(clip_error_.w()), min_reliable_w = 64 * ew, rounding = number(float_rounding * roundings);
   const Eigen::Matrix4f& m = centred_;
   const float rect_left = number(rect_.left), rect_right = number(rect_.right), rect_bottom = number(rect_.bottom),
               rect_top = number(rect_.top);
@@ -108,9 +108,9 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
                 static_cast<int>(ScreenBounds::Where::inside) == anywhere - 1);
   auto &x = bounds.x, &y = bounds.y, &z = bounds.z;
   float w[count], edges[4][count], extent[count];
-  std::int32_t beyond[count];
+  std::int32_t outcode[count];
   for (std::size_t k = 0; k < count; ++k) {
-    beyond[k] = 63;
+    outcode[k] = 63;
     w[k] = std::numeric_limits<float>::infinity();
     extent[k] = 0;
   }
@@ -125,15 +125,15 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
       const float cz = m(2, 0) * px[k] + m(2, 1) * py[k] + m(2, 2) * pz[k] + m(2, 3);
       const float cw = m(3, 0) * px[k] + m(3, 1) * py[k] + m(3, 2) * pz[k] + m(3, 3);
       const float depth = cz * factor + cw * offset;
-      beyond[k] &= static_cast<std::int32_t>(cx < -cw - x_room) | static_cast<std::int32_t>(cx > cw + x_room) << 1 |
-                   static_cast<std::int32_t>(cy < -cw - y_room) << 2 |
-                   static_cast<std::int32_t>(cy > cw + y_room) << 3 | static_cast<std::int32_t>(depth < -z_room) << 4 |
-                   static_cast<std::int32_t>(depth > cw + z_room) << 5;
+      outcode[k] &= static_cast<std::int32_t>(cx < -cw - x_room) | static_cast<std::int32_t>(cx > cw + x_room) << 1 |
+                    static_cast<std::int32_t>(cy < -cw - y_room) << 2 |
+                    static_cast<std::int32_t>(cy > cw + y_room) << 3 | static_cast<std::int32_t>(depth < -z_room) << 4 |
+                    static_cast<std::int32_t>(depth > cw + z_room) << 5;
       w[k] = cw < w[k] ? cw : w[k];
-      const float over_w = 1 / cw;
-      x[c][k] = cx * over_w;
-      y[c][k] = cy * over_w;
-      z[c][k] = cz * over_w;
+      const float inverse_w = 1 / cw;
+      x[c][k] = cx * inverse_w;
+      y[c][k] = cy * inverse_w;
+      z[c][k] = cz * inverse_w;
       // Not finite if any coordinate is NaN or infinite.
       extent[k] += std::abs(x[c][k]) + std::abs(y[c][k]) + std::abs(z[c][k]);
     }
@@ -144,12 +144,13 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
     const float x0 = least(least(x[0][k], x[1][k]), x[2][k]), x1 = most(most(x[0][k], x[1][k]), x[2][k]);
     const float y0 = least(least(y[0][k], y[1][k]), y[2][k]), y1 = most(most(y[0][k], y[1][k]), y[2][k]);
     const float z0 = least(least(z[0][k], z[1][k]), z[2][k]), z1 = most(most(z[0][k], z[1][k]), z[2][k]);
-    const float over_w = 1 / w[k];
+    const float inverse_w = 1 / w[k];
     const float x_error =
-        ((ex + most(-x0, x1) * ew) * over_w + rounding * (most(-x0, x1) + 1)) * half_width + number(snapping);
+        ((ex + most(-x0, x1) * ew) * inverse_w + rounding * (most(-x0, x1) + 1)) * half_width + number(snapping);
     const float y_error =
-        ((ey + most(-y0, y1) * ew) * over_w + rounding * (most(-y0, y1) + 1)) * half_height + number(snapping);
-    const float z_error = ((ez + most(-z0, z1) * ew) * over_w + rounding * (most(-z0, z1) + abs_offset)) * abs_factor;
+        ((ey + most(-y0, y1) * ew) * inverse_w + rounding * (most(-y0, y1) + 1)) * half_height + number(snapping);
+    const float z_error =
+        ((ez + most(-z0, z1) * ew) * inverse_w + rounding * (most(-z0, z1) + abs_offset)) * abs_factor;
     // Bounds of sample indices as floats, with sample centres at integers: below, the first two are rounded up, and the
     // last two are rounded down minus 1. They are clamped to at least 0 before, so that truncation rounds down.
     edges[0][k] = (x0 + 1) * half_width - x_error - 0.5F;
@@ -164,7 +165,7 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
     const float area = std::abs(abx * acy - aby * acx);
     const float longest = most(most(abx * abx + aby * aby, acx * acx + acy * acy), bcx * bcx + bcy * bcy);
     const float shift = x_error + y_error;
-    const float lowest = most(number(thinnest), 4 * shift);
+    const float lowest = most(number(min_reliable_height), 4 * shift);
     const float slope = (std::abs(aby * acz - abz * acy) + std::abs(abz * acx - abx * acz)) / area;
     const float near_end = most(z0 * factor, z1 * factor) + offset + slope * shift + 2 * z_error;
     bounds.moved[k] = shift;
@@ -191,12 +192,12 @@ void ScreenBounder::triangles(const ClusterCorners& corners, ClusterBounds& boun
   }
   for (std::size_t k = 0; k < count; ++k) {
     // Comparisons with NaN are false, so that NaN is never sound.
-    const std::int32_t sound = static_cast<std::int32_t>(w[k] > least_sound) &
-                               static_cast<std::int32_t>(extent[k] < std::numeric_limits<float>::infinity());
-    const std::int32_t none = static_cast<std::int32_t>(beyond[k] != 0) |
-                              (sound & (static_cast<std::int32_t>(bounds.left[k] > bounds.right[k]) |
-                                        static_cast<std::int32_t>(bounds.bottom[k] > bounds.top[k])));
-    bounds.where[k] = (1 - none) * (anywhere - sound);
+    const std::int32_t reliable = static_cast<std::int32_t>(w[k] > min_reliable_w) &
+                                  static_cast<std::int32_t>(extent[k] < std::numeric_limits<float>::infinity());
+    const std::int32_t none = static_cast<std::int32_t>(outcode[k] != 0) |
+                              (reliable & (static_cast<std::int32_t>(bounds.left[k] > bounds.right[k]) |
+                                           static_cast<std::int32_t>(bounds.bottom[k] > bounds.top[k])));
+    bounds.where[k] = (1 - none) * (anywhere - reliable);
   }
 }
 

@@ -35,7 +35,7 @@ Model courtyard() {
       const double x = std::fmod(u * 5, 1.0) - 0.5, y = v - 0.5;
       return !(std::abs(x) < 0.32 && (y < 0 || x * x / (0.32 * 0.32) + y * y / 0.09 < 1));
     };
-    wall.thin = true;
+    wall.two_sided = true;
     m.patches.push_back(wall);
   }
   m.patches.push_back({"fountain rim", revolved([](double v) -> Vec2 {

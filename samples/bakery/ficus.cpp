@@ -26,7 +26,7 @@ Patch leaf(const std::string& name, const Vec3& root, const Vec3& along, double 
   p.name = name;
   p.columns = 2;
   p.rows = 3;
-  p.thin = true;
+  p.two_sided = true;
   p.point = [=](double u, double v) -> Vec3 {
     const double x = u - 0.5;
     return root + axis * (length * v) + side * (0.62 * length * x) + up * (length * (0.35 * x * x - 0.22 * v * v));
@@ -92,7 +92,7 @@ Model ficus() {
   leaves_along(trunk_at, 0.62, 1.0, 34, 0.30);
   leaves_along(branch_at, 0.25, 1.0, 32, 0.27);
   leaves_along(short_branch_at, 0.3, 1.0, 20, 0.27);
-  m.camera = around({0.12, -0.1, 0}, 3.6, 5, 70);
+  m.camera = orbit_cameras({0.12, -0.1, 0}, 3.6, 5, 70);
   return m;
 }
 

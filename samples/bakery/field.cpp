@@ -140,10 +140,10 @@ class RadianceField::Impl {
         for (int i = 0; i <= grid.columns; ++i) {
           const double u = static_cast<double>(i) / grid.columns, v = static_cast<double>(j) / grid.rows;
           const Vec3 p = grid.patch->point(u, v), n = grid.normal(u, v);
-          const double clearance = grid.patch->clearance > 0 ? grid.patch->clearance : offset_;
-          Light light = gather(p, n, clearance);
-          if (grid.patch->thin) {
-            const Light other = gather(p, -n, clearance);
+          const double ray_offset = grid.patch->ray_offset > 0 ? grid.patch->ray_offset : offset_;
+          Light light = gather(p, n, ray_offset);
+          if (grid.patch->two_sided) {
+            const Light other = gather(p, -n, ray_offset);
             light.irradiance = 0.6 * light.irradiance + 0.4 * other.irradiance;
             light.sun = std::max(light.sun, other.sun);
           }
@@ -167,7 +167,7 @@ class RadianceField::Impl {
     if (patch.name == "backdrop") out = patch.albedo(u, v, p);
     if (patch.reflectance > 0) {
       Vec3 n = grid.normal(u, v);
-      if (patch.thin && n.dot(direction) > 0) n = -n;
+      if (patch.two_sided && n.dot(direction) > 0) n = -n;
       const double facing = std::clamp(-n.dot(direction), 0.0, 1.0);
       const double fresnel = patch.reflectance + (0.6 - patch.reflectance) * std::pow(1 - facing, 5);
       const Vec3 mirrored = direction - 2 * n.dot(direction) * n;
@@ -178,7 +178,7 @@ class RadianceField::Impl {
   }
 
   const Grid& grid(std::size_t k) const { return grids_[k]; }
-  double clearance() const { return offset_; }
+  double ray_offset() const { return offset_; }
 
   bool occluded(const Vec3& from, const Vec3& direction, double distance) const {
     RTCIntersectContext context;
@@ -241,10 +241,10 @@ class RadianceField::Impl {
   }
 
  private:
-  Light gather(const Vec3& p, const Vec3& n, double clearance) const {
+  Light gather(const Vec3& p, const Vec3& n, double ray_offset) const {
     Light light;
     const Mat3 frame = basis(n);
-    const Vec3 from = p + clearance * n;
+    const Vec3 from = p + ray_offset * n;
     for (int k = 0; k < sky_rays; ++k) {
       // Cosine-weighted Fibonacci points of the hemisphere.
       const double r2 = (k + 0.5) / sky_rays, phi = 2 * pi * std::fmod(k * 0.6180339887498949, 1.0), r = std::sqrt(r2);
@@ -291,7 +291,7 @@ Vec3 RadianceField::irradiance(std::size_t patch, double u, double v) const {
 bool RadianceField::visible(const Vec3& eye, std::size_t patch, double u, double v) const {
   return impl_->visible(eye, patch, u, v);
 }
-double RadianceField::clearance() const { return impl_->clearance(); }
+double RadianceField::ray_offset() const { return impl_->ray_offset(); }
 Image RadianceField::trace(const Camera& camera, int width, int height) const {
   return impl_->trace(camera, width, height, [this](std::size_t patch, double u, double v, const Vec3& direction) {
     return color(patch, u, v, direction);

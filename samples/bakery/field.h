@@ -28,7 +28,7 @@ class RadianceField {
   /// Visible shares of the sky and of the sun at a patch's point, 0 … 1.
   std::array<double, 2> openness(std::size_t patch, double u, double v) const;
   /// Height above surfaces at which light rays start if Patch::clearance is 0.
-  double clearance() const;
+  double ray_offset() const;
   /// Irradiance / π at a patch's point, linear.
   Vec3 irradiance(std::size_t patch, double u, double v) const;
   /// Whether nothing opaque is between the eye and a patch's point.

@@ -80,7 +80,7 @@ Model kettle() {
         return v > 0.3 && v < 0.7 ? Vec3(Vec3(0.35, 0.2, 0.1) * (0.7 + 0.6 * noise(p * 20))) : Vec3(0.2, 0.2, 0.2);
       },
       0.05, 10);
-  m.camera = around({0.1, 0.1, 0}, 3.2, 0, 70);
+  m.camera = orbit_cameras({0.1, 0.1, 0}, 3.2, 0, 70);
   return m;
 }
 

@@ -133,14 +133,14 @@ struct Sums {
   std::vector<double> still[2];                            // errors of the other pixels: known light, estimated light
 
   double rms(double sum) const { return changed > 0 ? std::sqrt(sum / 3 / static_cast<double>(changed)) : 0; }
-  static double most_of_99(std::vector<double> values) {
+  static double max_of_99(std::vector<double> values) {
     if (values.empty()) return 0;
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
     std::nth_element(values.begin(), at, values.end());
     return *at;
   }
-  double still_known() const { return most_of_99(still[0]); }
-  double still_estimated() const { return most_of_99(still[1]); }
+  double still_known() const { return max_of_99(still[0]); }
+  double still_estimated() const { return max_of_99(still[1]); }
 
   void add(const Image& carried, const Image& relit, const Image& by_rule, const Image& plain, const Image& by_known,
            const Image& by_estimate) {
@@ -195,7 +195,7 @@ Case bent_ficus(const Scene& ficus_scene, const RadianceField& rest, const Model
   c.name = fmt::format("branch bent by {}°", degrees);
   const auto warp = [=](std::size_t patch, const Vec3& p) -> Vec3 { return bends[patch] ? deform(form, p).point : p; };
   c.edited = warped(model, warp);
-  for (Patch& patch : c.edited.patches) patch.clearance = rest.clearance();
+  for (Patch& patch : c.edited.patches) patch.ray_offset = rest.ray_offset();
   c.carried = [=, &rest, &model](std::size_t patch, double u, double v, const Vec3& d) {
     if (!bends[patch]) return rest.color(patch, u, v, d);
     const Mat3 turn = orthogonal_factor(deform(form, model.patches[patch].point(u, v)).jacobian);
@@ -239,7 +239,7 @@ Case cut_ficus(const Scene& ficus_scene, const RadianceField& rest, const Model&
   c.edited = model;
   c.edited.patches.clear();
   for (const std::size_t p : kept) c.edited.patches.push_back(model.patches[p]);
-  for (Patch& patch : c.edited.patches) patch.clearance = rest.clearance();
+  for (Patch& patch : c.edited.patches) patch.ray_offset = rest.ray_offset();
   c.carried = [=, &rest](std::size_t patch, double u, double v, const Vec3& d) {
     return rest.color(kept[patch], u, v, d);
   };
@@ -271,9 +271,9 @@ Case beside(const std::string& name, const Scene& first_scene, const RadianceFie
   c.name = name;
   c.edited = first;
   const Model moved = warped(second, [=](std::size_t, const Vec3& p) -> Vec3 { return motion * p; });
-  for (Patch& patch : c.edited.patches) patch.clearance = first_field.clearance();
+  for (Patch& patch : c.edited.patches) patch.ray_offset = first_field.ray_offset();
   for (Patch patch : moved.patches) {
-    patch.clearance = second_field.clearance() * std::cbrt(std::abs(motion.linear().determinant()));
+    patch.ray_offset = second_field.ray_offset() * std::cbrt(std::abs(motion.linear().determinant()));
     c.edited.patches.push_back(std::move(patch));
   }
   const std::size_t count = first.patches.size();
@@ -398,7 +398,7 @@ int main(int argc, char** argv) {
     place.translation() = Vec3(1.5, 0.25, 1.5);
     measure(renderer,
             beside("kettle in the courtyard", baked_with(yard, yard.sun), yard_field, yard, baked_with(pot, yard.sun),
-                   lit_field, lit_pot, place, four_cameras(around({1.4, 0.2, 1.4}, 1.5, 25, 60))),
+                   lit_field, lit_pot, place, four_cameras(orbit_cameras({1.4, 0.2, 1.4}, 1.5, 25, 60))),
             yard, out, 4);
     return 0;
   } catch (const rebake::Error& error) {

@@ -59,7 +59,8 @@ Model warped(const Model& model, const std::function<Vec3(std::size_t, const Vec
   return result;
 }
 
-std::function<Camera(double, double)> around(const Vec3& target, double distance, double lowest, double highest) {
+std::function<Camera(double, double)> orbit_cameras(const Vec3& target, double distance, double lowest,
+                                                    double highest) {
   return [=](double s, double t) {
     const double elevation = (lowest + (highest - lowest) * t) * pi / 180, azimuth = 2 * pi * s;
     Camera camera;

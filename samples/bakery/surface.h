@@ -17,9 +17,10 @@ struct Patch {
   std::function<Vec3(double u, double v, const Vec3& point)> albedo;  ///< linear albedo
   std::function<bool(double u, double v)> opaque = [](double, double) { return true; };
   double reflectance = 0;  ///< reflectance at normal incidence; 0: matte
-  double sharpness = 20;   ///< exponent of the highlight
-  bool thin = false;       ///< whether both sides are seen and lit, as those of a leaf
-  double clearance = 0;    ///< height above the surface at which light rays start; 0: RadianceField::clearance()
+  double sharpness = 20;   ///< Phong exponent
+  bool two_sided = false;  ///< rendered and lit from both sides, such as a leaf
+  double ray_offset =
+      0;  ///< offset of shadow-ray origins along the normal, in scene units; 0: RadianceField::clearance()
 };
 
 /// A procedural model that a sample scene is baked from.
@@ -46,7 +47,7 @@ std::function<Vec3(double, double)> plane(const Vec3& corner, const Vec3& along_
 double noise(const Vec3& p);
 
 /// Cameras at `distance` from `target`: s is the azimuth, t the elevation between `lowest` and `highest`, in degrees.
-std::function<Camera(double, double)> around(const Vec3& target, double distance, double lowest, double highest);
+std::function<Camera(double, double)> orbit_cameras(const Vec3& target, double distance, double lowest, double highest);
 
 /// The model with its surfaces moved by `warp(patch, point)`; albedos move with them.
 Model warped(const Model& model, const std::function<Vec3(std::size_t patch, const Vec3& point)>& warp);

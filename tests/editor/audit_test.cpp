@@ -112,7 +112,7 @@ double left_out_within_bounds(const Scene& edited, double budget, const std::vec
   static InMemoryResults results;  // cache of traced light, shared by all cases
   static Renderer renderer;
   // A coarse light chart, for speed; bounds and light use the same nodes.
-  LightingOptions options{.rays = 64, .spacing = 8, .most_nodes = 6000, .results = &results};
+  LightingOptions options{.rays = 64, .spacing = 8, .max_nodes = 6000, .results = &results};
   const Scene scene = with(edited, {{{"op", "light"}, {"source", "sky"}, {"budget", budget}}});
   const Lighting planned = lighting_of(scene, options);
   options.everything = true;
@@ -128,7 +128,7 @@ double left_out_within_bounds(const Scene& edited, double budget, const std::vec
     const double allowed = (planned.left_out + plan(scene, view, {}, nullptr, &planned).left_out) * 255 + 1;
     const Difference off = compare(renderer.render(scene, view, {}, &planned),
                                    renderer.render(scene, view, all, &everything), static_cast<int>(allowed));
-    EXPECT_LE(off.share_beyond, planned.estimated ? Lighting::most_beyond : 0)
+    EXPECT_LE(off.share_beyond, planned.estimated ? Lighting::max_beyond : 0)
         << "budget " << budget << ", pixel " << off.x << ", " << off.y << ": " << off.largest << " of " << allowed;
   }
   return planned.left_out;
@@ -142,10 +142,10 @@ TEST_P(Audit, OmittedEffectsStayWithinBounds) {
   static const Scene before = samples();
   const Scene edited = with(before, GetParam().edits);
   const std::vector<View> views{view_from({2.5, 2, 3}), view_from({-3, 1, 1}), view_from({0.5, -1, -3.5})};
-  double most_left_out = 0;
+  double max_left_out = 0;
   for (const double budget : is_deep ? std::vector{1.0, 6.0, 40.0} : std::vector{6.0, 40.0})
-    most_left_out = std::max(most_left_out, left_out_within_bounds(edited, budget, views));
-  EXPECT_EQ(most_left_out > 0, GetParam().leaves_out) << "this case must omit an effect if and only if it is marked so";
+    max_left_out = std::max(max_left_out, left_out_within_bounds(edited, budget, views));
+  EXPECT_EQ(max_left_out > 0, GetParam().leaves_out) << "this case must omit an effect if and only if it is marked so";
 }
 
 // Random scenes for the audit: one sample or both, with one to four edits that move, remove or add something.

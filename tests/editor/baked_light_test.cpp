@@ -178,7 +178,8 @@ TEST_F(DocumentTest, ReadsExtremeBakedGeometryAndRejectsInvalid) {
   };
   EXPECT_TRUE(refused("bodies", [](json& node) { node["bodies"] = {{"a", node["bodies"][0]}}; }));
   EXPECT_TRUE(refused("bodies", [](json& node) { node["bodies"] = json::array(); }));
-  EXPECT_TRUE(refused("must be inside the scene's folder", [](json& node) { node["bodies"][0]["folder"] = "../near/table"; }));
+  EXPECT_TRUE(
+      refused("must be inside the scene's folder", [](json& node) { node["bodies"][0]["folder"] = "../near/table"; }));
   EXPECT_TRUE(refused("12 numbers", [](json& node) { node["bodies"][0]["transform"] = {1, 2}; }));
   fs::remove(path("near/table/baked.bin"));
   EXPECT_TRUE(refused("baked.bin", [](json&) {}));

@@ -260,7 +260,8 @@ TEST_F(Cli, RecoverFindsTheMovedSourcesOfAProject) {
 }
 
 TEST_F(Cli, ExportReportsReplacement) {
-  EXPECT_EQ(rebake_run("export " + in("ball") + " -o " + in("out")).text.find("note: the existing folder was replaced"), std::string::npos);
+  EXPECT_EQ(rebake_run("export " + in("ball") + " -o " + in("out")).text.find("note: the existing folder was replaced"),
+            std::string::npos);
   const Outcome again = rebake_run("export " + in("ball") + " -o " + in("out"));
   EXPECT_NE(again.text.find("note: the existing folder was replaced"), std::string::npos) << again.text;
 }

@@ -233,7 +233,7 @@ TEST_F(DeformScript, ScenesStoreRotationsPlainFoldersReportTheLoss) {
   run(R"({"op": "export", "out": "{here}/plain"}
 {"op": "save", "out": "{here}/scene"})");
   EXPECT_NE(said.find("how bends rotate colours: ball"), std::string::npos) << said;
-  EXPECT_NE(said.find("dB PSNR over four sides"), std::string::npos) << said;
+  EXPECT_NE(said.find("dB PSNR over four side views"), std::string::npos) << said;
   run(R"({"op": "remove", "node": "ball"}
 {"op": "import", "path": "{here}/scene", "as": "ball"})");
   EXPECT_GE(compare(picture(), bent, 2).psnr_db, 60) << "positions are written as decimal numbers";
@@ -285,6 +285,17 @@ TEST_F(DeformScript, EmptySphereTakesTheNearestPointIfAllowed) {
   run(R"({"op": "cage", "node": "ball", "lattice": [1, 1, 1], "moves": [{"points": [7], "translate": [0.5, 0, 0]}]})");
   EXPECT_EQ(ball().sets[0].soup.positions(), one)
       << "the nearest cage point is the corner with the greatest x, y and z";
+}
+
+TEST_F(DeformScript, WarnsOfSpinesThatTurnBack) {
+  const auto bend = [&](const char* spine) {
+    said.clear();
+    run(std::string(R"({"op": "bend", "node": "ball", "degrees": 20, "direction": [1, 0, 0], "spine": )") + spine +
+        "}");
+    return said.find("turns by more than 90°") != std::string::npos;
+  };
+  EXPECT_TRUE(bend("[[0, 0, 0], [0, 2, 0], [1, 2, 0], [1, 0, 0]]"));
+  EXPECT_FALSE(bend("[[0, 0, 0], [0, 1, 0], [0.5, 2, 0]]"));
 }
 
 TEST_F(DeformScript, InvalidInputNamesARemedy) {

@@ -364,7 +364,8 @@ TEST_F(DocumentTest, RejectsInvalidJournalsWithReason) {
     document.keep_journal(path("j"));
     for (int k = 0; k < 3; ++k) act(document, R"({"op": "background", "color": [0, 0, 1]})");
     EXPECT_NE(error_of([&] { Document().keep_journal(path("j")); }).find("already exists"), std::string::npos);
-    EXPECT_NE(error_of([&] { Document::recover(path("j")); }).find("is in use by another Rebake process"), std::string::npos);
+    EXPECT_NE(error_of([&] { Document::recover(path("j")); }).find("is in use by another Rebake process"),
+              std::string::npos);
   }
   const auto line = [](const std::string& text) { return hash_text(content_hash(text)) + " " + text + "\n"; };
   says(line(R"({"rebake_journal":4})"), "newer version");
@@ -374,7 +375,8 @@ TEST_F(DocumentTest, LeavesOtherFilesAlone) {
   for (const std::string& bytes :
        {std::string("my shopping list\n"), std::string("0123456789abcdef {\n"), std::string("x")}) {
     write_text(path("notes.txt"), bytes);
-    EXPECT_NE(error_of([&] { Document::recover(path("notes.txt")); }).find("is not a Rebake journal"), std::string::npos);
+    EXPECT_NE(error_of([&] { Document::recover(path("notes.txt")); }).find("is not a Rebake journal"),
+              std::string::npos);
     EXPECT_EQ(read_file(path("notes.txt")), bytes);
   }
   EXPECT_NE(error_of([&] { Document::recover(path("sources")); }).find("not a file"), std::string::npos);
@@ -439,48 +441,6 @@ TEST_F(DocumentTest, RejectsInvalidProjectsWithReason) {
   says(R"({"rebake_project": 1, "edits": []})", "sources");
   says(R"({"rebake_project": 1, "sources": [], "edits": [{"op": "remove", "node": 3}]})", "edit 1: ");
   says(R"({"rebake_project": 1, "sources": [], "edits": [{"op": "render"}]})", "is not an edit");
-}
-
-TEST_F(DocumentTest, MergedNodesKeepTheirSelections) {
-  Document document;
-  import(document);
-  const auto selected_in = [&](const char* name) {
-    const NodePtr node = find(document.scene(), name);
-    return node->selection ? *node->selection : TriangleSet();
-  };
-  act(document, R"({"op": "select", "box": {"min": [-2, -2, -2], "max": [0.3, 2, 2]}})");
-  act(document, R"({"op": "store_selection", "name": "left"})");
-  const TriangleSet stored = selected_in("ball");
-  act(document, R"({"op": "select", "box": {"min": [-2, 0, -2], "max": [2, 2, 2]}})");
-  act(document, R"({"op": "separate", "node": "ball", "as": "part"})");
-  act(document, R"({"op": "duplicate", "node": "part", "as": "copy"})");
-  act(document, R"({"op": "select", "saved": "left"})");
-  const std::size_t in_copy = count(selected_in("copy"));
-  ASSERT_GT(in_copy, 0U);
-  // Merging restores both the live and the stored selection.
-  act(document, R"({"op": "merge", "nodes": ["ball", "part"]})");
-  EXPECT_EQ(selected_in("ball"), stored);
-  act(document, R"({"op": "select", "none": true})");
-  act(document, R"({"op": "select", "saved": "left"})");
-  EXPECT_EQ(selected_in("ball"), stored);
-  act(document, R"({"op": "merge", "nodes": ["copy", "ball"]})");
-  EXPECT_EQ(count(selected_in("copy")), count(stored) + in_copy);
-}
-
-TEST_F(DocumentTest, SeparateThenMergeGivesTheOriginalBytes) {
-  Document document;
-  import(document);
-  const auto bytes = exported(document.scene());
-  act(document, R"({"op": "select", "sphere": {"center": [0, 1, 0], "radius": 0.8}})");
-  act(document, R"({"op": "separate", "node": "ball", "as": "part"})");
-  act(document,
-      R"({"op": "select", "node": "part", "box": {"min": [0, 0, 0], "max": [0.5, 1, 1]}, "frame": "bounds"})");
-  act(document, R"({"op": "separate", "node": "part", "as": "corner"})");
-  EXPECT_NE(exported(find(document.scene(), "ball") ? without(document.scene(), find(document.scene(), "part")->id)
-                                                    : document.scene()),
-            bytes);
-  act(document, R"({"op": "merge", "nodes": ["corner", "ball", "part"], "as": "ball again"})");
-  EXPECT_EQ(exported(document.scene()), bytes);
 }
 
 // A node keeps its name even if a project later finds its folder under another name, through a link or after a move.

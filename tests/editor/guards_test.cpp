@@ -68,6 +68,30 @@ TEST_F(Guards, RejectsProjectOverAnotherJournal) {
   EXPECT_EQ(program("recover {}/other.rebake -o {}/back.rebake"), 0) << log();
 }
 
+TEST_F(Guards, RejectsOutputsOverAnotherRunsJournal) {
+  write("failing.jsonl", import_line() + R"({"op": "remove", "node": "none"})");
+  EXPECT_EQ(program("run {}/failing.jsonl --journal {}/left.journal"), 1);
+  const std::string journal = read_file(path("left.journal"));
+  write("script.jsonl", import_line());
+  EXPECT_EQ(program("run {}/script.jsonl --list-files {}/left.journal"), 1);
+  EXPECT_NE(log().find("may contain unsaved work"), std::string::npos) << log();
+  EXPECT_EQ(read_file(path("left.journal")), journal);
+}
+
+TEST_F(Guards, KeepsDamagedProjectsAndLeftoversThatAreRead) {
+  write("failing.jsonl", import_line() + R"({"op": "remove", "node": "none"})");
+  EXPECT_EQ(program("run {}/failing.jsonl --journal {}/left.journal"), 1);
+  write("damaged.rebake", "{\"rebake_project\": 2, \"edits\": [");
+  EXPECT_EQ(program("recover {}/left.journal -o {}/damaged.rebake --replace"), 1);
+  EXPECT_NE(log().find("damaged project"), std::string::npos) << log();
+  // The leftover of a killed export that the script imports.
+  fs::copy(fs::path(REBAKE_SOURCE) / "samples/scenes/kettle", path(".ex.1234abcd.partial"));
+  write("script.jsonl", import_line() + fmt::format("{{\"op\": \"export\", \"out\": \"{}\"}}\n", path("ex").string()) +
+                            fmt::format("{{\"op\": \"import\", \"path\": \"{}\", \"as\": \"left\"}}\n",
+                                        path(".ex.1234abcd.partial").string()));
+  EXPECT_EQ(program("run {}/script.jsonl"), 0) << log();
+}
+
 TEST_F(Guards, EditFailsWithoutItsJournal) {
   Session session;
   session.document.keep_journal(path("work.journal"));

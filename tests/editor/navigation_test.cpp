@@ -33,23 +33,23 @@ TEST(Navigation, OrbitingKeepsTheDistanceAndStopsAtThePoles) {
 
 TEST(Navigation, FramesTheDenseCentreOfAScene) {
   Scene scene = scene_of(made_object({.columns = 64, .rows = 32}), "thing");
-  const Camera alone = framing_of(scene, 1);
+  const Camera alone = framing_camera(scene, 1);
   Node backdrop;
   backdrop.name = "backdrop";
   backdrop.object = made_object({.columns = 8, .rows = 4, .radius = 50});
   scene = with_added(scene, std::move(backdrop), NodeId::none, 1);
-  const Camera inside = framing_of(scene, 1);
+  const Camera inside = framing_camera(scene, 1);
   EXPECT_LT((inside.eye - inside.target).norm(), 1.1 * (alone.eye - alone.target).norm());
   EXPECT_GT(inside.far_plane, 50) << "the backdrop is drawn";
   // A scene of few triangles has no dense centre.
   const auto two = made_object({.columns = 3, .rows = 1, .radius = 2});
-  EXPECT_GT((framing_of(scene_of(two), 1).eye - framing_of(scene_of(two), 1).target).norm(), 2);
+  EXPECT_GT((framing_camera(scene_of(two), 1).eye - framing_camera(scene_of(two), 1).target).norm(), 2);
   // Two dense objects side by side are both framed.
   const Scene pair = with_changed(scene, placed_nodes(scene)[1].node->id, [](Node& node) {
     node.object = made_object({.columns = 64, .rows = 32});
     node.to_parent.translation() = Vec3(6, 0, 0);
   });
-  const Camera both = framing_of(pair, 1);
+  const Camera both = framing_camera(pair, 1);
   EXPECT_NEAR(both.target.x(), 3, 1e-6);
 }
 

@@ -111,7 +111,7 @@ TEST(Plain, BentBranchReaches46Decibels) {
   PlainReport report;
   const Scene plain = plain_scene(scene, {}, {}, report, {});
   // Same views as for an export without a fit, which has 43.5 dB over all four and 40.8 dB in the worst.
-  const Camera front = framing_of(scene, 1);
+  const Camera front = framing_camera(scene, 1);
   double squares = 0, worst = 100;
   for (int side = 0; side < 4; ++side) {
     View view;

@@ -92,7 +92,7 @@ TEST_F(Robustness, EmptyPicturesHaveAReason) {
   View view;
   view.width = view.height = 64;
   const auto why = [&] {
-    return why_blank(session.scene(), view, session.renderer().render(session.scene(), view))
+    return blank_reason(session.scene(), view, session.renderer().render(session.scene(), view))
         .value_or("it shows something");
   };
   view.camera.eye = {0, 0, 4};
@@ -107,7 +107,8 @@ TEST_F(Robustness, EmptyPicturesHaveAReason) {
   EXPECT_NE(why().find("behind the camera"), std::string::npos) << why();
   view.camera.target = {4, 0, 4};
   view.camera.near_plane = 2;
-  EXPECT_NE(why().find("outside the field of view"), std::string::npos) << "planes that clip nothing must not be named: " << why();
+  EXPECT_NE(why().find("outside the field of view"), std::string::npos)
+      << "planes that clip nothing must not be named: " << why();
   view.camera.near_plane = 0.1;
   view.camera.far_plane = 1e6;
   view.camera.eye = {0, 0, 1e5};

@@ -9,6 +9,7 @@
 #include "editor/edits/edit.h"
 #include "editor/edits/select/selecting.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/index/index.h"
 #include "mesh_ops/mesh/point_triangle.h"
 #include "tests/support/made_scenes.h"
 
@@ -144,6 +145,26 @@ TEST(SelectEdit, OrientationsDifferByAtMost90Degrees) {
   EXPECT_EQ(like(0, 90), 3U);
   EXPECT_EQ(like(0, 89), 1U);
   EXPECT_THROW(like(3, 10), FieldError) << "a degenerate triangle has no plane";
+}
+
+TEST(SelectEdit, TransparentTrianglesDoNotCountInTheMeanColour) {
+  const Scene scene = scene_of(made_object(), "ball");
+  const auto act = [](const Scene& on, const nlohmann::json& line) { return apply(on, read_edit(line, on)).scene; };
+  const Scene erased =
+      act(scene, {{"op", "erase"}, {"node", "ball"}, {"sphere", {{"center", {0, 1, 0}}, {"radius", 0.9}}}});
+  const auto traits = traits_of(*erased.roots[0]->object);
+  std::vector<unsigned> opaque, transparent;
+  for (unsigned f = 0; f < traits->size(); ++f) ((*traits)[f].opacity > 0 ? opaque : transparent).push_back(f);
+  ASSERT_FALSE(transparent.empty());
+  const auto like = [&](const std::vector<unsigned>& picked, const char* field) {
+    const Scene with = act(erased, {{"op", "select_triangles"}, {"node", "ball"}, {"triangles", picked}});
+    return *act(with, {{"op", "select_like"}, {field, 0.05}}).roots[0]->selection;
+  };
+  const unsigned one = opaque.front();
+  for (const char* field : {"color", "features"}) {
+    EXPECT_GE(count(like({one}, field)), 1U);
+    EXPECT_EQ(like({one, transparent.front()}, field), like({one}, field)) << field;
+  }
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ std::size_t differing(const Image& a, const Image& b) {
 }
 
 // Of 25,600 pixels: at silhouettes, rounding decides whether a sample shows the near or the far triangle.
-constexpr std::size_t most_differing = 4;
+constexpr std::size_t max_differing = 4;
 
 std::string joined(const Report& report) {
   std::string all;
@@ -103,7 +103,7 @@ TEST(Slim, KeepsTrianglesVisibleThroughASmallOpening) {
   const Vec3 middle = soup.positions()[soup.faces()[outer / 2][0]].normalized();
   Renderer renderer;
   const View through = view_from(3 * middle);
-  EXPECT_LE(differing(renderer.render(scene, through), renderer.render(slim, through)), most_differing);
+  EXPECT_LE(differing(renderer.render(scene, through), renderer.render(slim, through)), max_differing);
 }
 
 TEST(Slim, RemovesTheFarSideForLimitedEyes) {
@@ -117,7 +117,7 @@ TEST(Slim, RemovesTheFarSideForLimitedEyes) {
   EXPECT_LT(boxed.scene.roots[0]->object->triangle_count(), all * 6 / 10);
   for (const Vec3& eye : {Vec3(0.4, 0.4, 2.6), Vec3(-0.5, 0, 3.5), Vec3(0, -0.5, 3)})
     EXPECT_LE(differing(renderer.render(scene, view_from(eye)), renderer.render(boxed.scene, view_from(eye))),
-              most_differing);
+              max_differing);
   EXPECT_NE(renderer.render(scene, view_from({0, 0, -3})).rgb, renderer.render(boxed.scene, view_from({0, 0, -3})).rgb)
       << "the far side must be removed";
 
@@ -131,7 +131,7 @@ TEST(Slim, RemovesTheFarSideForLimitedEyes) {
   with_view = apply(with_view, Edit(by_view)).scene;
   EXPECT_LT(with_view.roots[0]->object->triangle_count(), all / 2);
   const View front = view_from({0, 0, 3});
-  EXPECT_LE(differing(renderer.render(scene, front), renderer.render(with_view, front)), most_differing);
+  EXPECT_LE(differing(renderer.render(scene, front), renderer.render(with_view, front)), max_differing);
 }
 
 TEST(Slim, UsesTheAllowedPsnr) {
@@ -196,7 +196,8 @@ TEST(Slim, SimilarPatchesShareTexels) {
   // Patches that differ do not share texels.
   const Scene other = scene_of(made_object({.columns = 16, .rows = 8, .holes = false}));
   edit.psnr = 60;
-  EXPECT_EQ(joined(apply(other, Edit(edit)).report).find("texel patches use those of near-duplicates"), std::string::npos);
+  EXPECT_EQ(joined(apply(other, Edit(edit)).report).find("texel patches use those of near-duplicates"),
+            std::string::npos);
 }
 
 // Surfaces that share texels get light nodes of their own.

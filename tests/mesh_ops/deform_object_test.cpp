@@ -152,7 +152,7 @@ TEST(Deform, CountsFoldsWithoutNaN) {
   form.radians = 4;
   const DeformedObject bent = deformed(*object, Affine::Identity(), all(*object), 0, closed(form));
   EXPECT_GT(bent.report.folded, 0U);
-  EXPECT_LT(bent.report.least_determinant, 0);
+  EXPECT_LT(bent.report.min_determinant, 0);
   EXPECT_GT(count(folded_triangles(*bent.object)), 0U);
   EXPECT_LT(count(folded_triangles(*bent.object)), object->triangle_count());
   // Collapsed to a plane, a line, a point; mirrored.

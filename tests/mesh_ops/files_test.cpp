@@ -306,6 +306,49 @@ TEST(SourceGuard, FollowsLinksToFoldersOfLinks) {
   EXPECT_THROW(guard.check_folder(folder.path() / "a"), FileError);
 }
 
+TEST(SourceGuard, ProtectsLinkTargetsOfReplaceableScenesUntilReplaced) {
+  const TemporaryFolder folder;
+  const fs::path texture = folder.path() / "textures/a.png";
+  fs::create_directories(folder.path() / "scene");
+  fs::create_directories(folder.path() / "textures");
+  std::ofstream(texture) << "texels";
+  fs::create_symlink(texture, folder.path() / "scene/shape0.pngfeat0.png");
+  SourceGuard guard;
+  guard.add_contents(folder.path() / "scene", "a scene that this script reads");
+  EXPECT_THROW(guard.check_file(texture), FileError);
+  EXPECT_NO_THROW(guard.check_folder(folder.path() / "scene"));
+  guard.release_contents(folder.path() / "scene");
+  EXPECT_NO_THROW(guard.check_file(texture));
+}
+
+TEST(SourceGuard, ProtectsObjectsBehindALinkToTheirParent) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "library/ficus");
+  std::ofstream(folder.path() / "library/ficus/mlp.json") << "{}";
+  fs::create_directories(folder.path() / "library/notes");
+  fs::create_directories(folder.path() / "scene");
+  fs::create_directory_symlink(folder.path() / "library", folder.path() / "scene/objects");
+  SourceGuard guard;
+  guard.add(folder.path() / "scene");
+  EXPECT_THROW(guard.check_folder(folder.path() / "library/ficus"), FileError);
+  EXPECT_THROW(guard.check_file(folder.path() / "library/ficus/p.png"), FileError);
+  EXPECT_NO_THROW(guard.check_file(folder.path() / "library/notes/p.png"));
+}
+
+// Photographs beside a scene must not hide its links.
+TEST(SourceGuard, FindsLinksBesideManyFiles) {
+  const TemporaryFolder folder;
+  const fs::path texture = folder.path() / "textures/a.png";
+  fs::create_directories(folder.path() / "textures");
+  std::ofstream(texture) << "texels";
+  fs::create_directories(folder.path() / "scene/frames");
+  for (int k = 0; k < 20100; ++k) std::ofstream(folder.path() / "scene/frames" / std::to_string(k));
+  fs::create_symlink(texture, folder.path() / "scene/shape0.pngfeat0.png");
+  SourceGuard guard;
+  guard.add(folder.path() / "scene");
+  EXPECT_THROW(guard.check_file(texture), FileError);
+}
+
 TEST(SourceGuard, RecognisesMovedSources) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "scene");

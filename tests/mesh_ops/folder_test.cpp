@@ -296,7 +296,8 @@ TEST(Folder, PageSizeRepacksLargerTextures) {
     EXPECT_LE(set.texels->height(), 128);
   }
   ASSERT_FALSE(report.notes.empty());
-  EXPECT_NE(report.notes.front().find("edited texture sets were repacked without"), std::string::npos) << report.notes.front();
+  EXPECT_NE(report.notes.front().find("edited texture sets were repacked without"), std::string::npos)
+      << report.notes.front();
 }
 
 TEST(Folder, EmptyChunksContainADroppedPlaceholder) {

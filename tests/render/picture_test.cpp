@@ -20,8 +20,8 @@ Soup moved_part(const Soup& soup, const std::vector<std::uint8_t>& flags, std::s
   return move_faces(soup, flags, first, motion, orthogonal_factor(motion.linear()));
 }
 
-constexpr double least_psnr_db = 45;
-constexpr double most_beyond = 0.005;
+constexpr double min_psnr_db = 45;
+constexpr double max_beyond = 0.005;
 
 Renderer& renderer() {
   static Renderer one;
@@ -44,11 +44,11 @@ View view_from(const Vec3& eye, int samples = 4) {
 void expect_as_cast(const Scene& scene, const View& view, const RenderOptions& options = {}) {
   const Image drawn = renderer().render(scene, view, options), cast = cast_picture(scene, view);
   const Difference d = compare(drawn, cast, 2);
-  EXPECT_GE(d.psnr_db, least_psnr_db);
-  EXPECT_LE(d.share_beyond, most_beyond);
+  EXPECT_GE(d.psnr_db, min_psnr_db);
+  EXPECT_LE(d.share_beyond, max_beyond);
   // An empty picture would agree with anything.
   EXPECT_NE(std::count(drawn.rgb.begin(), drawn.rgb.end(), drawn.rgb[0]), static_cast<long>(drawn.rgb.size()));
-  if (d.psnr_db < least_psnr_db) {
+  if (d.psnr_db < min_psnr_db) {
     std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
     std::replace(name.begin(), name.end(), '/', '-');
     write_png(drawn, std::filesystem::temp_directory_path() / (name + "-drawn.png"), {});

@@ -44,7 +44,7 @@ int PowerLoss::open(const char* path, int flags, mode_t mode) {
 ssize_t PowerLoss::pwrite(int file, const void* bytes, std::size_t count, off_t at) {
   if (fails()) return -1;
   dirty_.insert(open_[file]);
-  return FileCalls::pwrite(file, bytes, std::min(count, most_), at);
+  return FileCalls::pwrite(file, bytes, std::min(count, max_), at);
 }
 
 int PowerLoss::ftruncate(int file, off_t size) {

@@ -16,7 +16,7 @@ class PowerLoss final : public FileCalls {
   /// Lets call number `nth` (from 0) fail with `error`. Not counted: opening for reading, truncating, closing,
   /// removing.
   void fail_at(int nth, int error);
-  void write_at_most(std::size_t bytes) { most_ = bytes; }
+  void write_at_most(std::size_t bytes) { max_ = bytes; }
 
   /// Violations so far, and files and folders that are not synced yet; empty if there are none.
   std::string violations() const;
@@ -39,7 +39,7 @@ class PowerLoss final : public FileCalls {
   std::map<int, std::string> open_;  ///< paths of open files
   std::set<std::string> dirty_;      ///< files and folders that were changed since they were synced
   std::vector<std::string> log_, violations_;
-  std::size_t renames_ = 0, most_ = ~std::size_t{0};
+  std::size_t renames_ = 0, max_ = ~std::size_t{0};
   int calls_ = 0, fail_at_ = -1, error_ = 0;
 };
 

@@ -90,8 +90,8 @@ DeformSet deform_set(const Scene& scene, const DeformTarget& target) {
 namespace {
 
 std::string in_words(const std::string& name, const DeformationReport& report) {
-  std::string line = fmt::format("{} vertices of \"{}\" deformed, minimum det J {:.3g}", report.points, name,
-                                 report.least_determinant);
+  std::string line =
+      fmt::format("{} vertices of \"{}\" deformed, minimum det J {:.3g}", report.points, name, report.min_determinant);
   if (report.folded > 0)
     line +=
         fmt::format("; {} are folded or collapsed (det J ≤ 0): select_folded selects their triangles", report.folded);

@@ -113,7 +113,7 @@ struct Codec<Cage> {
   static Cage read(const nlohmann::json& value, const Scene& scene);
   static nlohmann::json write(const Cage& value);
 };
-/// Warnings for people if a cage intersects itself, before or after its vertices move to `moved`.
+/// Warnings for users if a cage intersects itself, before or after its vertices move to `moved`.
 std::vector<std::string> cage_warnings(const Cage& cage, const std::vector<Vec3>& moved);
 
 /// The cage around the triangles, in world space. Throws FieldError for contradictory fields, EditError if there is no

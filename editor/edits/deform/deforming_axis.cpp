@@ -7,8 +7,8 @@ namespace rebake {
 namespace {
 
 Outcome with_forms(const Scene& scene, const DeformSet& set, const DeformTarget& target,
-                   const std::vector<ClosedForm>& forms) {
-  return with_deformed(scene, set, target.falloff, [&](const std::vector<Vec3>& points) {
+                   const std::vector<ClosedForm>& forms, const std::vector<std::string>& notes = {}) {
+  const SpaceDeformation deformation = [&](const std::vector<Vec3>& points) {
     DeformedPoints result;
     result.points.resize(points.size());
     result.jacobians.resize(points.size());
@@ -18,7 +18,19 @@ Outcome with_forms(const Scene& scene, const DeformSet& set, const DeformTarget&
       result.jacobians[i] = one.jacobian;
     });
     return result;
-  });
+  };
+  return with_deformed(scene, set, target.falloff, deformation, notes);
+}
+
+// Points are assigned to the segments of a spine by projection, which needs all segments to advance in one direction.
+std::vector<std::string> spine_warnings(const std::vector<Vec3>& spine) {
+  for (std::size_t j = 1; j + 1 < spine.size(); ++j)
+    for (std::size_t k = 0; k < j; ++k)
+      if ((spine[j + 1] - spine[j]).dot(spine[k + 1] - spine[k]) < 0)
+        return {
+            "the spine turns by more than 90°, so parts may be deformed by segments that they do not lie on; use a "
+            "gentler spine, or one edit per part"};
+  return {};
 }
 
 }  // namespace
@@ -37,7 +49,7 @@ Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const D
     form.from = axis.from.value_or(0);
     form.to = axis.to.value_or(length);
     check(form);
-    return with_forms(scene, set, target, along_curve(form, axis.spine.points));
+    return with_forms(scene, set, target, along_curve(form, axis.spine.points), spine_warnings(axis.spine.points));
   }
   if (axis.origin) {
     form.origin = *axis.origin;

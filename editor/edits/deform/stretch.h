@@ -4,12 +4,13 @@
 
 namespace rebake {
 
-/// Stretches triangles along an axis between two limits; parts beyond move rigidly or stay.
+/// Stretches triangles along an axis between two limits; triangles above the upper limit move rigidly; those below the
+/// lower limit stay.
 struct Stretch {
   static constexpr const char* op = "stretch";
   DeformTarget target;
   DeformAxis axis;
-  double factor = 1;  ///< new length between the limits, relative to the present one
+  double factor = 1;  ///< new length between the limits, divided by the current length
 };
 template <>
 const EditType& edit_type<Stretch>();

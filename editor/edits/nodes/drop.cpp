@@ -124,8 +124,8 @@ class Fall {
   double run() {
     lift_ = std::max(0.0, ground_.height - body_.box.min().y());
     bool out = false, lifted = false;
-    for (int round = 0; round < most_rounds && !out; ++round) {
-      progress_.at("lifting out", static_cast<double>(round) / most_rounds);
+    for (int round = 0; round < max_rounds && !out; ++round) {
+      progress_.at("lifting out", static_cast<double>(round) / max_rounds);
       const double more = std::max(penetration(body_, others_, 1), penetration(others_, body_, -1));
       out = more == 0;
       lift_ += more;
@@ -140,7 +140,7 @@ class Fall {
   }
 
  private:
-  static constexpr int most_rounds = 64;
+  static constexpr int max_rounds = 64;
 
   // Height by which the moving body must rise so that the edges of `edges` that now cross `faces` no longer do; 0 if
   // none crosses. `sign`: 1 if the moving body has the edges, -1 if it has the faces.

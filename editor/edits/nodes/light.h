@@ -7,13 +7,15 @@ namespace rebake {
 /// Sets the scene's light: the effects that follow edits (shadows, highlights), and the light source.
 struct LightEdit {
   static constexpr const char* op = "light";
-  std::vector<std::string> effects{"auto"};  ///< auto, self, cast, removed, highlights, match; or none
-  std::string source;                        ///< estimated, uniform, sky or picture; empty: see light_source()
-  double sun_degrees = 5;                    ///< angular radius of the sun
-  double budget = 1;                         ///< allowed error by omitted effects, in 1/255 of display colours
-  std::string picture, content;              ///< environment map: file, and its expected hash (empty: any)
-  double picture_degrees = 0;                ///< rotation of the environment map about the up axis
-  SceneLight light;                          ///< all other settings
+  /// auto, none, or any of: self (shadows of an object on itself), cast (between objects), removed (shadows of removed
+  /// objects), highlights (needs self), match (lights all objects alike).
+  std::vector<std::string> effects{"auto"};
+  std::string source;            ///< estimated, uniform, sky or picture; empty: see light_source()
+  double sun_degrees = 5;        ///< angular radius of the sun
+  double budget = 1;             ///< maximum summed change of display colours by omitted effects, in 1/255
+  std::string picture, content;  ///< environment map: file, and its expected hash (empty: any)
+  double picture_degrees = 0;    ///< rotation of the environment map about the up axis
+  SceneLight light;              ///< all other settings
 
   /// The source; by default picture if there is one, else estimated.
   std::string light_source() const { return !source.empty() ? source : picture.empty() ? "estimated" : "picture"; }

@@ -26,7 +26,7 @@ EyeRegion eyes_for(const PlacedNode& placed, const std::vector<Camera>& cameras,
   EyeRegion eyes;
   eyes.world_to_object = placed.to_world.inverse();
   if (edit.eyes) eyes.box = Box(edit.eyes->min, edit.eyes->max);
-  for (const Camera& camera : cameras) eyes.standpoints.push_back(viewpoint_of(camera, eyes.world_to_object));
+  for (const Camera& camera : cameras) eyes.viewpoints.push_back(viewpoint_of(camera, eyes.world_to_object));
   return eyes;
 }
 

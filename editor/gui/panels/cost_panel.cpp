@@ -54,18 +54,18 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, bool same, 
   ImGui::InvisibleButton("chart", size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, color32(theme().field), px(space::rounding));
-  double least_ms = 1e300, most_ms = 0, least_db = 1e300, most_db = -1e300;
+  double min_ms = 1e300, max_ms = 0, min_db = 1e300, max_db = -1e300;
   for (const Choice& choice : choices) {
-    least_ms = std::min(least_ms, choice.fastest / 1.2);
-    most_ms = std::max(most_ms, choice.slowest * 1.4);
-    least_db = std::min(least_db, choice.decibels - 3);
-    most_db = std::max(most_db, choice.decibels + 3);
+    min_ms = std::min(min_ms, choice.fastest / 1.2);
+    max_ms = std::max(max_ms, choice.slowest * 1.4);
+    min_db = std::min(min_db, choice.decibels - 3);
+    max_db = std::max(max_db, choice.decibels + 3);
   }
   if (choices.empty()) return;
   const float left = px(44), below = px(30), above = px(10), right = px(14);
   const auto place = [&](double ms, double decibels) {
-    const double x = std::log(ms / least_ms) / std::log(most_ms / least_ms);
-    const double y = (decibels - least_db) / std::max(1e-9, most_db - least_db);
+    const double x = std::log(ms / min_ms) / std::log(max_ms / min_ms);
+    const double y = (decibels - min_db) / std::max(1e-9, max_db - min_db);
     return ImVec2{at.x + left + static_cast<float>(x) * (size.x - left - right),
                   at.y + size.y - below - static_cast<float>(y) * (size.y - below - above)};
   };
@@ -73,18 +73,18 @@ void draw_chart(const std::vector<Choice>& choices, ViewState& view, bool same, 
     const ImVec2 extent = ImGui::CalcTextSize(said.c_str());
     list.AddText({where.x - align * extent.x, where.y - extent.y / 2}, color32(theme().muted), said.c_str());
   };
-  for (int tens = static_cast<int>(std::ceil(least_db / 10)); tens * 10 <= most_db; ++tens) {
+  for (int tens = static_cast<int>(std::ceil(min_db / 10)); tens * 10 <= max_db; ++tens) {
     const double db = 10.0 * tens;
-    const ImVec2 p = place(least_ms, db), q = place(most_ms, db);
+    const ImVec2 p = place(min_ms, db), q = place(max_ms, db);
     list.AddLine(p, q, color32(theme().text, 0.12F));
     text({p.x - px(6), p.y}, fmt::format("{:.0f}", db), 1);
   }
-  const int last = static_cast<int>(std::floor(std::log10(most_ms)));
-  for (int power = static_cast<int>(std::floor(std::log10(least_ms))); power <= last; ++power)
+  const int last = static_cast<int>(std::floor(std::log10(max_ms)));
+  for (int power = static_cast<int>(std::floor(std::log10(min_ms))); power <= last; ++power)
     for (const double factor : {1.0, 2.0, 5.0}) {
       const double decade = std::pow(10, power);
-      if (decade * factor < least_ms || decade * factor > most_ms) continue;
-      const ImVec2 p = place(decade * factor, least_db), q = place(decade * factor, most_db);
+      if (decade * factor < min_ms || decade * factor > max_ms) continue;
+      const ImVec2 p = place(decade * factor, min_db), q = place(decade * factor, max_db);
       list.AddLine(p, q, color32(theme().text, 0.07F));
       text({p.x, at.y + size.y - below + px(11)}, fmt::format("{:g} ms", decade * factor), 0.5F);
     }

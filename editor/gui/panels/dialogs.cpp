@@ -60,7 +60,7 @@ void say(const std::string& text) {
 void Dialogs::draw_lost(Project& project, Thumbnails& thumbnails, const LostWork& work, bool first) {
   ImGui::PushID(work.journal.c_str());
   const ImVec2 size{px(96), px(60)};
-  const unsigned picture = thumbnails.of_picture(thumbnail_file(work.journal));
+  const unsigned picture = thumbnails.of_picture(thumbnail_path(work.journal));
   if (picture != 0) {
     ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture)), size);
     announce::item("thumbnail");

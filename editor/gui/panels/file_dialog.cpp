@@ -37,20 +37,22 @@ struct Question {
   const char* listed = ending;  ///< extensions of the listed files, separated by spaces
 };
 constexpr Question questions[] = {
-    {FileDialogPurpose::open, "Open", "A baked scene, a scene folder, or a project (.rebake).", "Open", "", ".rebake"},
+    {FileDialogPurpose::open, "Open", "A MobileNeRF folder, a Rebake scene, or a project (.rebake).", "Open", "",
+     ".rebake"},
     {FileDialogPurpose::save_project, "Save project", "A file with all steps of the history.", "Save", ".rebake"},
-    {FileDialogPurpose::save_scene, "Save scene folder", "A folder with all nodes, without the history.", "Save", ""},
-    {FileDialogPurpose::export_folder, "Export", "A folder that MobileNeRF viewers can open.", "Export", ""},
+    {FileDialogPurpose::save_scene, "Save Rebake scene", "A folder with all nodes, without the history.", "Save", ""},
+    {FileDialogPurpose::export_folder, "Export", "A MobileNeRF folder, or a Rebake scene if one folder cannot hold it.",
+     "Export", ""},
     {FileDialogPurpose::screenshot, "Screenshot", "A PNG file of the scene, without grid and handles.", "Write",
      ".png"},
     {FileDialogPurpose::turntable, "Turntable", "A folder for images of a full orbit: 000.png, 001.png, …", "Write",
      ""},
     {FileDialogPurpose::camera_path, "Camera path", "A folder for images along a path through the stored views.",
      "Write", ""},
-    {FileDialogPurpose::save_script, "Save as script", "A file with one edit per line.", "Save", ".jsonl"},
-    {FileDialogPurpose::run_script, "Run script", "A file with one edit per line.", "Run", ".jsonl"},
+    {FileDialogPurpose::save_script, "Save as script", "A script file with one edit per line.", "Save", ".jsonl"},
+    {FileDialogPurpose::run_script, "Run script", "A script file with one edit or action per line.", "Run", ".jsonl"},
     {FileDialogPurpose::light_picture, "Environment map", "An equirectangular image, twice as wide as high.", "Use", "",
-     ".exr .hdr .png .jpg .jpeg .tif .tiff"},
+     ".exr .hdr .png .jpg .jpeg .tif .tiff .webp"},
 };
 
 const Question& question_of(FileDialogPurpose kind) {

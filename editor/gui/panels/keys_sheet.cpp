@@ -81,7 +81,7 @@ void draw_keys_sheet(EditorContext& editor) {
       if (!begin(menu)) continue;
       for (const Command& command : command_table())
         if (command.menu == std::string_view(menu) && *command.keys_of(editor) != '\0')
-          line(command.keys_of(editor), command.title);
+          line(key_names(command.keys_of(editor)).c_str(), command.title);
       ImGui::EndTable();
     }
     ImGui::EndTable();

@@ -251,7 +251,7 @@ bool PlainPreview::draw(EditorContext& editor) {
     ui::muted("One decoder represents the scene exactly. No fit is needed.");
     announce::item("exact");
   } else {
-    ui::muted("One decoder approximates several. Drag across the image to compare.");
+    ui::muted("One plain folder approximates the scene. Drag across the image to compare.");
     const float most = ImGui::GetContentRegionAvail().y -
                        ImGui::GetTextLineHeightWithSpacing() * (static_cast<float>(measured_->rows.size()) + 4);
     const float aspect = static_cast<float>(measured_->view.width) / static_cast<float>(measured_->view.height);

@@ -151,7 +151,7 @@ void PropertiesPanel::draw_several(EditorContext& editor) {
 void PropertiesPanel::draw(EditorContext& editor) {
   const announce::Part part("properties");
   if (editor.active.empty()) {
-    ui::muted("Pick a node in the outliner or in the viewport.");
+    ui::muted("Pick a node in the outline or in the viewport.");
     return;
   }
   const auto placed = find_placed(editor.scene(), *editor.active.begin());

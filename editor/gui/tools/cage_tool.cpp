@@ -23,7 +23,7 @@ namespace {
 
 constexpr float cage_grab_pixels = 10;
 // Limit of points × cage faces up to which a preview includes rotations from the start (about 0.1 s).
-constexpr double most_exact = 2e6;
+constexpr double max_exact = 2e6;
 
 // Per point: index of its mirror image across the centre of their box along `axis`, or −1. Points on the mirror plane
 // are their own image.
@@ -212,7 +212,7 @@ void CageTool::preview(EditorContext& editor) {
   };
   std::size_t places = 0;
   for (const std::vector<Vec3>& some : bound_->places) places += some.size();
-  const bool at_once = static_cast<double>(places * bound_->cage.faces.size()) <= most_exact;
+  const bool at_once = static_cast<double>(places * bound_->cage.faces.size()) <= max_exact;
   std::vector<Edit> list;
   if (CageDeform edit = edit_for(moved_); !edit.moves.empty()) list.emplace_back(std::move(edit));
   editor.show_preview(std::move(list), bound_->scene, made(at_once));
@@ -441,9 +441,7 @@ void CageTool::options(EditorContext& editor) {
   ui::flow(px(120));
   ui::toggle("Visible only##visible-only", editor.tools.visible_only());
   ui::tip("Visible only", command_key("Visible only", editor), "Selects only points that face the camera.");
-  ui::hint(
-      "Drag points to deform. Drag a box, or a lasso with Ctrl, to select points. Each drag is one step of the "
-      "history.");
+  ui::hint("Drag points to deform. Drag a box, or a lasso with Ctrl, to select.");
 }
 
 void CageTool::cancel(EditorContext& editor) {

@@ -13,7 +13,7 @@ namespace rebake {
 namespace {
 
 // Limit for all triangles of objects with a selection, since the search for the border visits all of them.
-constexpr std::size_t most_triangles = 100000;
+constexpr std::size_t max_triangles = 100000;
 
 void add(const PlacedNode& placed, const TriangleSet& flags, double falloff, std::vector<Guides::Triangle>& triangles) {
   const BakedObject& object = *placed.node->object;
@@ -64,7 +64,7 @@ Guides::Triangles FalloffOverlay::of(const EditorContext& editor, const std::vec
   std::size_t all = 0;
   for (const PlacedNode& placed : placed_nodes(editor.scene()))
     if (placed.node->object && placed.node->selection) all += placed.node->object->triangle_count();
-  if (all > most_triangles) return nullptr;
+  if (all > max_triangles) return nullptr;
   try {
     auto triangles = std::make_shared<std::vector<Guides::Triangle>>();
     for (const DeformTarget& target : targets) {

@@ -60,12 +60,12 @@ std::array<Vec3, 4> square(const Vec3& pivot, const Vec3& u, const Vec3& v, doub
 }
 
 // Minimum |cos| between a plane's normal and the view direction: a plane seen edge-on cannot be dragged in.
-constexpr double least_tilt = 0.15;
+constexpr double min_tilt = 0.15;
 
 }  // namespace
 
 std::vector<Vec2> Gizmo::plane_handle(const Target& target, const ViewportProjection& lens, int axis) const {
-  if (kind_ != ToolKind::move || std::abs(target.axes.col(axis).dot(target.direction_to_eye)) < least_tilt) return {};
+  if (kind_ != ToolKind::move || std::abs(target.axes.col(axis).dot(target.direction_to_eye)) < min_tilt) return {};
   std::vector<Vec2> corners;
   for (const Vec3& corner : square(target.pivot, target.axes.col((axis + 1) % 3), target.axes.col((axis + 2) % 3),
                                    reach(lens, target.pivot)))
@@ -316,7 +316,7 @@ void Gizmo::pointer(EditorContext& editor, const ViewportProjection& lens, const
 void Gizmo::constrain(int axis, bool across) {
   if (across) {
     // A plane seen edge-on cannot be dragged in.
-    if (std::abs(at_.axes.col(axis).dot(at_.direction_to_eye)) < least_tilt) return;
+    if (std::abs(at_.axes.col(axis).dot(at_.direction_to_eye)) < min_tilt) return;
     typed_.clear();
     held_ = plane + axis;
     constrained_ = true;

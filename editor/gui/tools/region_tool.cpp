@@ -14,7 +14,7 @@ namespace rebake {
 
 namespace {
 
-constexpr double least_step = 2;      // minimum distance between points of a freehand line, pixels
+constexpr double min_step = 2;        // minimum distance between points of a freehand line, pixels
 constexpr double closing_reach = 10;  // a click this near to a polygon's first corner closes it, pixels
 
 PictureFields picture_of(const EditorContext& editor) {
@@ -43,7 +43,7 @@ void RegionTool::pointer(EditorContext& editor, const ViewportProjection& /*lens
   } else {
     // Uses all positions since the last frame, so that slow frames do not cut corners.
     for (const Vec2& at : pointer.way)
-      if (!pointer.pressed && (points_.back() - at).norm() >= least_step) points_.push_back(at);
+      if (!pointer.pressed && (points_.back() - at).norm() >= min_step) points_.push_back(at);
   }
   if (pointer.released) finish(editor);
 }

@@ -297,15 +297,15 @@ void Viewport::picture(EditorContext& editor) {
 
 // Writes the thumbnail that the recovery dialog shows: after each step, but at most every two seconds.
 void Viewport::write_recovery_thumbnail(const EditorContext& editor) {
-  constexpr std::chrono::seconds least_time{2};
+  constexpr std::chrono::seconds min_time{2};
   if (editor.now->journal.empty() || editor.scene().roots.empty()) return;
   const bool other = journal_of_ != editor.now->journal;
-  if (!other && (journal_step_ == editor.now->steps_done || Clock::now() - journal_at_ < least_time)) return;
+  if (!other && (journal_step_ == editor.now->steps_done || Clock::now() - journal_at_ < min_time)) return;
   journal_of_ = editor.now->journal;
   journal_step_ = editor.now->steps_done;
   journal_at_ = Clock::now();
   try {
-    const std::filesystem::path file = thumbnail_file(editor.now->journal);
+    const std::filesystem::path file = thumbnail_path(editor.now->journal);
     std::filesystem::create_directories(file.parent_path());
     write_png(thumbnail_of(renderer_.shown_image(), Thumbnails::width, Thumbnails::height), file, {});
   } catch (const std::exception&) {

@@ -234,9 +234,10 @@ const std::vector<Command>& command_table() {
       {"File", "Save project", "Ctrl+S", "Ctrl+S", "Saves every step to a .rebake file.", has_scene, save},
       {"File", "Save project as...", "Ctrl+Shift+S", "Ctrl+Shift+S", "Saves every step to another file.", has_scene,
        ask<FileDialogPurpose::save_project>},
-      {"File", "Save scene folder...", "", "", "Writes the current scene to a folder, without its history.", has_scene,
+      {"File", "Save Rebake scene...", "", "", "Writes the current scene to a folder, without its history.", has_scene,
        ask<FileDialogPurpose::save_scene>},
-      {"File", "Export...", "Ctrl+E", "Ctrl+E", "Writes a folder that MobileNeRF viewers can open.", has_scene,
+      {"File", "Export...", "Ctrl+E", "Ctrl+E",
+       "Writes a MobileNeRF folder, or a Rebake scene if one folder cannot hold it.", has_scene,
        ask<FileDialogPurpose::export_folder>},
       {"File", "Screenshot...", "F12", "F12", "Saves this view as an image.", has_scene,
        ask<FileDialogPurpose::screenshot>},
@@ -416,6 +417,23 @@ const std::vector<Command>& command_table() {
        [](EditorContext& editor) { editor.dialogs.keys = !editor.dialogs.keys; }},
   };
   return table;
+}
+
+std::string key_names(const std::string& keys) {
+  std::istringstream words(keys);
+  std::string names;
+  for (std::string key; words >> key;) {
+    const auto rename = [&](const std::string& code, const std::string& name) {
+      if (const std::size_t at = key.find(code); at != std::string::npos) key.replace(at, code.size(), name);
+    };
+    rename("KP_ADD", "Numpad +");
+    rename("KP_SUBTRACT", "Numpad -");
+    rename("KP_DECIMAL", "Numpad .");
+    rename("KP_", "Numpad ");
+    rename("Comma", ",");
+    names += (names.empty() ? "" : ", ") + key;
+  }
+  return names;
 }
 
 std::optional<KeyPress> parse_key(const std::string& text) {

@@ -8,6 +8,9 @@
 
 namespace rebake {
 
+/// Names of keys for users, from keys separated by spaces: "Ctrl+Shift+Z, Ctrl+Y", "Numpad 1".
+std::string key_names(const std::string& keys);
+
 /// A command of the window, started by key, menu or command palette.
 struct Command {
   const char* menu;  ///< title of its menu; empty: only in the command palette
@@ -22,10 +25,10 @@ struct Command {
 
   /// Keys in the current keymap.
   const char* keys_of(const EditorContext& editor) const { return editor.settings.blender_keys ? blender_keys : keys; }
-  /// First key in the current keymap; empty for none.
+  /// Name of the first key in the current keymap; empty for none.
   std::string key_of(const EditorContext& editor) const {
     const std::string all = keys_of(editor);
-    return all.substr(0, all.find(' '));
+    return key_names(all.substr(0, all.find(' ')));
   }
 };
 

@@ -48,7 +48,7 @@ EditorContext::EditorContext(Settings with, std::function<void()> wake)
       relighter(wake),
       jobs(std::move(wake)),
       now(jobs.worker.snapshot()),
-      project(jobs.worker, settings, messages, now, [this] { view.camera = framing_of(scene(), view.aspect()); }) {
+      project(jobs.worker, settings, messages, now, [this] { view.camera = framing_camera(scene(), view.aspect()); }) {
   project.begin_journal();
 }
 
@@ -91,7 +91,7 @@ void EditorContext::update() {
           selected_[placed.node->id] = triangles;
     if (awaits_first_scene_ && !world_bounds(scene()).isEmpty()) {
       awaits_first_scene_ = false;
-      view.camera = framing_of(scene(), view.aspect());
+      view.camera = framing_camera(scene(), view.aspect());
     }
   }
   for (const std::function<void()>& then : finished) {

@@ -9,8 +9,8 @@ namespace rebake {
 void Jobs::measure_costs(const ViewState& view, const Scene& scene) {
   auto measured = std::make_shared<Costs>();
   // The reference needs 64 samples per pixel; larger pictures may exceed the limits of drivers.
-  constexpr double most_pixels = 1e6;
-  const double scale = std::min(1.0, std::sqrt(most_pixels / (static_cast<double>(view.width) * view.height)));
+  constexpr double max_pixels = 1e6;
+  const double scale = std::min(1.0, std::sqrt(max_pixels / (static_cast<double>(view.width) * view.height)));
   measured->view = {view.camera, std::max(1, static_cast<int>(view.width * scale)),
                     std::max(1, static_cast<int>(view.height * scale)), 4};
   measured->roots = scene.roots;

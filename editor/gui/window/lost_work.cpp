@@ -95,7 +95,7 @@ void empty_trash() {
 }
 
 void forget_thumbnails_without_journal() {
-  sweep(thumbnail_file("x").parent_path(), [](const fs::path& path) {
+  sweep(thumbnail_path("x").parent_path(), [](const fs::path& path) {
     std::error_code unknown;
     return path.extension() == ".png" && !fs::exists(journal_folder() / path.stem(), unknown) &&
            !fs::exists(trash_folder() / path.stem(), unknown);
@@ -109,7 +109,7 @@ std::string LostWork::words() const {
                      fmt::localtime(std::chrono::system_clock::to_time_t(changed)));
 }
 
-fs::path thumbnail_file(const fs::path& journal) {
+fs::path thumbnail_path(const fs::path& journal) {
   return journal_folder().parent_path() / "thumbnails" / (journal.filename().string() + ".png");
 }
 

@@ -32,6 +32,6 @@ void discard(const LostWork& work);
 std::filesystem::path restore(const LostWork& work);
 
 /// Path of a journal's thumbnail, which may not exist. It is the same when the journal is in the trash.
-std::filesystem::path thumbnail_file(const std::filesystem::path& journal);
+std::filesystem::path thumbnail_path(const std::filesystem::path& journal);
 
 }  // namespace rebake

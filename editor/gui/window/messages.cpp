@@ -6,7 +6,7 @@ namespace rebake {
 
 std::vector<std::size_t> Messages::shown() const {
   std::vector<std::size_t> lines;
-  for (std::size_t k = log_.size(); k > 0 && lines.size() < most_shown; --k)
+  for (std::size_t k = log_.size(); k > 0 && lines.size() < max_shown; --k)
     if (shows(log_[k - 1])) lines.push_back(k - 1);
   std::reverse(lines.begin(), lines.end());
   return lines;

@@ -38,7 +38,7 @@ class Messages {
 
  private:
   static constexpr std::chrono::seconds shown_for{5};
-  static constexpr std::size_t most_shown = 4;
+  static constexpr std::size_t max_shown = 4;
   void add(std::string text, bool failed) { log_.push_back({std::move(text), failed, Clock::now()}); }
   bool shows(const Line& line) const { return !line.read && (line.failed || Clock::now() - line.said < shown_for); }
 

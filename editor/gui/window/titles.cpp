@@ -137,7 +137,7 @@ std::string verb_of(const Edit& edit) {
   if (const auto* taper = edit.as<Taper>()) return fmt::format("Tapered by {:.4g}:", taper->factor);
   if (const auto* stretch = edit.as<Stretch>()) return fmt::format("Stretched by {:.4g}:", stretch->factor);
   if (edit.is<CageDeform>()) return "Deformed by a cage:";
-  if (edit.is<HandlesDeform>()) return "Moved by handles:";
+  if (edit.is<HandlesDeform>()) return "Deformed by handles:";
   if (const auto found = verbs.find(edit.type().op); found != verbs.end()) return found->second;
   std::string words = edit.type().op;
   std::replace(words.begin(), words.end(), '_', ' ');

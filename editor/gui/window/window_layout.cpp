@@ -167,7 +167,7 @@ void WindowLayout::scope() {
   ImGui::PushStyleColor(ImGuiCol_Text, color(theme().accent_text));
   ImGui::TextUnformatted(ui::shortened(editor_.scope_words(), px(160)).c_str());
   ImGui::PopStyleColor();
-  ui::tip("Works " + editor_.scope_words(), "",
+  ui::tip("Scope: " + editor_.scope_words(), "",
           "Tools work on the picked nodes, or on all visible, unlocked nodes if none are picked.");
   ImGui::SameLine(0, px(space::section));
 }

@@ -1,0 +1,56 @@
+// Merging of separated nodes: triangles, selections and bytes.
+#include <gtest/gtest.h>
+
+#include "tests/support/document_fixture.h"
+#include "tests/support/edits.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+class Merge : public DocumentTest {};
+
+TEST_F(Merge, KeepsLiveAndStoredSelections) {
+  Document document;
+  import(document);
+  const auto selected_in = [&](const char* name) {
+    const NodePtr node = find(document.scene(), name);
+    return node->selection ? *node->selection : TriangleSet();
+  };
+  act(document, R"({"op": "select", "box": {"min": [-2, -2, -2], "max": [0.3, 2, 2]}})");
+  act(document, R"({"op": "store_selection", "name": "left"})");
+  const TriangleSet stored = selected_in("ball");
+  act(document, R"({"op": "select", "box": {"min": [-2, 0, -2], "max": [2, 2, 2]}})");
+  act(document, R"({"op": "separate", "node": "ball", "as": "part"})");
+  act(document, R"({"op": "duplicate", "node": "part", "as": "copy"})");
+  act(document, R"({"op": "select", "saved": "left"})");
+  const std::size_t in_copy = count(selected_in("copy"));
+  ASSERT_GT(in_copy, 0U);
+  // Merging restores both the live and the stored selection.
+  act(document, R"({"op": "merge", "nodes": ["ball", "part"]})");
+  EXPECT_EQ(selected_in("ball"), stored);
+  act(document, R"({"op": "select", "none": true})");
+  act(document, R"({"op": "select", "saved": "left"})");
+  EXPECT_EQ(selected_in("ball"), stored);
+  act(document, R"({"op": "merge", "nodes": ["copy", "ball"]})");
+  EXPECT_EQ(count(selected_in("copy")), count(stored) + in_copy);
+}
+
+TEST_F(Merge, OfSeparatedPartsGivesTheOriginalBytes) {
+  Document document;
+  import(document);
+  const auto bytes = exported(document.scene());
+  act(document, R"({"op": "select", "sphere": {"center": [0, 1, 0], "radius": 0.8}})");
+  act(document, R"({"op": "separate", "node": "ball", "as": "part"})");
+  act(document,
+      R"({"op": "select", "node": "part", "box": {"min": [0, 0, 0], "max": [0.5, 1, 1]}, "frame": "bounds"})");
+  act(document, R"({"op": "separate", "node": "part", "as": "corner"})");
+  EXPECT_NE(exported(find(document.scene(), "ball") ? without(document.scene(), find(document.scene(), "part")->id)
+                                                    : document.scene()),
+            bytes);
+  act(document, R"({"op": "merge", "nodes": ["corner", "ball", "part"], "as": "ball again"})");
+  EXPECT_EQ(exported(document.scene()), bytes);
+}
+
+}  // namespace
+}  // namespace rebake::test
