@@ -392,7 +392,7 @@ void BendTool::options(EditorContext& editor) {
   if (found_ && found_->touched >= interleaved)
     ui::hint("Unselected triangles among the selection stay in place.");
   else if (bent(editor))
-    ui::hint("Drag the pink handle. Blue handles set the limits.");
+    ui::hint("Drag the pink handle.");
   else
     ui::hint(editor.jobs.worker.busy() ? "Searching for the spine…"
                                        : "Nothing to deform. Select triangles or pick a node.");
