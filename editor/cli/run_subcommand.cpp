@@ -171,9 +171,10 @@ void describe_run(SubcommandDescription& command) {
         action.out = options->out;
         run(session, action);
       }
-      if (!options->files.empty()) Journal::refuse_overwriting(options->files);
-      if (!options->files.empty())
+      if (!options->files.empty()) {
+        Journal::refuse_overwriting(options->files);
         write_file_atomically(options->files, file_list(session, script, variables), session.document.sources());
+      }
     } catch (const Error&) {
       if (!options->journal.empty())
         session.say(fmt::format("the edits so far are in {0}; to recover them: rebake recover {0} -o FILE.rebake",

@@ -19,7 +19,7 @@ namespace rebake {
 struct OptionHelp {
   std::string names;               ///< "-o,--out"; without a dash for a positional argument
   std::string hint;                ///< placeholder of the value, such as "OUT.png"; empty for a flag
-  std::string help;                ///< what it does
+  std::string help;                ///< one sentence
   std::vector<std::string> words;  ///< the only values allowed; empty if others are
 };
 

@@ -138,7 +138,8 @@ bool SourceGuard::add_source(Source source) {
       // The source may have been replaced since. Undo and journals still need the earlier one if it was moved.
       if (!source.seen.empty() && !was_seen(known, source.seen)) known.seen.push_back(source.seen.front());
       known.replaceable = known.replaceable && source.replaceable;
-      if (source.owner.empty()) known.owner.clear();
+      // Several folders link to it: it stays protected when one of them is replaced.
+      if (source.owner != known.owner) known.owner.clear();
       known.role = std::move(source.role);
       return false;
     }

@@ -77,9 +77,9 @@ struct Candidate {
 // Whether visibility from one camera predicts visibility from another.
 bool is_near(const Camera& a, const Camera& b) {
   const Vec3 to_a = a.target - a.eye, to_b = b.target - b.eye;
-  constexpr double max_turned = 0.9;  // cosine of the angle: 26°
+  constexpr double min_cosine = 0.9;  // 26°
   constexpr double max_moved = 0.25;  // share of the distance to the target
-  return to_a.dot(to_b) > max_turned * to_a.norm() * to_b.norm() &&
+  return to_a.dot(to_b) > min_cosine * to_a.norm() * to_b.norm() &&
          (a.eye - b.eye).norm() < max_moved * std::max(to_a.norm(), to_b.norm()) &&
          a.orthographic() == b.orthographic();
 }

@@ -129,8 +129,8 @@ TEST(EditorContext, MeasuresCostsInTheView) {
   wait();
 }
 
-// A Desk, the state of the window without its display, with a scene of two objects.
-class DeskTest : public ::testing::Test {
+// The state of the window without its display, with a scene of two objects.
+class EditorContextTest : public ::testing::Test {
  protected:
   void SetUp() override {
     ::setenv("XDG_STATE_HOME", home.path().c_str(), 1);
@@ -161,7 +161,7 @@ class DeskTest : public ::testing::Test {
   std::unique_ptr<EditorContext> editor;
 };
 
-TEST_F(DeskTest, ToolsWorkOnThePickedNodes) {
+TEST_F(EditorContextTest, ToolsWorkOnThePickedNodes) {
   EXPECT_EQ(editor->active, std::set<NodeId>{id("box")}) << "import must pick the new node";
   EXPECT_EQ(editor->scope_words(), "in box");
   Select all;
@@ -182,7 +182,7 @@ TEST_F(DeskTest, ToolsWorkOnThePickedNodes) {
   EXPECT_GT(selected("ball"), 0U);
 }
 
-TEST_F(DeskTest, AdjustingKeepsOneStepAndSurvivesFailure) {
+TEST_F(EditorContextTest, AdjustingKeepsOneStepAndSurvivesFailure) {
   Transform move;
   move.node = NodeRef{id("box")};
   move.translate = Vec3(1, 0, 0);
@@ -203,7 +203,7 @@ TEST_F(DeskTest, AdjustingKeepsOneStepAndSurvivesFailure) {
   EXPECT_FALSE(editor->messages.shown().empty());
 }
 
-TEST_F(DeskTest, ReleaseCommitsThePreview) {
+TEST_F(EditorContextTest, ReleaseCommitsThePreview) {
   Bend bend;
   bend.target.node = NodeRef{id("box")};
   bend.axis.axis = Vec3(1, 0, 0);
@@ -241,7 +241,7 @@ TEST_F(DeskTest, ReleaseCommitsThePreview) {
   EXPECT_EQ(editor->now->steps_done, editor->now->steps.size());
 }
 
-TEST_F(DeskTest, ReleaseWaitingForAPreviewCanBeCancelled) {
+TEST_F(EditorContextTest, ReleaseWaitingForAPreviewCanBeCancelled) {
   std::atomic<bool> begun = false, run_step = false;
   editor->previews.request(editor->scene().roots, [&begun, &run_step, scene = editor->scene()](const Progress&) {
     begun = true;
@@ -264,7 +264,7 @@ TEST_F(DeskTest, ReleaseWaitingForAPreviewCanBeCancelled) {
   EXPECT_FALSE(editor->preview) << "a cancelled edit must not be shown";
 }
 
-TEST_F(DeskTest, TitlesAreImmutable) {
+TEST_F(EditorContextTest, TitlesAreImmutable) {
   Rename rename;
   rename.node = NodeRef{id("box")};
   rename.name = "crate";

@@ -286,7 +286,7 @@ TEST_F(Script, UndoAndRedoInAScript) {
 
 TEST(ScriptReference, DocsContainEveryField) {
   const std::string docs = read_file(std::filesystem::path(REBAKE_SOURCE) / "editor/script/REFERENCE.md");
-  EXPECT_NE(docs.find(command_reference()), std::string::npos) << "regenerate: build/rebake run --fields";
+  EXPECT_NE(docs.find(command_reference()), std::string::npos) << "run samples/regenerate";
 }
 
 }  // namespace

@@ -151,6 +151,16 @@ class ViewTest(WindowCase):
         editor.double_click(*editor.where("dialog/entries/kettle"))
         editor.until_ops("import", "import")
 
+    def test_text_scale_keeps_the_size_of_the_window(self):
+        self.screen.settings(text_scale=1.5)
+        editor = self.open_ficus()
+        editor.settle()
+        size = editor.state()["window"]
+        editor.key("shift+a")  # any input: settings are saved with the frame
+        editor.settle()
+        saved = json.loads((self.screen.home / "config/rebake/settings.json").read_text())
+        self.assertEqual([saved["window_width"], saved["window_height"]], size, "the size at the next start")
+
     def test_costs_are_a_chart_to_choose_from(self):
         editor = self.open_ficus()
         editor.command("performance")

@@ -321,6 +321,21 @@ TEST(SourceGuard, ProtectsLinkTargetsOfReplaceableScenesUntilReplaced) {
   EXPECT_NO_THROW(guard.check_file(texture));
 }
 
+TEST(SourceGuard, KeepsTargetsThatSeveralScenesLinkTo) {
+  const TemporaryFolder folder;
+  const fs::path texture = folder.path() / "textures/a.png";
+  fs::create_directories(folder.path() / "textures");
+  std::ofstream(texture) << "texels";
+  SourceGuard guard;
+  for (const char* scene : {"one", "two"}) {
+    fs::create_directories(folder.path() / scene);
+    fs::create_symlink(texture, folder.path() / scene / "shape0.pngfeat0.png");
+    guard.add_contents(folder.path() / scene, "a scene that this script reads");
+  }
+  guard.release_contents(folder.path() / "one");
+  EXPECT_THROW(guard.check_file(texture), FileError) << "the other scene still reads it";
+}
+
 TEST(SourceGuard, ProtectsObjectsBehindALinkToTheirParent) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "library/ficus");

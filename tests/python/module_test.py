@@ -331,7 +331,7 @@ class Module(unittest.TestCase):
 
     def test_every_edit_has_a_method_with_help_and_the_stub_is_current(self):
         stub = (ROOT / "editor/python/rebake.pyi").read_text()
-        self.assertEqual(stub, rebake.python_stub(), "regenerate editor/python/rebake.pyi from rebake.python_stub()")
+        self.assertEqual(stub, rebake.python_stub(), "run samples/regenerate")
         compile(stub, "rebake.pyi", "exec")
         for name in ("import_", "select", "select_picture", "erase", "merge", "transform"):
             self.assertIn("\n", getattr(rebake.Document, name).__doc__)

@@ -17,7 +17,7 @@ namespace rebake {
 /// File dialog to open, save, export and render. For exports it lists the properties of the scene that would be lost.
 class FileDialog {
  public:
-  /// Draws the dialog if `editor.asking.path` requests one, and performs the action when the user confirms.
+  /// Draws the dialog if `editor.dialogs.path` requests one, and performs the action when the user confirms.
   void draw(EditorContext& editor, Thumbnails& thumbnails);
 
   /// Closes the comparison of plain folders; returns false if it is not open.

@@ -129,7 +129,7 @@ class AdjustPanel {
 
 /// Draws the latest messages as toasts, stacked upwards from their lower right `corner` (window pixels).
 void draw_toasts(Messages& messages, const ImVec2& corner);
-/// Draws the sheet of keys and mouse actions if `editor.asking.keys` is set.
+/// Draws the sheet of keys and mouse actions if `editor.dialogs.keys` is set.
 void draw_keys_sheet(EditorContext& editor);
 /// Draws the start page (open, recent, samples) centred at `middle` (window pixels) while the scene is empty.
 void draw_start(EditorContext& editor, Thumbnails& thumbnails, const ImVec2& middle);
@@ -154,7 +154,7 @@ class EditForm {
   void draw(EditorContext& editor, float right);
 
  private:
-  /// Resets the form for the edit `editor.asking.form`.
+  /// Resets the form for the edit `editor.dialogs.form`.
   void begin(const EditorContext& editor);
   /// The edits that the fields describe: one, or one per picked node. Throws EditError.
   std::vector<nlohmann::json> lines(const EditorContext& editor) const;
