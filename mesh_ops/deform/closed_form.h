@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "mesh_ops/base/types.h"
 
 namespace rebake {
@@ -32,15 +30,7 @@ void check(const ClosedForm& form);
 
 Deformed deform(const ClosedForm& form, const Vec3& point);
 
-/// The deformation along a polyline `spine`: one form per straight segment between `form.from` and `form.to`, which are
-/// arc lengths from its first point. Forms come in the order in which deform() applies them: the last segment first,
-/// since everything beyond a segment follows it. Throws FieldError for tapers, for fewer than two points, for points
-/// that coincide or are not finite, and for a spine shorter than `form.from`.
-/// All bends rotate about one direction, perpendicular to the form's axis and direction. That is exact if the curve is
-/// perpendicular to it too, otherwise up to products of the angles of one segment. For a straight spine this is the
-/// form itself.
-std::vector<ClosedForm> along_curve(const ClosedForm& form, const std::vector<Vec3>& spine);
-/// Applies forms in order; at least one. Each form takes its parameter z from the undeformed point.
-Deformed deform(const std::vector<ClosedForm>& forms, const Vec3& point);
+/// Rotation into the axes of the form. Rows: towards the direction, across both, along the axis.
+Mat3 frame_of(const ClosedForm& form);
 
 }  // namespace rebake

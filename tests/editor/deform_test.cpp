@@ -287,14 +287,15 @@ TEST_F(DeformScript, EmptySphereTakesTheNearestPointIfAllowed) {
       << "the nearest cage point is the corner with the greatest x, y and z";
 }
 
-TEST_F(DeformScript, WarnsOfSpinesThatTurnBack) {
+TEST_F(DeformScript, WarnsOfSharpCornersOfSpines) {
   const auto bend = [&](const char* spine) {
     said.clear();
     run(std::string(R"({"op": "bend", "node": "ball", "degrees": 20, "direction": [1, 0, 0], "spine": )") + spine +
         "}");
-    return said.find("turns by more than 90°") != std::string::npos;
+    return said.find("has a corner of more than 90° at point 2") != std::string::npos;
   };
-  EXPECT_TRUE(bend("[[0, 0, 0], [0, 2, 0], [1, 2, 0], [1, 0, 0]]"));
+  EXPECT_TRUE(bend("[[0, 0, 0], [0, 1, 0], [0, 2, 0], [1, 1, 0]]"));
+  EXPECT_FALSE(bend("[[0, 0, 0], [0, 2, 0], [1, 2, 0], [1, 0, 0]]"));
   EXPECT_FALSE(bend("[[0, 0, 0], [0, 1, 0], [0.5, 2, 0]]"));
 }
 

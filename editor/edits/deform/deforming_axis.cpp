@@ -2,18 +2,22 @@
 
 #include <tbb/parallel_for.h>
 
+#include "mesh_ops/deform/curved_form.h"
+
 namespace rebake {
 
 namespace {
 
-Outcome with_forms(const Scene& scene, const DeformSet& set, const DeformTarget& target,
-                   const std::vector<ClosedForm>& forms, const std::vector<std::string>& notes = {}) {
+// Form: ClosedForm or CurvedForm.
+template <class Form>
+Outcome with_form(const Scene& scene, const DeformSet& set, const DeformTarget& target, const Form& form,
+                  const std::vector<std::string>& notes = {}) {
   const SpaceDeformation deformation = [&](const std::vector<Vec3>& points) {
     DeformedPoints result;
     result.points.resize(points.size());
     result.jacobians.resize(points.size());
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-      const Deformed one = deform(forms, points[i]);
+      const Deformed one = deform(form, points[i]);
       result.points[i] = one.point;
       result.jacobians[i] = one.jacobian;
     });
@@ -22,14 +26,11 @@ Outcome with_forms(const Scene& scene, const DeformSet& set, const DeformTarget&
   return with_deformed(scene, set, target.falloff, deformation, notes);
 }
 
-// Points are assigned to the segments of a spine by projection, which needs all segments to advance in one direction.
 std::vector<std::string> spine_warnings(const std::vector<Vec3>& spine) {
-  for (std::size_t j = 1; j + 1 < spine.size(); ++j)
-    for (std::size_t k = 0; k < j; ++k)
-      if ((spine[j + 1] - spine[j]).dot(spine[k + 1] - spine[k]) < 0)
-        return {
-            "the spine turns by more than 90°, so parts may be deformed by segments that they do not lie on; use a "
-            "gentler spine, or one edit per part"};
+  for (std::size_t k = 1; k + 1 < spine.size(); ++k)
+    if ((spine[k + 1] - spine[k]).dot(spine[k] - spine[k - 1]) < 0)
+      return {"the spine has a corner of more than 90° at point " + std::to_string(k) +
+              " (counted from 0), where triangles may tear; round the corner by more points"};
   return {};
 }
 
@@ -49,7 +50,7 @@ Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const D
     form.from = axis.from.value_or(0);
     form.to = axis.to.value_or(length);
     check(form);
-    return with_forms(scene, set, target, along_curve(form, axis.spine.points), spine_warnings(axis.spine.points));
+    return with_form(scene, set, target, along_curve(form, axis.spine.points), spine_warnings(axis.spine.points));
   }
   if (axis.origin) {
     form.origin = *axis.origin;
@@ -61,7 +62,7 @@ Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const D
   form.from = axis.from.value_or(low - start);
   form.to = axis.to.value_or(high - start);
   check(form);
-  return with_forms(scene, set, target, {form});
+  return with_form(scene, set, target, form);
 }
 
 }  // namespace rebake

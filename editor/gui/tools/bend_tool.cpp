@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "editor/edits/deform/bend.h"
@@ -15,7 +16,7 @@
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/number_field.h"
 #include "editor/gui/ui/widgets.h"
-#include "mesh_ops/deform/closed_form.h"
+#include "mesh_ops/deform/curved_form.h"
 
 namespace rebake {
 
@@ -44,8 +45,8 @@ Spine spine_of_targets(const Scene& scene, const std::vector<DeformTarget>& targ
   return spine_of(part, rest).value_or(Spine{});
 }
 
-// Closed forms of an edit that was made along this spine; empty for other edits.
-std::vector<ClosedForm> forms_along(const Edit& edit, const Spine& spine) {
+// The deformation by an edit that was made along this spine; empty for other edits.
+std::function<Deformed(const Vec3&)> deformation_along(const Edit& edit, const Spine& spine) {
   ClosedForm form;
   const DeformAxis* axis = nullptr;
   if (const auto* bend = edit.as<Bend>()) {
@@ -69,11 +70,13 @@ std::vector<ClosedForm> forms_along(const Edit& edit, const Spine& spine) {
   form.axis = spine.along;
   form.from = *axis->from;
   form.to = *axis->to;
-  if (!axis->spine.points.empty())
-    return axis->spine.points == spine.curve ? along_curve(form, spine.curve) : std::vector<ClosedForm>{};
+  if (!axis->spine.points.empty()) {
+    if (axis->spine.points != spine.curve) return {};
+    return [curved = along_curve(form, spine.curve)](const Vec3& point) { return deform(curved, point); };
+  }
   if (axis->origin != spine.foot) return {};
   form.origin = spine.foot;
-  return {form};
+  return [form](const Vec3& point) { return deform(form, point); };
 }
 
 }  // namespace
@@ -92,7 +95,7 @@ BendTool::SpineInputs BendTool::current_inputs(const EditorContext& editor) cons
 
 bool BendTool::last_edit_follows_spine(const EditorContext& editor) const {
   const std::optional<DeformAxisTarget> here = bent(editor);
-  return here && !editor.now->done.empty() && !forms_along(editor.now->done.back(), here->spine).empty();
+  return here && !editor.now->done.empty() && deformation_along(editor.now->done.back(), here->spine) != nullptr;
 }
 
 void BendTool::find_spine(EditorContext& editor) {
@@ -149,11 +152,11 @@ std::optional<BendTool::DeformAxisTarget> BendTool::bent(const EditorContext& ed
 Vec3 BendTool::shown(const EditorContext& editor, const DeformAxisTarget& bent, const Vec3& point) {
   const std::vector<Edit>& done = editor.now->done;
   std::size_t first = done.size();
-  while (first > 0 && !forms_along(done[first - 1], bent.spine).empty()) --first;
+  while (first > 0 && deformation_along(done[first - 1], bent.spine) != nullptr) --first;
   Vec3 result = point;
   // Each step has one edit per target, all with the same form: apply it once per step.
   for (std::size_t k = first; k < done.size(); k += bent.targets.size())
-    result = deform(forms_along(done[k], bent.spine), result).point;
+    result = deformation_along(done[k], bent.spine)(result).point;
   return result;
 }
 
